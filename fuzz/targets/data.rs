@@ -2,10 +2,10 @@
 #![no_main]
 
 #[allow(dead_code, missing_docs)]
-#[path = "../../crates/a3/src/chart/record.rs"]
+#[path = "../../crates/a3/src/commands/chart/record.rs"]
 mod record;
 #[allow(dead_code, missing_docs)]
-#[path = "../../crates/a3/src/chart/text.rs"]
+#[path = "../../crates/a3/src/commands/chart/text.rs"]
 mod text;
 
 libfuzzer_sys::fuzz_target!(|text: &str| {

@@ -6,8 +6,8 @@ mod mutation;
 use clap::Parser;
 use clap::error::ErrorKind;
 
-use crate::chart::text::read;
 use crate::cli::{Cli, explain};
+use crate::commands::chart::text::read;
 use mutation::{Random, seeds};
 
 /// Number of inputs of each kind.

@@ -14,91 +14,20 @@
     allow(clippy::unused_self, clippy::unnecessary_wraps)
 )]
 
-mod bounds;
-mod checkpoint;
+mod base;
 mod cli;
-mod failure;
-mod holding;
+#[cfg(not(target_arch = "wasm32"))]
+mod commands;
+mod draw;
+mod files;
 #[cfg(test)]
 mod hostile;
-mod lessons;
-mod progress;
-mod rounding;
-mod scene_file;
-mod setup;
-mod summary;
-mod surfaces;
-
-// The window, and the page.
-#[cfg(feature = "window")]
-mod app;
-#[cfg(feature = "window")]
-mod begin;
-#[cfg(feature = "window")]
-mod command_line;
-#[cfg(feature = "window")]
-mod hud;
-#[cfg(feature = "window")]
-mod keep;
-#[cfg(feature = "window")]
-mod session;
-#[cfg(feature = "window")]
-mod settings;
-#[cfg(feature = "window")]
-mod show;
-
-// The program.
-#[cfg(not(target_arch = "wasm32"))]
-mod chart;
-#[cfg(not(target_arch = "wasm32"))]
-mod choose;
-#[cfg(all(feature = "window", not(target_arch = "wasm32")))]
-mod compare;
-#[cfg(not(target_arch = "wasm32"))]
-mod export;
-#[cfg(all(feature = "window", not(target_arch = "wasm32")))]
-mod film;
-#[cfg(not(target_arch = "wasm32"))]
-mod frames;
-#[cfg(all(feature = "window", not(target_arch = "wasm32")))]
-mod headless;
-#[cfg(not(target_arch = "wasm32"))]
-mod interrupt;
-#[cfg(not(target_arch = "wasm32"))]
-mod list;
-#[cfg(not(target_arch = "wasm32"))]
-mod manual;
-#[cfg(not(target_arch = "wasm32"))]
-mod output;
-#[cfg(all(feature = "window", not(target_arch = "wasm32")))]
-mod painter;
-#[cfg(not(target_arch = "wasm32"))]
-mod program;
-#[cfg(all(feature = "window", not(target_arch = "wasm32")))]
-mod recorder;
-#[cfg(all(feature = "window", not(target_arch = "wasm32")))]
-mod render;
-#[cfg(not(target_arch = "wasm32"))]
-mod share;
-#[cfg(not(target_arch = "wasm32"))]
-mod simulate;
-#[cfg(not(target_arch = "wasm32"))]
-mod stability;
-#[cfg(not(target_arch = "wasm32"))]
-mod sweep;
-#[cfg(not(target_arch = "wasm32"))]
-mod verdict;
-#[cfg(all(feature = "window", not(target_arch = "wasm32")))]
-mod window;
-
-// The page.
-#[cfg(target_arch = "wasm32")]
-mod browser;
-#[cfg(target_arch = "wasm32")]
-#[path = "browser/output.rs"]
-mod output;
 #[cfg(target_arch = "wasm32")]
 pub mod page;
+#[cfg(not(target_arch = "wasm32"))]
+mod program;
+#[cfg(feature = "window")]
+mod window;
 
 #[cfg(not(target_arch = "wasm32"))]
 pub use program::main;

@@ -8,15 +8,15 @@ use a3_core::Simulation;
 use clap::Parser;
 use web_time::Instant;
 
-use crate::app;
-use crate::begin;
-use crate::browser::{self, files};
+use crate::base::browser::{self, files};
+use crate::base::failure::Failure;
+use crate::base::progress;
 use crate::cli::{self, Cli, Command};
-use crate::failure::Failure;
-use crate::progress;
-use crate::scene_file::Hash;
-use crate::session::{Action, RunAction};
-use crate::settings::Settings;
+use crate::files::scene_file::Hash;
+use crate::window::app;
+use crate::window::begin;
+use crate::window::session::{Action, RunAction};
+use crate::window::settings::Settings;
 
 /// Begins what the address asks for; where that is not possible, the page says why.
 pub fn start() {

@@ -4,11 +4,15 @@ use std::process::ExitCode;
 
 use clap::Parser;
 
+use crate::base::failure::Failure;
+use crate::base::{interrupt, terminal};
 use crate::cli::{self, Cli, Command};
-use crate::failure::Failure;
-use crate::{chart, choose, interrupt, lessons, list, manual, output, simulate, stability, sweep};
 #[cfg(feature = "window")]
-use crate::{compare, render, window};
+use crate::commands::render;
+use crate::commands::{chart, choose, list, manual, simulate, stability, sweep};
+use crate::files::lessons;
+#[cfg(feature = "window")]
+use crate::window::{self, compare};
 
 /// Does what the command line asks for, and returns the exit code of the program.
 #[must_use]
@@ -24,7 +28,7 @@ pub fn main() -> ExitCode {
             )),
             #[cfg(feature = "window")]
             Some(Command::Compare(options)) if options.output.is_none() => {
-                window::compare(&options)
+                window::open_comparison(&options)
             }
             #[cfg(feature = "window")]
             Some(Command::Compare(options)) => compare::run(&options),
@@ -48,10 +52,10 @@ pub fn main() -> ExitCode {
         Err(Failure::Usage(why)) => (why, 2),
         Err(Failure::Run(why)) => (why, 1),
         Err(Failure::Interrupted(why)) => {
-            output::warn(&why);
+            terminal::warn(&why);
             return ExitCode::from(interrupt::exit_code());
         }
     };
-    output::warn(&format!("error: {why}"));
+    terminal::warn(&format!("error: {why}"));
     ExitCode::from(code)
 }

@@ -3,9 +3,10 @@
 use std::path::PathBuf;
 
 use a3_core::Method;
+use a3_core::accuracy::Metric;
 use clap::Args;
 
-use super::measures::{ErrorMeasure, ErrorScope, WorkMeasure};
+use super::measures::{ErrorScope, WorkMeasure, metric};
 use super::names::SOLVER_OR_ALL;
 use super::run::What;
 use super::values::{factor, horizon, picture_size};
@@ -22,8 +23,8 @@ pub struct Chart {
     #[arg(long, value_name = "T", value_parser = horizon, allow_negative_numbers = true)]
     pub until: Option<f64>,
     /// What counts as the error
-    #[arg(long, default_value = "position")]
-    pub error: ErrorMeasure,
+    #[arg(long, default_value = "position", value_parser = metric())]
+    pub error: Metric,
     #[command(flatten)]
     pub scope: ErrorScope,
     /// What counts as the cost

@@ -1,8 +1,9 @@
 //! The options of `a3 choose`.
 
+use a3_core::accuracy::Metric;
 use clap::Args;
 
-use super::measures::{ErrorMeasure, ErrorScope, WorkMeasure};
+use super::measures::{ErrorScope, WorkMeasure, metric};
 use super::run::What;
 use super::values::{budget, error, horizon};
 
@@ -15,8 +16,8 @@ pub struct Choose {
     #[arg(long, value_name = "E", value_parser = error, allow_negative_numbers = true, required_unless_present = "budget", conflicts_with = "budget")]
     pub error: Option<f64>,
     /// What counts as the error
-    #[arg(long, value_name = "QUANTITY", default_value = "position")]
-    pub of: ErrorMeasure,
+    #[arg(long, value_name = "QUANTITY", default_value = "position", value_parser = metric())]
+    pub of: Metric,
     #[command(flatten)]
     pub scope: ErrorScope,
     /// What counts as the cost

@@ -16,7 +16,9 @@ use super::stability::Stability;
 use super::sweep::Sweep;
 #[cfg(feature = "window")]
 use super::window::{Compare, Render, WindowOptions};
-use crate::lessons;
+
+/// Number of lessons.
+pub const LESSONS: u8 = 7;
 
 /// What the help ends with.
 #[cfg(feature = "window")]
@@ -80,7 +82,7 @@ pub enum Command {
     /// Print a lesson on solvers, or the list of lessons; key F1 of the window opens them
     Lessons {
         /// Number of the lesson
-        #[arg(value_parser = clap::value_parser!(u8).range(1..=i64::from(lessons::COUNT)))]
+        #[arg(value_parser = clap::value_parser!(u8).range(1..=i64::from(LESSONS)))]
         lesson: Option<u8>,
     },
     /// Print the completion script of a shell

@@ -2,8 +2,35 @@
 
 use a3_render::Style;
 use clap::Args;
+use clap::builder::TypedValueParser;
 
-use crate::show::{Arrows, Manner, Quantity};
+use super::names::choice;
+use crate::draw::show::{Arrows, Manner, Quantity};
+
+/// Creates a parser of the quantity of colours.
+fn quantity() -> impl TypedValueParser<Value = Quantity> {
+    choice(&Quantity::ALL, |quantity| {
+        let help = match quantity {
+            Quantity::Speed => "Speed (m/s)",
+            Quantity::Strain => "Largest strain of the springs at a particle, or of its tetrahedra",
+            Quantity::Force => "Sum of the forces on a particle that is free (N)",
+            Quantity::Contact => "Force by which obstacles and surfaces touch a particle (N)",
+            Quantity::Error => "Distance from the reference of a comparison (m)",
+        };
+        (quantity.name(), help)
+    })
+}
+
+/// Creates a parser of the vector of arrows.
+fn arrows() -> impl TypedValueParser<Value = Arrows> {
+    choice(&Arrows::ALL, |arrows| {
+        let help = match arrows {
+            Arrows::Velocity => "Velocity (m/s)",
+            Arrows::Force => "Sum of the forces on a particle (N)",
+        };
+        (arrows.name(), help)
+    })
+}
 
 /// How a scene is drawn.
 #[expect(clippy::struct_excessive_bools, reason = "each is an option")]
@@ -23,10 +50,10 @@ pub struct Drawing {
     #[arg(long)]
     pub dark: bool,
     /// Colour each particle by a quantity
-    #[arg(long, value_name = "QUANTITY", value_enum, alias = "color")]
+    #[arg(long, value_name = "QUANTITY", value_parser = quantity(), alias = "color")]
     pub colour: Option<Quantity>,
     /// Draw an arrow on each particle
-    #[arg(long, value_name = "VECTOR", value_enum)]
+    #[arg(long, value_name = "VECTOR", value_parser = arrows())]
     pub arrows: Option<Arrows>,
 }
 

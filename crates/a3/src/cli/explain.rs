@@ -5,8 +5,8 @@ use std::error::Error;
 use a3_scenes::nearest;
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 
-use crate::failure::Failure;
-use crate::output;
+use crate::base::failure::Failure;
+use crate::base::terminal;
 
 /// Most characters of an argument that is quoted.
 const LONGEST: usize = 80;
@@ -17,7 +17,7 @@ pub fn explain(error: &clap::Error) -> Result<(), Failure> {
         error.kind(),
         ErrorKind::DisplayHelp | ErrorKind::DisplayVersion
     ) {
-        return output::said(error.print());
+        return terminal::said(error.print());
     }
     Err(Failure::Usage(mistake(error)))
 }
@@ -36,12 +36,7 @@ fn mistake(error: &clap::Error) -> String {
     match error.kind() {
         ErrorKind::ValueValidation => {
             let why = error.source().map(ToString::to_string).unwrap_or_default();
-            // What is wrong in a file begins with the name of the file.
-            if why.starts_with(&format!("{value}:")) {
-                why
-            } else {
-                format!("{typed}: {why}")
-            }
+            format!("{typed}: {why}")
         }
         ErrorKind::InvalidValue if value.is_empty() => {
             let needed = format!("{} needs a value: {}", quoted(option), spelt(&arg));

@@ -1,26 +1,30 @@
 //! What counts as the error and as the cost of a run.
 
+use a3_core::accuracy::Metric;
+use clap::builder::TypedValueParser;
 use clap::{Args, ValueEnum};
 
+use super::names::choice;
 use super::values::particle;
 
-/// What counts as the error.
-#[derive(Clone, Copy, ValueEnum, PartialEq)]
-pub enum ErrorMeasure {
-    /// Positions, root mean square over the particles (m)
-    Position,
-    /// Total energy (J)
-    Energy,
-    /// Lengths of the springs over their rest lengths, root mean square
-    Strain,
-    /// Total momentum of the particles that are not pinned (kg m/s)
-    Momentum,
-    /// Time by which the motion is ahead or behind (s)
-    Phase,
-    /// Largest depth of a surface within the thickness of another, over that thickness
-    Penetration,
-    /// Times at which surfaces first touch, and at which nothing touches any more (s)
-    Impact,
+/// Creates a parser of the metric of errors.
+pub fn metric() -> impl TypedValueParser<Value = Metric> {
+    choice(&Metric::ALL, |metric| {
+        let help = match metric {
+            Metric::Position => "Positions, root mean square over the particles (m)",
+            Metric::Energy => "Total energy (J)",
+            Metric::Strain => "Lengths of the springs over their rest lengths, root mean square",
+            Metric::Momentum => "Total momentum of the particles that are not pinned (kg m/s)",
+            Metric::Phase => "Time by which the motion is ahead or behind (s)",
+            Metric::Penetration => {
+                "Largest depth of a surface within the thickness of another, over that thickness"
+            }
+            Metric::Impact => {
+                "Times at which surfaces first touch, and at which nothing touches any more (s)"
+            }
+        };
+        (metric.name(), help)
+    })
 }
 
 /// Where errors are taken.

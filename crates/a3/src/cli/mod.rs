@@ -10,6 +10,8 @@ mod measures;
 mod names;
 mod run;
 mod scenes;
+#[cfg(not(target_arch = "wasm32"))]
+pub mod share;
 mod simulate;
 mod stability;
 #[cfg(not(target_arch = "wasm32"))]
@@ -20,11 +22,11 @@ mod window;
 
 pub use chart::Chart;
 pub use choose::Choose;
-pub use command::{Cli, Command};
+pub use command::{Cli, Command, LESSONS};
 #[cfg(feature = "window")]
 pub use drawing::Drawing;
 pub use explain::explain;
-pub use measures::{ErrorMeasure, ErrorScope, WorkMeasure};
+pub use measures::{ErrorScope, WorkMeasure};
 pub use run::{RunOptions, What};
 pub use scenes::Scenes;
 pub use simulate::Simulate;

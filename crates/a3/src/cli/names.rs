@@ -4,12 +4,11 @@ use std::ffi::OsStr;
 
 use a3_core::{Method, integrators};
 use a3_scenes::nearest;
-use clap::builder::{PossibleValue, TypedValueParser};
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Arg, Command};
 
 #[cfg(feature = "window")]
 use super::values::step;
-use crate::scene_file::Source;
 
 /// A parser of names, which knows them all, for arguments of a command.
 #[derive(Clone)]
@@ -67,11 +66,26 @@ pub const SOLVER_AND_STEP: Names<(&'static Method, Option<f64>)> = Names {
 /// Word for all solvers.
 const ALL: &str = "all";
 
-/// A scene, by its name or in a file.
-pub const SCENE: Names<Source> = Names {
-    parse: |text, _| Source::find(text),
+/// The name of a scene, or of its file.
+pub const SCENE: Names<String> = Names {
+    parse: |text, _| Ok(text.to_owned()),
     all: scenes,
 };
+
+/// Creates a parser of one of some values, each with its name and its help.
+pub fn choice<T: Copy + Send + Sync + 'static>(
+    all: &'static [T],
+    words: fn(T) -> (&'static str, &'static str),
+) -> impl TypedValueParser<Value = T> {
+    let values = all.iter().map(move |value| {
+        let (name, help) = words(*value);
+        PossibleValue::new(name).help(help)
+    });
+    PossibleValuesParser::new(values).try_map(move |name| {
+        let found = all.iter().find(|value| words(**value).0 == name);
+        found.copied().ok_or("there is no such choice")
+    })
+}
 
 fn solvers() -> Vec<&'static str> {
     integrators::METHODS.iter().map(|m| m.name).collect()

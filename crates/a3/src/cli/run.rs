@@ -5,15 +5,13 @@ use clap::Args;
 
 use super::names::{SCENE, SOLVER};
 use super::values::{absolute, grid, max_step, step, threads, until};
-use crate::failure::Failure;
-use crate::scene_file::Source;
 
 /// Options of a scene: its name or file, its grid, wind, swing and self-collision.
 #[derive(Args, Clone)]
 pub struct What {
     /// Scene: a name that `a3 scenes` lists, or a file of your own: TOML, JSON, or a mesh
     #[arg(long, value_name = "NAME|FILE", default_value = "cloth", value_parser = SCENE, hide_possible_values = true)]
-    pub scene: Source,
+    pub scene: String,
     /// Rows and columns of the cloth, such as 30x40
     #[arg(long, value_name = "ROWSxCOLS", value_parser = grid, allow_hyphen_values = true)]
     pub grid: Option<Grid>,
@@ -71,14 +69,4 @@ pub struct RunOptions {
     pub limits: StepOptions,
     #[command(flatten)]
     pub what: What,
-}
-
-impl RunOptions {
-    /// The end of the run (s).
-    pub fn end(&self) -> Result<f64, Failure> {
-        let own = self.what.scene.description.duration;
-        self.until.or(own).ok_or_else(|| {
-            Failure::usage("the scene has no duration of its own: give --until T in seconds, such as --until 10")
-        })
-    }
 }

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::values::{picture_size, threads};
-use crate::share::Only;
+use crate::cli::share::Only;
 
 #[derive(Args)]
 #[command(after_help = "A sweep is a file such as\n\n  \

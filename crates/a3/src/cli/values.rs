@@ -5,7 +5,7 @@ use std::str::FromStr;
 
 use a3_core::Grid;
 
-use crate::bounds::{LARGEST_STEP, SMALLEST_STEP, TOLERANCES};
+use crate::base::bounds::{LARGEST_STEP, SMALLEST_STEP, TOLERANCES};
 
 /// Largest number of threads.
 const MOST_THREADS: usize = 1024;

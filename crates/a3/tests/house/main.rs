@@ -1,6 +1,6 @@
 //! The rules of the house: no file of more than 400 lines, no comment of more than 100 columns, no
-//! circle of imports between the modules of a crate, and a map in ARCHITECTURE.md that names every
-//! room and none that is not there.
+//! circle of imports between the modules of a crate, a first line in each file that says its
+//! subject, and a map in ARCHITECTURE.md that names every folder and none that is not there.
 
 #![allow(missing_docs, reason = "a test")]
 
@@ -110,26 +110,20 @@ fn no_type_has_methods_in_more_than_two_files() {
     assert!(spread.is_empty(), "{spread:#?}");
 }
 
-/// The map's rows name a file or folder by its path from the root, and then others beside it by
-/// their names alone.
+/// The first cell of a row of the map names folders, each by its path from the root.
 #[test]
 fn the_map_of_the_architecture_is_the_territory() {
     let text = fs::read_to_string(Path::new(ROOT).join("ARCHITECTURE.md")).unwrap();
     let mut named = BTreeSet::new();
-    for row in text
-        .lines()
-        .filter(|line| line.starts_with("| `crates/") || line.starts_with("| `benches/"))
-    {
+    for row in text.lines().filter(|line| line.starts_with("| `")) {
         let cell = row.split('|').nth(1).unwrap();
-        let paths: Vec<_> = cell.split('`').skip(1).step_by(2).collect();
-        let beside = Path::new(paths[0]).parent().unwrap();
-        named.insert(PathBuf::from(paths[0]));
-        named.extend(paths[1..].iter().map(|name| beside.join(name)));
+        let paths = cell.split('`').skip(1).step_by(2);
+        named.extend(paths.map(|path| PathBuf::from(path.trim_end_matches('/'))));
     }
     let root = Path::new(ROOT).canonicalize().unwrap();
     let strangers: Vec<_> = named
         .iter()
-        .filter(|path| !root.join(path).exists())
+        .filter(|path| !root.join(path).is_dir())
         .collect();
     assert!(
         strangers.is_empty(),
@@ -137,23 +131,29 @@ fn the_map_of_the_architecture_is_the_territory() {
     );
     let mut rooms = BTreeSet::new();
     for source in sources() {
-        let source = source.canonicalize().unwrap();
-        for path in files(&source, ".rs") {
+        for path in files(&source.canonicalize().unwrap(), ".rs") {
             let folder = path.parent().unwrap();
-            let room = if folder == source {
-                path.as_path()
-            } else {
-                folder
-            };
-            let name = room.file_name().unwrap();
-            if name != "lib.rs" {
-                rooms.insert(room.strip_prefix(&root).unwrap().to_owned());
+            if !folder.ends_with("tests") {
+                rooms.insert(folder.strip_prefix(&root).unwrap().to_owned());
             }
         }
     }
-    let missing: Vec<_> = rooms.iter().filter(|room| !named.contains(*room)).collect();
+    let missing: Vec<_> = rooms.difference(&named).collect();
     assert!(
         missing.is_empty(),
-        "rooms that the map leaves out: {missing:#?}"
+        "folders that the map leaves out: {missing:#?}"
     );
+}
+
+#[test]
+fn every_file_says_its_subject_in_its_first_line() {
+    let silent: Vec<_> = sources()
+        .iter()
+        .flat_map(|source| files(source, ".rs"))
+        .filter(|path| {
+            let text = fs::read_to_string(path).unwrap();
+            !text.starts_with("//! ") && !text.starts_with("#![doc")
+        })
+        .collect();
+    assert!(silent.is_empty(), "{silent:#?}");
 }

@@ -85,6 +85,31 @@ pub enum Metric {
 }
 
 impl Metric {
+    /// All metrics.
+    pub const ALL: [Self; 7] = [
+        Self::Position,
+        Self::Energy,
+        Self::Strain,
+        Self::Momentum,
+        Self::Phase,
+        Self::Penetration,
+        Self::Impact,
+    ];
+
+    /// Name of the metric.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Position => "position",
+            Self::Energy => "energy",
+            Self::Strain => "strain",
+            Self::Momentum => "momentum",
+            Self::Phase => "phase",
+            Self::Penetration => "penetration",
+            Self::Impact => "impact",
+        }
+    }
+
     /// Error that the metric chooses, in its unit.
     #[must_use]
     pub fn of(self, errors: &Errors) -> f64 {

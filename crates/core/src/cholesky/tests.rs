@@ -1,3 +1,5 @@
+//! Factorisations of random matrices of blocks.
+
 use super::*;
 use crate::random::SplitMix;
 

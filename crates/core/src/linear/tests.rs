@@ -1,3 +1,5 @@
+//! Solutions of the linear systems of implicit steps, and their prices.
+
 use std::hint::black_box;
 use std::time::{Duration, Instant};
 

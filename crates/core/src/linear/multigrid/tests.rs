@@ -1,3 +1,5 @@
+//! Multigrid on random networks, chains, cloths and jellies.
+
 use super::super::tests::{chain, cloth, jelly, residual, right_hand_side};
 use super::super::{Multigrid, Solver, Tangent};
 use crate::random::SplitMix;

@@ -1,0 +1,32 @@
+//! What a page writes in place of a terminal: words to the console of the browser.
+
+use std::io;
+
+use super::browser::log;
+use super::failure::Failure;
+
+/// Writes words to the console.
+pub fn say(text: &str) -> Result<(), Failure> {
+    log(text.trim_end());
+    Ok(())
+}
+
+/// Writes data to the console.
+pub fn send(data: &str) -> Result<(), Failure> {
+    say(data)
+}
+
+/// The result of a write to the console.
+pub fn said(written: io::Result<()>) -> Result<(), Failure> {
+    written.map_err(Failure::run)
+}
+
+/// Writes a message to the console.
+pub fn warn(message: &str) {
+    log(message);
+}
+
+/// Why a file could not be read, in words.
+pub fn reason(error: &io::Error) -> String {
+    error.to_string()
+}

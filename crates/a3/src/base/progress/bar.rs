@@ -1,0 +1,95 @@
+//! Progress bars on the terminal.
+
+use a3_core::{Error, Simulation};
+use indicatif::{ProgressBar, ProgressStyle};
+use web_time::{Duration, Instant};
+
+use super::march::march;
+use crate::base::terminal;
+
+/// Brings a simulation to `until` (s) in whole steps, the last one shortened, with a bar once it
+/// takes long. Calls `frame` about sixty times a simulated second.
+pub fn advance(
+    simulation: &mut Simulation,
+    until: f64,
+    mut frame: impl FnMut(&Simulation),
+) -> Result<(), Error> {
+    let begun = Instant::now();
+    let start = simulation.time();
+    let mut bar: Option<ProgressBar> = None;
+    let done = march(simulation, until, |simulation| {
+        frame(simulation);
+        if bar.is_none() && begun.elapsed() > Duration::from_secs(1) {
+            bar = Some(new_bar());
+        }
+        if let Some(bar) = &bar {
+            bar.set_position((1000.0 * (simulation.time() - start) / (until - start)) as u64);
+        }
+        true
+    });
+    if let Some(bar) = bar {
+        bar.finish_and_clear();
+    }
+    done.map(drop)
+}
+
+/// A bar that is shown at once, for work in any unit. Several threads may advance it.
+pub struct Bar(ProgressBar);
+
+impl Bar {
+    /// A bar for so much work.
+    pub fn new(expected: f64) -> Self {
+        let bar = new_bar();
+        bar.enable_steady_tick(Duration::from_millis(250));
+        let bar = Self(bar);
+        bar.expect(expected);
+        bar
+    }
+
+    /// Notes that so much more work is done.
+    pub fn advance(&self, work: f64) {
+        self.0.inc(parts(work));
+    }
+
+    /// Sets how much work there is in all, of which none is done yet.
+    pub fn expect(&self, work: f64) {
+        self.0.set_length(parts(work));
+        self.0.set_position(0);
+    }
+
+    /// Takes the bar off the terminal while something else is written.
+    pub fn pause<T>(&self, write: impl FnOnce() -> T) -> T {
+        self.0.suspend(write)
+    }
+
+    /// Writes a warning to stderr.
+    pub fn warn(&self, line: &str) {
+        self.pause(|| terminal::warn(line));
+    }
+
+    /// Estimates the time that is left from here on.
+    pub fn start(&self) {
+        self.0.reset_eta();
+    }
+
+    /// Shows what is being done.
+    pub fn say(&self, what: String) {
+        self.0.set_message(what);
+    }
+
+    /// Takes the bar away.
+    pub fn clear(&self) {
+        self.0.finish_and_clear();
+    }
+}
+
+/// Work in the smallest parts that a bar counts.
+fn parts(work: f64) -> u64 {
+    (1e6 * work) as u64
+}
+
+/// A bar on stderr. Where that is no terminal, nothing is drawn.
+fn new_bar() -> ProgressBar {
+    let style = ProgressStyle::with_template("{msg}{wide_bar} {percent:>3} %  {eta} left");
+    ProgressBar::new(1000).with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
+}

@@ -1,0 +1,137 @@
+//! Standard output and standard error: words for people, in which nothing from a file or a name
+//! moves the cursor or changes colours, and data for programs.
+
+use std::io::{self, IsTerminal, Write};
+
+use crate::base::failure::Failure;
+
+/// The most characters of a message, and of a word in it.
+const LONGEST: usize = 1200;
+const LONGEST_WORD: usize = 160;
+
+/// Writes words to standard output.
+pub fn say(text: &str) -> Result<(), Failure> {
+    put(&printable(text))
+}
+
+/// Writes data to standard output: to the byte, if it is no terminal.
+pub fn send(data: &str) -> Result<(), Failure> {
+    if io::stdout().is_terminal() {
+        say(data)
+    } else {
+        put(data)
+    }
+}
+
+fn put(text: &str) -> Result<(), Failure> {
+    let mut stdout = io::stdout().lock();
+    said(
+        super::fault::point()
+            .and_then(|()| stdout.write_all(text.as_bytes()))
+            .and_then(|()| stdout.flush()),
+    )
+}
+
+/// The result of a write to standard output. It is no failure if the reader closes it early, as
+/// `head` does.
+pub fn said(written: io::Result<()>) -> Result<(), Failure> {
+    match written {
+        Err(e) if e.kind() != io::ErrorKind::BrokenPipe => Err(Failure::run(format!(
+            "standard output could not be written: {}",
+            reason(&e)
+        ))),
+        _ => Ok(()),
+    }
+}
+
+/// Writes a message of one line to standard error. If that cannot be written, nobody reads it.
+pub fn warn(message: &str) {
+    let line = one_line(message) + "\n";
+    let _ = io::stderr().lock().write_all(line.as_bytes());
+}
+
+/// A message in one line of limited length, in which every character can be seen.
+fn one_line(message: &str) -> String {
+    let shown = visible(message);
+    let words: Vec<_> = shown
+        .split(' ')
+        .map(|word| shortened(word, LONGEST_WORD))
+        .collect();
+    shortened(&words.join(" "), LONGEST)
+}
+
+/// The text with all that is no letter, sign or space as escapes.
+pub fn visible(text: &str) -> String {
+    printable(text).replace('\n', "\\n").replace('\t', "\\t")
+}
+
+/// The text, of which the middle is left out if it has more than `most` characters.
+fn shortened(text: &str, most: usize) -> String {
+    let count = text.chars().count();
+    if count <= most {
+        return text.into();
+    }
+    let end = most / 4;
+    let begin = text.chars().take(most - end - 3);
+    let end = text.chars().skip(count - end);
+    begin.chain("...".chars()).chain(end).collect()
+}
+
+/// The text with its control characters, and all others that cannot be seen, as escapes.
+fn printable(text: &str) -> String {
+    let mut shown = String::with_capacity(text.len());
+    for c in text.chars() {
+        match c {
+            '\n' | '\t' | ' '..='~' => shown.push(c),
+            // After a letter, accents that combine with it are shown as they are.
+            _ => shown.extend(format!("a{c}").escape_debug().skip(1)),
+        }
+    }
+    shown
+}
+
+/// Why a file could not be read or written, in words alone.
+pub fn reason(error: &io::Error) -> String {
+    if error.kind() == io::ErrorKind::NotFound {
+        return "there is no such file or folder".into();
+    }
+    // Neither the name of a temporary file nor the number of the error says more.
+    let mut why = error.to_string();
+    for end in [" at path", " (os error"] {
+        why.truncate(why.find(end).unwrap_or(why.len()));
+    }
+    why
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn nothing_moves_the_cursor_and_letters_stay() {
+        for (text, shown) in [
+            ("a\u{1b}[2J\u{7}b", "a\\u{1b}[2J\\u{7}b"),
+            ("\r\u{7f}\u{9b}31m\0", "\\r\\u{7f}\\u{9b}31m\\0"),
+            ("\u{202e}gpj\u{feff}", "\\u{202e}gpj\\u{feff}"),
+            (
+                "Tuch \"è\" 'e\u{301}' \\ 布 µ ×",
+                "Tuch \"è\" 'e\u{301}' \\ 布 µ ×",
+            ),
+            ("a\tb\nc\n", "a\tb\nc\n"),
+        ] {
+            assert_eq!(printable(text), shown);
+        }
+        assert_eq!(one_line("a\nb\tc"), "a\\nb\\tc");
+    }
+
+    #[test]
+    fn a_long_message_keeps_its_beginning_and_its_end() {
+        for (value, length) in [("é", LONGEST_WORD + 22), ("é ", LONGEST)] {
+            let line = format!("x.toml:3: {}é is too long", value.repeat(100_000));
+            let line = one_line(&line);
+            assert_eq!(line.chars().count(), length);
+            assert!(line.starts_with("x.toml:3: é"), "{line}");
+            assert!(line.ends_with("é is too long"), "{line}");
+        }
+    }
+}

@@ -1,0 +1,83 @@
+//! What the command line asks for, if the scene has it: methods, the metric, and where errors are
+//! taken.
+
+use a3_core::accuracy::{Metric, Scope};
+use a3_core::{Method, Scene, integrators};
+
+use crate::base::failure::Failure;
+use crate::cli::ErrorScope;
+
+/// The methods that were asked for, or else all that can integrate the scene, as where one of those
+/// asked for is none in particular.
+pub fn methods(
+    scene: &Scene,
+    asked: &[Option<&'static Method>],
+) -> Result<Vec<&'static Method>, Failure> {
+    if asked.iter().all(Option::is_none) {
+        let all = integrators::METHODS.iter();
+        return Ok(all
+            .filter(|m| m.check(scene.model.system()).is_ok())
+            .collect());
+    }
+    let mut methods: Vec<&'static Method> = vec![];
+    for &method in asked.iter().flatten() {
+        method
+            .check(scene.model.system())
+            .map_err(|e| Failure::usage(format!("scene {}: {e}", scene.name)))?;
+        if !methods.iter().any(|m| std::ptr::eq(*m, method)) {
+            methods.push(method);
+        }
+    }
+    Ok(methods)
+}
+
+/// Refuses a metric that the scene does not have.
+pub fn check_metric(metric: Metric, scene: &Scene) -> Result<(), Failure> {
+    let of_contact = matches!(metric, Metric::Penetration | Metric::Impact);
+    let network = scene.model.network();
+    if of_contact && network.is_none_or(|network| network.contact_layer().is_none()) {
+        return Err(Failure::usage(format!(
+            "no surfaces touch in the scene {}: ask for another error, or give it self_collision = true",
+            scene.name
+        )));
+    }
+    let of_motion = matches!(metric, Metric::Position | Metric::Phase);
+    if of_motion || network.is_some() {
+        Ok(())
+    } else {
+        Err(Failure::usage(format!(
+            "the scene {} has neither energy nor momentum nor springs: ask for position or phase",
+            scene.name
+        )))
+    }
+}
+
+/// Where errors were asked to be taken.
+pub fn scope(asked: &ErrorScope, scene: &Scene) -> Result<Scope, Failure> {
+    let particles = scene.model.particles();
+    match asked.particle {
+        Some(i) if i >= particles => Err(Failure::usage(format!(
+            "the scene {} has no particle {i}: its particles are 0 to {}",
+            scene.name,
+            particles.max(1) - 1
+        ))),
+        particle => Ok(Scope {
+            particle,
+            at_end: asked.at_end,
+        }),
+    }
+}
+
+/// Refuses a metric of contact whose error is 0 for a run in which nothing moves: then there is no
+/// impact, or nothing within a thickness.
+pub fn check_contact(metric: Metric, still: f64, until: f64) -> Result<(), Failure> {
+    match metric {
+        Metric::Impact if still == 0.0 => Err(Failure::usage(format!(
+            "no impact begins or ends in {until} s: ask for penetration, or for a longer --until"
+        ))),
+        Metric::Penetration if still == 0.0 => Err(Failure::usage(format!(
+            "no surfaces come nearer than their thickness in {until} s: ask for a longer --until"
+        ))),
+        _ => Ok(()),
+    }
+}

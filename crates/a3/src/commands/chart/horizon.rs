@@ -1,0 +1,66 @@
+//! How far a motion can be predicted.
+
+use a3_core::Scene;
+use a3_core::accuracy::{Horizon, horizon};
+
+use crate::base::failure::Failure;
+use crate::base::progress::Bar;
+use crate::base::{interrupt, terminal};
+
+/// How far the motion of a scene can be predicted, with the end of its runs: the one that was asked
+/// for, or else the predicted one. Prints that time and the reason. `None` if it was interrupted.
+pub fn look_ahead(
+    scene: &Scene,
+    asked: Option<f64>,
+    stiffness: f64,
+    bar: &Bar,
+) -> Result<Option<Horizon>, Failure> {
+    let longest = asked.unwrap_or(f64::INFINITY);
+    let Some(found) = horizon(scene, longest, &interrupt::go_on).map_err(Failure::run)? else {
+        return Ok(None);
+    };
+    let Horizon {
+        until,
+        lyapunov,
+        buckles,
+        ..
+    } = found;
+    let of = if stiffness == 1.0 {
+        scene.name.clone()
+    } else {
+        format!("{} at {stiffness} times its stiffness", scene.name)
+    };
+    let why = if buckles {
+        format!(
+            "compressed springs buckle out of the plane of the motion, and errors grow e-fold every {lyapunov:.2} s"
+        )
+    } else if lyapunov.is_finite() {
+        format!("errors grow by themselves e-fold every {lyapunov:.2} s (Lyapunov time)")
+    } else {
+        "small differences hardly grow by themselves".to_owned()
+    };
+    match asked {
+        Some(asked) if asked > until * (1.0 + 1e-9) && lyapunov.is_finite() => bar.warn(&format!(
+            "warning: {of}: {why}: past {until} s an error in position says little; compare \
+             --error energy or strain, or leave out --until"
+        )),
+        Some(_) => {}
+        None => bar.pause(|| terminal::say(&format!("{of}: {why}; runs of {until} s\n")))?,
+    }
+    Ok(Some(Horizon {
+        until: asked.unwrap_or(until),
+        ..found
+    }))
+}
+
+/// Refuses a scene in which nothing moves.
+pub fn check_motion(scene: &Scene, horizon: &Horizon) -> Result<(), Failure> {
+    if horizon.motion > 0.0 {
+        return Ok(());
+    }
+    Err(Failure::usage(format!(
+        "nothing moves in {} within {} s, so there are no errors to measure: give something a velocity or a force, or \
+         ask for a longer --until",
+        scene.name, horizon.until
+    )))
+}

@@ -1,0 +1,346 @@
+//! Measurement of the runs of a chart: every method at every step or tolerance that tells
+//! something, one run at a time, so that computing times are comparable.
+
+use a3_core::accuracy::{Frames, Metric, Reference, Scope, coarser, ladder};
+use a3_core::stability::{Mode, largest_step, spectrum};
+use a3_core::{Control, Method, Model, Scene};
+
+use super::asked::check_contact;
+use super::data::{Data, VERSION};
+use super::record::Record;
+use super::single::{compared, precision, reference, time};
+use crate::base::failure::Failure;
+use crate::base::progress::Bar;
+use crate::cli::What;
+
+/// Most work of a run, in evaluations. A run that fails may take more.
+const MOST_EVALUATIONS: f64 = 20_000.0;
+/// Least ratio of the longest step of a method to its shortest, however much work that is.
+const RANGE: f64 = 6.0;
+/// Work of a step of an implicit method, in evaluations, within a factor of three.
+const IMPLICIT: f64 = 25.0;
+/// Tolerances beside one, over it, whose runs show how much errors vary.
+const BESIDE: [f64; 3] = [0.96, 0.98, 1.02];
+
+/// A scene at one stiffness, and how it is measured.
+pub struct Study<'a> {
+    pub scene: Scene,
+    pub frames: Frames,
+    modes: Vec<Mode>,
+    scope: Scope,
+    /// Largest distance of the particles from their start, on average (m).
+    pub motion: f64,
+    /// A record of the scene, whose other fields are filled in for each run.
+    blank: Record,
+    pub reference: Option<Reference>,
+    methods: &'a [&'static Method],
+    metric: Metric,
+    /// What is measured beside errors and work.
+    measured: Measured,
+}
+
+/// What is measured of runs beside their errors and their work.
+#[derive(Clone, Copy)]
+pub struct Measured {
+    /// Computing times.
+    pub timed: bool,
+    /// Errors at tolerances beside each one.
+    pub spread: bool,
+}
+
+impl<'a> Study<'a> {
+    /// A study of the scene. `name` and the flags of `what` describe it in the records; errors are
+    /// of a metric in a scope, on a scene whose particles move so far (m).
+    pub fn new(
+        scene: Scene,
+        (name, what): (&str, &What),
+        stiffness: f64,
+        until: f64,
+        methods: &'a [&'static Method],
+        (metric, scope, motion): (Metric, Scope, f64),
+        measured: Measured,
+    ) -> Self {
+        let grid = scene.grid();
+        let blank = Record {
+            version: VERSION.into(),
+            scene: name.into(),
+            rows: grid.map_or(0, |grid| grid.rows()),
+            cols: grid.map_or(0, |grid| grid.cols()),
+            wind: what.wind,
+            swing: what.swing,
+            self_collision: what.self_collision,
+            stiffness,
+            until,
+            scope: words(scope),
+            ..Record::default()
+        };
+        Self {
+            frames: Frames::new(until),
+            modes: spectrum(scene.model.system(), 0.0, &scene.state),
+            scope,
+            motion,
+            scene,
+            blank,
+            reference: None,
+            methods,
+            metric,
+            measured,
+        }
+    }
+
+    /// Stiffness of the springs, as a factor of the scene's own.
+    pub fn stiffness(&self) -> f64 {
+        self.blank.stiffness
+    }
+
+    /// Where errors are taken.
+    pub fn scope(&self) -> Scope {
+        self.scope
+    }
+
+    /// The runs of this study.
+    pub fn records<'d>(&'d self, data: &'d Data) -> impl Iterator<Item = &'d Record> {
+        self.all(data).filter(|r| r.beside.is_none())
+    }
+
+    /// The runs at tolerances beside those, where they were asked for.
+    pub fn beside<'d>(&'d self, data: &'d Data) -> impl Iterator<Item = &'d Record> {
+        self.all(data)
+            .filter(|r| self.measured.spread && r.beside.is_some())
+    }
+
+    fn all<'d>(&'d self, data: &'d Data) -> impl Iterator<Item = &'d Record> {
+        data.records.iter().filter(|r| r.same_scene(&self.blank))
+    }
+
+    /// The steps or tolerances at which a method is run, from the coarsest on.
+    fn rungs(&self, method: &'static Method) -> Result<Vec<Control>, Failure> {
+        let most = self.most(method)? / each(method);
+        ladder(&self.modes, method, &self.frames, most as u64).map_err(Failure::run)
+    }
+
+    /// Most work of a run of a method, in evaluations.
+    fn most(&self, method: &'static Method) -> Result<f64, Failure> {
+        let limit = largest_step(method, &self.modes).map_err(Failure::run)?;
+        let steps = limit.map_or(0.0, |limit| RANGE * self.frames.until / limit.step);
+        Ok(MOST_EVALUATIONS.max(steps * each(method)))
+    }
+
+    /// Expected work of all runs, in evaluations.
+    pub fn expected(&self) -> Result<f64, Failure> {
+        let mut sum = 0.0;
+        for method in self.methods {
+            sum += self
+                .rungs(method)?
+                .iter()
+                .map(|control| self.expected_of(method, *control))
+                .sum::<f64>();
+        }
+        Ok(sum)
+    }
+
+    /// Expected work of a run, in evaluations.
+    fn expected_of(&self, method: &Method, control: Control) -> f64 {
+        let steps = match control {
+            Control::Step(step) => self.frames.until / step,
+            // An estimate that holds on most scenes within a factor of three.
+            Control::Tolerance(tolerance) => {
+                20.0 * self.frames.until * tolerance.powf(-0.9 / f64::from(method.order))
+            }
+        };
+        steps * each(method) + 100.0
+    }
+
+    /// Measures the runs that the data do not have yet. `false` if it was interrupted.
+    pub fn run(&mut self, data: &mut Data, bar: &Bar) -> Result<bool, Failure> {
+        for &method in self.methods {
+            let (rungs, most) = (self.rungs(method)?, self.most(method)?);
+            let mut coarser_run: Option<Record> = None;
+            for (i, &control) in rungs.iter().enumerate() {
+                let like = self.like(method, control);
+                let Some(record) = self.record(method, like, coarser_run.as_ref(), data, bar)?
+                else {
+                    return Ok(false);
+                };
+                if !self.look_beside(method, control, &record, data, bar)? {
+                    return Ok(false);
+                }
+                coarser_run = Some(record.clone());
+                // The limit of stability is that of the start, and may be longer in motion.
+                let mut longest = (control, record.clone());
+                while i == 0
+                    && longest.1.lost_at.is_none()
+                    && longest.1.error(self.metric) < longest.1.still(self.metric)
+                    && let Some(longer) = coarser(longest.0, &self.frames)
+                {
+                    let like = self.like(method, longer);
+                    let Some(record) = self.record(method, like, None, data, bar)? else {
+                        return Ok(false);
+                    };
+                    longest = (longer, record);
+                }
+                bar.advance(self.expected_of(method, control));
+                // Errors below that of the reference tell nothing. The work of linear algebra is
+                // known only after a run.
+                let enough = record.resolved(self.metric).max(1e-12);
+                let next = rungs
+                    .get(i + 1)
+                    .map_or(1.0, |next| control.value() / next.value());
+                let dear = control.step().is_some() && record.work * next > most;
+                if record.lost_at.is_none() && (record.error(self.metric) < enough || dear) {
+                    let rest = rungs[i + 1..].iter();
+                    bar.advance(rest.map(|s| self.expected_of(method, *s)).sum());
+                    break;
+                }
+            }
+            data.save()?;
+        }
+        Ok(true)
+    }
+
+    /// Measures the runs at tolerances beside one, if they were asked for. `false` if it was
+    /// interrupted.
+    fn look_beside(
+        &mut self,
+        method: &'static Method,
+        control: Control,
+        record: &Record,
+        data: &mut Data,
+        bar: &Bar,
+    ) -> Result<bool, Failure> {
+        let Some(tolerance) = control.tolerance() else {
+            return Ok(true);
+        };
+        if record.lost_at.is_some() || !self.measured.spread {
+            return Ok(true);
+        }
+        for factor in BESIDE {
+            let like = Record {
+                beside: Some(tolerance),
+                ..self.like(method, Control::Tolerance(factor * tolerance))
+            };
+            if self.record(method, like, None, data, bar)?.is_none() {
+                return Ok(false);
+            }
+        }
+        Ok(true)
+    }
+
+    /// The record of a run that is not measured yet: its scene, method and setting.
+    fn like(&self, method: &Method, control: Control) -> Record {
+        Record {
+            solver: method.name.into(),
+            setting: control.value(),
+            ..self.blank.clone()
+        }
+    }
+
+    /// The run of a method like a record, measured now if the data do not have it yet, with the
+    /// order between it and a coarser run. `None` if it was interrupted.
+    fn record(
+        &mut self,
+        method: &'static Method,
+        like: Record,
+        coarser_run: Option<&Record>,
+        data: &mut Data,
+        bar: &Bar,
+    ) -> Result<Option<Record>, Failure> {
+        bar.say(format!("{:<10} ", method.name));
+        let timed = self.measured.timed && like.beside.is_none();
+        let known = data.find(&like, timed).cloned();
+        let known = known.filter(|_| data.each.is_none());
+        let is_new = known.is_none();
+        let record = match known {
+            Some(known) => Some(known),
+            None => self.measure(method, like, data, bar)?.map(|record| Record {
+                order: coarser_run.and_then(|run| record.order_from(run)),
+                ..record
+            }),
+        };
+        if let Some(record) = &record {
+            check_contact(self.metric, record.still(self.metric), record.until)?;
+            if is_new {
+                data.add(record.clone());
+            }
+        }
+        Ok(record)
+    }
+
+    /// Measures one run. `None` if it was interrupted.
+    fn measure(
+        &mut self,
+        method: &'static Method,
+        like: Record,
+        data: &mut Data,
+        bar: &Bar,
+    ) -> Result<Option<Record>, Failure> {
+        if self.reference.is_none() {
+            bar.say("reference  ".into());
+            let precision = precision(&self.scene, self.motion);
+            self.reference = reference(&self.scene, self.frames, self.scope, precision)?;
+            bar.start();
+            bar.say(format!("{:<10} ", method.name));
+        }
+        let Some(reference) = &self.reference else {
+            return Ok(None);
+        };
+        let timed = self.measured.timed && like.beside.is_none();
+        let mut coordinates = match (&data.each, like.beside) {
+            (Some(_), None) => vec![0.0; 3 * self.scene.model.particles()],
+            _ => vec![],
+        };
+        let found = compared(like, &self.scene, method, reference, &mut coordinates)?;
+        let Some((record, once)) = found else {
+            return Ok(None);
+        };
+        if let Some(each) = data.each.as_mut().filter(|_| record.lost_at.is_none()) {
+            each.add(&record, &coordinates)?;
+        }
+        let seconds = if timed && record.lost_at.is_none() {
+            let control = method.control(record.setting);
+            let Some(time) = time(&self.scene, method, control, &self.frames, Some(once))? else {
+                return Ok(None);
+            };
+            Some(time.as_secs_f64())
+        } else {
+            None
+        };
+        Ok(Some(Record { seconds, ..record }))
+    }
+}
+
+/// Expected work of a step, in evaluations.
+fn each(method: &Method) -> f64 {
+    if method.is_implicit() && !method.needs_springs() {
+        IMPLICIT
+    } else {
+        f64::from(method.damped_evaluations.max(method.evaluations))
+    }
+}
+
+/// The scene with the stiffness of its springs multiplied by a factor.
+pub fn stiffened(scene: &Scene, factor: f64) -> Result<Scene, Failure> {
+    let mut scene = scene.clone();
+    match &mut scene.model {
+        Model::Network(network) => network
+            .scale_springs(factor, factor.sqrt())
+            .map_err(Failure::usage)?,
+        Model::FirstOrder(_) if factor == 1.0 => {}
+        Model::FirstOrder(_) => {
+            return Err(Failure::usage(format!(
+                "the scene {} has no springs: leave out --stiffness",
+                scene.name
+            )));
+        }
+    }
+    Ok(scene)
+}
+
+/// A scope in words.
+pub fn words(scope: Scope) -> String {
+    let when = if scope.at_end { " at the end" } else { "" };
+    match scope.particle {
+        Some(i) => format!("particle {i}{when}"),
+        None => format!("all particles{when}"),
+    }
+}

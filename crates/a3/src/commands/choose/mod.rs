@@ -1,0 +1,7 @@
+//! `a3 choose`: the cheapest solver for an error, or the most accurate one for a budget.
+
+mod command;
+mod search;
+mod words;
+
+pub use command::run;

@@ -1,0 +1,135 @@
+//! The answer in words.
+
+use std::fmt::Write;
+
+use a3_core::accuracy::{Candidate, Metric, SetBy};
+use a3_core::{Control, Method, Scene};
+
+use crate::cli::What;
+use crate::commands::chart::table::fraction;
+use crate::commands::chart::{describe, unit};
+use crate::commands::list;
+
+/// Sentence on what keeps the best candidate's step or tolerance from being larger.
+pub fn set_by(best: &Candidate) -> String {
+    let what = if best.control.step().is_some() {
+        "step"
+    } else {
+        "tolerance"
+    };
+    match best.set_by {
+        SetBy::Accuracy => format!("accuracy sets the {what}: a larger one misses the error\n"),
+        SetBy::Stability => format!("stability sets the {what}: the run grows with a larger one\n"),
+        SetBy::Nothing => format!("nothing sets the {what}: no larger one was tried\n"),
+    }
+}
+
+/// The table of candidates and their costs (ms).
+pub fn report(
+    what: &What,
+    scene: &Scene,
+    until: f64,
+    goal: &str,
+    (metric, found): (Metric, &[(Candidate, f64)]),
+) -> String {
+    let error = format!(" error ({})", unit(metric));
+    let mut rows = vec![
+        [
+            "",
+            "solver",
+            " setting",
+            &*error,
+            " evaluations/s",
+            " time/frame",
+        ]
+        .map(String::from)
+        .to_vec(),
+    ];
+    for (k, (c, cost)) in found.iter().enumerate() {
+        rows.push(vec![
+            ["best", "runner-up", "then"][k.min(2)].into(),
+            c.method.title.into(),
+            match c.control {
+                Control::Step(_) => format!("step {} s", typed(c.control, until)),
+                Control::Tolerance(_) => format!("tolerance {}", typed(c.control, until)),
+            },
+            format!("{:.1e}", metric.of(&c.outcome.errors)),
+            format!("{:.0}", c.outcome.work.total() / until),
+            if *cost < 0.1 {
+                format!("{:.2} µs", 1e3 * cost)
+            } else {
+                format!("{cost:.2} ms")
+            },
+        ]);
+    }
+    format!(
+        "{} for {until} s, {goal}:\n{}",
+        describe(what, scene),
+        list::table(&rows)
+    )
+}
+
+/// A step or a tolerance as it would be typed: a step of a run of `until` (s) exactly, as a
+/// fraction if a few digits do not tell it; a tolerance to four digits, rounded down, so that the
+/// run is no coarser.
+fn typed(control: Control, until: f64) -> String {
+    let value = control.value();
+    if let Control::Step(step) = control {
+        let short = format!("{step}");
+        if short.len() <= 6 {
+            return short;
+        }
+        let count = (until / step).round();
+        return fraction(step, until).unwrap_or_else(|| format!("{until}/{count}"));
+    }
+    let power = 10f64.powi(3 - value.log10().floor() as i32);
+    let rounded = (value * power * (1.0 + 1e-12)).floor() / power;
+    if rounded < 1e-3 {
+        format!("{rounded:e}")
+    } else {
+        format!("{rounded}")
+    }
+}
+
+/// The command line that runs the scene with a method at a step or a tolerance.
+pub fn command(what: &What, method: &Method, control: Control, until: f64) -> String {
+    let mut words = format!("a3 {} {}", method.letter, typed(control, until));
+    if what.scene != "cloth" {
+        let _ = write!(words, " --scene {}", what.scene);
+    }
+    if let Some(grid) = what.grid {
+        let _ = write!(words, " --grid {}x{}", grid.rows(), grid.cols());
+    }
+    for (on, option) in [
+        (what.wind, " --wind"),
+        (what.swing, " --swing"),
+        (what.self_collision, " --self-collision"),
+    ] {
+        if on {
+            words += option;
+        }
+    }
+    words
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn values_are_typed_short_and_never_coarser() {
+        for (value, expected) in [
+            (1.0 / 60.0, "1/60"),
+            (0.01, "0.01"),
+            (3.0 / 291.0, "1/97"),
+            (3.0 / 292.0, "3/292"),
+            (3.0 / 4.5, "2/3"),
+            (0.5, "0.5"),
+        ] {
+            assert_eq!(typed(Control::Step(value), 3.0), expected);
+        }
+        assert_eq!(typed(Control::Step(0.3 / 37.0), 0.3), "0.3/37");
+        assert_eq!(typed(Control::Tolerance(1.7783e-5), 3.0), "1.778e-5");
+        assert_eq!(typed(Control::Tolerance(0.1), 3.0), "0.1");
+    }
+}

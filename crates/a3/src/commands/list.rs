@@ -1,0 +1,125 @@
+//! `a3 scenes` and `a3 solvers`: lists of the built-in scenes and of the solvers.
+
+use a3_core::{Control, integrators};
+use a3_scenes::Description;
+
+use crate::base::failure::Failure;
+use crate::base::terminal;
+use crate::cli::Scenes;
+use crate::files::setup::find;
+
+/// A table with columns as wide as their widest cells. A column whose heading starts with a space
+/// is aligned to the right.
+pub fn table(rows: &[Vec<String>]) -> String {
+    let headings = &rows[0];
+    let width = |c: usize| {
+        rows.iter()
+            .map(|row| row[c].trim().chars().count())
+            .max()
+            .unwrap_or(0)
+    };
+    let widths: Vec<_> = (0..headings.len()).map(width).collect();
+    let cell = |(c, cell): (usize, &String)| {
+        let (cell, width) = (cell.trim(), widths[c]);
+        if headings[c].starts_with(' ') {
+            format!("{cell:>width$}")
+        } else {
+            format!("{cell:<width$}")
+        }
+    };
+    let line = |row: &Vec<String>| {
+        row.iter()
+            .enumerate()
+            .map(cell)
+            .collect::<Vec<_>>()
+            .join("  ")
+    };
+    rows.iter()
+        .map(|row| line(row).trim_end().to_owned() + "\n")
+        .collect()
+}
+
+/// Lists the scenes, or prints the file of one or the schema.
+pub fn scenes(options: &Scenes) -> Result<(), Failure> {
+    if let Some(name) = &options.print {
+        return terminal::send(find(name, "--print")?.text());
+    }
+    if options.schema {
+        return terminal::send(&(Description::schema() + "\n"));
+    }
+    let heading = [
+        "scene",
+        "grid",
+        " particles",
+        " springs",
+        " state",
+        "forces",
+        "what it is",
+    ];
+    let mut rows = vec![heading.map(String::from).to_vec()];
+    for entry in a3_scenes::SCENES {
+        let scene = entry.build(None).map_err(Failure::run)?.scene;
+        let network = scene.model.network();
+        rows.push(vec![
+            entry.name.into(),
+            scene.grid().map_or("-".into(), |grid| {
+                format!("{}x{}", grid.rows(), grid.cols())
+            }),
+            scene.model.particles().to_string(),
+            network.map_or(0, |n| n.springs().count()).to_string(),
+            scene.model.system().dim().to_string(),
+            network.map_or("-".into(), |n| n.forces_in_use().join(", ")),
+            entry
+                .description()
+                .ok()
+                .and_then(|d| d.summary)
+                .unwrap_or_default(),
+        ]);
+    }
+    terminal::say(&table(&rows))
+}
+
+/// Lists the solvers.
+pub fn solvers() -> Result<(), Failure> {
+    let heading = [
+        "",
+        "solver",
+        " order",
+        " evaluations/step",
+        " default",
+        "serves",
+        "method",
+    ];
+    let mut rows = vec![heading.map(String::from).to_vec()];
+    for m in integrators::METHODS {
+        rows.push(vec![
+            m.letter.into(),
+            m.name.into(),
+            m.order.to_string(),
+            if m.is_implicit() && !m.needs_springs() {
+                format!("{} and linear solves", m.evaluations)
+            } else if m.damped_evaluations == m.evaluations {
+                m.evaluations.to_string()
+            } else {
+                format!(
+                    "{} ({} if springs are damped)",
+                    m.evaluations, m.damped_evaluations
+                )
+            },
+            match m.default_control {
+                Control::Step(step) => format!("{step} s"),
+                Control::Tolerance(tolerance) => format!("tolerance {tolerance:.0e}"),
+            },
+            if m.needs_springs() {
+                "springs"
+            } else if m.needs_mechanics() {
+                "masses"
+            } else {
+                "any system"
+            }
+            .into(),
+            m.title.into(),
+        ]);
+    }
+    terminal::say(&table(&rows))
+}

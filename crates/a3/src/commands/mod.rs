@@ -1,0 +1,12 @@
+//! The commands of the program, a module each.
+
+pub mod chart;
+pub mod choose;
+pub mod list;
+pub mod manual;
+#[cfg(feature = "window")]
+pub mod render;
+pub mod simulate;
+pub mod stability;
+mod summary;
+pub mod sweep;

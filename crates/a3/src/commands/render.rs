@@ -1,0 +1,48 @@
+//! `a3 render`: pictures and films without a window.
+
+use crate::base::failure::Failure;
+use crate::base::{progress, terminal, verdict};
+use crate::cli::Render;
+use crate::draw::painter::Painter;
+use crate::draw::show::{self, Show};
+use crate::files::setup::Run;
+use crate::files::{film, output};
+use crate::window::begin;
+
+/// Endings of pictures and films.
+const ENDINGS: &[&str] = &["png", "gif", "mp4"];
+
+/// Runs the simulation and writes its picture or its film.
+pub fn run(options: &Render) -> Result<(), Failure> {
+    let (path, size) = (&options.output, options.size);
+    output::check_ending(path, ENDINGS)?;
+    let Run {
+        mut simulation,
+        presentation,
+        until,
+        ..
+    } = Run::new(&options.run)?;
+    begin::check_particle(&simulation, options.springs_of)?;
+    begin::check_drawing(&simulation, options.manner, false)?;
+    output::check(path, ENDINGS)?;
+    // There may be no ffmpeg, and the device may not support pictures of this size: both are
+    // checked before the work begins.
+    let film = film::begin(options, until)?;
+    let mut show = Show::new(presentation, options.manner.of(options.springs_of));
+    show.transparent = options.transparent;
+    let mut painter = Painter::new(&show, &simulation, size)?;
+    if let Some(i) = options.springs_of {
+        terminal::say(&show::list_springs_of(&simulation, i))?;
+    }
+    if let Some(film) = film {
+        return film::shoot(&mut simulation, &mut show, &mut painter, film, path);
+    }
+    progress::advance(&mut simulation, until, |simulation| {
+        show.follow(simulation);
+    })
+    .and_then(|()| simulation.conclude())
+    .map_err(|error| verdict::lost(&simulation, &error, "", until))?;
+    verdict::warn(&simulation);
+    let pixels = painter.draw(&mut show, &simulation)?;
+    output::write(path, &output::png(&pixels, size)?)
+}

@@ -1,0 +1,255 @@
+//! `a3 simulate`: the final state of a run, or all its frames, in files that other programs read.
+
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+use a3_core::Simulation;
+
+use super::summary;
+use crate::base::failure::Failure;
+use crate::base::progress::{self, Bar};
+use crate::base::{interrupt, terminal, verdict};
+use crate::cli::Simulate;
+use crate::files::checkpoint::{Extremes, Keeper, Kept};
+use crate::files::export::Export;
+use crate::files::frames::{FrameTimes, Sequence};
+use crate::files::setup::{Request, Run};
+use crate::files::{export, output};
+
+/// Runs the simulation and writes its files.
+pub fn run(options: &Simulate) -> Result<(), Failure> {
+    let begun = Instant::now();
+    export::check_ending(&options.output)?;
+    let mut run = Run::new(&options.run)?;
+    check_summary(options)?;
+    let extremes = begin(options, &mut run)?;
+    let (frames, mut export) = export::begin(options, &run)?;
+    warn_of_first_frame(options, &frames);
+    let every = Duration::from_secs_f64(options.every);
+    let keeper = options.checkpoint.as_deref();
+    let (mut simulation, end) = (run.simulation, run.until);
+    let mut looks = Looks {
+        options,
+        request: run.request,
+        extremes,
+        keeper: keeper.map(|path| Keeper::new(path, every)).transpose()?,
+        crossed: None,
+        failure: None,
+    };
+    advance(&mut simulation, end, &frames, &mut *export, &mut looks)?;
+    export.finish()?;
+    looks.keep(&simulation)?;
+    warn_of_tears(options, &simulation);
+    verdict::warn(&simulation);
+    if let (Some(path), Some(extremes)) = (&options.summary, &looks.extremes) {
+        summary::write(path, &simulation, frames.count, extremes, begun)?;
+    }
+    Ok(())
+}
+
+/// Checks that the summary can be written.
+fn check_summary(options: &Simulate) -> Result<(), Failure> {
+    let stdout = Path::new("-");
+    match options.summary.as_deref() {
+        Some(path) if path != stdout => output::check(path, &["json"]),
+        Some(_) if options.output == stdout => Err(Failure::usage(
+            "standard output can take either --output or --summary, not both",
+        )),
+        _ => Ok(()),
+    }
+}
+
+/// Brings the run to its checkpoint, if it resumes one. Returns the extremes until then, if any
+/// are wanted.
+fn begin(options: &Simulate, run: &mut Run) -> Result<Option<Extremes>, Failure> {
+    let wanted = options.summary.is_some() || options.checkpoint.is_some();
+    let fresh = wanted.then(Extremes::default);
+    let Some(path) = &options.resume else {
+        return Ok(fresh);
+    };
+    let kept = resume(path, options, run)?;
+    Ok(fresh.map(|fresh| kept.extremes.unwrap_or(fresh)))
+}
+
+/// Advances the simulation from frame to frame, and exports each.
+fn advance(
+    simulation: &mut Simulation,
+    end: f64,
+    frames: &FrameTimes,
+    export: &mut dyn Export,
+    looks: &mut Looks,
+) -> Result<(), Failure> {
+    interrupt::listen();
+    let bar = Bar::new(end - simulation.time());
+    let mut goes_on = looks.look(simulation);
+    for (k, time) in frames.times().enumerate() {
+        let mut before = simulation.time();
+        let reached = progress::march(simulation, time, |simulation| {
+            bar.advance(simulation.time() - before);
+            before = simulation.time();
+            goes_on &= looks.look(simulation);
+            goes_on
+        });
+        // The last look comes before anything is complete.
+        let reached = match reached {
+            Ok(true) if k + 1 == frames.count => simulation.conclude().map(|()| true),
+            other => other,
+        };
+        if reached != Ok(true) {
+            bar.clear();
+            let written = written(&looks.options.output, k, frames.count);
+            return Err(match reached {
+                Err(error) => verdict::lost(simulation, &error, &written, end),
+                Ok(_) => looks.stopped(simulation, &written),
+            });
+        }
+        export.add(simulation)?;
+    }
+    bar.clear();
+    Ok(())
+}
+
+/// Warns that a resumed run has no frames from before its checkpoint.
+fn warn_of_first_frame(options: &Simulate, frames: &FrameTimes) {
+    if frames.first > 0 && Sequence::of(&options.output).is_none() {
+        terminal::warn(&format!(
+            "{} begins with frame {}, the first since the checkpoint",
+            options.output.display(),
+            frames.first
+        ));
+    }
+}
+
+/// Warns that a format with one mesh for all frames does not show broken springs.
+fn warn_of_tears(options: &Simulate, simulation: &Simulation) {
+    let one_mesh = |ending: &&str| output::ends_in(&options.output, ending);
+    if simulation.tears() > 0 && ["pc2", "glb", "usda"].iter().any(one_mesh) {
+        terminal::warn(&format!(
+            "{} springs broke, but {} has one mesh for all its frames: a sequence such as torn-####.obj has the holes",
+            simulation.tears(),
+            options.output.display()
+        ));
+    }
+}
+
+/// What a run is looked at for on its way.
+struct Looks<'a> {
+    options: &'a Simulate,
+    request: Request<'a>,
+    extremes: Option<Extremes>,
+    keeper: Option<Keeper>,
+    /// What passes through what, once something does.
+    crossed: Option<String>,
+    /// Failure of a checkpoint.
+    failure: Option<Failure>,
+}
+
+impl Looks<'_> {
+    /// Looks at the run. Returns whether it may go on.
+    fn look(&mut self, run: &Simulation) -> bool {
+        if let Some(extremes) = &mut self.extremes {
+            extremes.look(run);
+        }
+        self.crossed = check(run, self.options.check).err();
+        if let Some(mut keeper) = self.keeper.take() {
+            self.failure = keeper.look(|| self.kept(run)).err();
+            self.keeper = Some(keeper);
+        }
+        self.crossed.is_none() && self.failure.is_none() && interrupt::go_on()
+    }
+
+    /// The run as it is now.
+    fn kept(&self, run: &Simulation) -> Kept {
+        let Request { source, options } = &self.request;
+        Kept::new(source, options.grid, run, self.extremes)
+    }
+
+    /// Writes a last checkpoint, if any are wanted. Returns a clause that says so.
+    fn keep(&self, run: &Simulation) -> Result<String, Failure> {
+        let Some(keeper) = &self.keeper else {
+            return Ok(String::new());
+        };
+        Ok(format!("; {}", keeper.write(&self.kept(run))?))
+    }
+
+    /// Why a run was stopped that has written so much.
+    fn stopped(&mut self, run: &Simulation, written: &str) -> Failure {
+        interrupt::write_on();
+        if let Some(failure) = self.failure.take() {
+            return failure;
+        }
+        if let Some(why) = &self.crossed {
+            return Failure::run(format!("{why}; {written}"));
+        }
+        match self.keep(run) {
+            Ok(kept) => Failure::Interrupted(format!("interrupted: {written}{kept}")),
+            Err(failure) => failure,
+        }
+    }
+}
+
+/// Takes a run up where it was kept in a file. A solver, a step or a disturbance that is asked for
+/// has to be the one that it was kept with.
+fn resume(path: &Path, options: &Simulate, begun: &mut Run) -> Result<Kept, Failure> {
+    let kept = Kept::read(path)?;
+    let (source, run) = (&begun.request.source, &mut begun.simulation);
+    let (solver, control) = (run.method(), run.control());
+    let asked = &options.run;
+    kept.check(path, source, asked.what.grid, run)?;
+    let refuse = |why: String| Err(Failure::usage(format!("{}: {why}", path.display())));
+    if let Some((row, _)) = kept.tuned.first() {
+        return refuse(format!(
+            "this run was tuned in the window ({row}): a3 --resume opens it there"
+        ));
+    }
+    if let Err(why) = run.restore(&kept.checkpoint) {
+        return refuse(why.to_string());
+    }
+    if asked.solver.is_some() && solver.name != run.method().name
+        || asked.step.is_some() && control != run.control()
+    {
+        return refuse(format!(
+            "this run goes on with {} {}, which need not be given",
+            run.method().name,
+            run.control().value()
+        ));
+    }
+    for (asked, there, option) in [
+        (asked.what.wind, run.windy(), "wind"),
+        (asked.what.swing, run.swinging(), "swing"),
+        (asked.what.self_collision, run.touching(), "self-collision"),
+    ] {
+        if asked && !there {
+            return refuse(format!(
+                "this run goes on without {option}: leave out --{option}"
+            ));
+        }
+    }
+    let (now, end) = (run.time(), begun.until);
+    if now > end {
+        return refuse(format!(
+            "this run is at t = {now} s already, past --until {end}"
+        ));
+    }
+    Ok(kept)
+}
+
+/// `Ok` if no surfaces pass through one another, or none shall be looked for; else what does.
+fn check(simulation: &Simulation, wanted: bool) -> Result<(), String> {
+    let Some(network) = simulation.model().network().filter(|_| wanted) else {
+        return Ok(());
+    };
+    let state = simulation.state();
+    let apart = network.check_apart(simulation.time(), network.halves(state).0);
+    apart.map_err(|why| format!("at t = {:.4} s {why}", simulation.time()))
+}
+
+/// What an interrupted run has written: a file is complete or absent, and so is each file of a
+/// sequence.
+fn written(path: &Path, done: usize, count: usize) -> String {
+    if Sequence::of(path).is_some() && done > 0 {
+        format!("{} has the first {done} of {count} frames", path.display())
+    } else {
+        "nothing was written".into()
+    }
+}

@@ -1,0 +1,147 @@
+//! The limits of all methods on a scene, measured at rest and in motion.
+
+use a3_core::stability::{
+    Budget, Limit, Motion, Observation, RestState, observe_at_rest, rest, spectrum,
+};
+use a3_core::{Error, Method, Scene};
+use rayon::prelude::*;
+
+use super::limits::{Found, MethodLimits};
+use crate::base::failure::Failure;
+use crate::base::interrupt;
+use crate::base::progress::Bar;
+
+/// Work of all searches in motion, and of those at rest, in that of a [`Budget`].
+const MOST_WORK: [f64; 2] = [1.5e9, 8e8];
+/// Share of it that all searches together may do before those that need more get the rest.
+const FIRST: f64 = 0.3;
+
+/// The end of a command that was interrupted too early.
+pub fn nothing() -> Failure {
+    Failure::Interrupted("interrupted before anything was measured".into())
+}
+
+/// Measures the limits of all methods, at rest and in motion at once.
+pub fn measure(scene: &Scene, methods: &[&'static Method]) -> Result<Found, Failure> {
+    // The fixed steps of two adaptive solvers may be the same: they are measured once.
+    let first = |method: &Method| methods.iter().position(|m| m.shares_integrator(method));
+    let measured: Vec<_> = (methods.iter().enumerate())
+        .filter_map(|(k, &method)| (first(method) == Some(k)).then_some(method))
+        .collect();
+    // Each method's share is counted as half done, in case it is measured again.
+    let bar = Bar::new(2.0 + 2.0 * measured.len() as f64);
+    bar.say("the true motion and the state of rest ".into());
+    let at_start = spectrum(scene.model.system(), 0.0, &scene.state);
+    let say = |method: &Method, stage| bar.say(format!("{} {stage} ", method.name));
+    // Nothing is timed here, so methods may be measured beside one another.
+    let in_motion = || {
+        let motion = Motion::of(scene, interrupt::go_on)?;
+        bar.advance(1.0);
+        let limits = each(&measured, MOST_WORK[0], |method, budget| {
+            let Some(motion) = &motion else {
+                return Ok(None);
+            };
+            say(method, "in motion");
+            budget.allow(0.6);
+            let bounded = motion.bounded(method, budget, interrupt::go_on)?;
+            bar.advance(0.5);
+            say(method, "its errors");
+            budget.allow(1.0);
+            let longest = bounded.map_or(f64::INFINITY, |seen| seen.held);
+            let accurate = motion.accurate(method, longest, budget, interrupt::go_on)?;
+            bar.advance(0.5);
+            let found = (bounded, accurate, budget.limits());
+            Ok(interrupt::go_on().then_some(found))
+        });
+        Ok::<_, Error>((motion, limits?))
+    };
+    let at_rest = || {
+        let hanging = rest(scene, interrupt::go_on)?;
+        bar.advance(1.0);
+        let limits = each(&measured, MOST_WORK[1], |method, budget| {
+            say(method, "at rest");
+            let by_modes = |rest: &RestState| rest.largest_step(method);
+            let limit = hanging.as_ref().map(by_modes).transpose()?.flatten();
+            let seen = match &hanging {
+                Some(rest) => {
+                    observe_at_rest(rest, method, limit.as_ref(), budget, interrupt::go_on)?
+                }
+                None => None,
+            };
+            bar.advance(0.5);
+            Ok(interrupt::go_on().then_some((limit, seen, budget.limits())))
+        });
+        Ok::<_, Error>((hanging, limits?))
+    };
+    let (moving, resting) = rayon::join(in_motion, at_rest);
+    let (motion, moving) = moving.map_err(Failure::run)?;
+    let (hanging, resting) = resting.map_err(Failure::run)?;
+    let motion = motion.ok_or_else(nothing)?;
+    let rows: Vec<_> = (measured.iter().zip(resting).zip(moving))
+        .filter_map(|((method, rest), moving)| Some(limits(method, rest?, moving?)))
+        .collect();
+    let row = |method: &'static Method| {
+        let row = (rows.iter()).find(|row| row.method.shares_integrator(method))?;
+        Some(MethodLimits { method, ..*row })
+    };
+    let rows: Vec<_> = methods.iter().filter_map(|method| row(method)).collect();
+    bar.clear();
+    Ok(Found {
+        rows,
+        motion,
+        hanging,
+        at_start,
+    })
+}
+
+/// Results of all methods, in their order, within a budget of work. The runs of implicit
+/// methods take longest, so they begin first. Methods that need more than their share of the work
+/// are measured again, with what the others have left.
+fn each<T: Send>(
+    methods: &[&'static Method],
+    work: f64,
+    find: impl Fn(&'static Method, &Budget) -> Result<T, Error> + Sync,
+) -> Result<Vec<T>, Error> {
+    let mut places: Vec<_> = (0..methods.len()).collect();
+    places.sort_by_key(|k| !methods[*k].is_implicit());
+    let measure = |places: Vec<usize>, work: f64| {
+        let share = work / places.len() as f64;
+        let found = places.into_iter().par_bridge().map(|k| {
+            let budget = Budget::new(share);
+            find(methods[k], &budget).map(|found| (k, found, budget))
+        });
+        found.collect::<Result<Vec<_>, _>>()
+    };
+    let mut found = measure(places, FIRST * work)?;
+    let spent: f64 = found.iter().map(|(_, _, budget)| budget.spent()).sum();
+    let limited = |budget: &Budget| budget.limits() && interrupt::go_on();
+    let again: Vec<_> = (found.iter())
+        .filter_map(|(k, _, budget)| limited(budget).then_some(*k))
+        .collect();
+    found.retain(|(k, _, _)| !again.contains(k));
+    found.extend(measure(again, work - spent)?);
+    found.sort_by_key(|(k, _, _)| *k);
+    Ok(found.into_iter().map(|(_, found, _)| found).collect())
+}
+
+/// The limits of a method, from those at rest and those in motion.
+fn limits(
+    method: &'static Method,
+    (rest, seen_at_rest, short_at_rest): (Option<Limit>, Option<Observation>, bool),
+    (mut bounded, accurate, short_in_motion): (Option<Observation>, Option<f64>, bool),
+) -> MethodLimits {
+    // What fails at rest at a shorter step may not blow up from the start, but it never rests.
+    if let (Some(seen), Some(limit)) = (&mut bounded, rest)
+        && seen.held > 1.1 * limit.step
+    {
+        seen.failed = seen.failed.min(limit.step);
+    }
+    MethodLimits {
+        method,
+        rest,
+        seen_at_rest,
+        bounded,
+        accurate,
+        is_short: short_at_rest || short_in_motion,
+    }
+}

@@ -1,0 +1,132 @@
+//! The limits of all methods as a table, in milliseconds.
+
+use std::fmt::Write;
+
+use a3_core::Scene;
+use a3_core::stability::{Limit, Mode, Observation};
+
+use super::limits::{Found, MethodLimits};
+use crate::commands::list;
+
+/// A step in words, to three digits (ms).
+pub fn step(seconds: f64) -> String {
+    let ms = 1e3 * seconds;
+    match ms {
+        _ if ms.is_infinite() => "any".into(),
+        0.0 => "0".into(),
+        _ if ms < 0.999_5 => format!("{ms:.3}"),
+        _ if ms < 9.995 => format!("{ms:.2}"),
+        _ if ms < 99.95 => format!("{ms:.1}"),
+        _ => format!("{ms:.0}"),
+    }
+}
+
+/// The step up to which no mode grows, in words (ms).
+fn bounded(limit: Option<Limit>) -> String {
+    match limit {
+        None => "-".into(),
+        Some(limit) if limit.bounded == 0.0 => "none".into(),
+        Some(limit) => step(limit.bounded),
+    }
+}
+
+/// An observed limit in words (ms): a step, or the interval of those that hold or fail.
+pub fn observation(seen: Option<Observation>) -> String {
+    seen.map_or("-".into(), |seen| {
+        if seen.is_open() {
+            return format!(">{}", step(seen.held));
+        }
+        match seen.interval().map(step) {
+            [low, high] if is_interval(&seen) && low != high => format!("{low}\u{2013}{high}"),
+            _ => step(seen.held),
+        }
+    })
+}
+
+/// The table of all limits, with the fastest motion above it.
+pub fn text(scene: &Scene, found: &Found) -> String {
+    let Found {
+        rows,
+        motion,
+        hanging,
+        at_start,
+    } = found;
+    let heading = [
+        "solver",
+        " at rest: bounded",
+        " tenfold",
+        " observed",
+        " moving: bounded",
+        " accurate",
+    ];
+    let mut cells = vec![heading.map(String::from).to_vec()];
+    for row in rows {
+        cells.push(vec![
+            row.method.name.to_owned(),
+            bounded(row.rest),
+            row.rest.map_or("-".into(), |limit| step(limit.step)),
+            observation(row.seen_at_rest),
+            observation(row.bounded),
+            row.accurate.map_or("-".into(), step),
+        ]);
+    }
+    let frequency = |modes: &[Mode]| {
+        let returning = modes.first().filter(|mode| mode.frequency() > 0.0);
+        let none = if modes.is_empty() {
+            "none that could be computed"
+        } else {
+            "none that returns"
+        };
+        returning.map_or(none.to_owned(), |mode| {
+            let damping = 0.5 * (mode.drag + mode.damping) / mode.frequency();
+            format!("{:.1} rad/s, damping ratio {damping:.3}", mode.frequency())
+        })
+    };
+    let mut text = format!(
+        "{}: fastest motion {} at the start",
+        scene.name,
+        frequency(at_start)
+    );
+    if let Some(rest) = hanging {
+        let _ = write!(text, ", {} at rest", frequency(&rest.modes));
+    }
+    let _ = write!(
+        text,
+        "\n\nlargest step (ms), that of the fixed step for adaptive solvers\n{}\
+         bounded   nothing grows without end: at rest by all modes, moving as runs show\n\
+         tenfold   a disturbance at rest grows tenfold in 10 s, or in 1000 steps if that is longer\n\
+         accurate  errors stay below a hundredth of the motion in the first {:.2} s\n",
+        list::table(&cells),
+        motion.predictable,
+    );
+    if any_observed(rows, is_interval) {
+        let _ = writeln!(text, "a\u{2013}b       {INTERVAL}");
+    }
+    if any_observed(rows, Observation::is_open) {
+        text += ">         no longer step was tried\n";
+    }
+    let short: Vec<_> = rows.iter().filter(|row| row.is_short).collect();
+    if !short.is_empty() {
+        let names: Vec<_> = short.iter().map(|row| row.method.name).collect();
+        let _ = writeln!(
+            text,
+            "short     the runs were shorter than 10 s, or too few to tell more, because they take long: {}",
+            names.join(", ")
+        );
+    }
+    text
+}
+
+/// Meaning of an interval in place of a limit.
+pub const INTERVAL: &str = "not sharp: the shortest step that failed and the longest that held, between which some do either";
+
+/// Whether any limit that was observed is of this kind.
+pub fn any_observed(rows: &[MethodLimits], is: fn(&Observation) -> bool) -> bool {
+    let observed = rows.iter().flat_map(|row| [row.seen_at_rest, row.bounded]);
+    observed.flatten().any(|seen| is(&seen))
+}
+
+/// Whether a limit is an interval.
+pub fn is_interval(seen: &Observation) -> bool {
+    !seen.is_open() && !seen.is_sharp()
+}

@@ -1,0 +1,146 @@
+//! All runs of a sweep in one file, and its chart.
+
+use a3_core::Method;
+use a3_plot::WorkPrecision;
+use serde_json::Value;
+
+use super::file::Sweep;
+use super::folder::Folder;
+use super::plan::{Plan, Variant};
+use crate::base::failure::Failure;
+use crate::base::terminal;
+use crate::commands::chart::record::Record;
+use crate::commands::chart::{picture, text};
+use crate::files::output;
+
+/// Most panels of a chart.
+const MOST_PANELS: usize = 25;
+
+/// Joins the runs that are there, in the order of the plan. Fails after that if some are missing.
+pub fn run(sweep: &Sweep, plan: &Plan, folder: &Folder, size: (u32, u32)) -> Result<(), Failure> {
+    let mut records: Vec<(usize, Record)> = vec![];
+    for (place, run) in plan.runs.iter().enumerate() {
+        if let Some(record) = folder.read(run)? {
+            records.push((place, record));
+        }
+    }
+    folder.warn_of_others(plan);
+    let missing = plan.runs.len() - records.len();
+    let say_missing = || {
+        format!(
+            "{missing} of {} runs are missing; `a3 sweep` does them, or --only a share of them",
+            plan.runs.len()
+        )
+    };
+    if records.is_empty() {
+        return Err(Failure::run(say_missing()));
+    }
+    let beside = |ending: &str| {
+        let mut path = folder.path().as_os_str().to_owned();
+        path.push(ending);
+        std::path::PathBuf::from(path)
+    };
+    let (table, chart) = (beside(".csv"), beside(".svg"));
+    output::write(&table, lines(sweep, plan, &records)?.as_bytes())?;
+    let lost = records.iter().filter(|(_, r)| r.lost_at.is_some()).count();
+    terminal::say(&format!(
+        "{} runs, of which {lost} blew up: {}\n",
+        records.len(),
+        table.display()
+    ))?;
+    if plan.variants.len() > MOST_PANELS {
+        terminal::say(&format!(
+            "no chart: it would have {} panels, and at most {MOST_PANELS} can be read\n",
+            plan.variants.len()
+        ))?;
+    } else {
+        let figure = diagram(sweep, plan, &records).draw(f64::from(size.0), f64::from(size.1));
+        let figure = figure.map_err(Failure::usage)?;
+        output::write(&chart, figure.svg().as_bytes())?;
+        terminal::say(&format!("chart: {}\n", chart.display()))?;
+    }
+    if missing > 0 {
+        return Err(Failure::run(say_missing()));
+    }
+    Ok(())
+}
+
+/// The table: ids, what varies, and the records.
+fn lines(sweep: &Sweep, plan: &Plan, records: &[(usize, Record)]) -> Result<String, Failure> {
+    let row = |fields: Vec<String>| -> Result<String, Failure> {
+        let mut writer = csv::Writer::from_writer(vec![]);
+        writer.write_record(fields).map_err(Failure::run)?;
+        let bytes = writer.into_inner().map_err(Failure::run)?;
+        Ok(String::from_utf8_lossy(&bytes).trim_end().to_owned())
+    };
+    let mut all = String::new();
+    for (k, (place, record)) in records.iter().enumerate() {
+        let run = &plan.runs[*place];
+        let written = text::csv_lines(record, k == 0).map_err(Failure::run)?;
+        let mut written = written.as_str();
+        if let Some((head, line)) = written.split_once('\n').filter(|_| k == 0) {
+            let names = sweep.names().into_iter().map(str::to_owned);
+            let names = ["id".to_owned()].into_iter().chain(names);
+            all.extend([&row(names.collect())?, ",", head, "\n"]);
+            written = line;
+        }
+        let values = plan.variants[run.variant].values.iter().map(short);
+        let values = [run.id.to_string()].into_iter().chain(values);
+        all.extend([&row(values.collect())?, ",", written, "\n"]);
+    }
+    Ok(all)
+}
+
+/// A value as it is written in a table.
+fn short(value: &Value) -> String {
+    match value {
+        Value::String(text) => text.clone(),
+        value => value.to_string(),
+    }
+}
+
+/// The work-precision diagram, with a panel for each scene and its values.
+fn diagram(sweep: &Sweep, plan: &Plan, records: &[(usize, Record)]) -> WorkPrecision {
+    let mut methods: Vec<&'static Method> = vec![];
+    for run in &plan.runs {
+        if !methods.iter().any(|m| std::ptr::eq(*m, run.method)) {
+            methods.push(run.method);
+        }
+    }
+    let problems = plan.variants.iter().enumerate().map(|(number, variant)| {
+        let of = records
+            .iter()
+            .filter(|(place, _)| plan.runs[*place].variant == number);
+        let records: Vec<_> = of.map(|(_, record)| record).collect();
+        let mut problem = picture::problem(&records, &[], &methods, variant.metric, false);
+        problem.title = title(sweep, variant);
+        problem
+    });
+    let first = &plan.variants[0];
+    WorkPrecision {
+        title: format!("Speed against accuracy: {}", sweep.name),
+        subtitle: "Each point is a run with another step or tolerance".into(),
+        x_label: picture::x_label(first.metric, first.scope),
+        y_label: picture::WORK.into(),
+        problems: problems.collect(),
+        foot: picture::foot(&methods),
+        held: "held by impulses".into(),
+    }
+}
+
+/// What tells a panel from the others.
+fn title(sweep: &Sweep, variant: &Variant) -> String {
+    let mut parts = vec![];
+    if sweep.scenes.len() > 1 || variant.values.is_empty() {
+        let name = variant.name.split(' ').next().unwrap_or_default();
+        parts.push(name.to_owned());
+    }
+    let counts = sweep.keys.iter().map(|(_, values)| values.len());
+    let counts = counts.chain(sweep.stiffness.as_ref().map(Vec::len));
+    for ((name, value), count) in sweep.names().iter().zip(&variant.values).zip(counts) {
+        if count > 1 {
+            parts.push(format!("{name} = {}", short(value)));
+        }
+    }
+    parts.join(", ")
+}

@@ -1,0 +1,213 @@
+//! The file of a sweep.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::Path;
+
+use a3_core::accuracy::Metric;
+use a3_core::{Method, integrators};
+use serde::Deserialize;
+use serde_json::Value;
+
+use super::keys;
+use super::values::all;
+use crate::base::bounds;
+use crate::base::failure::Failure;
+use crate::base::terminal;
+use crate::cli::ErrorScope;
+use crate::files::output;
+use crate::files::scene_file::{Source, place};
+
+/// Size of the largest file (bytes).
+const LARGEST: u64 = 1 << 20;
+/// What stands for the stiffness of all springs among the names of what varies.
+const STIFFNESS: &str = "stiffness";
+
+/// The keys of the file.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Text {
+    scene: Value,
+    solver: Option<Value>,
+    step: Option<Value>,
+    tolerance: Option<Value>,
+    until: Option<f64>,
+    stiffness: Option<Value>,
+    error: Option<String>,
+    particle: Option<usize>,
+    #[serde(default)]
+    at_end: bool,
+    #[serde(default)]
+    keys: BTreeMap<String, Value>,
+}
+
+/// What is run.
+pub struct Sweep {
+    /// The path of the file as it was typed.
+    pub file: String,
+    /// Name of the file.
+    pub name: String,
+    pub scenes: Vec<Source>,
+    /// The solvers that were asked for; empty if all are meant.
+    pub methods: Vec<&'static Method>,
+    pub steps: Vec<f64>,
+    pub tolerances: Vec<f64>,
+    /// End of the runs (s), if it is not the scene's own.
+    pub until: Option<f64>,
+    /// Factors of the stiffness of all springs; `None` where it is not swept.
+    pub stiffness: Option<Vec<f64>>,
+    pub error: Metric,
+    pub scope: ErrorScope,
+    /// Keys of the scenes, with their values.
+    pub keys: Vec<(String, Vec<Value>)>,
+}
+
+impl Sweep {
+    /// Reads the file.
+    pub fn read(path: &Path) -> Result<Self, Failure> {
+        let wrong = |why: String| Failure::usage(place(&path.to_string_lossy(), &why));
+        let size = fs::metadata(path)
+            .map_err(|e| wrong(format!("it could not be read: {}", terminal::reason(&e))))?;
+        if !size.is_file() || size.len() > LARGEST {
+            return Err(wrong("it is no ordinary file of at most 1 MiB".into()));
+        }
+        output::is_read(path);
+        let text = fs::read_to_string(path).map_err(|e| wrong(terminal::reason(&e)))?;
+        let text: Text = a3_scenes::read(&text).map_err(|fault| wrong(fault.to_string()))?;
+        Self::new(path, &text).map_err(wrong)
+    }
+
+    fn new(path: &Path, text: &Text) -> Result<Self, String> {
+        let folder = path.parent().unwrap_or(Path::new(""));
+        let scenes = texts("scene", Some(&text.scene))?;
+        let scenes = scenes.iter().map(|name| match a3_scenes::find(name) {
+            Some(_) => Source::find(name),
+            None => Source::find(&folder.join(name).to_string_lossy()),
+        });
+        let methods = texts("solver", text.solver.as_ref())?;
+        let methods = methods.iter().map(|name| {
+            let names = integrators::METHODS.iter().map(|m| m.name);
+            integrators::find(name).ok_or_else(|| match a3_scenes::nearest(name, names) {
+                Some(near) => format!("solver: there is no solver {name}; did you mean {near}?"),
+                None => format!("solver: there is no solver {name}; `a3 solvers` lists them"),
+            })
+        });
+        let error = match &text.error {
+            None => Metric::default(),
+            Some(error) => {
+                let mut all = Metric::ALL.into_iter();
+                all.find(|metric| metric.name() == error).ok_or_else(|| {
+                    let all = Metric::ALL.map(Metric::name).join(", ");
+                    format!("error: the choices are {all}, not {error}")
+                })?
+            }
+        };
+        let keys = keys::flat(&text.keys).into_iter().map(|(path, values)| {
+            let values = all(&values).map_err(|why| format!("keys.{path}: {why}"))?;
+            Ok((path, values))
+        });
+        let until = text.until;
+        if until.is_some_and(|until| !(until > 0.0 && until <= 1e4)) {
+            return Err("until: it must be a number of seconds above 0 and at most 10000".into());
+        }
+        let factors = 1e-9..=1e9;
+        let sweep = Self {
+            file: path.display().to_string(),
+            name: path
+                .file_stem()
+                .unwrap_or_default()
+                .to_string_lossy()
+                .into_owned(),
+            scenes: scenes.collect::<Result<_, _>>()?,
+            methods: methods.collect::<Result<_, _>>()?,
+            steps: numbers(
+                "step",
+                text.step.as_ref(),
+                bounds::SMALLEST_STEP..=bounds::LARGEST_STEP,
+            )?,
+            tolerances: numbers("tolerance", text.tolerance.as_ref(), bounds::TOLERANCES)?,
+            until,
+            stiffness: match &text.stiffness {
+                None => None,
+                factor => Some(numbers(STIFFNESS, factor.as_ref(), factors)?),
+            },
+            error,
+            scope: ErrorScope {
+                particle: text.particle,
+                at_end: text.at_end,
+            },
+            keys: keys.collect::<Result<_, String>>()?,
+        };
+        for method in &sweep.methods {
+            if sweep.settings(method).is_empty() {
+                let (what, other) = if is_adaptive(method) {
+                    ("tolerance", "a tolerance")
+                } else {
+                    ("step", "steps")
+                };
+                return Err(format!(
+                    "the solver {} takes {other}: the key `{what}` is missing",
+                    method.name
+                ));
+            }
+        }
+        if sweep.steps.is_empty() && sweep.tolerances.is_empty() {
+            return Err("one of the keys `step` and `tolerance` is missing".into());
+        }
+        Ok(sweep)
+    }
+
+    /// The steps or tolerances of a method.
+    pub fn settings(&self, method: &Method) -> &[f64] {
+        if is_adaptive(method) {
+            &self.tolerances
+        } else {
+            &self.steps
+        }
+    }
+
+    /// The names of what varies from scene to scene, beside the scene.
+    pub fn names(&self) -> Vec<&str> {
+        let names = self.keys.iter().map(|(path, _)| path.as_str());
+        names
+            .chain(self.stiffness.as_ref().map(|_| STIFFNESS))
+            .collect()
+    }
+}
+
+fn is_adaptive(method: &Method) -> bool {
+    method.control(1e-3).step().is_none()
+}
+
+/// Numbers in a range; none if the key is not there.
+fn numbers(
+    key: &str,
+    value: Option<&Value>,
+    range: std::ops::RangeInclusive<f64>,
+) -> Result<Vec<f64>, String> {
+    let Some(value) = value else {
+        return Ok(vec![]);
+    };
+    let values = all(value).map_err(|why| format!("{key}: {why}"))?;
+    let number = |value: &Value| {
+        let number = value.as_f64().filter(|number| range.contains(number));
+        let (low, high) = (range.start(), range.end());
+        number.ok_or_else(|| {
+            format!("{key}: each must be a number from {low:e} to {high:e}, not {value}")
+        })
+    };
+    values.iter().map(number).collect()
+}
+
+/// Texts; none if the key is not there.
+fn texts(key: &str, value: Option<&Value>) -> Result<Vec<String>, String> {
+    let Some(value) = value else {
+        return Ok(vec![]);
+    };
+    let values = all(value).map_err(|why| format!("{key}: {why}"))?;
+    let text = |value: &Value| {
+        let text = value.as_str().map(str::to_owned);
+        text.ok_or_else(|| format!("{key}: it must be a name or a list of names, not {value}"))
+    };
+    values.iter().map(text).collect()
+}

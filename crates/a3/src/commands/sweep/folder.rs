@@ -1,0 +1,122 @@
+//! The folder of a sweep: a file for each run, as the data of a chart with one line.
+
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use super::plan::{Plan, Run};
+use crate::base::failure::Failure;
+use crate::base::terminal;
+use crate::cli::share::Id;
+use crate::commands::chart::data::VERSION;
+use crate::commands::chart::record::Record;
+use crate::commands::chart::text;
+use crate::files::output;
+
+/// Size of the largest file of a run (bytes).
+const LARGEST: u64 = 1 << 16;
+
+/// The folder.
+pub struct Folder(PathBuf);
+
+impl Folder {
+    /// A folder that may be there or not.
+    pub fn new(path: &Path) -> Self {
+        Self(path.into())
+    }
+
+    /// Its path.
+    pub fn path(&self) -> &Path {
+        &self.0
+    }
+
+    /// Makes it, if it is not there.
+    pub fn create(&self) -> Result<(), Failure> {
+        fs::create_dir_all(&self.0).map_err(|why| {
+            let path = self.0.display();
+            Failure::run(format!(
+                "{path}: the folder could not be made: {}",
+                terminal::reason(&why)
+            ))
+        })
+    }
+
+    fn file(&self, id: Id) -> PathBuf {
+        self.0.join(format!("{id}.csv"))
+    }
+
+    /// The outcome of a run, if it is there. A file that is damaged counts as missing, and a
+    /// warning says so: the run is done again.
+    pub fn read(&self, run: &Run) -> Result<Option<Record>, Failure> {
+        let path = self.file(run.id);
+        let fault = |why: String| Failure::run(format!("{}: {why}", path.display()));
+        // A link is not followed, lest what it leads to is replaced.
+        let length = match fs::symlink_metadata(&path) {
+            Ok(there) if there.is_file() => there.len(),
+            Ok(_) => return Err(fault("it is no ordinary file: take it away".into())),
+            Err(why) if why.kind() == std::io::ErrorKind::NotFound => return Ok(None),
+            Err(why) => return Err(fault(terminal::reason(&why))),
+        };
+        let bytes = if length > LARGEST {
+            Ok(vec![])
+        } else {
+            fs::read(&path)
+        };
+        let bytes = bytes.map_err(|why| fault(terminal::reason(&why)))?;
+        let record = String::from_utf8(bytes)
+            .ok()
+            .and_then(|text| record_of(&text));
+        let is_of = |record: &Record| {
+            (record.version.as_str(), record.solver.as_str()) == (VERSION, run.method.name)
+                && record.setting == run.setting
+        };
+        let record = record.filter(is_of);
+        if record.is_none() {
+            terminal::warn(&format!(
+                "{}: it is damaged: the run counts as missing",
+                path.display()
+            ));
+        }
+        Ok(record)
+    }
+
+    /// Writes the outcome of a run, whole or not at all.
+    pub fn write(&self, id: Id, record: Record) -> Result<(), Failure> {
+        let text = text::write(&[record], false).map_err(Failure::run)?;
+        output::write(&self.file(id), text.as_bytes())
+    }
+
+    /// Says if there are runs of another version, or of other values: nothing is done with them.
+    pub fn warn_of_others(&self, plan: &Plan) {
+        let ids: BTreeSet<Id> = plan.runs.iter().map(|run| run.id).collect();
+        let names = fs::read_dir(&self.0).into_iter().flatten().flatten();
+        let others = names.filter_map(|entry| {
+            let path = entry.path();
+            let id = Id::parse(path.file_name()?.to_str()?.strip_suffix(".csv")?)?;
+            (!ids.contains(&id)).then_some(path)
+        });
+        let others: Vec<_> = others.collect();
+        let version = others.iter().find_map(|path| {
+            let record = record_of(&fs::read_to_string(path).ok()?)?;
+            (record.version != VERSION).then_some(record.version)
+        });
+        let folder = self.0.display();
+        match (others.len(), version) {
+            (0, _) => {}
+            (count, Some(version)) => terminal::warn(&format!(
+                "warning: {folder} has {count} other runs, of a3 {version}, which this a3 {VERSION} leaves as they are: \
+                 give another --output to keep them apart"
+            )),
+            (count, None) => terminal::warn(&format!(
+                "warning: {folder} has {count} other runs, which the sweep as it is now leaves as they are"
+            )),
+        }
+    }
+}
+
+/// The run in the text of a file, whose checksum must be there and right.
+fn record_of(text: &str) -> Option<Record> {
+    let names_checks = text.lines().next()?.ends_with(",check");
+    let mut records = text::read(text, false).ok().filter(|_| names_checks)?;
+    (records.len() == 1).then(|| records.remove(0))
+}

@@ -1,0 +1,220 @@
+//! The runs of a sweep, in their order: those of one scene stand together.
+
+use a3_core::accuracy::{Metric, Scope};
+use a3_core::{Method, Scene, integrators};
+use rayon::prelude::*;
+use serde_json::Value;
+
+use super::file::Sweep;
+use super::keys;
+use super::values::exact;
+use crate::base::failure::Failure;
+use crate::cli::share::Id;
+use crate::commands::chart::data::VERSION;
+use crate::commands::chart::measure::{stiffened, words};
+use crate::commands::chart::{check_metric, scope};
+use crate::files::scene_file::{Hash, Source};
+
+/// Most runs.
+const MOST: u128 = 1_000_000;
+
+/// A scene with values for its keys.
+pub struct Variant {
+    /// The scene's name, and a hash of its files.
+    pub name: String,
+    /// Number of the scene in the sweep.
+    scene: usize,
+    /// Values of what varies, in the order of [`Sweep::names`].
+    pub values: Vec<Value>,
+    /// Factor of the stiffness of all springs.
+    pub stiffness: f64,
+    /// End of the runs (s).
+    pub until: f64,
+    pub metric: Metric,
+    pub scope: Scope,
+}
+
+/// A run.
+pub struct Run {
+    pub id: Id,
+    /// Number of its scene among the variants.
+    pub variant: usize,
+    pub method: &'static Method,
+    /// Step (s), or relative tolerance.
+    pub setting: f64,
+}
+
+/// All runs.
+pub struct Plan {
+    pub variants: Vec<Variant>,
+    pub runs: Vec<Run>,
+    /// Solvers that refuse a scene, in words.
+    pub refusals: Vec<String>,
+}
+
+/// A variant, its runs, and the refusals.
+type Planned = (Variant, Vec<Run>, Vec<String>);
+
+impl Plan {
+    /// The runs of a sweep.
+    pub fn new(sweep: &Sweep) -> Result<Self, Failure> {
+        let methods: Vec<&'static Method> = if sweep.methods.is_empty() {
+            integrators::METHODS.iter().collect()
+        } else {
+            sweep.methods.clone()
+        };
+        let lists = || {
+            let keys = sweep.keys.iter().map(|(_, values)| values.len());
+            keys.chain(sweep.stiffness.as_ref().map(Vec::len))
+        };
+        let scenes = lists().fold(sweep.scenes.len() as u128, |n, m| {
+            n.saturating_mul(m as u128)
+        });
+        let each: u128 = methods
+            .iter()
+            .map(|m| sweep.settings(m).len() as u128)
+            .sum();
+        let count = scenes.saturating_mul(each);
+        if count > MOST {
+            return Err(Failure::usage(format!(
+                "{}: the sweep has {count} runs; at most {MOST} are possible: make several files of it",
+                sweep.file
+            )));
+        }
+        let planned = (0..scenes as usize)
+            .into_par_iter()
+            .map(|k| {
+                let mut k = k;
+                let mut places: Vec<usize> = lists().collect();
+                for place in places.iter_mut().rev() {
+                    (k, *place) = (k / *place, k % *place);
+                }
+                variant(sweep, &methods, k, &places)
+            })
+            .collect::<Result<Vec<Planned>, String>>()
+            .map_err(|why| Failure::usage(format!("{}: {why}", sweep.file)))?;
+        let mut plan = Self {
+            variants: vec![],
+            runs: vec![],
+            refusals: vec![],
+        };
+        let mut seen = std::collections::BTreeSet::new();
+        for (number, (variant, runs, refusals)) in planned.into_iter().enumerate() {
+            plan.variants.push(variant);
+            // Of values that are there twice, there is one run.
+            let new = runs.into_iter().filter(|run| seen.insert(run.id));
+            plan.runs.extend(new.map(|run| Run {
+                variant: number,
+                ..run
+            }));
+            for refusal in refusals {
+                if !plan.refusals.contains(&refusal) {
+                    plan.refusals.push(refusal);
+                }
+            }
+        }
+        if plan.runs.is_empty() {
+            let why = plan.refusals.first().map_or("", String::as_str);
+            return Err(Failure::usage(format!(
+                "{}: the sweep has no runs: {why}",
+                sweep.file
+            )));
+        }
+        Ok(plan)
+    }
+}
+
+impl Variant {
+    /// The file of the scene with these values.
+    fn source(&self, sweep: &Sweep) -> Result<Source, String> {
+        let source = &sweep.scenes[self.scene];
+        let keys: Vec<_> = sweep
+            .keys
+            .iter()
+            .map(|(path, _)| path)
+            .zip(&self.values)
+            .collect();
+        if keys.is_empty() {
+            return Ok(source.clone());
+        }
+        source.with(|scene| {
+            keys.iter().try_for_each(|(path, value)| {
+                keys::set(scene, path, value).map_err(|why| format!("keys.{path}: {why}"))
+            })
+        })
+    }
+
+    /// The scene.
+    pub fn scene(&self, sweep: &Sweep) -> Result<Scene, Failure> {
+        let setup = self.source(sweep).and_then(|source| source.build(None));
+        stiffened(&setup.map_err(Failure::usage)?.scene, self.stiffness)
+    }
+}
+
+/// The scene of this number with the values at these places, and its runs by these methods.
+fn variant(
+    sweep: &Sweep,
+    methods: &[&'static Method],
+    number: usize,
+    places: &[usize],
+) -> Result<Planned, String> {
+    let picked = sweep
+        .keys
+        .iter()
+        .zip(places)
+        .map(|((_, values), k)| values[*k].clone());
+    let mut values: Vec<_> = picked.collect();
+    let factors = sweep.stiffness.as_ref();
+    let factor = factors.map(|factors| factors[places[places.len() - 1]]);
+    values.extend(factor.map(exact));
+    let mut variant = Variant {
+        name: String::new(),
+        scene: number,
+        values,
+        stiffness: factor.unwrap_or(1.0),
+        until: 0.0,
+        metric: Metric::Position,
+        scope: Scope::default(),
+    };
+    let source = variant.source(sweep)?;
+    let setup = source.build(None)?;
+    let scene = stiffened(&setup.scene, variant.stiffness).map_err(Failure::message)?;
+    variant.name = source.fingerprint(&scene);
+    let until = sweep.until.or(source.description.duration);
+    variant.until =
+        until.ok_or_else(|| format!("the scene {} has no duration: give `until`", scene.name))?;
+    check_metric(sweep.error, &scene).map_err(Failure::message)?;
+    variant.metric = sweep.error;
+    variant.scope = scope(&sweep.scope, &scene).map_err(Failure::message)?;
+    let mut hash = Hash::default();
+    hash.add(VERSION.bytes());
+    hash.add([0]);
+    hash.add(source.text().bytes());
+    hash.add([0]);
+    hash.add(variant.name.bytes().chain(words(variant.scope).bytes()));
+    hash.add(
+        [variant.stiffness, variant.until]
+            .into_iter()
+            .flat_map(f64::to_le_bytes),
+    );
+    let (mut runs, mut refusals) = (vec![], vec![]);
+    for &method in methods {
+        if let Err(why) = method.check(scene.model.system()) {
+            if !sweep.settings(method).is_empty() {
+                refusals.push(format!("scene {}: {why}", scene.name));
+            }
+            continue;
+        }
+        runs.extend(sweep.settings(method).iter().map(|&setting| {
+            let mut hash = hash;
+            hash.add(method.name.bytes().chain(setting.to_le_bytes()));
+            Run {
+                id: Id::new(hash.value()),
+                variant: 0,
+                method,
+                setting,
+            }
+        }));
+    }
+    Ok((variant, runs, refusals))
+}

@@ -1,0 +1,83 @@
+//! Doing the runs of a share.
+
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use a3_core::accuracy::{Frames, horizon};
+use rayon::prelude::*;
+
+use super::file::Sweep;
+use super::folder::Folder;
+use super::plan::{Plan, Run, Variant};
+use crate::base::failure::Failure;
+use crate::base::interrupt;
+use crate::base::progress::Bar;
+use crate::commands::chart::data::VERSION;
+use crate::commands::chart::measure::words;
+use crate::commands::chart::record::Record;
+use crate::commands::chart::single::{compared, precision, reference};
+
+/// Does the runs at these places of the plan that are not there yet. Returns how many are left:
+/// some, if it was interrupted.
+pub fn run(sweep: &Sweep, plan: &Plan, share: &[usize], folder: &Folder) -> Result<usize, Failure> {
+    let mut missing: Vec<&Run> = vec![];
+    for place in share {
+        let run = &plan.runs[*place];
+        if folder.read(run)?.is_none() {
+            missing.push(run);
+        }
+    }
+    let left = AtomicUsize::new(missing.len());
+    let bar = Bar::new(missing.len() as f64);
+    bar.say("runs  ".into());
+    let groups: Vec<&[&Run]> = missing.chunk_by(|a, b| a.variant == b.variant).collect();
+    let done = groups.into_par_iter().try_for_each(|runs| {
+        let variant = &plan.variants[runs[0].variant];
+        together(sweep, variant, runs, folder, &|| {
+            left.fetch_sub(1, Ordering::Relaxed);
+            bar.advance(1.0);
+        })
+    });
+    bar.clear();
+    done.map(|()| left.into_inner())
+}
+
+/// Does runs of one scene, which have their reference in common.
+fn together(
+    sweep: &Sweep,
+    variant: &Variant,
+    runs: &[&Run],
+    folder: &Folder,
+    done: &(dyn Fn() + Sync),
+) -> Result<(), Failure> {
+    let scene = variant.scene(sweep)?;
+    let (until, scope) = (variant.until, variant.scope);
+    let ahead = horizon(&scene, until, &interrupt::go_on).map_err(Failure::run)?;
+    let Some(ahead) = ahead else { return Ok(()) };
+    let precision = precision(&scene, ahead.motion);
+    let Some(reference) = reference(&scene, Frames::new(until), scope, precision)? else {
+        return Ok(());
+    };
+    let grid = scene.grid();
+    let blank = Record {
+        version: VERSION.into(),
+        scene: variant.name.clone(),
+        rows: grid.map_or(0, |grid| grid.rows()),
+        cols: grid.map_or(0, |grid| grid.cols()),
+        stiffness: variant.stiffness,
+        until,
+        scope: words(scope),
+        ..Record::default()
+    };
+    runs.par_iter().try_for_each(|run| {
+        let like = Record {
+            solver: run.method.name.into(),
+            setting: run.setting,
+            ..blank.clone()
+        };
+        if let Some((record, _)) = compared(like, &scene, run.method, &reference, &mut [])? {
+            folder.write(run.id, record)?;
+            done();
+        }
+        Ok(())
+    })
+}

@@ -1,0 +1,7 @@
+//! From a simulation to surfaces and pictures.
+
+#[cfg(all(feature = "window", not(target_arch = "wasm32")))]
+pub mod painter;
+#[cfg(feature = "window")]
+pub mod show;
+pub mod surfaces;

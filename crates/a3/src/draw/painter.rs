@@ -1,0 +1,56 @@
+//! Pictures of one run, drawn without a window.
+
+use a3_core::Simulation;
+use a3_render::{Camera, Gpu, OFFSCREEN_FORMAT, Offscreen, Renderer};
+
+use crate::base::failure::Failure;
+use crate::draw::show::Show;
+
+/// Height of a picture (px) in which lines are drawn at one pixel per point.
+const POINTS: f32 = 720.0;
+
+/// Draws a run as often as needed, seen by the camera of its scene.
+pub struct Painter {
+    gpu: Gpu,
+    offscreen: Offscreen,
+    renderer: Renderer,
+    /// Number of broken springs when the topology was made.
+    tears: usize,
+    camera: Camera,
+}
+
+impl Painter {
+    /// A painter for pictures of this run, of this size (px).
+    pub fn new(show: &Show, simulation: &Simulation, size: (u32, u32)) -> Result<Self, Failure> {
+        let gpu = pollster::block_on(Gpu::headless()).map_err(Failure::run)?;
+        let offscreen = Offscreen::new(&gpu, size).map_err(Failure::usage)?;
+        let samples = gpu.samples(OFFSCREEN_FORMAT);
+        let topology = show.topology(simulation);
+        Ok(Self {
+            renderer: Renderer::new(&gpu, OFFSCREEN_FORMAT, samples, &topology),
+            tears: simulation.tears(),
+            camera: show.camera(),
+            offscreen,
+            gpu,
+        })
+    }
+
+    /// A picture of the run as it is now: rows from the top, with four bytes for a pixel.
+    pub fn draw(&mut self, show: &mut Show, simulation: &Simulation) -> Result<Vec<u8>, Failure> {
+        if simulation.tears() != self.tears {
+            self.tears = simulation.tears();
+            let topology = show.topology(simulation);
+            self.renderer.set_topology_of(&self.gpu, 0, &topology);
+        }
+        show.compose(simulation);
+        let picture = show.picture(self.camera, scale(self.offscreen.size()));
+        self.offscreen
+            .render(&self.gpu, &mut self.renderer, &picture)
+            .map_err(Failure::run)
+    }
+}
+
+/// Pixels per point in a picture of this size.
+pub fn scale(size: (u32, u32)) -> f32 {
+    (size.1 as f32 / POINTS).max(0.5)
+}

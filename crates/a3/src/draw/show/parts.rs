@@ -1,0 +1,297 @@
+//! Parts of a scene: those that are drawn as a surface, with their looks, and springs that are
+//! drawn one by one.
+
+use std::sync::Arc;
+
+use a3_core::{Network, Simulation, Spring, SpringKind};
+use a3_render::{STEEL_LOOK, Spring as Drawn, Topology};
+use a3_scenes::{Presentation, Surface};
+
+use super::colours::INK;
+use super::springs::{KINDS, kind_look};
+use super::{bodies, obstacles};
+use crate::draw::surfaces::whole_triangles;
+
+/// Parts that change only with the scene or when something tears.
+#[derive(Clone, Default)]
+pub struct Parts {
+    presentation: Arc<Presentation>,
+    /// Number of broken springs when the parts were found, once they were.
+    tears: Option<usize>,
+    /// Look of each body.
+    looks: Vec<f32>,
+    /// Springs that are drawn one by one.
+    loose: Vec<Spring>,
+    /// Particles that are drawn one by one.
+    single: Vec<usize>,
+    /// Kinds of springs that there are.
+    kinds: Vec<SpringKind>,
+}
+
+impl Parts {
+    /// Finds the parts again if the scene is another one or something has torn.
+    pub fn update(&mut self, presentation: &Arc<Presentation>, simulation: &Simulation) {
+        let (surface, tears) = (&presentation.surface, Some(simulation.tears()));
+        let known = Arc::ptr_eq(presentation, &self.presentation);
+        if known && tears == self.tears {
+            return;
+        }
+        if !known || self.tears.is_none() {
+            self.looks = looks(surface);
+        }
+        (self.presentation, self.tears) = (presentation.clone(), tears);
+        let is_there = |kind: &SpringKind| springs(simulation).any(|s| s.kind == *kind);
+        self.kinds = KINDS.into_iter().filter(is_there).collect();
+        let springs = springs(simulation);
+        self.loose = springs.filter(|s| body(surface, s).is_none()).collect();
+        let network = simulation.model().network();
+        let is_rigid = |i: &usize| network.is_some_and(|n| n.body_of(*i).is_some());
+        let uncovered = surface.particles()..simulation.particles();
+        self.single = uncovered.filter(|i| !is_rigid(i)).collect();
+    }
+
+    /// Springs of particles without a surface, and springs between bodies.
+    pub fn loose(&self) -> &[Spring] {
+        &self.loose
+    }
+
+    /// Particles without a surface that belong to no rigid body.
+    pub fn single(&self) -> &[usize] {
+        &self.single
+    }
+
+    /// Kinds of springs that there are, those that are drawn over others last.
+    pub fn kinds(&self) -> &[SpringKind] {
+        &self.kinds
+    }
+
+    /// Gives each particle of a body its look.
+    pub fn paint(&self, points: &mut [[f32; 4]]) {
+        let mut start = 0;
+        for (look, &end) in self.looks.iter().zip(&self.presentation.surface.bodies) {
+            for point in &mut points[start..end] {
+                point[3] = *look;
+            }
+            start = end;
+        }
+    }
+}
+
+/// A look for each body: in the first half of the looks before steel for cloth, in the second for
+/// jelly, which is closed.
+fn looks(surface: &Surface) -> Vec<f32> {
+    let mut edges: Vec<_> = surface
+        .triangles
+        .iter()
+        .flat_map(|&[a, b, c]| [(a, b), (b, c), (c, a)])
+        .map(|(a, b)| (a.min(b), a.max(b)))
+        .collect();
+    edges.sort_unstable();
+    let borders: Vec<_> = edges
+        .chunk_by(|a, b| a == b)
+        .filter(|triangles| triangles.len() == 1)
+        .map(|border| border[0].0 as usize)
+        .collect();
+    let (mut start, half) = (0, STEEL_LOOK / 2);
+    let look = |(k, &end): (usize, &usize)| {
+        let from = borders.partition_point(|i| *i < start);
+        let closed = borders.get(from).is_none_or(|i| *i >= end);
+        start = end;
+        (k % half + if closed { half } else { 0 }) as f32
+    };
+    surface.bodies.iter().enumerate().map(look).collect()
+}
+
+/// The body to whose surface both ends of the spring belong.
+fn body(surface: &Surface, spring: &Spring) -> Option<usize> {
+    let [a, b] = [spring.i, spring.j].map(|i| surface.bodies.partition_point(|end| *end <= i));
+    (a == b && a < surface.bodies.len()).then_some(a)
+}
+
+/// All springs.
+fn springs(simulation: &Simulation) -> impl Iterator<Item = Spring> {
+    let network = simulation.model().network();
+    network.into_iter().flat_map(Network::all_springs)
+}
+
+/// Triangles and wires, which stay the same from frame to frame until something tears. Parts
+/// without a surface are drawn by balls and coils instead. Meshes of obstacles come last.
+pub fn topology(surface: &Surface, simulation: &Simulation) -> Topology {
+    let mut topology = Topology {
+        points: simulation.particles(),
+        triangles: whole_triangles(simulation).collect(),
+        wires: springs(simulation)
+            .filter(|s| s.kind == SpringKind::Structural && body(surface, s).is_some())
+            .map(|s| [s.i as u32, s.j as u32])
+            .collect(),
+        springs: vec![],
+    };
+    let structural = topology.wires.len();
+    add_edges(&mut topology, surface);
+    let network = simulation.model().network();
+    for (mesh, first) in network.into_iter().flat_map(bodies::meshes) {
+        let of = |i: &u32| first as u32 + i;
+        let triangles = mesh.triangles().iter().map(|t| t.each_ref().map(of));
+        topology.triangles.extend(triangles);
+        let edges = mesh.edges().iter().map(|e| e.each_ref().map(of));
+        topology.wires.extend(edges);
+    }
+    for (mesh, _) in network.into_iter().flat_map(obstacles::meshes) {
+        let first = topology.points as u32;
+        let triangles = mesh.triangles().iter();
+        topology
+            .triangles
+            .extend(triangles.map(|t| t.map(|i| first + i)));
+        let edges = mesh.edges().iter();
+        topology.wires.extend(edges.map(|e| e.map(|i| first + i)));
+        topology.points += mesh.points().len();
+    }
+    add_springs(&mut topology, structural, surface, simulation);
+    topology
+}
+
+/// Adds the edges of the triangles of bodies that have no wires, such as solids.
+fn add_edges(topology: &mut Topology, surface: &Surface) {
+    let of = |i: u32| surface.bodies.partition_point(|end| *end <= i as usize);
+    let mut wired = vec![false; surface.bodies.len() + 1];
+    topology
+        .wires
+        .iter()
+        .for_each(|[i, _]| wired[of(*i)] = true);
+    let triangles = topology.triangles.iter();
+    let bare = triangles.filter(|[a, _, _]| !wired[of(*a)]);
+    let mut edges: Vec<_> = bare
+        .flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]])
+        .map(|[a, b]| [a.min(b), a.max(b)])
+        .collect();
+    edges.sort_unstable();
+    edges.dedup();
+    topology.wires.extend(edges);
+}
+
+/// Adds the springs of bodies with a surface, each kind after those that it is drawn over, and the
+/// wires after the first so many, which are no springs.
+fn add_springs(
+    topology: &mut Topology,
+    structural: usize,
+    surface: &Surface,
+    simulation: &Simulation,
+) {
+    let edges = topology.wires[structural..].iter();
+    topology.springs = edges
+        .map(|ends| drawn(*ends, (INK, 1.35)))
+        .chain(KINDS.into_iter().flat_map(|kind| {
+            let of_kind = move |s: &Spring| s.kind == kind && body(surface, s).is_some();
+            springs(simulation)
+                .filter(of_kind)
+                .map(move |s| drawn([s.i as u32, s.j as u32], kind_look(kind)))
+        }))
+        .collect();
+}
+
+/// A spring or an edge of that colour and width (points).
+fn drawn(ends: [u32; 2], ([r, g, b, _], width): ([f32; 4], f32)) -> Drawn {
+    Drawn {
+        ends,
+        width,
+        color: [r, g, b],
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use a3_core::{Control, integrators};
+
+    fn run(scene: &str) -> (Simulation, Arc<Presentation>) {
+        let setup = a3_scenes::find(scene).unwrap().build(None).unwrap();
+        let (method, control) = (integrators::find("t").unwrap(), Control::Step(0.01));
+        let simulation = Simulation::new(setup.scene, method, control).unwrap();
+        (simulation, setup.presentation)
+    }
+
+    #[test]
+    fn cloth_is_red_and_jelly_is_green() {
+        for (scene, look, loose) in [("cloth", 0.0, 0), ("jelly", 4.0, 0), ("chain", 0.0, 3)] {
+            let ((simulation, presentation), mut parts) = (run(scene), Parts::default());
+            parts.update(&presentation, &simulation);
+            let mut points = vec![[0.0; 4]; simulation.particles()];
+            parts.paint(&mut points);
+            assert!(points.iter().all(|p| p[3] == look), "{scene}");
+            assert_eq!(parts.loose().len(), loose, "{scene}");
+        }
+    }
+
+    /// The number of edges of a closed surface.
+    fn edges_of_closed(simulation: &Simulation) -> usize {
+        3 * whole_triangles(simulation).count() / 2
+    }
+
+    #[test]
+    fn all_springs_are_there_by_kind() {
+        for (scene, kinds) in [
+            ("cloth", [720, 722, 760].as_slice()),
+            ("jelly", &[]),
+            ("cantilever", &[0, 0, 0]),
+        ] {
+            let (simulation, presentation) = run(scene);
+            let Topology { springs, wires, .. } = topology(&presentation.surface, &simulation);
+            let count = |kind: SpringKind| {
+                let ([r, g, b, _], width) = kind_look(kind);
+                let look = |s: &&Drawn| s.color == [r, g, b] && s.width == width;
+                springs.iter().filter(look).count()
+            };
+            let network = simulation.model().network().unwrap();
+            let counts = KINDS.map(count);
+            assert_eq!(counts.iter().sum::<usize>(), network.all_springs().count());
+            let structural = counts[2];
+            if structural > 0 {
+                assert_eq!(structural, wires.len(), "{scene}: they are the wires");
+            } else {
+                assert_eq!(wires.len(), edges_of_closed(&simulation), "{scene}");
+            }
+            if !kinds.is_empty() {
+                assert_eq!(counts, kinds, "{scene}");
+            }
+            assert!(
+                springs.is_sorted_by_key(|s| s.width != 2.0 * 1.6),
+                "{scene}"
+            );
+        }
+    }
+
+    /// Two squares of two triangles beside a tetrahedron, and a particle that belongs to none.
+    #[test]
+    fn every_body_has_its_look() {
+        let triangles = vec![
+            [0, 1, 2],
+            [2, 1, 3],
+            [4, 5, 6],
+            [4, 6, 7],
+            [4, 7, 5],
+            [5, 7, 6],
+            [8, 9, 10],
+            [10, 9, 11],
+        ];
+        let surface = Surface {
+            triangles,
+            bodies: vec![4, 8, 12],
+        };
+        assert_eq!(looks(&surface), [0.0, 5.0, 2.0]);
+        let spring = |i, j| Spring {
+            i,
+            j,
+            ..run("chain")
+                .0
+                .model()
+                .network()
+                .unwrap()
+                .springs()
+                .next()
+                .unwrap()
+        };
+        let bodies = [(0, 3), (3, 4), (4, 7), (11, 12), (8, 11)];
+        let found = bodies.map(|(i, j)| body(&surface, &spring(i, j)));
+        assert_eq!(found, [Some(0), None, Some(1), None, Some(2)]);
+    }
+}

@@ -1,0 +1,16 @@
+//! Checkpoints in files: all that a run needs to go on to the same bits, also after the program was
+//! killed.
+
+mod extremes;
+#[cfg(not(target_arch = "wasm32"))]
+mod file;
+#[cfg(not(target_arch = "wasm32"))]
+mod keeper;
+mod kept;
+#[cfg(target_arch = "wasm32")]
+mod page;
+
+pub use extremes::{Energy, Extremes};
+#[cfg(not(target_arch = "wasm32"))]
+pub use keeper::Keeper;
+pub use kept::{ENDING, Kept};

@@ -1,0 +1,25 @@
+//! Files that a page writes, as downloads.
+
+use std::path::{Path, PathBuf};
+
+use crate::base::browser::{download, files, log};
+use crate::base::failure::Failure;
+
+/// Gives `bytes` to the browser as a download, and keeps them as a file of the page. Returns its
+/// name.
+pub fn write_new(_: &Path, scene: &str, extension: &str, bytes: &[u8]) -> Result<PathBuf, Failure> {
+    let scene = scene.replace(|c: char| c.is_control() || "/\\".contains(c), "-");
+    let name = |k: usize| PathBuf::from(format!("a3-{scene}-{k}.{extension}"));
+    let path = (1..=usize::MAX)
+        .map(name)
+        .find(|path| files::read(path).is_none());
+    let path = path.unwrap_or_default();
+    write(&path, bytes)?;
+    Ok(path)
+}
+
+/// Gives `bytes` to the browser as a download of that name, and keeps them as a file of the page.
+pub fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
+    files::keep(path, bytes);
+    download(&path.to_string_lossy(), bytes).map_err(Failure::run)
+}

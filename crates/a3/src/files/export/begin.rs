@@ -1,0 +1,124 @@
+//! The beginning of an export, by the ending of its file.
+
+use std::path::Path;
+
+use super::format::Export;
+use super::{csv, glb, json, npz, obj, pc2, usd};
+use crate::base::failure::Failure;
+use crate::cli::Simulate;
+use crate::files::frames::{FrameTimes, Sequence};
+use crate::files::output;
+use crate::files::setup::Run;
+
+/// Default frames a second.
+const RATE: f64 = 30.0;
+
+/// Sizes of the largest files (GiB): in general, and in formats whose lengths have 32 bits.
+const LARGEST: (f64, f64) = (16.0, 4.0);
+
+/// Endings of files of all formats.
+const ENDINGS: &[&str] = &["json", "csv", "npz", "obj", "pc2", "glb", "usda"];
+
+/// `Ok` if the output is standard output or ends as a format does.
+pub fn check_ending(path: &Path) -> Result<(), Failure> {
+    if path == Path::new("-") {
+        return Ok(());
+    }
+    output::check_ending(path, ENDINGS)
+}
+
+/// The export that was asked for, and the times of its frames. Impossible exports are refused here,
+/// before any work is done.
+pub fn begin(options: &Simulate, run: &Run) -> Result<(FrameTimes, Box<dyn Export>), Failure> {
+    let (simulation, presentation) = (&run.simulation, &run.presentation);
+    let surface = &presentation.surface;
+    let obj = |files| obj::Obj {
+        presentation: presentation.clone(),
+        files,
+    };
+    let (path, until) = (options.output.as_path(), run.until);
+    let last = FrameTimes::new(until, until, RATE)?;
+    if path == Path::new("-") {
+        if options.fps.is_some() {
+            return Err(Failure::usage(
+                "--fps needs a file: standard output gets only the final state",
+            ));
+        }
+        return Ok((last, Box::new(json::Json::to_stdout())));
+    }
+    output::check(path, ENDINGS)?;
+    let ending = path.extension().unwrap_or_default().to_ascii_lowercase();
+    let sequence = Sequence::of(path);
+    let is_obj = ending == "obj" && sequence.is_none();
+    if is_obj && options.fps.is_some() {
+        return Err(Failure::usage(
+            "an .obj has one frame: leave out --fps, or write a sequence such as cloth-####.obj",
+        ));
+    }
+    if is_obj {
+        return Ok((last, Box::new(obj(obj::Files::One(path.into())))));
+    }
+    if ending == "json" && options.fps.is_none() {
+        return Ok((last, Box::new(json::Json::new(path, false)?)));
+    }
+    let all = FrameTimes::new(0.0, until, options.fps.unwrap_or(RATE))?;
+    let several = all.since(simulation.time());
+    let particles = simulation.particles() as f64;
+    let check = |size: f64, largest: f64| check_size(size, largest).map(|()| several);
+    Ok(match (ending.to_str(), sequence) {
+        (Some("csv"), _) => {
+            let frames = check(csv::ROW * particles * several.count as f64, LARGEST.0)?;
+            (frames, Box::new(csv::Csv::new(path, frames.first)?))
+        }
+        (Some("npz"), _) => {
+            let frames = check(npz::size(particles, several), LARGEST.1)?;
+            (frames, Box::new(npz::Npz::new(path, simulation, frames)?))
+        }
+        (Some("pc2"), _) => {
+            let frames = check(pc2::size(simulation, several), LARGEST.0)?;
+            (
+                frames,
+                Box::new(pc2::Pc2::new(path, surface, simulation, frames)?),
+            )
+        }
+        (Some("glb"), _) => {
+            glb::check(several)?;
+            let frames = check(glb::size(surface, simulation, several), LARGEST.1)?;
+            (
+                frames,
+                Box::new(glb::Glb::new(path, surface, simulation, frames)?),
+            )
+        }
+        (Some("usda"), _) => {
+            let frames = check(usd::size(simulation, several), LARGEST.0)?;
+            (
+                frames,
+                Box::new(usd::Usd::new(path, surface, simulation, frames)?),
+            )
+        }
+        (Some("obj"), Some(sequence)) => {
+            sequence.check(all.count)?;
+            let frames = check(
+                obj::size(surface, simulation) * several.count as f64,
+                LARGEST.0,
+            )?;
+            let files = obj::Files::Many(sequence, frames.first);
+            (frames, Box::new(obj(files)))
+        }
+        _ => {
+            let frames = check(json::ROW * particles * several.count as f64, LARGEST.0)?;
+            (frames, Box::new(json::Json::new(path, true)?))
+        }
+    })
+}
+
+/// Refuses so many bytes if they are more than `largest` (GiB).
+fn check_size(bytes: f64, largest: f64) -> Result<(), Failure> {
+    let size = bytes / 1024f64.powi(3);
+    if size <= largest {
+        return Ok(());
+    }
+    Err(Failure::usage(format!(
+        "the file would have {size:.1} GiB, and at most {largest} GiB are allowed: use a lower --fps or --until, or fewer particles"
+    )))
+}

@@ -1,0 +1,16 @@
+//! Exports: the states of a run, frame by frame, in files that other programs read.
+
+mod begin;
+mod csv;
+mod format;
+mod geometry;
+mod glb;
+mod json;
+mod npz;
+mod numbers;
+mod obj;
+mod pc2;
+mod usd;
+
+pub use begin::{begin, check_ending};
+pub use format::Export;

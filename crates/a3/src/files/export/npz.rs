@@ -1,0 +1,232 @@
+//! `.npz`: an array of doubles for each quantity, for `numpy.load`.
+//!
+//! It is a ZIP archive of files `NAME.npy` that are stored as they are (PKWARE, *APPNOTE*). Each
+//! has a header that is a Python literal, and the numbers after it in row-major order (Kern,
+//! *NEP 1*, 2007). The frames of an array follow one another, so each array is kept in a temporary
+//! file until the run is over.
+
+use std::io::{self, BufWriter, Write};
+use std::path::Path;
+
+use a3_core::Simulation;
+use crc32fast::Hasher;
+
+use super::format::Export;
+use super::numbers::velocities;
+use crate::base::failure::Failure;
+use crate::base::rounding::{DIGITS, short};
+use crate::files::frames::FrameTimes;
+use crate::files::output::{Draft, Scratch};
+
+/// The boundary to which a header fills up the bytes before the numbers.
+const ALIGNMENT: usize = 64;
+
+/// The length of what comes before a header: a mark, a version and the header's own length.
+const BEFORE_HEADER: usize = 10;
+
+/// Version of ZIP that a reader has to know (2.0).
+const VERSION: u16 = 20;
+
+/// The first of January 1980, which is no date: the same run writes the same bytes.
+const DATE: u16 = 0x21;
+
+/// An archive in the making.
+pub struct Npz {
+    draft: Draft,
+    time: Array,
+    positions: Array,
+    velocities: Array,
+    /// Masses, unless the scene is of first order.
+    masses: Option<Array>,
+}
+
+/// An array of the archive: the file `NAME.npy`.
+struct Array {
+    name: &'static str,
+    file: BufWriter<Scratch>,
+    checksum: Hasher,
+    bytes: usize,
+}
+
+/// An array that is in the archive.
+struct Entry {
+    name: String,
+    checksum: u32,
+    bytes: u32,
+    /// Where it begins in the archive.
+    offset: u32,
+}
+
+/// Approximate size of the archive (bytes).
+pub fn size(particles: f64, frames: FrameTimes) -> f64 {
+    (48.0 * frames.count as f64 + 8.0) * particles + 8.0 * frames.count as f64
+}
+
+impl Npz {
+    /// An archive for these frames of the simulation.
+    pub fn new(path: &Path, simulation: &Simulation, frames: FrameTimes) -> Result<Self, Failure> {
+        let draft = Draft::new(path)?;
+        let (count, n) = (frames.count, simulation.particles());
+        let array = |name, shape: &[usize]| -> Result<Array, Failure> {
+            let begun = Array::new(name, shape, Scratch::new(path)?);
+            begun.map_err(|e| draft.failure(&e))
+        };
+        let time = array("time", &[count])?;
+        let positions = array("positions", &[count, n, 3])?;
+        let velocities = array("velocities", &[count, n, 3])?;
+        let masses = if let Some(network) = simulation.model().network() {
+            let mut masses = array("masses", &[n])?;
+            let written = masses.numbers(network.masses().iter().copied());
+            written.map_err(|e| draft.failure(&e))?;
+            Some(masses)
+        } else {
+            None
+        };
+        Ok(Self {
+            draft,
+            time,
+            positions,
+            velocities,
+            masses,
+        })
+    }
+}
+
+impl Export for Npz {
+    fn add(&mut self, simulation: &Simulation) -> Result<(), Failure> {
+        let (n, x, v) = (
+            simulation.particles(),
+            simulation.state(),
+            velocities(simulation)?,
+        );
+        let rows = |columns: &[f64]| -> Vec<f64> {
+            let row = |i| [0, n, 2 * n].map(|column| columns[column + i]);
+            (0..n).flat_map(row).collect()
+        };
+        let time = short(simulation.time(), DIGITS);
+        let written = self.time.numbers([time]);
+        let written = written.and_then(|()| self.positions.numbers(rows(x)));
+        let written = written.and_then(|()| self.velocities.numbers(rows(&v)));
+        written.map_err(|e| self.draft.failure(&e))
+    }
+
+    fn finish(self: Box<Self>) -> Result<(), Failure> {
+        let mut draft = self.draft;
+        let arrays = [self.time, self.positions, self.velocities];
+        let written = archive(&mut draft, arrays.into_iter().chain(self.masses));
+        written.map_err(|e| draft.failure(&e))?;
+        draft.place()
+    }
+}
+
+impl Array {
+    /// An array of this shape, whose numbers are still to come.
+    fn new(name: &'static str, shape: &[usize], file: Scratch) -> io::Result<Self> {
+        let shape: Vec<_> = shape.iter().map(usize::to_string).collect();
+        let shape = shape.join(",");
+        let header = format!("{{'descr': '<f8', 'fortran_order': False, 'shape': ({shape},), }}");
+        let filled = (BEFORE_HEADER + header.len() + 1).next_multiple_of(ALIGNMENT);
+        let width = filled - BEFORE_HEADER - 1;
+        let mut array = Self {
+            name,
+            file: BufWriter::new(file),
+            checksum: Hasher::new(),
+            bytes: 0,
+        };
+        array.write(b"\x93NUMPY\x01\0")?;
+        array.write(&(width as u16 + 1).to_le_bytes())?;
+        array.write(format!("{header:width$}\n").as_bytes())?;
+        Ok(array)
+    }
+
+    /// Writes numbers.
+    fn numbers(&mut self, numbers: impl IntoIterator<Item = f64>) -> io::Result<()> {
+        for number in numbers {
+            self.write(&number.to_le_bytes())?;
+        }
+        Ok(())
+    }
+
+    /// Writes bytes, and counts them.
+    fn write(&mut self, bytes: &[u8]) -> io::Result<()> {
+        self.checksum.update(bytes);
+        self.bytes += bytes.len();
+        self.file.write_all(bytes)
+    }
+}
+
+/// Writes the archive: the arrays, each with its name before it, the directory, and where that is.
+fn archive(file: &mut dyn Write, arrays: impl Iterator<Item = Array>) -> io::Result<()> {
+    let (mut entries, mut offset) = (vec![], 0);
+    for mut array in arrays {
+        array.file.flush()?;
+        let entry = Entry {
+            name: format!("{}.npy", array.name),
+            checksum: array.checksum.finalize(),
+            bytes: length(array.bytes)?,
+            offset: length(offset)?,
+        };
+        let head = [&b"PK\x03\x04"[..], &entry.common(), entry.name.as_bytes()].concat();
+        file.write_all(&head)?;
+        io::copy(&mut array.file.get_ref().reader()?, file)?;
+        offset += head.len() + array.bytes;
+        entries.push(entry);
+    }
+    let directory: Vec<u8> = entries.iter().flat_map(Entry::listed).collect();
+    file.write_all(&directory)?;
+    let count = (entries.len() as u16).to_le_bytes();
+    let size = length(directory.len())?.to_le_bytes();
+    let start = length(offset)?.to_le_bytes();
+    // The numbers of this disk and of that of the directory come first, and a comment last.
+    let end = [
+        &b"PK\x05\x06"[..],
+        &[0; 4],
+        &count,
+        &count,
+        &size,
+        &start,
+        &[0; 2],
+    ];
+    file.write_all(&end.concat())
+}
+
+impl Entry {
+    /// What stands before the array and in the directory alike.
+    fn common(&self) -> Vec<u8> {
+        let name = self.name.len() as u16;
+        // The flags, the method (stored) and the time of day are 0, and so is the length of extras.
+        let [version, date, name] = [VERSION, DATE, name].map(u16::to_le_bytes);
+        let [checksum, bytes] = [self.checksum, self.bytes].map(u32::to_le_bytes);
+        let parts = [
+            &version[..],
+            &[0; 6],
+            &date,
+            &checksum,
+            &bytes,
+            &bytes,
+            &name,
+            &[0; 2],
+        ];
+        parts.concat()
+    }
+
+    /// The entry of the directory.
+    fn listed(&self) -> Vec<u8> {
+        let (version, offset) = (VERSION.to_le_bytes(), self.offset.to_le_bytes());
+        // The length of a comment, the disk and the attributes are 0.
+        let parts = [
+            &b"PK\x01\x02"[..],
+            &version,
+            &self.common(),
+            &[0; 10],
+            &offset,
+            self.name.as_bytes(),
+        ];
+        parts.concat()
+    }
+}
+
+/// A length as ZIP has it.
+fn length(bytes: usize) -> io::Result<u32> {
+    u32::try_from(bytes).map_err(|_| io::Error::other("a .npz has at most 4 GiB"))
+}

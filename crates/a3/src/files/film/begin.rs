@@ -1,0 +1,82 @@
+//! The beginning of a film, by the ending of its file.
+
+use std::path::PathBuf;
+
+use super::format::{Film, TimedFilm};
+use super::pictures::Pictures;
+use super::{gif, mp4};
+use crate::base::failure::Failure;
+use crate::base::terminal;
+use crate::cli::Render;
+use crate::files::ending::Ending;
+use crate::files::frames::{FrameTimes, Sequence};
+use crate::files::output;
+
+/// Default frames a second: of a GIF, whose delays are whole hundredths of a second, and of others.
+const RATE: (f64, f64) = (25.0, 30.0);
+
+/// Creates the film, until that time (s), that the options ask for; `None` for a single picture.
+/// Refuses impossible films before any work is done.
+pub fn begin(options: &Render, until: f64) -> Result<Option<TimedFilm>, Failure> {
+    let (path, size) = (options.output.as_path(), options.size);
+    let frames = |rate| FrameTimes::new(options.from.unwrap_or(0.0), until, rate);
+    let rate = options.fps.unwrap_or(RATE.1);
+    let ends_in = |ending| output::ends_in(path, ending);
+    if ends_in("gif") {
+        let asked = options.fps.unwrap_or(RATE.0);
+        let delay = gif::delay(asked);
+        let rate = 100.0 / delay;
+        let frames = frames(rate)?;
+        let gif = gif::Gif::new(path, size, delay, options.transparent)?;
+        if (rate - asked).abs() > 1e-9 {
+            terminal::warn(&format!(
+                "the delays of a GIF are whole hundredths of a second, at least 2: the film has {rate:.4} frames per second, not {asked}"
+            ));
+        }
+        return Ok(Some((frames, Box::new(gif))));
+    }
+    if ends_in("mp4") {
+        if options.transparent {
+            return Err(Failure::usage(
+                "an MP4 cannot be transparent: use a .gif, a .png or a sequence such as film-####.png",
+            ));
+        }
+        return Ok(Some((
+            frames(rate)?,
+            Box::new(mp4::Mp4::new(path, size, rate)?),
+        )));
+    }
+    if let Some(sequence) = Sequence::of(path) {
+        let frames = frames(rate)?;
+        sequence.check(frames.count)?;
+        let pictures = Pictures::new(sequence, size);
+        return Ok(Some((frames, Box::new(pictures))));
+    }
+    if options.fps.is_some() || options.from.is_some() {
+        return Err(Failure::usage(
+            "--fps and --from are for films: .gif, .mp4, or a sequence such as film-####.png",
+        ));
+    }
+    Ok(None)
+}
+
+/// A film of this size (px) in the working folder, under the first name that is free, and that
+/// name.
+pub fn begin_new(
+    scene: &str,
+    ending: Ending,
+    size: (u32, u32),
+) -> Result<(PathBuf, Box<dyn Film>), Failure> {
+    let rate = ending.rate();
+    let path = output::free_name(scene, ending.of_files())?;
+    let film: Box<dyn Film> = match ending {
+        Ending::Gif => Box::new(gif::Gif::new(&path, size, gif::delay(rate), false)?),
+        Ending::Mp4 => Box::new(mp4::Mp4::new(&path, size, rate)?),
+        Ending::Png => {
+            let numbered = Failure::run(format!("{}: no # for numbers", path.display()));
+            let sequence = Sequence::of(&path).ok_or(numbered)?;
+            Box::new(Pictures::new(sequence, size))
+        }
+    };
+    Ok((path, film))
+}

@@ -1,0 +1,16 @@
+//! What every format of films does.
+
+use crate::base::failure::Failure;
+use crate::files::frames::FrameTimes;
+
+/// A film in the making. Its frames are rows from the top, four bytes a pixel.
+pub trait Film: Send {
+    /// Adds a frame.
+    fn add(&mut self, pixels: &[u8]) -> Result<(), Failure>;
+
+    /// Completes the film after its last frame.
+    fn finish(self: Box<Self>) -> Result<(), Failure>;
+}
+
+/// A film, and the times of its frames.
+pub type TimedFilm = (FrameTimes, Box<dyn Film>);

@@ -1,0 +1,66 @@
+//! A run that is filmed, from its first frame to its last.
+
+use std::path::Path;
+
+use a3_core::Simulation;
+
+use super::format::TimedFilm;
+use crate::base::failure::Failure;
+use crate::base::progress::{self, Bar};
+use crate::base::{interrupt, verdict};
+use crate::draw::painter::Painter;
+use crate::draw::show::Show;
+
+/// Films the run. If it blows up or is interrupted, the frames so far are kept.
+pub fn shoot(
+    simulation: &mut Simulation,
+    show: &mut Show,
+    painter: &mut Painter,
+    (frames, mut film): TimedFilm,
+    path: &Path,
+) -> Result<(), Failure> {
+    interrupt::listen();
+    let bar = Bar::new(frames.count as f64);
+    bar.say(format!("up to t = {} s ", frames.from));
+    let mut shot = 0;
+    let mut end = Ok(true);
+    for time in frames.times() {
+        end = progress::march(simulation, time, |simulation| {
+            show.follow(simulation);
+            interrupt::go_on()
+        });
+        if end == Ok(true) && shot + 1 == frames.count {
+            end = simulation.conclude().map(|()| true);
+        }
+        if end != Ok(true) {
+            break;
+        }
+        if shot == 0 {
+            bar.start();
+        }
+        film.add(&painter.draw(show, simulation)?)?;
+        shot += 1;
+        bar.say(format!("frame {shot} of {} ", frames.count));
+        bar.advance(1.0);
+    }
+    bar.clear();
+    let kept = if shot == 0 {
+        "nothing was filmed".to_owned()
+    } else {
+        interrupt::write_on();
+        film.finish()?;
+        format!(
+            "{} has the first {shot} of {} frames",
+            path.display(),
+            frames.count
+        )
+    };
+    match end {
+        Ok(true) => {
+            verdict::warn(simulation);
+            Ok(())
+        }
+        Ok(false) => Err(Failure::Interrupted(format!("interrupted: {kept}"))),
+        Err(error) => Err(verdict::lost(simulation, &error, &kept, frames.until)),
+    }
+}

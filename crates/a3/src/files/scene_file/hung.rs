@@ -1,0 +1,266 @@
+//! Scenes of a mesh alone: it hangs by its highest points, or by an edge where it is level.
+
+use std::path::Path;
+
+use super::hanging::{Hanging, Neck, hang};
+use super::mesh;
+use crate::base::rounding::{MANY, round_up};
+use crate::base::terminal;
+
+/// Longest side of the mesh (m).
+const SIDE: f64 = 2.0;
+/// Acceleration of gravity (m/s2).
+const GRAVITY: f64 = 9.81;
+/// Strain of what hangs by the pins, about which stiffness is chosen.
+const STRAIN: f64 = 0.1;
+/// Density of a cloth (kg/m2) and of a solid (kg/m3).
+const DENSITIES: [f64; 2] = [0.3, 1000.0];
+
+/// Whether a file with this ending is a mesh.
+pub fn is_mesh(extension: &str) -> bool {
+    mesh::ENDINGS.contains(&extension)
+}
+
+/// The text of a scene in which the mesh of a file hangs: a cloth if it is made of triangles, a
+/// solid if it is made of tetrahedra. Files say nothing of their unit: the longest side of the mesh
+/// is 2 m.
+pub fn scene(path: &Path) -> Result<String, String> {
+    let mut mesh = mesh::load(path, &mut mesh::Reader::new(1))?;
+    if mesh.tetrahedra.is_empty() {
+        mesh = mesh.welded();
+    }
+    let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
+    for point in &mesh.positions {
+        for axis in 0..3 {
+            low[axis] = low[axis].min(point[axis]);
+            high[axis] = high[axis].max(point[axis]);
+        }
+    }
+    let size = [0, 1, 2].map(|axis| high[axis] - low[axis]);
+    let longest = size.into_iter().fold(0.0, f64::max);
+    let scale = SIDE / longest;
+    if !(longest > 0.0 && scale.is_finite() && scale > 0.0) {
+        return Err(format!("{}: the mesh has no size", path.display()));
+    }
+    let at = [0, 1, 2].map(|axis| 0.0 - 0.5 * scale * (low[axis] + high[axis]));
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    let hanging = hang(&mesh);
+    if hanging.held < hanging.parts {
+        let Hanging { held, parts, .. } = hanging;
+        terminal::warn(&format!("note: {name}: {held} of {parts} parts are pinned"));
+    }
+    // What JSON quotes, TOML reads.
+    let file = serde_json::Value::from(&*name);
+    let body = if mesh.tetrahedra.is_empty() {
+        let stiffness = stiffness(&hanging, scale);
+        format!(
+            "# Air pushes its triangles: key d lets the wind blow.\n\
+             wind = {{ velocity = [3, 0, 1.5] }}\n\
+             {}\n\
+             [[mesh]]\n\
+             density = 0.3                   # kg/m2\n\
+             stiffness = [{stiffness}, {}]           # structural, bend, N/m\n\
+             damping_ratio = 0.1\n",
+            camera(&hanging, size, scale),
+            stiffness / 12.0,
+        )
+    } else {
+        format!(
+            "{}\n\
+             [[solid]]\n\
+             density = 1000                  # kg/m3\n\
+             young = {:e}                     # Pa\n\
+             poisson = 0.3\n\
+             damping = 0.004                 # s\n",
+            camera(&hanging, size, scale),
+            young(&hanging, scale),
+        )
+    };
+    let (by, pins) = match &hanging.pins {
+        None => ("its highest points", "at = [\"top\"]".to_owned()),
+        Some(pins) if hanging.parts == 1 => ("an edge", format!("particles = {pins:?}")),
+        Some(pins) => ("points of each part", format!("particles = {pins:?}")),
+    };
+    Ok(format!(
+        "# The mesh of {name}, which hangs by {by}.\n\n\
+         summary = \"a mesh that hangs by {by}\"\n\
+         solver = \"implicit\"\n\
+         step = 0.0166666666666667\n\
+         gravity = [0, -9.81, 0]\n\
+         drag_per_mass = 0.5\n\
+         {body}\
+         file = {file}\n\
+         scale = {scale}\n\
+         at = {at:?}\n\
+         pin = [{{ {pins} }}]\n"
+    ))
+}
+
+/// Stiffness of structural springs (N/m), by which what hangs by few pins is not drawn into
+/// threads.
+fn stiffness(hanging: &Hanging, scale: f64) -> f64 {
+    let needed = |neck: &Neck| {
+        let weight = DENSITIES[0] * GRAVITY * neck.size * scale.powi(2);
+        weight / (STRAIN * neck.edges * neck.length * scale)
+    };
+    let needed = hanging.necks.iter().map(needed).fold(0.0, f64::max);
+    round_up(needed.clamp(120.0, 1e6), MANY)
+}
+
+/// Young's modulus (Pa) by which the same holds of a solid.
+fn young(hanging: &Hanging, scale: f64) -> f64 {
+    let needed = |neck: &Neck| {
+        let weight = DENSITIES[1] * GRAVITY * neck.size * scale.powi(3);
+        // An edge is that of a prism as wide as half its length.
+        let area = neck.edges * (0.5 * neck.length * scale).powi(2);
+        weight / (STRAIN * area)
+    };
+    let needed = hanging.necks.iter().map(needed).fold(0.0, f64::max);
+    round_up(needed.clamp(1e5, 1e8), MANY)
+}
+
+/// The line of a camera that sees where the mesh falls, if it falls far.
+fn camera(hanging: &Hanging, size: [f64; 3], scale: f64) -> String {
+    let fall = hanging.fall * scale;
+    if fall <= 0.1 * SIDE {
+        return String::new();
+    }
+    let [x, y, z] = size.map(|side| side * scale);
+    let target = -0.5 * fall;
+    let radius = 0.5 * (x * x + (y + fall).powi(2) + z * z).sqrt();
+    // From the front, a little from the right and from above, as scenes without a camera are seen.
+    let eye = [0.43, 0.13, 0.87].map(|e: f64| 2.8 * radius * e);
+    let [x, y, z] = [eye[0], eye[1] + target, eye[2]];
+    format!("camera = {{ eye = [{x:.3}, {y:.3}, {z:.3}], target = [0, {target:.3}, 0] }}\n")
+}
+
+#[cfg(test)]
+mod tests {
+    use std::fmt::Write;
+
+    use a3_core::{Simulation, integrators};
+
+    use crate::files::scene_file::Source;
+
+    /// A box of triangles, and one of tetrahedra, in millimetres and far from the origin: both hang
+    /// and come to rest near the origin.
+    #[test]
+    fn meshes_of_any_unit_hang() {
+        let folder = tempfile::tempdir().unwrap();
+        let corners = (0..8).map(|k| [0, 1, 2].map(|axis| 7000 + 500 * (k >> axis & 1)));
+        let corners: Vec<_> = corners.collect();
+        let obj = folder.path().join("my \"box\".obj");
+        let mut text = String::new();
+        for [x, y, z] in &corners {
+            writeln!(text, "v {x} {y} {z}").unwrap();
+        }
+        text += "f 1 2 4 3\nf 5 7 8 6\nf 1 5 6 2\nf 3 4 8 7\nf 1 3 7 5\nf 2 6 8 4\n";
+        std::fs::write(&obj, text).unwrap();
+        let msh = folder.path().join("box.msh");
+        let mut text = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n8\n".to_owned();
+        for (k, [x, y, z]) in corners.iter().enumerate() {
+            writeln!(text, "{} {x} {y} {z}", k + 1).unwrap();
+        }
+        text += "$EndNodes\n$Elements\n6\n";
+        // Six tetrahedra around the diagonal.
+        for (k, [a, b]) in [[2, 4], [4, 3], [3, 7], [7, 5], [5, 6], [6, 2]]
+            .iter()
+            .enumerate()
+        {
+            writeln!(text, "{} 4 2 1 1 1 {a} {b} 8", k + 1).unwrap();
+        }
+        text += "$EndElements\n";
+        std::fs::write(&msh, text).unwrap();
+        for (file, name) in [(&obj, "my \"box\""), (&msh, "box")] {
+            let source = Source::find(file.to_str().unwrap()).unwrap();
+            let setup = source.build(None).unwrap();
+            assert_eq!(setup.scene.name, name);
+            let method = source.solver_or(None);
+            assert_eq!(method.name, "implicit");
+            let control = setup.defaults.control_of(method);
+            let mut run = Simulation::new(setup.scene, method, control).unwrap();
+            run.advance_to(12.0).unwrap();
+            let network = run.model().network().unwrap();
+            assert_eq!(network.pins().count(), 4);
+            for i in 0..run.particles() {
+                assert!(run.position(i).norm() < 2.2, "{}", run.position(i));
+                let held = network.is_pinned(i);
+                assert!(held == (run.position(i).y > 0.98), "{}", run.position(i));
+            }
+            assert!(run.energy().unwrap().kinetic < 1e-2);
+            assert!(
+                integrators::find("v")
+                    .unwrap()
+                    .check(run.model().system())
+                    .is_ok()
+            );
+        }
+    }
+
+    /// Pinned particles of the scene of a mesh, and their number.
+    fn pinned(text: &str) -> (Vec<usize>, usize, Source) {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("mesh.obj");
+        std::fs::write(&file, text).unwrap();
+        let source = Source::find(file.to_str().unwrap()).unwrap();
+        let scene = source.build(None).unwrap().scene;
+        let network = scene.model.network().unwrap();
+        let pins = network.pins().map(|(i, _)| i).collect();
+        (pins, network.particles(), source)
+    }
+
+    /// A sheet of 3 x 3 points across y at that height.
+    fn sheet(y: f64, first: usize) -> String {
+        let points = (0..9).map(|k| format!("v {} {y} {}\n", k % 3, k / 3));
+        let corner = |k: usize| first + k + k / 2;
+        let faces = (0..4).map(|k| {
+            let a = corner(k);
+            format!("f {a} {} {} {}\n", a + 1, a + 4, a + 3)
+        });
+        points.chain(faces).collect()
+    }
+
+    /// A level sheet hangs by an edge, and each of several parts hangs.
+    #[test]
+    fn all_parts_hang_and_move() {
+        let (pins, count, source) = pinned(&sheet(7.0, 1));
+        assert_eq!((pins.len(), count), (3, 9));
+        let camera = source.description.camera.as_ref().unwrap();
+        assert!(camera.target[1] < -0.5 && camera.eye[2] > 2.0);
+        let upright = "v 0 0 5\nv 1 0 5\nv 1 1 5\nv 0 1 5\nf 19 20 21 22\n";
+        let text = sheet(0.0, 1) + &sheet(3.0, 10) + upright;
+        let (pins, count, source) = pinned(&text);
+        assert_eq!((pins.len(), count), (3 + 3 + 2, 22));
+        assert!(source.text().contains("hangs by points of each part"));
+    }
+
+    /// What hangs by a point is as stiff as its weight asks for.
+    #[test]
+    fn stiffness_fits_the_weight() {
+        let stiffness = |text: &str| pinned(text).2.description.mesh[0].stiffness[0];
+        let wide = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n";
+        assert_eq!(stiffness(wide), 120.0);
+        let tip = "v 0 1 0\nv -0.02 0.98 0\nv 0.02 0.98 0\nv -1 0 0\nv 1 0 0\n\
+                   f 1 2 3\nf 2 4 5 3\n";
+        // A triangle of 1 m2 on two edges of 28 mm.
+        let needed = 0.3 * 9.81 / (0.1 * 2.0 * 0.028_28);
+        let found = stiffness(tip);
+        assert!(found >= needed && found < 1.3 * needed, "{found} {needed}");
+    }
+
+    #[test]
+    fn meshes_without_size_are_refused() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("dot.obj");
+        std::fs::write(&file, "v 1 2 3\nv 1 2 3\nv 1 2 3\nf 1 2 3\n").unwrap();
+        let why = Source::find(file.to_str().unwrap()).err().unwrap();
+        let why = why.to_string();
+        assert!(why.contains("dot.obj: ") && !why.contains('\n'), "{why}");
+        std::fs::write(&file, "nonsense\n").unwrap();
+        assert!(Source::find(file.to_str().unwrap()).is_err());
+        let gone = folder.path().join("gone.glb");
+        let why = Source::find(gone.to_str().unwrap()).err().unwrap();
+        let why = why.to_string();
+        assert!(why.contains("gone.glb: it could not be read"), "{why}");
+    }
+}

@@ -1,0 +1,13 @@
+//! Scenes by name, or from files: TOML, the JSON of particles and springs, or a mesh alone.
+
+mod files;
+mod hanging;
+mod hash;
+mod hung;
+mod mesh;
+#[cfg_attr(target_arch = "wasm32", path = "read_page.rs")]
+mod read;
+mod source;
+
+pub use hash::Hash;
+pub use source::{SceneError, Source, place};

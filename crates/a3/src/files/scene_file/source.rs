@@ -1,0 +1,236 @@
+//! Scenes as they are asked for: by name or by file.
+
+use std::fmt;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use a3_core::{Grid, Method, Scene, integrators};
+use a3_scenes::{Description, Fault, Places, Setup, parse_json, parse_toml};
+use serde_json::Value;
+
+use super::files::{beside, read_input, read_text};
+use super::hash::Hash;
+use super::hung;
+use super::mesh;
+
+/// What stands for standard input in place of a file.
+const INPUT: &str = "-";
+
+/// The reason why a scene cannot be had.
+#[derive(Debug)]
+pub enum SceneError {
+    /// No scene has the name.
+    Unknown(String),
+    /// What is wrong with a file, with its name.
+    File(String),
+}
+
+impl fmt::Display for SceneError {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let (Self::Unknown(why) | Self::File(why)) = self;
+        f.write_str(why)
+    }
+}
+
+impl From<String> for SceneError {
+    fn from(why: String) -> Self {
+        Self::File(why)
+    }
+}
+
+impl From<SceneError> for String {
+    fn from(error: SceneError) -> Self {
+        error.to_string()
+    }
+}
+
+/// A scene, by name or in a file.
+#[derive(Clone)]
+pub struct Source {
+    /// The name or the path, as it was typed.
+    pub typed: String,
+    /// The path, if the scene is in a file.
+    pub path: Option<PathBuf>,
+    /// The description in the text.
+    pub description: Arc<Description>,
+    /// The text of the file, also of a built-in scene.
+    text: Arc<str>,
+    /// The places of the keys in that text. It has no lines if nobody wrote it.
+    places: Arc<Places>,
+    /// The hash of the files of its meshes when it was last built.
+    meshes: Arc<AtomicU64>,
+}
+
+impl Source {
+    /// Finds a scene by its name or its file, and reads it.
+    pub fn find(typed: &str) -> Result<Self, SceneError> {
+        if let Some(entry) = a3_scenes::find(typed) {
+            return Ok(Self {
+                typed: typed.into(),
+                path: None,
+                description: Arc::new(entry.description().map_err(|e| e.to_string())?),
+                text: entry.text.into(),
+                places: Arc::default(),
+                meshes: Arc::default(),
+            });
+        }
+        let path = Path::new(typed);
+        let extension = path
+            .extension()
+            .and_then(|e| e.to_str())
+            .map(str::to_lowercase);
+        let read = || read_text(path).map_err(|why| format!("{typed}: {why}"));
+        let mut is_written = true;
+        let (text, json) = match extension.as_deref() {
+            None if typed == INPUT => {
+                let text = read_input().map_err(|why| format!("standard input: {why}"))?;
+                let json = text.trim_start().starts_with('{');
+                (text, json)
+            }
+            Some("toml") => (read()?, false),
+            Some("json") => (read()?, true),
+            Some(extension) if hung::is_mesh(extension) => {
+                is_written = false;
+                (hung::scene(path)?, false)
+            }
+            Some(extension) if path.is_file() => {
+                return Err(format!("{typed}: {}", mesh::not_read(Some(extension))).into());
+            }
+            _ => return Err(SceneError::Unknown(unknown(typed))),
+        };
+        let parsed = if json {
+            parse_json(&text)
+        } else {
+            parse_toml(&text)
+        };
+        let (mut description, places) = parsed.map_err(|fault| place(typed, &fault.to_string()))?;
+        if description.name.is_none() {
+            let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+            let is_input = typed == INPUT;
+            description.name = Some(if is_input { "input" } else { &*stem }.into());
+        }
+        Ok(Self {
+            typed: typed.into(),
+            path: Some(path.into()),
+            description: Arc::new(description),
+            text: text.into(),
+            places: Arc::new(if is_written {
+                places
+            } else {
+                places.without_lines()
+            }),
+            meshes: Arc::default(),
+        })
+    }
+
+    /// The scene with other values for some keys, which `change` sets in its table.
+    pub fn with(
+        &self,
+        change: impl FnOnce(&mut Value) -> Result<(), String>,
+    ) -> Result<Self, String> {
+        let extension = self.path.as_deref().and_then(Path::extension);
+        let json = extension.is_some_and(|e| e.eq_ignore_ascii_case("json"))
+            || self.is_input() && self.text.trim_start().starts_with('{');
+        let mut table: Value = if json {
+            serde_json::from_str(&self.text).map_err(|e| e.to_string())?
+        } else {
+            a3_scenes::read(&self.text).map_err(|fault| fault.to_string())?
+        };
+        change(&mut table)?;
+        let (text, parsed) = if json {
+            let text = table.to_string();
+            (text.clone(), parse_json(&text))
+        } else {
+            let text = toml::to_string(&table).map_err(|e| e.to_string())?;
+            (text.clone(), parse_toml(&text))
+        };
+        // Lines of a text that nobody wrote tell nobody anything.
+        let parsed = parsed.map_err(|fault| Fault {
+            line: None,
+            ..fault
+        });
+        let (mut description, places) = parsed.map_err(|fault| fault.to_string())?;
+        if description.name.is_none() {
+            description.name.clone_from(&self.description.name);
+        }
+        Ok(Self {
+            description: Arc::new(description),
+            text: text.into(),
+            places: Arc::new(places.without_lines()),
+            meshes: Arc::default(),
+            ..self.clone()
+        })
+    }
+
+    /// Whether the scene came by standard input, which is no file to read again.
+    pub fn is_input(&self) -> bool {
+        self.typed == INPUT
+    }
+
+    /// Builds the scene, with this grid of its cloth or with its own.
+    pub fn build(&self, grid: Option<Grid>) -> Result<Setup, String> {
+        // With a grid of its own, a scene is built with both.
+        let mut reader = mesh::Reader::new(if grid.is_some() { 2 } else { 1 });
+        let mut mesh = |name: &str| mesh::load(&beside(self.path.as_deref(), name)?, &mut reader);
+        let built = self.description.build(grid, &mut mesh);
+        self.meshes.store(reader.hash.value(), Ordering::Relaxed);
+        built.map_err(|fault| {
+            let fault = self.places.locate(fault);
+            match &self.path {
+                Some(_) => place(&self.typed, &fault.to_string()),
+                None => fault.to_string(),
+            }
+        })
+    }
+
+    /// The solver that was asked for, or else the scene's own, or else the explicit trapezoid,
+    /// which serves every scene.
+    pub fn solver_or(&self, asked: Option<&'static Method>) -> &'static Method {
+        let own = || integrators::find(self.description.solver.as_deref()?);
+        asked
+            .or_else(own)
+            .or_else(|| integrators::find("trapezoid"))
+            .unwrap_or(&integrators::METHODS[0])
+    }
+
+    /// The text of the file.
+    pub fn text(&self) -> &str {
+        &self.text
+    }
+
+    /// A text by which the scene that was last built differs from others: its name, and for a file
+    /// a hash of its text, of the files of its meshes, and of its state.
+    pub fn fingerprint(&self, scene: &Scene) -> String {
+        if self.path.is_none() {
+            return scene.name.clone();
+        }
+        let mut hash = Hash::default();
+        hash.add(self.text.bytes());
+        hash.add(self.meshes.load(Ordering::Relaxed).to_le_bytes());
+        hash.add(scene.state.iter().flat_map(|y| y.to_le_bytes()));
+        format!("{} {:016x}", scene.name, hash.value())
+    }
+}
+
+/// An error with its place: `FILE:LINE: error` if it names a line, as compilers write it.
+pub fn place(file: &str, why: &str) -> String {
+    match why.strip_prefix("line ") {
+        Some(rest) => format!("{file}:{rest}"),
+        None => format!("{file}: {why}"),
+    }
+}
+
+/// The error of an unknown name.
+fn unknown(typed: &str) -> String {
+    let names: Vec<_> = a3_scenes::SCENES.iter().map(|entry| entry.name).collect();
+    let near = a3_scenes::nearest(typed, names.iter().copied());
+    let all = format!(
+        "scenes are {}, or a file that ends in .toml or .json, or a mesh",
+        names.join(", ")
+    );
+    match near {
+        Some(name) => format!("there is no such scene; did you mean {name}? The {all}"),
+        None => format!("there is no such scene; the {all}"),
+    }
+}

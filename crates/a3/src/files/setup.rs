@@ -1,0 +1,186 @@
+//! From arguments to what they ask for: scenes and simulations.
+
+use std::sync::Arc;
+
+use a3_core::{Control, Method, Scene, Simulation, integrators};
+use a3_scenes::{Presentation, Setup};
+
+use crate::base::bounds;
+use crate::base::failure::Failure;
+use crate::base::terminal;
+use crate::cli::{RunOptions, What};
+use crate::files::scene_file::{SceneError, Source};
+
+/// A scene, with the options that the command line gives for it.
+pub struct Request<'a> {
+    pub source: Source,
+    pub options: &'a What,
+}
+
+/// A run without a window that is ready to begin.
+pub struct Run<'a> {
+    pub request: Request<'a>,
+    pub simulation: Simulation,
+    pub presentation: Arc<Presentation>,
+    /// End of the run (s).
+    pub until: f64,
+}
+
+impl<'a> Run<'a> {
+    /// Reads the scene and prepares its run.
+    pub fn new(options: &'a RunOptions) -> Result<Self, Failure> {
+        let request = Request::read(&options.what)?;
+        if let Some(solver) = options.solver.filter(|solver| !solver.is_adaptive()) {
+            let given = [
+                (options.limits.absolute, "--absolute"),
+                (options.limits.max_step, "--max-step"),
+            ];
+            if let Some((_, option)) = given.iter().find(|(value, _)| value.is_some()) {
+                return Err(Failure::usage(format!(
+                    "{} takes a step, not a tolerance: leave out {option}",
+                    solver.name
+                )));
+            }
+        }
+        let own = request.source.description.duration;
+        let until = options.until.or(own).ok_or_else(|| {
+            Failure::usage("the scene has no duration of its own: give --until T in seconds, such as --until 10")
+        })?;
+        let mut setup = request.build()?;
+        let solver = request.source.solver_or(options.solver);
+        setup.scene.limits = options.limits.given().or(setup.scene.limits);
+        let simulation = request.simulate(&setup, solver, options.step)?;
+        Ok(Self {
+            request,
+            simulation,
+            presentation: setup.presentation,
+            until,
+        })
+    }
+}
+
+impl<'a> Request<'a> {
+    /// Reads the scene that the options name.
+    pub fn read(options: &'a What) -> Result<Self, Failure> {
+        Ok(Self {
+            source: find(&options.scene, "--scene")?,
+            options,
+        })
+    }
+
+    /// The scene, with the wind, the swing and the self-collision that were asked for.
+    pub fn scene(&self) -> Result<Scene, Failure> {
+        // Euler's method serves every scene.
+        let run = self.simulate(&self.build()?, &integrators::METHODS[0], None)?;
+        Ok(Scene {
+            model: run.model().clone(),
+            state: run.state().to_vec(),
+            ..run.scene().clone()
+        })
+    }
+
+    /// The scene with its presentation and its defaults.
+    pub fn build(&self) -> Result<Setup, Failure> {
+        let options = self.options;
+        if let Some(count) = options.threads {
+            // Only the first scene of a command sets it; the others have it.
+            let threads = rayon::ThreadPoolBuilder::new().num_threads(count);
+            let _ = threads.build_global();
+        }
+        let setup = self.source.build(options.grid).map_err(Failure::usage)?;
+        if let Some(network) = setup.scene.model.network() {
+            let count = network.particles();
+            if count > 1 && network.pins().count() == count {
+                terminal::warn(&format!(
+                    "note: all {count} particles of the scene {} are pinned",
+                    setup.scene.name
+                ));
+            }
+        }
+        Ok(setup)
+    }
+
+    /// A simulation by this solver, with its own step or tolerance unless one is given.
+    pub fn simulate(
+        &self,
+        setup: &Setup,
+        solver: &'static Method,
+        step: Option<f64>,
+    ) -> Result<Simulation, Failure> {
+        let scene = &setup.scene;
+        for (asked, there, option) in [
+            (self.options.wind, scene.wind.is_some(), "wind"),
+            (self.options.swing, scene.swing.is_some(), "swing"),
+            (
+                self.options.self_collision,
+                scene.touch.is_some(),
+                "self-collision",
+            ),
+        ] {
+            if asked && !there {
+                return Err(Failure::usage(format!(
+                    "the scene {} has no {option}: leave out --{option}",
+                    scene.name
+                )));
+            }
+        }
+        let own = || setup.defaults.control_of(solver);
+        let control = step.map_or_else(own, |value| solver.control(value));
+        check_control(solver, control)?;
+        if let Err(e) = solver.check(scene.model.system()) {
+            let serve = integrators::METHODS
+                .iter()
+                .filter(|m| m.check(scene.model.system()).is_ok())
+                .map(|m| m.name);
+            let serve = serve.collect::<Vec<_>>().join(", ");
+            return Err(Failure::usage(format!(
+                "scene {}: {e}; the solvers that can run it are {serve}",
+                scene.name
+            )));
+        }
+        let mut simulation =
+            Simulation::new(scene.clone(), solver, control).map_err(Failure::usage)?;
+        // Without --wind the wind stays as it is: some scenes begin with it.
+        if self.options.wind {
+            simulation.set_wind(true);
+            solver
+                .check(simulation.model().system())
+                .map_err(Failure::usage)?;
+        }
+        simulation.set_swinging(self.options.swing);
+        if self.options.self_collision {
+            simulation.set_touching(true).map_err(|why| {
+                Failure::usage(format!(
+                    "--self-collision: {why}; leave the option out, or move apart what crosses"
+                ))
+            })?;
+        }
+        Ok(simulation)
+    }
+}
+
+/// The scene that an option names.
+pub fn find(typed: &str, option: &str) -> Result<Source, Failure> {
+    Source::find(typed).map_err(|error| match error {
+        SceneError::Unknown(why) => Failure::usage(format!("`{option} {typed}`: {why}")),
+        SceneError::File(why) => Failure::usage(why),
+    })
+}
+
+/// `Ok` if the step or the tolerance is within its range.
+fn check_control(method: &Method, control: Control) -> Result<(), Failure> {
+    let range = bounds::of(control);
+    if range.contains(&control.value()) {
+        return Ok(());
+    }
+    let (low, high) = (range.start(), range.end());
+    Err(Failure::usage(match control {
+        Control::Step(step) => {
+            format!("a step is a number of seconds from {low} to {high}, such as 0.01, not {step}")
+        }
+        Control::Tolerance(tolerance) => format!(
+            "{} takes a relative tolerance from {low:e} to {high}, such as 1e-4, not {tolerance}",
+            method.name
+        ),
+    }))
+}

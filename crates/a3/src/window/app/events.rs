@@ -1,0 +1,150 @@
+//! Events of the window.
+
+use std::sync::Arc;
+use web_time::Instant;
+
+use winit::application::ApplicationHandler;
+use winit::event::{ElementState, StartCause, WindowEvent};
+use winit::event_loop::{ActiveEventLoop, ControlFlow};
+use winit::window::{Fullscreen, WindowId};
+
+use super::platform::{self, Event};
+use super::state::App;
+use crate::window::hud::panel;
+
+impl ApplicationHandler<Event> for App {
+    fn resumed(&mut self, event_loop: &ActiveEventLoop) {
+        if self.screen.window.is_some() {
+            return;
+        }
+        event_loop.set_control_flow(ControlFlow::Wait);
+        let whole = self.settings.as_ref().is_some_and(|it| it.full_screen);
+        let attributes =
+            platform::attributes().with_fullscreen(whole.then_some(Fullscreen::Borderless(None)));
+        match event_loop.create_window(attributes) {
+            Ok(window) => self.screen.window = Some(Arc::new(window)),
+            Err(why) => return self.fail(event_loop, format!("no window ({why})")),
+        }
+        self.screen.set_title(&self.session);
+        self.open_graphics(event_loop);
+        self.last = Instant::now();
+    }
+
+    #[cfg(target_arch = "wasm32")]
+    fn user_event(&mut self, event_loop: &ActiveEventLoop, event: Event) {
+        match event {
+            Event::Opened(opened) => {
+                let opened = self.outside.opened(opened, &self.screen, &self.session);
+                if let Some(graphics) = opened {
+                    self.take_graphics(event_loop, graphics);
+                    self.last = Instant::now();
+                }
+            }
+            Event::Open(path) => {
+                if self.session.open(&path) {
+                    self.scene_changed();
+                }
+                self.screen.redraw();
+            }
+            Event::Act(action) => self.act(event_loop, action),
+        }
+    }
+
+    fn about_to_wait(&mut self, _: &ActiveEventLoop) {
+        // While all moves, each frame looks.
+        if self.screen.visible
+            && !self.session.animated()
+            && self
+                .mouse
+                .look(self.held.shift_key(), &mut self.session, &self.screen)
+        {
+            self.screen.redraw();
+        }
+    }
+
+    fn exiting(&mut self, _: &ActiveEventLoop) {
+        let graphics = self.screen.graphics.as_ref();
+        self.outside.films.complete(&mut self.session, graphics);
+        self.remember();
+    }
+
+    fn new_events(&mut self, event_loop: &ActiveEventLoop, cause: StartCause) {
+        if let StartCause::ResumeTimeReached { .. } = cause {
+            event_loop.set_control_flow(ControlFlow::Wait);
+            self.screen.redraw();
+        }
+    }
+
+    fn window_event(&mut self, event_loop: &ActiveEventLoop, _: WindowId, event: WindowEvent) {
+        let Some(graphics) = &mut self.screen.graphics else {
+            return;
+        };
+        if !matches!(event, WindowEvent::RedrawRequested) {
+            graphics.touch();
+        }
+        // Keys are for the table of keys: egui gets none.
+        let is_key = matches!(event, WindowEvent::KeyboardInput { .. });
+        let taken = !is_key && (graphics.on_event(&event) || self.session.list.is_some())
+            || panel::leaves(&self.session, graphics.size(), graphics.scale()).0 as f32
+                <= self.mouse.pointer.position[0];
+        if let WindowEvent::MouseInput { state, .. } = event {
+            self.session.history.hold(state == ElementState::Pressed);
+        }
+        match event {
+            WindowEvent::CloseRequested => event_loop.exit(),
+            WindowEvent::Resized(_) | WindowEvent::ScaleFactorChanged { .. } => {
+                graphics.resized();
+                self.screen.redraw();
+            }
+            WindowEvent::Occluded(hidden) => {
+                self.screen.visible = !hidden;
+                // Time spent hidden is not simulated.
+                self.last = Instant::now();
+                self.session.start_anew();
+                self.say_status();
+                self.screen.redraw();
+            }
+            WindowEvent::ModifiersChanged(held) => self.held = held.state(),
+            WindowEvent::Focused(false) => self.mouse.let_go(&mut self.session, &self.screen),
+            WindowEvent::KeyboardInput { event, .. } if event.state == ElementState::Pressed => {
+                self.press_key(event_loop, &event);
+            }
+            WindowEvent::MouseInput {
+                state: ElementState::Pressed,
+                button,
+                ..
+            } if !taken => {
+                let shift = self.held.shift_key();
+                self.mouse
+                    .press(button, shift, &mut self.session, &self.screen);
+                self.screen.redraw();
+            }
+            WindowEvent::MouseInput {
+                state: ElementState::Released,
+                button,
+                ..
+            } => {
+                self.mouse.release(button, &mut self.session, &self.screen);
+                self.screen.redraw();
+            }
+            WindowEvent::DroppedFile(path) => {
+                if self.session.open(&path) {
+                    self.scene_changed();
+                }
+                self.screen.redraw();
+            }
+            WindowEvent::CursorMoved { position, .. } => {
+                self.mouse
+                    .move_to(position, &mut self.session, &self.screen);
+            }
+            WindowEvent::CursorLeft { .. } => self.mouse.pointer.inside = false,
+            WindowEvent::MouseWheel { delta, .. } if !taken => {
+                self.mouse.scroll(delta, &mut self.session, &self.screen);
+                self.screen.redraw();
+            }
+            WindowEvent::MouseInput { .. } | WindowEvent::MouseWheel { .. } => self.screen.redraw(),
+            WindowEvent::RedrawRequested if self.screen.visible => self.frame(event_loop),
+            _ => {}
+        }
+    }
+}

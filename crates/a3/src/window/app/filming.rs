@@ -1,0 +1,122 @@
+//! Films of the session, made while the window goes on.
+
+use std::thread;
+use std::time::Duration;
+
+use a3_render::Gpu;
+
+use super::graphics::Graphics;
+use crate::base::failure::Failure;
+use crate::base::terminal;
+use crate::window::hud::panel;
+use crate::window::recorder::{Format, Recorder};
+use crate::window::session::Session;
+
+/// The film that is being made, if there is one.
+#[derive(Default)]
+pub struct Films {
+    recorder: Option<Recorder>,
+}
+
+impl Films {
+    /// Films from now on, or completes that film.
+    pub fn record(&mut self, session: &mut Session, graphics: Option<&Graphics>) {
+        if self.recorder.as_ref().is_some_and(Recorder::is_live) {
+            return self.end(session);
+        }
+        self.begin(session, graphics, Recorder::from_now);
+    }
+
+    /// Films the last seconds that are kept.
+    pub fn record_last(&mut self, session: &mut Session, graphics: Option<&Graphics>) {
+        self.begin(session, graphics, Recorder::of_kept);
+    }
+
+    /// Begins a film, if none is being made.
+    fn begin(
+        &mut self,
+        session: &mut Session,
+        graphics: Option<&Graphics>,
+        begin: impl FnOnce(&Gpu, &Session, Format) -> Result<Recorder, Failure>,
+    ) {
+        let Some(graphics) = graphics else {
+            return;
+        };
+        if self.recorder.is_some() {
+            session.readings.say("Another film is being made.");
+            return;
+        }
+        let scale = graphics.scale();
+        let format = Format {
+            ending: session.panel.film,
+            size: panel::leaves(session, graphics.size(), scale),
+            scale,
+        };
+        match begin(graphics.gpu(), session, format) {
+            Ok(recorder) => self.recorder = Some(recorder),
+            Err(why) => session.readings.warn(why.message()),
+        }
+        self.tell(session);
+    }
+
+    /// Draws the next frame of the film that is being made, if it is due, and returns whether the
+    /// film needs another frame of the window for the next.
+    pub fn draw(&mut self, session: &mut Session, graphics: Option<&Graphics>) -> bool {
+        let (Some(recorder), Some(graphics)) = (&mut self.recorder, graphics) else {
+            return false;
+        };
+        match recorder.go_on(graphics.gpu(), session) {
+            Ok(true) => {}
+            Ok(false) => self.end(session),
+            Err(why) => {
+                self.recorder = None;
+                session.readings.warn(why.message());
+            }
+        }
+        self.tell(session);
+        self.recorder.as_ref().is_some_and(|film| !film.is_live())
+    }
+
+    /// Completes a film of what happens from now on: something else is shown.
+    pub fn end_live(&mut self, session: &mut Session) {
+        if self.recorder.as_ref().is_some_and(Recorder::is_live) {
+            self.end(session);
+        }
+    }
+
+    /// Real time that passes for a session of which so much did (s), while it is filmed.
+    pub fn pace(&self, session: &Session, real: f64) -> f64 {
+        let recorder = self.recorder.as_ref();
+        recorder.map_or(real, |recorder| recorder.pace(session, real))
+    }
+
+    /// Completes the film that is being made, and says so.
+    pub fn end(&mut self, session: &mut Session) {
+        let Some(recorder) = self.recorder.take() else {
+            return;
+        };
+        match recorder.finish() {
+            Ok(said) => session.readings.say(said),
+            Err(why) => session.readings.warn(why.message()),
+        }
+        self.tell(session);
+    }
+
+    /// Completes the film that is being made before the window closes: with all moments that it is
+    /// to show.
+    pub fn complete(&mut self, session: &mut Session, graphics: Option<&Graphics>) {
+        while self.recorder.as_ref().is_some_and(|film| !film.is_live())
+            && self.draw(session, graphics)
+        {
+            thread::sleep(Duration::from_millis(1));
+        }
+        self.end(session);
+        if let Some(said) = session.readings.message.take() {
+            terminal::warn(&said);
+        }
+    }
+
+    fn tell(&self, session: &mut Session) {
+        session.readings.film = self.recorder.as_ref().map(Recorder::progress);
+    }
+}

@@ -1,0 +1,83 @@
+//! Frames: the session is brought up to date and drawn, and the next frame is asked for.
+
+use web_time::{Duration, Instant};
+
+use a3_render::GpuError;
+use winit::event_loop::ActiveEventLoop;
+
+use super::graphics::FrameOutcome;
+use super::state::App;
+use crate::window::hud::panel::{self, Request};
+
+/// Time after which a frame that could not be drawn is tried again.
+const RETRY: Duration = Duration::from_millis(50);
+
+impl App {
+    /// Brings the simulation up to date and draws it.
+    pub fn frame(&mut self, event_loop: &ActiveEventLoop) {
+        if self.outside.files_changed() && self.session.reload() {
+            self.last = Instant::now();
+            self.scene_changed();
+        }
+        let now = Instant::now();
+        let real = now.duration_since(self.last).as_secs_f64();
+        self.last = now;
+        let session = &mut self.session;
+        self.mouse.pull(session, &self.screen);
+        session.tick(self.outside.films.pace(session, real));
+        session.view.go_along(&session.runs.panes);
+        session.read_state();
+        self.mouse
+            .look(self.held.shift_key(), session, &self.screen);
+        let message_ends = session.readings.message_ends();
+        let Some(graphics) = &mut self.screen.graphics else {
+            return;
+        };
+        let begun = Instant::now();
+        match graphics.frame(session, self.mouse.cursor) {
+            Ok(FrameOutcome::Drawn(again, request)) => {
+                session.drawn(begun.elapsed());
+                let filmed = self.outside.films.draw(session, Some(graphics));
+                let again = if filmed || request.is_some() {
+                    Some(Duration::ZERO)
+                } else {
+                    again
+                };
+                match request {
+                    Some(Request::Act(action)) => self.act(event_loop, action),
+                    Some(Request::Change(change)) if panel::apply(session, change) => {
+                        self.scene_changed();
+                    }
+                    _ => {}
+                }
+                if let Some(status) = &mut self.status {
+                    status.frames += 1;
+                }
+                let frame_time = self.screen.frame_time(self.session.panel.frame_limit);
+                let next = if self.session.animated() {
+                    Some(now + frame_time)
+                } else {
+                    let again = again.map(|delay| now + delay.max(frame_time));
+                    [again, message_ends, self.outside.next_look()]
+                        .into_iter()
+                        .flatten()
+                        .min()
+                };
+                if let Some(next) = next {
+                    self.screen.wait_until(event_loop, next);
+                }
+            }
+            Ok(FrameOutcome::Skipped) => self.screen.wait_until(event_loop, now + RETRY),
+            Err(GpuError::Lost) => self.open_graphics(event_loop),
+            Err(why) => self.fail(event_loop, why),
+        }
+        self.say_status();
+    }
+
+    /// Writes a line for tests, if they are asked for.
+    pub fn say_status(&mut self) {
+        if let Some(status) = &mut self.status {
+            status.say(&self.session, &self.screen, self.mouse.cursor);
+        }
+    }
+}

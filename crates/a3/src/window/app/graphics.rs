@@ -1,0 +1,335 @@
+//! The window's surface, the picture on it and the text over it. All of it can be dropped and made
+//! again.
+
+use std::sync::Arc;
+use std::time::Duration;
+
+use a3_render::{Gpu, GpuError, Renderer, Targets, Tile, Transfer};
+use egui::CursorIcon;
+use wgpu::CurrentSurfaceTexture;
+use winit::window::Window;
+
+use super::adapter::{choose_format, clamped, transfer, window_samples};
+use super::layer::Layer;
+use crate::window::hud::panel::{self, Request};
+use crate::window::hud::{self, Overlay, layout};
+use crate::window::session::Session;
+
+/// The outcome of drawing a frame.
+pub enum FrameOutcome {
+    /// The frame was drawn. The text must be drawn again after this time, if at all: it fades in.
+    /// The mouse may ask for something.
+    Drawn(Option<Duration>, Option<Request>),
+    /// The frame could not be drawn now. It may be at the next event, or soon.
+    Skipped,
+}
+
+/// All that depends on the adapter.
+pub struct Graphics {
+    surface: wgpu::Surface<'static>,
+    config: wgpu::SurfaceConfiguration,
+    /// Format of the view that the picture is drawn to. The text is drawn to another view.
+    format: wgpu::TextureFormat,
+    renderer: Renderer,
+    targets: Targets,
+    /// Is drawn into, where the surface cannot be seen in two formats.
+    transfer: Option<Transfer>,
+    /// Holds the text, where it is not drawn in each frame.
+    layer: Option<Layer>,
+    /// Number of broken springs when the topology of each pane was made.
+    tears: Vec<usize>,
+    overlay: Overlay,
+    egui_winit: egui_winit::State,
+    /// Size of text and panel over that of the screen's own scale.
+    zoom: f32,
+    /// Whether the window has another size than the surface.
+    stale: bool,
+    gpu: Gpu,
+    window: Arc<Window>,
+}
+
+impl Graphics {
+    /// What draws the session to the window, by an adapter that is open for it.
+    pub fn new(
+        gpu: Gpu,
+        surface: wgpu::Surface<'static>,
+        window: Arc<Window>,
+        session: &Session,
+    ) -> Result<Self, GpuError> {
+        let size = clamped(&gpu, &window);
+        let mut config = surface
+            .get_default_config(&gpu.adapter, size.0, size.1)
+            .ok_or_else(|| GpuError::Device("it cannot draw to this window".into()))?;
+        choose_format(&gpu, &surface, &mut config);
+        let format = config.format.add_srgb_suffix();
+        config.present_mode = wgpu::PresentMode::AutoVsync;
+        surface.configure(&gpu.device, &config);
+        let samples = window_samples(&gpu, format);
+        let overlay = Overlay::new(&gpu, config.format);
+        let egui_winit = egui_winit::State::new(
+            overlay.context.clone(),
+            egui::ViewportId::ROOT,
+            &window,
+            Some(window.scale_factor() as f32),
+            None,
+            Some(gpu.largest_side() as usize),
+        );
+        Ok(Self {
+            renderer: Renderer::new(&gpu, format, samples, &session.runs.panes[0].topology()),
+            targets: Targets::new(&gpu, size, format, samples),
+            transfer: transfer(&gpu, &config),
+            layer: Layer::new(&gpu, &config),
+            tears: vec![],
+            overlay,
+            egui_winit,
+            surface,
+            config,
+            format,
+            zoom: 1.0,
+            stale: false,
+            gpu,
+            window,
+        })
+    }
+
+    /// Size of the surface (px).
+    pub fn size(&self) -> (u32, u32) {
+        (self.config.width, self.config.height)
+    }
+
+    /// The parts of the window that the panes fill.
+    pub fn tiles(&self, session: &Session) -> Vec<Tile> {
+        let size = panel::leaves(session, self.size(), self.scale());
+        layout::tiles(session.runs.panes.len(), size, self.scale())
+    }
+
+    /// Pixels per point.
+    pub fn scale(&self) -> f32 {
+        self.window.scale_factor() as f32 * self.zoom
+    }
+
+    /// Makes text and panel larger or smaller than the screen's own scale asks for.
+    pub fn set_zoom(&mut self, zoom: f32) {
+        self.zoom = zoom;
+        self.overlay.context.set_zoom_factor(zoom);
+    }
+
+    /// The adapter, for pictures that are drawn beside the window.
+    pub fn gpu(&self) -> &Gpu {
+        &self.gpu
+    }
+
+    /// Name of the adapter.
+    pub fn adapter(&self) -> String {
+        self.gpu.name()
+    }
+
+    /// Shows an event to egui, and returns whether egui keeps it for itself.
+    pub fn on_event(&mut self, event: &winit::event::WindowEvent) -> bool {
+        self.egui_winit
+            .on_window_event(&self.window, event)
+            .consumed
+    }
+
+    /// Notes that something happened that the text may tell of.
+    pub fn touch(&mut self) {
+        if let Some(layer) = &mut self.layer {
+            layer.touch();
+        }
+    }
+
+    /// Notes that the window has another size. The surface follows at the next frame, once for
+    /// however many changes.
+    pub fn resized(&mut self) {
+        self.stale = true;
+    }
+
+    /// Takes the topology of another scene.
+    pub fn set_scene(&mut self, session: &Session) {
+        self.renderer
+            .set_topology(&self.gpu, &session.runs.panes[0].topology());
+        self.tears.clear();
+    }
+
+    /// Leaves torn springs and triangles out of the topology.
+    fn tear(&mut self, session: &Session) {
+        self.tears.resize(session.runs.panes.len(), 0);
+        for (k, (pane, tears)) in session.runs.panes.iter().zip(&mut self.tears).enumerate() {
+            let now = pane.simulation.tears();
+            if *tears != now {
+                *tears = now;
+                let topology = pane.topology();
+                self.renderer.set_topology_of(&self.gpu, k, &topology);
+            }
+        }
+    }
+
+    /// Breaks the device, for tests.
+    pub fn lose_device(&self) {
+        self.gpu.device.destroy();
+    }
+
+    fn reconfigure(&mut self) {
+        self.stale = false;
+        let size = clamped(&self.gpu, &self.window);
+        (self.config.width, self.config.height) = size;
+        self.surface.configure(&self.gpu.device, &self.config);
+        if self.targets.size() != size {
+            self.targets = Targets::new(
+                &self.gpu,
+                size,
+                self.format,
+                window_samples(&self.gpu, self.format),
+            );
+            self.transfer = transfer(&self.gpu, &self.config);
+            self.layer = Layer::new(&self.gpu, &self.config);
+        }
+    }
+
+    /// Draws the session to the window, if that is possible now. Where egui has no other, the
+    /// pointer has the shape `cursor`.
+    pub fn frame(
+        &mut self,
+        session: &mut Session,
+        cursor: CursorIcon,
+    ) -> Result<FrameOutcome, GpuError> {
+        let inner = self.window.inner_size();
+        if inner.width == 0 || inner.height == 0 {
+            return Ok(FrameOutcome::Skipped);
+        }
+        if self.stale {
+            self.reconfigure();
+        }
+        let frame = match self.surface.get_current_texture() {
+            CurrentSurfaceTexture::Success(frame) => frame,
+            CurrentSurfaceTexture::Suboptimal(frame) => {
+                // Configuring panics while a frame is alive.
+                drop(frame);
+                self.reconfigure();
+                return Ok(FrameOutcome::Skipped);
+            }
+            CurrentSurfaceTexture::Outdated => {
+                self.reconfigure();
+                return Ok(FrameOutcome::Skipped);
+            }
+            CurrentSurfaceTexture::Timeout | CurrentSurfaceTexture::Occluded => {
+                return Ok(FrameOutcome::Skipped);
+            }
+            // A lost device may say Validation too: the check finds out.
+            CurrentSurfaceTexture::Lost | CurrentSurfaceTexture::Validation => {
+                self.gpu.check()?;
+                return Err(GpuError::Lost);
+            }
+        };
+        self.tear(session);
+        for pane in &mut session.runs.panes {
+            pane.show.compose(&pane.simulation);
+        }
+        let pictures: Vec<_> = session
+            .runs
+            .panes
+            .iter()
+            .map(|pane| pane.show.picture(session.view.camera, self.scale()))
+            .zip(self.tiles(session))
+            .collect();
+        self.renderer.prepare(&self.gpu, &pictures);
+        let mut encoder = self
+            .gpu
+            .device
+            .create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        let view = |format| {
+            frame.texture.create_view(&wgpu::TextureViewDescriptor {
+                format: Some(format),
+                ..Default::default()
+            })
+        };
+        let text_view = view(self.config.format);
+        if let Some(transfer) = &self.transfer {
+            self.renderer
+                .draw(&mut self.targets.pass(&mut encoder, transfer.picture()));
+            transfer.copy(&mut encoder, &text_view);
+        } else {
+            self.renderer
+                .draw(&mut self.targets.pass(&mut encoder, &view(self.format)));
+        }
+        // egui's renderer panics on a device that has just been lost.
+        self.gpu.check()?;
+        let (before, again, request) = self.text(&mut encoder, &text_view, session, cursor);
+        self.gpu
+            .queue
+            .submit(before.into_iter().chain([encoder.finish()]));
+        self.window.pre_present_notify();
+        self.gpu.queue.present(frame);
+        self.gpu.check()?;
+        Ok(FrameOutcome::Drawn(again, request))
+    }
+
+    /// Writes the text over the picture, or on its layer, if that is due, and lays the layer over
+    /// the picture. Returns the commands to submit before it, the time after which it must be
+    /// drawn again, and what the mouse asks of the panel.
+    fn text(
+        &mut self,
+        encoder: &mut wgpu::CommandEncoder,
+        view: &wgpu::TextureView,
+        session: &Session,
+        cursor: CursorIcon,
+    ) -> (Vec<wgpu::CommandBuffer>, Option<Duration>, Option<Request>) {
+        let Some(mut layer) = self.layer.take() else {
+            return self.write_text(encoder, view, wgpu::LoadOp::Load, session, cursor);
+        };
+        let written = if let Some(stays) = layer.stays() {
+            (vec![], Some(stays), None)
+        } else {
+            let empty = wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT);
+            let on_layer = layer.texture.picture();
+            let written = self.write_text(encoder, on_layer, empty, session, cursor);
+            layer.drawn(written.1);
+            written
+        };
+        layer
+            .texture
+            .copy_parts(encoder, view, &self.overlay.filled);
+        self.layer = Some(layer);
+        written
+    }
+
+    /// Writes the text in a pass of its own.
+    fn write_text(
+        &mut self,
+        encoder: &mut wgpu::CommandEncoder,
+        view: &wgpu::TextureView,
+        below: wgpu::LoadOp<wgpu::Color>,
+        session: &Session,
+        cursor: CursorIcon,
+    ) -> (Vec<wgpu::CommandBuffer>, Option<Duration>, Option<Request>) {
+        let mut input = self.egui_winit.take_egui_input(&self.window);
+        let right = panel::inset(session, self.size(), self.scale());
+        input.safe_area_insets = Some(egui::SafeAreaInsets(egui::epaint::MarginF32 {
+            right,
+            ..Default::default()
+        }));
+        let mut request = None;
+        let mut output = self.overlay.lay_out(&self.gpu, input, |ctx| {
+            hud::show(ctx, &session.runs.panes, &session.readings);
+            request = panel::show(ctx, session).or(request);
+            request = hud::show_list(ctx, session)
+                .map(Request::Change)
+                .or(request);
+        });
+        let mut answer = std::mem::take(&mut output.platform_output);
+        if answer.cursor_icon == CursorIcon::Default {
+            answer.cursor_icon = cursor;
+        }
+        self.egui_winit.handle_platform_output(&self.window, answer);
+        let again = output
+            .viewport_output
+            .get(&egui::ViewportId::ROOT)
+            .map(|viewport| viewport.repaint_delay);
+        let again = again.filter(|delay| *delay < Duration::from_mins(1));
+        let size = (self.config.width, self.config.height);
+        self.overlay.dark = session.runs.panes[0].show.dark;
+        let target = (view, below);
+        let before = self.overlay.paint(&self.gpu, encoder, target, size, output);
+        (before, again, request)
+    }
+}

@@ -1,0 +1,44 @@
+//! What is under the pointer: its shape says what a press would do, and what the press would take
+//! is highlighted.
+
+use egui::CursorIcon;
+
+use super::mouse::{Drag, Mouse};
+use super::pointer::CLICK;
+use super::screen::Screen;
+use crate::draw::show::Target;
+use crate::window::session::Session;
+
+impl Mouse {
+    /// Finds the particle, body or timeline under the pointer, and returns whether the picture has
+    /// to be drawn again. With Shift, a press would begin a box.
+    pub fn look(&mut self, shift: bool, session: &mut Session, screen: &Screen) -> bool {
+        let pointer = &self.pointer;
+        let at = pointer.pane(session, screen);
+        let (cursor, hovered) = match self.drag {
+            Drag::Pull(_) => (CursorIcon::Grabbing, None),
+            Drag::Orbit => (CursorIcon::AllScroll, None),
+            Drag::Pan => (CursorIcon::Move, None),
+            Drag::Scrub => (CursorIcon::ResizeHorizontal, None),
+            Drag::Select { .. } => (CursorIcon::Crosshair, None),
+            Drag::None if !pointer.is_over_picture(session, screen) => (CursorIcon::Default, None),
+            Drag::None if pointer.timeline_share(session, screen, CLICK).is_some() => {
+                (CursorIcon::ResizeHorizontal, None)
+            }
+            Drag::None if shift => (CursorIcon::Crosshair, None),
+            Drag::None => match pointer.hit(session, screen, at).map(|(target, _)| target) {
+                Some(target @ Target::Particle(_)) => (CursorIcon::Grab, Some(target)),
+                Some(target @ Target::Obstacle(_)) => (CursorIcon::Move, Some(target)),
+                None => (CursorIcon::Default, None),
+            },
+        };
+        let mut changed = self.cursor != cursor;
+        self.cursor = cursor;
+        for (k, pane) in session.runs.panes.iter_mut().enumerate() {
+            let hovered = hovered.filter(|_| k == at);
+            changed |= pane.show.hovered != hovered;
+            pane.show.hovered = hovered;
+        }
+        changed
+    }
+}

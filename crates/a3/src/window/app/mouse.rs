@@ -1,0 +1,241 @@
+//! Actions of the mouse: pull, turn, move, pin, and drag the timeline.
+
+use a3_core::Vector3;
+use egui::CursorIcon;
+use winit::dpi::PhysicalPosition;
+use winit::event::{MouseButton, MouseScrollDelta};
+
+use super::pick::Grip;
+use super::pointer::{CLICK, Pointer};
+use super::screen::Screen;
+use crate::draw::show::{self, Target};
+use crate::window::session::{Selection, Session, looks};
+
+/// Angle by which the camera turns when the pointer moves by the height of the picture (rad).
+const TURN: f32 = 4.0;
+/// Pixels of smooth scrolling that count as a notch of the wheel.
+const NOTCH: f32 = 50.0;
+
+/// A drag: the action of a pressed button while the pointer moves.
+#[derive(Clone, Copy, PartialEq)]
+pub enum Drag {
+    /// No action.
+    None,
+    /// Pull a particle or push an obstacle.
+    Pull(Grip),
+    /// Turn the camera.
+    Orbit,
+    /// Move the camera.
+    Pan,
+    /// Go along the timeline.
+    Scrub,
+    /// Pin or release the particles in a box from a corner (px) to the pointer.
+    Select { from: [f32; 2], pinned: bool },
+}
+
+/// The mouse.
+pub struct Mouse {
+    pub pointer: Pointer,
+    /// The drag by the pressed button.
+    pub drag: Drag,
+    /// The pane in which the button was pressed.
+    pane: usize,
+    /// The button that is pressed: the first one, if there are several.
+    pub button: Option<MouseButton>,
+    /// The shape of the pointer over the picture.
+    pub cursor: CursorIcon,
+}
+
+impl Mouse {
+    /// Creates a mouse outside the window, with no button pressed.
+    pub fn new() -> Self {
+        Self {
+            pointer: Pointer::new(),
+            drag: Drag::None,
+            pane: 0,
+            button: None,
+            cursor: CursorIcon::Default,
+        }
+    }
+
+    /// Begins what a button does where the pointer is, with the key Shift or without.
+    pub fn press(
+        &mut self,
+        button: MouseButton,
+        shift: bool,
+        session: &mut Session,
+        screen: &Screen,
+    ) {
+        // One button at a time.
+        if self.button.is_some() {
+            return;
+        }
+        let pane = self.pointer.pane(session, screen);
+        let double = self.pointer.press();
+        let share = self.pointer.timeline_share(session, screen, CLICK);
+        let hit = self.pointer.hit(session, screen, pane);
+        let select = |pinned| Drag::Select {
+            from: self.pointer.position,
+            pinned,
+        };
+        let drag = match button {
+            MouseButton::Left | MouseButton::Right if shift => select(button == MouseButton::Left),
+            MouseButton::Left if share.is_some() => {
+                session.scrub_to(share.unwrap_or(1.0));
+                Drag::Scrub
+            }
+            MouseButton::Left => {
+                if double {
+                    let particle = hit.and_then(|(target, _)| target.particle());
+                    looks::show_springs_of(&mut session.runs.panes, particle);
+                }
+                match hit {
+                    Some((Target::Particle(i), grip)) if session.runs.grab(i) => Drag::Pull(grip),
+                    Some((Target::Obstacle(k), grip)) if session.runs.grab_obstacle(k) => {
+                        Drag::Pull(grip)
+                    }
+                    _ => Drag::Orbit,
+                }
+            }
+            MouseButton::Right | MouseButton::Middle => Drag::Pan,
+            _ => return,
+        };
+        (self.drag, self.pane, self.button) = (drag, pane, Some(button));
+    }
+
+    /// Ends what a button does: a click with the right one pins, or lets go of a pin.
+    pub fn release(&mut self, button: MouseButton, session: &mut Session, screen: &Screen) {
+        if self.button != Some(button) {
+            return;
+        }
+        if button == MouseButton::Right
+            && self.pointer.is_click()
+            && self.drag == Drag::Pan
+            && let Some((Target::Particle(i), _)) = self.pointer.hit(session, screen, self.pane)
+        {
+            session.toggle_pin(i);
+        }
+        self.let_go(session, screen);
+    }
+
+    /// Ends what the pressed button does.
+    pub fn let_go(&mut self, session: &mut Session, screen: &Screen) {
+        self.take_box(session, screen);
+        session.release();
+        self.stop();
+    }
+
+    /// Ends the drag, and leaves the session as it is.
+    pub fn stop(&mut self) {
+        (self.drag, self.button) = (Drag::None, None);
+    }
+
+    /// The particles in the box that is drawn, walls of tanks left out.
+    fn boxed(&self, session: &Session, screen: &Screen) -> Vec<usize> {
+        let Drag::Select { from, .. } = self.drag else {
+            return vec![];
+        };
+        let (tile, to) = (screen.tile(session, self.pane), self.pointer.position);
+        let run = &session.runs.panes[self.pane].simulation;
+        let (a, b) = (tile.place(from), tile.place(to));
+        let inside =
+            |at: [f32; 2]| (0..2).all(|k| (a[k].min(b[k])..=a[k].max(b[k])).contains(&at[k]));
+        let network = run.model().network();
+        let is_wall = |i: usize| network.is_some_and(|network| network.is_wall(i));
+        let project = session.view.camera.projection(tile.aspect());
+        (0..run.particles())
+            .filter(|i| {
+                let seen = project(show::to_f32(run.position(*i)));
+                seen.is_some_and(|(at, _)| inside(at)) && !is_wall(*i)
+            })
+            .collect()
+    }
+
+    /// Shows the box, and how many particles are in it.
+    fn look_into_box(&self, session: &mut Session, screen: &Screen) {
+        let scale = screen.scale();
+        if let Drag::Select { from, pinned } = self.drag {
+            let corners = [from, self.pointer.position].map(|at| at.map(|px| px / scale));
+            let count = self.boxed(session, screen).len();
+            session.readings.selection = Some(Selection {
+                corners,
+                count,
+                pinned,
+            });
+        }
+    }
+
+    /// Pins what is in the box, or lets go of it.
+    fn take_box(&self, session: &mut Session, screen: &Screen) {
+        if let Drag::Select { pinned, .. } = self.drag
+            && session.readings.selection.take().is_some()
+        {
+            let particles = self.boxed(session, screen);
+            session.pin_all(&particles, pinned);
+        }
+    }
+
+    /// Pulls the grabbed particle or obstacle to the pointer.
+    pub fn pull(&self, session: &mut Session, screen: &Screen) {
+        if let Drag::Pull(grip) = self.drag {
+            let tile = screen.tile(session, self.pane);
+            let place = tile.place(self.pointer.position);
+            let [x, y, z] = grip
+                .target(&session.view.camera, place, tile.aspect())
+                .map(f64::from);
+            session.runs.pull(Vector3::new(x, y, z));
+        }
+    }
+
+    /// Moves the pointer, and what the pressed button holds.
+    pub fn move_to(
+        &mut self,
+        position: PhysicalPosition<f64>,
+        session: &mut Session,
+        screen: &Screen,
+    ) {
+        let position = [position.x as f32, position.y as f32];
+        self.pointer.inside = true;
+        if session.panel.open {
+            let under = screen.pane_at(session, position);
+            session.panel.pane = under.unwrap_or(session.panel.pane);
+            // The row under the pointer is drawn in another colour.
+            screen.redraw();
+        }
+        let tile = screen.tile(session, self.pane);
+        // A click moves nothing until the pointer has gone too far for one.
+        self.pointer.approach(position, screen.scale());
+        if self.pointer.is_click() && self.drag == Drag::Pan {
+            return;
+        }
+        let ([x, y], [was_x, was_y]) = (tile.place(position), tile.place(self.pointer.position));
+        let (dx, dy, aspect) = (x - was_x, y - was_y, tile.aspect());
+        self.pointer.position = position;
+        let camera = &mut session.view.camera;
+        match self.drag {
+            Drag::Orbit => camera.orbit(-TURN * dx * aspect, TURN * dy),
+            Drag::Pan => camera.pan(-dx * aspect, dy),
+            Drag::Scrub => {
+                let share = self.pointer.timeline_share(session, screen, f32::INFINITY);
+                if let Some(share) = share {
+                    session.scrub_to(share);
+                }
+            }
+            Drag::Select { .. } => self.look_into_box(session, screen),
+            Drag::Pull(_) | Drag::None => return,
+        }
+        screen.redraw();
+    }
+
+    /// Zooms to the pointer by the notches of the wheel.
+    pub fn scroll(&self, delta: MouseScrollDelta, session: &mut Session, screen: &Screen) {
+        let notches = match delta {
+            MouseScrollDelta::LineDelta(_, y) => y,
+            MouseScrollDelta::PixelDelta(p) => p.y as f32 / NOTCH,
+        };
+        let tile = screen.tile(session, self.pointer.pane(session, screen));
+        let at = tile.place(self.pointer.position);
+        let factor = 0.9f32.powf(notches);
+        session.view.camera.zoom_at(factor, at, tile.aspect());
+    }
+}

@@ -1,0 +1,104 @@
+//! The pointer of the mouse: its position, its pane, and whether a button clicks or drags.
+
+use web_time::{Duration, Instant};
+
+use super::pick::{self, Grip};
+use super::screen::Screen;
+use crate::draw::show::Target;
+use crate::window::hud::{layout, panel};
+use crate::window::session::Session;
+
+/// Distance from the pointer within which a particle is hit (points).
+const REACH: f32 = 18.0;
+/// The farthest that the pointer may move during a click (points).
+pub const CLICK: f32 = 4.0;
+/// The longest time between the two clicks of a double click.
+const DOUBLE_CLICK: Duration = Duration::from_millis(400);
+
+/// The pointer.
+pub struct Pointer {
+    /// Position (px from the left and from the top of the window).
+    pub position: [f32; 2],
+    /// Whether the pointer is in the window.
+    pub inside: bool,
+    /// Position when the button was pressed (px).
+    pressed_at: [f32; 2],
+    /// Time when the button was pressed.
+    pressed: Instant,
+    /// Whether the pointer has stayed near that position: it is a click, not a drag.
+    still: bool,
+}
+
+impl Pointer {
+    /// Creates a pointer outside the window.
+    pub fn new() -> Self {
+        Self {
+            position: [0.0; 2],
+            inside: false,
+            pressed_at: [f32::INFINITY; 2],
+            pressed: Instant::now(),
+            still: false,
+        }
+    }
+
+    /// Notes that a button was pressed, and returns whether that is the second of a double click.
+    pub fn press(&mut self) -> bool {
+        let double = self.still && self.pressed.elapsed() < DOUBLE_CLICK;
+        (self.pressed_at, self.pressed, self.still) = (self.position, Instant::now(), true);
+        double
+    }
+
+    /// Notes where the pointer goes. Beyond the reach of a click from where the button was pressed,
+    /// the click becomes a drag. There are `scale` pixels per point.
+    pub fn approach(&mut self, position: [f32; 2], scale: f32) {
+        let [x, y] = [0, 1].map(|k| position[k] - self.pressed_at[k]);
+        self.still &= x.hypot(y) <= CLICK * scale;
+    }
+
+    /// Whether the pressed button clicks until now, and does not drag.
+    pub fn is_click(&self) -> bool {
+        self.still
+    }
+
+    /// The pane under the pointer, or else the first.
+    pub fn pane(&self, session: &Session, screen: &Screen) -> usize {
+        screen.pane_at(session, self.position).unwrap_or(0)
+    }
+
+    /// The particle or the obstacle under the pointer in a pane. A lost run cannot be pulled.
+    pub fn hit(&self, session: &Session, screen: &Screen, pane: usize) -> Option<(Target, Grip)> {
+        let (tile, pane) = (screen.tile(session, pane), &session.runs.panes[pane]);
+        let reach = REACH * screen.scale() / tile.height as f32;
+        let place = tile.place(self.position);
+        let run = Some(&pane.simulation).filter(|_| pane.alive())?;
+        pick::pick(run, &session.view.camera, place, tile.aspect(), reach)
+    }
+
+    /// The share of the timeline at which the pointer is, if the timeline is shown and the pointer
+    /// no farther from it than `margin` (points).
+    pub fn timeline_share(&self, session: &Session, screen: &Screen, margin: f32) -> Option<f32> {
+        let graphics = screen.graphics.as_ref()?;
+        session.readings.rewound?;
+        let (scale, size) = (graphics.scale(), graphics.size());
+        let size = [size.0, size.1].map(|side| side as f32 / scale);
+        let [x, y] = self.position.map(|px| px / scale);
+        let [left, top, width, height] = layout::timeline(size);
+        let (from, to) = layout::track(left, width);
+        let inside = x > left - margin
+            && x < left + width + margin
+            && y > top - margin
+            && y < top + height + margin;
+        inside.then_some(((x - from) / (to - from)).clamp(0.0, 1.0))
+    }
+
+    /// Whether the pointer is over the picture, where presses act on the scene.
+    pub fn is_over_picture(&self, session: &Session, screen: &Screen) -> bool {
+        let Some(graphics) = &screen.graphics else {
+            return false;
+        };
+        let (size, [x, y]) = (graphics.size(), self.position);
+        let free = panel::leaves(session, size, graphics.scale());
+        let inside = (0.0..free.0 as f32).contains(&x) && (0.0..free.1 as f32).contains(&y);
+        inside && self.inside && session.list.is_none() && !session.readings.help
+    }
+}

@@ -1,0 +1,27 @@
+//! What is remembered of a window when it closes.
+
+use super::screen::Screen;
+use crate::base::terminal;
+use crate::window::session::Session;
+use crate::window::settings::Settings;
+
+/// Writes the settings as they are now, if they have changed.
+pub fn remember(before: &Settings, session: &Session, screen: &Screen) {
+    let mut now = Settings {
+        interface_scale: screen.zoom,
+        full_screen: screen.is_full(),
+        dark: session.runs.panes[0].show.dark,
+        panel: session.panel.open,
+        frame_limit: session.panel.frame_limit,
+        film: session.panel.film,
+        film_seconds: session.panel.film_of,
+        recent: before.recent.clone(),
+    };
+    now.remember(session.scenes.files());
+    if now == *before {
+        return;
+    }
+    if let Err(why) = now.write() {
+        terminal::warn(&why.message());
+    }
+}

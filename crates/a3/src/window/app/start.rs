@@ -1,0 +1,112 @@
+//! Opening the window.
+
+#[cfg(not(target_arch = "wasm32"))]
+use std::path::PathBuf;
+
+use winit::event_loop::EventLoop;
+
+use super::platform::{Event, Outside};
+use super::state::App;
+use crate::base::failure::Failure;
+use crate::window::session::{Session, looks};
+use crate::window::settings::Settings;
+
+/// How the window ends.
+#[cfg(not(target_arch = "wasm32"))]
+pub enum End {
+    /// The user closed the window.
+    Closed,
+    /// No window could be opened, for this reason. The session is as it was.
+    NoWindow(String, Box<Session>),
+}
+
+/// Opens the window. With `status`, lines on stderr tell what is on the screen. When one of `files`
+/// changes, the scene is loaded again. The `settings` are written again when the window closes.
+#[cfg(not(target_arch = "wasm32"))]
+pub fn open(
+    mut session: Session,
+    status: bool,
+    files: Vec<PathBuf>,
+    settings: Option<Settings>,
+) -> Result<End, Failure> {
+    let event_loop = match event_loop() {
+        Ok(event_loop) => event_loop,
+        Err(why) => return Ok(End::NoWindow(why, Box::new(session))),
+    };
+    prepare(&mut session, settings.as_ref());
+    let display = event_loop.owned_display_handle();
+    let mut app = App::new(session, display, status, Outside::new(files), settings);
+    event_loop.run_app(&mut app).map_err(Failure::run)?;
+    match app.failure {
+        None => Ok(End::Closed),
+        Some(Failure::Run(why)) if app.screen.devices == 0 => {
+            app.session.readings.in_window = false;
+            Ok(End::NoWindow(why, Box::new(app.session)))
+        }
+        Some(failure) => Err(failure),
+    }
+}
+
+/// Opens the window in the page, which goes on by itself. With `status`, lines on the console tell
+/// what is on the screen.
+#[cfg(target_arch = "wasm32")]
+pub fn spawn(
+    mut session: Session,
+    status: bool,
+    settings: Option<Settings>,
+) -> Result<(), Failure> {
+    use winit::platform::web::EventLoopExtWebSys;
+    let event_loop = EventLoop::<Event>::with_user_event().build();
+    let event_loop = event_loop.map_err(Failure::run)?;
+    super::platform::reach(event_loop.create_proxy());
+    prepare(&mut session, settings.as_ref());
+    let display = event_loop.owned_display_handle();
+    event_loop.spawn_app(App::new(
+        session,
+        display,
+        status,
+        Outside::default(),
+        settings,
+    ));
+    Ok(())
+}
+
+/// Gives a session in a window the settings that are remembered.
+fn prepare(session: &mut Session, settings: Option<&Settings>) {
+    session.readings.in_window = true;
+    if let Some(settings) = settings {
+        session.panel.open = settings.panel;
+        if settings.dark {
+            looks::set_dark(&mut session.runs.panes, true);
+        }
+        session.panel.film = settings.film;
+        session.panel.frame_limit = settings.frame_limit;
+        session.panel.film_of = settings.film_seconds;
+        session.scenes.recent.clone_from(&settings.recent);
+    }
+}
+
+/// The event loop, where there is a display and what is needed to talk to it.
+#[cfg(not(target_arch = "wasm32"))]
+fn event_loop() -> Result<EventLoop<Event>, String> {
+    #[cfg(all(unix, not(target_vendor = "apple")))]
+    if lacks_keyboard() {
+        return Err(
+            "no window (a library is missing: `apt install libxkbcommon-x11-0 libxcursor1 libxi6`)"
+                .into(),
+        );
+    }
+    let built = EventLoop::with_user_event().build();
+    built.map_err(|_| "no display (DISPLAY and WAYLAND_DISPLAY are unset or lead nowhere)".into())
+}
+
+/// Whether a library is missing that winit reads the keys of a display with. Without it, winit
+/// panics, where it returns an error without others.
+#[cfg(all(unix, not(target_vendor = "apple")))]
+fn lacks_keyboard() -> bool {
+    use xkbcommon_dl::{x11::xkbcommon_x11_option, xkbcommon_option};
+    let is_set = |name| std::env::var_os(name).is_some_and(|value| !value.is_empty());
+    let wayland = is_set("WAYLAND_DISPLAY") || is_set("WAYLAND_SOCKET");
+    let x11 = !wayland && is_set("DISPLAY");
+    (wayland || x11) && xkbcommon_option().is_none() || x11 && xkbcommon_x11_option().is_none()
+}

@@ -1,0 +1,250 @@
+//! The window's state: its session, its screen and its mouse.
+
+use std::path::PathBuf;
+use web_time::Instant;
+
+use a3_render::GpuError;
+use winit::event::KeyEvent;
+use winit::event_loop::{ActiveEventLoop, OwnedDisplayHandle};
+use winit::keyboard::{Key, ModifiersState, NamedKey};
+
+use super::graphics::Graphics;
+use super::keyboard;
+use super::mouse::Mouse;
+use super::platform::{self, Outside};
+use super::remember::remember;
+use super::screen::Screen;
+use super::status::Status;
+use crate::base::failure::Failure;
+use crate::files::output;
+use crate::window::hud::panel;
+use crate::window::session::{Action, RunAction, Session, WindowAction};
+use crate::window::settings::Settings;
+use crate::window::{command_line, keep};
+
+/// The window, from the first event to the last.
+pub struct App {
+    /// The session that is shown.
+    pub session: Session,
+    /// The window on the screen.
+    pub screen: Screen,
+    /// The mouse.
+    pub mouse: Mouse,
+    /// The keys that are held beside others.
+    pub held: ModifiersState,
+    /// Time when the simulation was last brought up to date.
+    pub last: Instant,
+    /// The settings as they were read, unless none are remembered.
+    pub settings: Option<Settings>,
+    /// What the window has of the system.
+    pub outside: Outside,
+    /// Lines for tests, if they are asked for.
+    pub status: Option<Status>,
+    /// The failure that closed the window, if there was one.
+    pub failure: Option<Failure>,
+}
+
+impl App {
+    /// A session in a window that is yet to be opened.
+    pub fn new(
+        session: Session,
+        display: OwnedDisplayHandle,
+        status: bool,
+        outside: Outside,
+        settings: Option<Settings>,
+    ) -> Self {
+        let zoom = settings.as_ref().map_or(1.0, |it| it.interface_scale);
+        Self {
+            session,
+            screen: Screen::new(display, zoom),
+            mouse: Mouse::new(),
+            held: ModifiersState::empty(),
+            last: Instant::now(),
+            settings,
+            outside,
+            status: status.then(Status::default),
+            failure: None,
+        }
+    }
+
+    /// Closes the window because of a failure.
+    pub fn fail(&mut self, event_loop: &ActiveEventLoop, why: impl std::fmt::Display) {
+        self.failure = Some(Failure::run(why));
+        event_loop.exit();
+    }
+
+    /// Opens all that depends on the adapter.
+    pub fn open_graphics(&mut self, event_loop: &ActiveEventLoop) {
+        let opened = self
+            .outside
+            .open_graphics(&mut self.screen, &mut self.session);
+        if let Some(graphics) = opened {
+            self.take_graphics(event_loop, graphics);
+        }
+    }
+
+    /// Takes up all that depends on the adapter.
+    pub fn take_graphics(
+        &mut self,
+        event_loop: &ActiveEventLoop,
+        graphics: Result<Graphics, GpuError>,
+    ) {
+        if let Err(why) = self.screen.take_graphics(graphics) {
+            self.fail(event_loop, why);
+        }
+    }
+
+    /// Does what a key is for: in the panel, or by the table of keys.
+    pub fn press_key(&mut self, event_loop: &ActiveEventLoop, event: &KeyEvent) {
+        if let (Some(_), Some(graphics)) = (&self.status, &self.screen.graphics)
+            && event.logical_key == Key::Named(NamedKey::F12)
+        {
+            graphics.lose_device();
+            self.screen.redraw();
+        }
+        if let (true, Some(by)) = (self.held.control_key(), keyboard::zoom(&event.logical_key)) {
+            let said = self.screen.scale_interface(by);
+            return self.session.readings.say(said);
+        }
+        let typed = keyboard::text_key(event);
+        if self.session.list.is_some() {
+            if typed.is_some_and(|key| self.session.press_list(key)) {
+                self.scene_changed();
+            }
+            self.screen.redraw();
+            return;
+        }
+        if typed.is_some_and(|key| panel::press_text(&mut self.session, key)) {
+            self.screen.redraw();
+            return;
+        }
+        let key = keyboard::panel_key(&event.logical_key);
+        let shift = self.held.shift_key();
+        if key.is_some_and(|key| panel::press(&mut self.session, key, shift)) {
+            self.screen.redraw();
+            return;
+        }
+        let Some(action) = keyboard::action(&event.logical_key) else {
+            return;
+        };
+        let repeats = matches!(
+            action,
+            Action::Run(
+                RunAction::Step
+                    | RunAction::LongerStep
+                    | RunAction::ShorterStep
+                    | RunAction::Scrub(_)
+            )
+        );
+        if !event.repeat || repeats {
+            self.act(event_loop, action);
+        }
+    }
+
+    /// Does an action of the keys.
+    pub fn act(&mut self, event_loop: &ActiveEventLoop, action: Action) {
+        let pane = self.mouse.pointer.pane(&self.session, &self.screen);
+        match action {
+            Action::Run(action) => {
+                // No steps are due for the time in which nothing moved.
+                if !self.session.animated() {
+                    self.last = Instant::now();
+                }
+                if self.session.act(action, pane) {
+                    self.scene_changed();
+                }
+            }
+            Action::Window(action) => self.act_in_window(event_loop, action, pane),
+        }
+        self.screen.redraw();
+    }
+
+    /// Does an action that needs the window. The pointer is over `pane`.
+    fn act_in_window(&mut self, event_loop: &ActiveEventLoop, action: WindowAction, pane: usize) {
+        let (session, graphics) = (&mut self.session, self.screen.graphics.as_ref());
+        let message = match action {
+            WindowAction::Quit => {
+                let stays = platform::quit(event_loop);
+                if stays.is_some() {
+                    self.remember();
+                }
+                stays.map(Into::into)
+            }
+            WindowAction::Picture => Some(self.outside.save_picture(session, graphics)),
+            WindowAction::FullScreen => {
+                self.screen.toggle_full();
+                None
+            }
+            WindowAction::Undo | WindowAction::Redo => {
+                let again = action == WindowAction::Redo || self.held.shift_key();
+                panel::undo(session, again);
+                None
+            }
+            WindowAction::Follow => {
+                let hit = self.mouse.pointer.hit(session, &self.screen, pane);
+                let particle = hit.and_then(|(target, _)| target.particle());
+                let panes = &session.runs.panes;
+                Some(session.view.follow(panes, pane, particle))
+            }
+            WindowAction::WritePlots => Some(said("wrote", write_plots(session))),
+            WindowAction::Record => {
+                self.outside.films.record(session, graphics);
+                None
+            }
+            WindowAction::FilmLast => {
+                self.outside.films.record_last(session, graphics);
+                None
+            }
+            WindowAction::CommandLine => Some(match command_line::of(session, pane) {
+                Ok(line) => self.outside.copy(&line),
+                Err(failure) => failure.message(),
+            }),
+            WindowAction::Keep => Some(said("kept in", keep::keep(session, pane))),
+            WindowAction::TakeUp => {
+                let loaded = match session.scenes.kept.clone() {
+                    None => "Nothing was kept: k keeps the run in a file.".into(),
+                    Some(path) => {
+                        let taken = keep::take_up(session, &path);
+                        said("loaded", taken.map(|()| path))
+                    }
+                };
+                session.readings.say(loaded);
+                self.scene_changed();
+                None
+            }
+            WindowAction::Lessons => Some(platform::open_lessons()),
+        };
+        if let Some(message) = message {
+            self.session.readings.say(message);
+        }
+    }
+
+    /// Shows another scene.
+    pub fn scene_changed(&mut self) {
+        self.mouse.stop();
+        self.outside.films.end_live(&mut self.session);
+        self.screen.set_scene(&self.session);
+    }
+
+    /// Keeps the settings for the next window, if they are remembered.
+    pub fn remember(&self) {
+        if let Some(before) = &self.settings {
+            remember(before, &self.session, &self.screen);
+        }
+    }
+}
+
+/// Message about a file that was written or read, or why it was not.
+fn said(done: &str, file: Result<PathBuf, Failure>) -> String {
+    match file {
+        Ok(path) => format!("{done} {}", path.display()),
+        Err(failure) => failure.message(),
+    }
+}
+
+/// Writes the samples of all panes under the first name that is free.
+fn write_plots(session: &Session) -> Result<PathBuf, Failure> {
+    let table = panel::csv(&session.runs.panes).map_err(Failure::run)?;
+    let scene = &session.runs.first().scene().name;
+    output::write_new("".as_ref(), scene, "csv", &table)
+}

@@ -1,0 +1,123 @@
+//! Status lines for tests: what is on the screen, as text on stderr.
+
+use web_time::{Duration, Instant};
+
+use a3_render::Tile;
+use egui::CursorIcon;
+
+use super::screen::Screen;
+use crate::base::terminal;
+use crate::draw::show::{Arrows, Quantity};
+use crate::window::session::{Pane, Session};
+
+/// The lines of status so far.
+#[derive(Default)]
+pub struct Status {
+    /// Number of frames drawn.
+    pub frames: u64,
+    /// The last line, without what changes from frame to frame.
+    state: String,
+    /// Time of the last line.
+    said: Option<Instant>,
+}
+
+impl Status {
+    /// Writes a line once there are graphics, unless nothing has changed and the last one is too
+    /// recent.
+    pub fn say(&mut self, session: &Session, screen: &Screen, cursor: CursorIcon) {
+        let Some(graphics) = &screen.graphics else {
+            return;
+        };
+        let run = session.runs.first();
+        let readings = &session.readings;
+        let panes = &session.runs.panes;
+        let grabbed = run.grabbed().map_or("-".into(), |i| i.to_string());
+        // Position of the grabbed particle in the window (px).
+        let place = |pane: &Pane, tile: Tile| {
+            let p = pane.simulation.position(pane.simulation.grabbed()?);
+            let point = [p.x as f32, p.y as f32, p.z as f32];
+            let ([x, y], _) = session.view.camera.project(point, tile.aspect())?;
+            let (x, y) = (x * tile.width as f32, y * tile.height as f32);
+            Some(format!("{:.0},{:.0}", tile.x as f32 + x, tile.y as f32 + y))
+        };
+        let hands: Vec<_> = panes
+            .iter()
+            .zip(graphics.tiles(session))
+            .map(|(pane, tile)| place(pane, tile).unwrap_or("-".into()))
+            .collect();
+        let each = |value: &dyn Fn(&Pane) -> String| {
+            let values: Vec<_> = panes.iter().map(value).collect();
+            values.join(",")
+        };
+        let state = format!(
+            "scene={} solver={} step={} style={:?} wind={} swing={} paused={} help={} panel={} list={} film={} cursor={cursor:?} followed={} parallel={} scale={} dark={} blown={} grabbed={grabbed} \
+             colour={} arrows={} slowness={} scrubbed={} pins={} springs_of={} size={}x{} visible={} devices={}",
+            run.scene().name,
+            run.method().name,
+            run.control().value(),
+            panes[0].show.style,
+            run.windy(),
+            run.swinging(),
+            readings.paused,
+            readings.help,
+            session.panel.open,
+            session.list.is_some(),
+            readings.film.is_some(),
+            session
+                .view
+                .followed()
+                .map_or("-".into(), |i| i.to_string()),
+            session.view.camera.is_parallel(),
+            graphics.scale(),
+            panes[0].show.dark,
+            run.blow_up().is_some(),
+            panes[0].show.colouring.quantity.map_or("-", Quantity::name),
+            panes[0].show.field.arrows.map_or("-", Arrows::name),
+            readings.slowness,
+            readings.rewound.is_some(),
+            run.model().network().map_or(0, |n| n.pins().count()),
+            panes[0]
+                .show
+                .springs_of
+                .map_or("-".into(), |i| i.to_string()),
+            graphics.size().0,
+            graphics.size().1,
+            screen.visible,
+            screen.devices,
+        );
+        let now = Instant::now();
+        let quiet = self
+            .said
+            .is_some_and(|said| now.duration_since(said) < Duration::from_millis(200));
+        // While all stands still, no other line would follow.
+        let quiet = quiet && session.animated();
+        if quiet && state == self.state {
+            return;
+        }
+        terminal::warn(&format!(
+            "status {state} time={:.4} steps={} frames={} hand={} rate={:.1} factor={:.2} \
+             simulating={:.2} drawing={:.2} adapter={} panes={} hands={} solvers={} step_sizes={} times={} lost={} \
+             errors={}",
+            run.time(),
+            run.steps(),
+            self.frames,
+            hands[0],
+            readings.rate,
+            readings.factor,
+            readings.simulating,
+            readings.drawing,
+            graphics.adapter(),
+            panes.len(),
+            hands.join(";"),
+            each(&|pane| pane.simulation.method().name.into()),
+            each(&|pane| pane.simulation.control().value().to_string()),
+            each(&|pane| format!("{:.4}", pane.simulation.time())),
+            each(&|pane| (!pane.alive()).to_string()),
+            each(&|pane| pane
+                .error
+                .map_or("-".into(), |error| format!("{error:.3e}"))),
+        ));
+        self.state = state;
+        self.said = Some(now);
+    }
+}

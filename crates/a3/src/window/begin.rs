@@ -1,0 +1,116 @@
+//! From arguments to sessions, of windows and of pictures.
+
+use a3_core::{Simulation, StepLimits};
+
+use crate::base::failure::Failure;
+use crate::cli::{Compare, Drawing, WindowOptions};
+use crate::draw::show::{self, Quantity};
+use crate::files::setup::Request;
+use crate::window::session::{Beginning, Origin, Session};
+
+/// The session of a window on one run.
+pub fn window(options: &WindowOptions) -> Result<Session, Failure> {
+    let request = Request::read(&options.what)?;
+    let source = &request.source;
+    if options.watch && (source.path.is_none() || source.is_input()) {
+        return Err(Failure::usage(
+            "--watch needs a scene file, as in `--scene flag.toml --watch`",
+        ));
+    }
+    let solver = source.solver_or(options.solver);
+    let mut setup = request.build()?;
+    setup.scene.limits = options.limits.given().or(setup.scene.limits);
+    let simulation = request.simulate(&setup, solver, options.step)?;
+    check_particle(&simulation, options.springs_of)?;
+    check_drawing(&simulation, options.look.manner, false)?;
+    let beginning = Beginning {
+        manner: options.look.manner.of(options.springs_of),
+        paused: options.look.paused,
+    };
+    Session::new(
+        origin(request, options.limits.given()),
+        &setup,
+        vec![simulation],
+        &beginning,
+    )
+}
+
+/// The session of a comparison.
+pub fn comparison(options: &Compare) -> Result<Session, Failure> {
+    let count = options.methods.len();
+    if !(2..=4).contains(&count) {
+        return Err(Failure::usage(format!(
+            "compare takes 2 to 4 solvers, as in `a3 compare e:0.05 r:0.05`, not {count}"
+        )));
+    }
+    let request = Request::read(&options.what)?;
+    let mut setup = request.build()?;
+    setup.scene.limits = options.limits.given().or(setup.scene.limits);
+    let simulations = options
+        .methods
+        .iter()
+        .map(|(solver, step)| request.simulate(&setup, solver, *step))
+        .collect::<Result<Vec<_>, Failure>>()?;
+    check_drawing(&simulations[0], options.look.manner, true)?;
+    let beginning = Beginning {
+        manner: options.look.manner.of(None),
+        paused: options.look.paused,
+    };
+    Session::new(
+        origin(request, options.limits.given()),
+        &setup,
+        simulations,
+        &beginning,
+    )
+}
+
+/// The origin of the scene.
+fn origin(request: Request, limits: StepLimits) -> Origin {
+    Origin {
+        source: request.source,
+        grid: request.options.grid,
+        limits,
+    }
+}
+
+/// `Ok` if the scene has that particle.
+pub fn check_particle(simulation: &Simulation, particle: Option<usize>) -> Result<(), Failure> {
+    match (particle, simulation.model().network()) {
+        (Some(i), Some(network)) => network
+            .check_particle(i)
+            .map_err(|e| Failure::usage(format!("--springs-of: {e}"))),
+        (Some(_), None) => Err(Failure::usage("--springs-of: this scene has no springs")),
+        (None, _) => Ok(()),
+    }
+}
+
+/// Checks that the scene supports the requested colours, arrows and springs.
+pub fn check_drawing(
+    simulation: &Simulation,
+    drawing: Drawing,
+    compared: bool,
+) -> Result<(), Failure> {
+    let scene = &simulation.scene().name;
+    let has_none = |what: &str, option: &str| {
+        format!("the scene {scene} has no {what} to show: leave out --{option}")
+    };
+    let colour = drawing.colour.filter(|c| !c.is_in(simulation, compared));
+    let arrows = drawing.arrows.filter(|a| !a.is_in(simulation));
+    let why = match (colour, arrows) {
+        (Some(Quantity::Contact), _) => format!(
+            "nothing can touch in the scene {scene}: leave out --colour, or let surfaces touch \
+             by --self-collision"
+        ),
+        (Some(Quantity::Error), _) => {
+            "errors are shown where there is a reference, which a3 compare runs: leave out --colour"
+                .into()
+        }
+        (Some(colour), _) => has_none(colour.name(), "colour"),
+        (None, Some(arrows)) => has_none(arrows.name(), "arrows"),
+        (None, None) if drawing.springs && !show::has_springs(simulation) => {
+            has_none("springs", "springs")
+        }
+        (None, None) => return Ok(()),
+    };
+    Err(Failure::usage(why))
+}

@@ -1,0 +1,231 @@
+//! The command line that makes what a window shows now.
+
+use a3_core::{Simulation, StepLimits};
+use a3_render::Style;
+use clap::Parser;
+
+use crate::base::failure::Failure;
+use crate::cli::{Cli, Command};
+use crate::draw::show::has_springs;
+use crate::window::begin;
+use crate::window::hud::panel;
+use crate::window::session::{Session, looks, write_scene};
+
+/// The command line that begins with the picture and the run of pane `at` as they are now. Where
+/// options cannot say what they are, a scene file is written. A comparison begins at its beginning,
+/// because its runs have no state in common later.
+pub fn of(session: &Session, at: usize) -> Result<String, Failure> {
+    let mut words = words(session, at);
+    if !makes(&words, session) {
+        let written = if session.runs.panes.len() == 1 {
+            write_scene(session, session.runs.first())
+        } else {
+            write_scene(
+                session,
+                &beginning(session.runs.first()).map_err(Failure::run)?,
+            )
+        };
+        words = words_of_file(session, at, &written.map_err(Failure::Run)?);
+    }
+    let quoted: Vec<_> = words.iter().map(|word| quoted(word)).collect();
+    Ok(format!("a3 {}", quoted.join(" ")))
+}
+
+/// The words after the program's name, with the scene as it was asked for.
+fn words(session: &Session, at: usize) -> Vec<String> {
+    let (origin, run) = (&session.scenes.shown, session.runs.first());
+    let description = &origin.source.description;
+    let begins_windy = description.wind.as_ref().is_some_and(|wind| wind.on);
+    let mut words = words_of_file(session, at, &origin.source.typed);
+    if let Some(grid) = origin.grid {
+        words.extend(["--grid".into(), format!("{}x{}", grid.rows(), grid.cols())]);
+    }
+    for (on, word) in [
+        (run.windy() && !begins_windy, "--wind"),
+        (run.swinging(), "--swing"),
+        (
+            run.touching() && !description.self_collision,
+            "--self-collision",
+        ),
+    ] {
+        words.extend(on.then(|| word.to_owned()));
+    }
+    words
+}
+
+/// The words after the program's name, with a scene in which all has its beginning.
+fn words_of_file(session: &Session, at: usize, scene: &str) -> Vec<String> {
+    let control = |run: &Simulation| run.control().value();
+    let mut words = if session.runs.panes.len() == 1 {
+        let run = session.runs.first();
+        vec![run.method().name.into(), control(run).to_string()]
+    } else {
+        let runs = session.runs.panes.iter().map(|pane| &pane.simulation);
+        let methods = runs.map(|run| format!("{}:{}", run.method().name, control(run)));
+        ["compare".into()].into_iter().chain(methods).collect()
+    };
+    let StepLimits { absolute, max_step } = session.scenes.shown.limits;
+    for (name, limit) in [("--absolute", absolute), ("--max-step", max_step)] {
+        words.extend(
+            limit
+                .into_iter()
+                .flat_map(|limit| [name.into(), limit.to_string()]),
+        );
+    }
+    let show = &session.runs.panes[at].show;
+    let mut option = |name: &str, value: &str| words.extend([name.into(), value.into()]);
+    option("--scene", scene);
+    let coloured = show.colouring.quantity;
+    if let Some(quantity) = coloured.filter(|quantity| looks::has(&session.runs.panes, *quantity)) {
+        option("--colour", quantity.name());
+    }
+    if let Some(arrows) = show.field.arrows {
+        option("--arrows", arrows.name());
+    }
+    if let (Some(i), 1) = (show.springs_of, session.runs.panes.len()) {
+        option("--springs-of", &i.to_string());
+    }
+    let springs = show.style == Style::Springs && has_springs(session.runs.first());
+    for (on, word) in [
+        (show.style == Style::Wireframe, "--wireframe"),
+        (springs, "--springs"),
+        (session.view.camera.is_parallel(), "--orthographic"),
+        (show.dark, "--dark"),
+        (session.readings.paused, "--paused"),
+    ] {
+        words.extend(on.then(|| word.to_owned()));
+    }
+    words
+}
+
+/// Whether these words make what a session shows now, or for a comparison what it began with.
+fn makes(words: &[String], session: &Session) -> bool {
+    let program = ["a3".to_owned()];
+    let Ok(options) = Cli::try_parse_from(program.iter().chain(words)) else {
+        return false;
+    };
+    let made = match options.command {
+        Some(Command::Compare(options)) => begin::comparison(&options),
+        _ => begin::window(&options.window),
+    };
+    let Ok(made) = made else {
+        return false;
+    };
+    let begins_alike = |now: &Simulation, made: &Simulation| {
+        let begun = if session.runs.panes.len() == 1 {
+            Ok(now.moment())
+        } else {
+            beginning(now).map(|run| run.moment())
+        };
+        begun.is_ok_and(|begun| begun == made.moment())
+    };
+    let mut pairs = session.runs.panes.iter().zip(&made.runs.panes);
+    panel::tuned(session).is_empty()
+        && session.view.camera == made.view.camera
+        && pairs.all(|(now, made)| begins_alike(&now.simulation, &made.simulation))
+}
+
+/// The run at its beginning, with the wind, the swing and the contact that it has now.
+fn beginning(run: &Simulation) -> Result<Simulation, a3_core::Error> {
+    let mut begun = Simulation::new(run.scene().clone(), run.method(), run.control())?;
+    if run.windy() != begun.windy() {
+        begun.set_wind(run.windy());
+    }
+    begun.set_swinging(run.swinging());
+    begun.set_touching(run.touching())?;
+    Ok(begun)
+}
+
+/// A word as a shell takes it.
+fn quoted(word: &str) -> String {
+    let plain = |c: char| c.is_ascii_alphanumeric() || "-_./:,=+@%".contains(c);
+    if !word.is_empty() && word.chars().all(plain) {
+        return word.into();
+    }
+    format!("'{}'", word.replace('\'', r"'\''"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::window::session::{RunAction, compared, frames, session};
+
+    /// The words of a command line that has no quotes.
+    fn again(line: &str) -> Session {
+        let words: Vec<_> = line.split(' ').skip(1).collect();
+        session(&words)
+    }
+
+    #[test]
+    fn options_say_what_began_and_what_is_seen() {
+        for words in [
+            "verlet 0.005 --scene cloth",
+            "rk4 0.002 --scene cloth --grid 12x9 --wind --swing --colour strain",
+            "dopri5 0.0001 --scene flag --arrows velocity --wireframe --orthographic --dark --paused",
+            "verlet 0.005 --scene mit --self-collision --springs-of 7 --springs --colour contact",
+            "compare euler:0.05 rk4:0.01 --scene chain --colour force --paused",
+        ] {
+            let words: Vec<_> = words.split(' ').collect();
+            let line = of(&session(&words), 0).ok().unwrap();
+            let made: std::collections::BTreeSet<_> = line.split(' ').skip(1).collect();
+            assert_eq!(made, words.iter().copied().collect(), "{line}");
+        }
+        // A comparison begins at its beginning.
+        let later = compared(&["e:0.05", "r:0.01", "--scene", "simple"], 0.5);
+        let line = of(&later, 0).ok().unwrap();
+        assert_eq!(line, "a3 compare euler:0.05 rk4:0.01 --scene simple");
+    }
+
+    #[test]
+    fn what_options_cannot_say_is_in_a_file() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("own.toml");
+        std::fs::write(&file, a3_scenes::find("flag").unwrap().text).unwrap();
+        let file = file.to_str().unwrap();
+        let mut session = session(&["rk4", "0.001", "--scene", file, "--colour", "speed"]);
+        let line = of(&session, 0).ok().unwrap();
+        assert!(line.contains("/own.toml"), "{line}");
+        // Some time later, seen from elsewhere, and tuned.
+        frames(&mut session, 0.3);
+        session.view.camera.orbit(0.3, 0.1);
+        panel::tune(
+            &mut session,
+            &[("gravity".into(), 5.0), ("stiffness".into(), 1.5)],
+        );
+        let line = of(&session, 0).ok().unwrap();
+        assert!(line.contains("/a3-flag-1.toml --colour speed"), "{line}");
+        let made = again(&line);
+        assert_eq!(made.runs.first().state(), session.runs.first().state());
+        assert_eq!(made.runs.first().control(), session.runs.first().control());
+        let gravity = made
+            .runs
+            .first()
+            .model()
+            .network()
+            .and_then(a3_core::Network::gravity);
+        assert_eq!(gravity.unwrap().y, -5.0);
+        assert!((made.view.camera.eye() - session.view.camera.eye()).norm() < 1e-4);
+        // What it makes is said by options again, with that file.
+        let same = of(&made, 0).ok().unwrap();
+        assert_eq!(same, line);
+        // A comparison has no state in common.
+        let words = ["e:0.001", "r:0.001", "--scene", file];
+        let mut several = compared(&words, 0.2);
+        panel::tune(&mut several, &[("gravity".into(), 5.0)]);
+        let line = of(&several, 0).ok().unwrap();
+        let made = again(&line);
+        assert_eq!(made.runs.panes.len(), 2);
+        let begun = beginning(several.runs.first()).unwrap();
+        assert_eq!(made.runs.first().state(), begun.state());
+        several.act(RunAction::Reset, 0);
+        assert!(of(&several, 0).ok().unwrap().contains("a3-flag-3"));
+    }
+
+    #[test]
+    fn words_are_quoted_for_shells() {
+        assert_eq!(quoted("docs/a-b_1.toml"), "docs/a-b_1.toml");
+        assert_eq!(quoted("my scene.toml"), "'my scene.toml'");
+        assert_eq!(quoted("it's"), r"'it'\''s'");
+        assert_eq!(quoted(""), "''");
+    }
+}

@@ -1,0 +1,82 @@
+//! `a3 compare` with `--output`: several methods side by side in a picture.
+
+use a3_render::{Gpu, Offscreen};
+
+use crate::base::failure::Failure;
+use crate::base::terminal;
+use crate::cli::Compare;
+use crate::draw::painter;
+use crate::files::output;
+use crate::window::begin;
+use crate::window::hud::{Studio, digits};
+use crate::window::session::{Pane, Session};
+
+/// Size of a picture for which none is given (px).
+pub const SIZE: (u32, u32) = (1280, 720);
+
+/// Runs the methods and writes their picture and table.
+pub fn run(options: &Compare) -> Result<(), Failure> {
+    let mut session = begin::comparison(options)?;
+    let (Some(path), Some(until)) = (&options.output, options.until) else {
+        return Err(Failure::usage("a picture takes both --output and --until"));
+    };
+    if options.look.paused {
+        return Err(Failure::usage(
+            "a picture cannot begin paused: leave out --paused, or --output",
+        ));
+    }
+    output::check(path, &["png"])?;
+    let gpu = pollster::block_on(Gpu::headless()).map_err(Failure::run)?;
+    // The device may not support pictures of this size: it is asked before the work begins.
+    let offscreen = Offscreen::new(&gpu, options.size.unwrap_or(SIZE)).map_err(Failure::usage)?;
+    session.run_to(until);
+    terminal::say(&table(&session))?;
+    output::write(path, &picture(&gpu, offscreen, &mut session)?)
+}
+
+/// A table of the methods: what the picture says about each.
+pub fn table(session: &Session) -> String {
+    let head =
+        "  solver        setting   time [s]    error [m]   evaluations/s   computing [ms/s]\n";
+    let lines = session.runs.panes.iter().map(line);
+    let readings = &session.readings;
+    let why = readings.no_error.map(|why| format!("no errors: {why}\n"));
+    let past = |until: &f64| session.runs.first().time() > *until;
+    let chaos = readings.predictable.filter(past).map(|until| {
+        format!("errors past {until} s say little: small differences have grown 10,000 times\n")
+    });
+    [head.to_owned()]
+        .into_iter()
+        .chain(lines)
+        .chain(why)
+        .chain(chaos)
+        .collect()
+}
+
+/// The line of a method.
+fn line(pane: &Pane) -> String {
+    let run = &pane.simulation;
+    let start = format!("  {:<10}   {:>8}", run.method().name, run.control().value());
+    if let Some(lost) = run.blow_up() {
+        return format!("{start}   {lost}\n");
+    }
+    let number = |number: Option<f64>| number.map_or("-".into(), digits);
+    format!(
+        "{start}   {:>8.2}   {:>10}   {:>13}   {:>16}\n",
+        run.time(),
+        number(pane.error),
+        number(pane.cost.map(|cost| cost.evaluations)),
+        number(pane.cost.map(|cost| cost.computing)),
+    )
+}
+
+/// A picture of the session as it is now, as PNG.
+pub fn picture(gpu: &Gpu, offscreen: Offscreen, session: &mut Session) -> Result<Vec<u8>, Failure> {
+    let size = offscreen.size();
+    // Text does not shrink with the picture: it could not be read.
+    let scale = painter::scale(size).max(1.0);
+    let (panes, readings) = (&mut session.runs.panes, &session.readings);
+    let mut studio = Studio::new(gpu, offscreen, panes);
+    let pixels = studio.draw(gpu, panes, session.view.camera, scale, readings)?;
+    output::png(&pixels, size)
+}

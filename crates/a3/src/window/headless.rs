@@ -1,0 +1,77 @@
+//! The window's job where there is no display: ten simulated seconds with a line for each, and a
+//! picture at the end.
+
+use a3_core::Simulation;
+use a3_render::{Gpu, Offscreen};
+
+use crate::base::failure::Failure;
+use crate::base::{progress, terminal, verdict};
+use crate::files::output;
+use crate::window::compare::{self, SIZE};
+use crate::window::session::{Pane, Session};
+
+/// Simulated time (s).
+const SECONDS: u32 = 10;
+
+/// Says `why` there is no window, and does its job without one.
+pub fn run(why: &str, mut session: Session) -> Result<(), Failure> {
+    terminal::warn(&format!(
+        "{why}: simulating {SECONDS} seconds without a window."
+    ));
+    let scene = session.runs.first().scene().name.clone();
+    if session.runs.panes.len() > 1 {
+        session.run_to(f64::from(SECONDS));
+        terminal::say(&compare::table(&session))?;
+    } else {
+        tell(&mut session.runs.panes[0])?;
+    }
+    match pollster::block_on(Gpu::headless()) {
+        Ok(gpu) => {
+            let offscreen = Offscreen::new(&gpu, SIZE).map_err(Failure::run)?;
+            let picture = compare::picture(&gpu, offscreen, &mut session)?;
+            let path = output::write_new("".as_ref(), &scene, "png", &picture)?;
+            terminal::say(&format!("picture: {}\n", path.display()))?;
+        }
+        Err(why) => terminal::warn(&format!("no picture: {why}")),
+    }
+    Ok(())
+}
+
+/// Simulates, and writes a line for each simulated second.
+fn tell(pane: &mut Pane) -> Result<(), Failure> {
+    let Pane {
+        simulation, show, ..
+    } = pane;
+    terminal::say("  time [s]   energy [J]   lowest [m]   stretch\n")?;
+    terminal::say(&line(simulation))?;
+    for second in 1..=SECONDS {
+        progress::advance(simulation, f64::from(second), |simulation| {
+            show.follow(simulation);
+        })
+        .and_then(|()| {
+            if second == SECONDS {
+                simulation.conclude()
+            } else {
+                Ok(())
+            }
+        })
+        .map_err(|error| verdict::lost(simulation, &error, "", f64::from(SECONDS)))?;
+        terminal::say(&line(simulation))?;
+    }
+    verdict::warn(simulation);
+    Ok(())
+}
+
+/// The line for the state as it is now.
+fn line(simulation: &Simulation) -> String {
+    let number = |value: Option<f64>, digits: usize| {
+        value.map_or("-".into(), |value| format!("{value:.digits$}"))
+    };
+    format!(
+        "  {:>8.2}   {:>10}   {:>10.4}   {:>7}\n",
+        simulation.time(),
+        number(simulation.energy().map(|energy| energy.total()), 4),
+        simulation.lowest(),
+        number(simulation.largest_stretch(), 3),
+    )
+}

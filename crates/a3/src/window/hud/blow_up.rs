@@ -1,0 +1,142 @@
+//! The text about a run that blew up.
+
+use a3_core::{BlowUp, Cause, Control};
+use egui::Ui;
+
+use super::style::{ALARM, text};
+use super::words::digits;
+use crate::window::session::Pane;
+
+/// Writes when the run blew up, which limit was passed, and which step would have held.
+pub fn blow_up(ui: &mut Ui, pane: &Pane, lost: &BlowUp) {
+    ui.label(ALARM.text(&format!("It {lost}.")).size(14.5).strong());
+    let method = lost.method;
+    let same = method == pane.simulation.method().title;
+    let limit = pane.limit.limit().map(|limit| limit.step);
+    ui.label(text(match (lost.control, pane.limit.would_hold()) {
+        _ if lost.cause == Cause::ReadsVelocity => format!("{method} does not serve such forces."),
+        _ if is_hopeless(lost) => "A shorter step does not help.".into(),
+        (Control::Tolerance(tolerance), _) if matches!(lost.cause, Cause::StepTooSmall { .. }) => {
+            format!("{method} found no step to a tolerance of {tolerance:e}: a larger one may do.")
+        }
+        (Control::Tolerance(tolerance), _) => {
+            format!("A tolerance of {tolerance:e} was too large for {method}.")
+        }
+        (Control::Step(step), Some(would_hold)) if same => {
+            let past = limit.filter(|limit| step > *limit).map(|limit| {
+                format!(": past its limit here of {} ms", digits(1e3 * limit))
+            });
+            let past = past.unwrap_or_default();
+            format!("A step of {step} s was too long for {method}{past}. {would_hold} s would have held.")
+        }
+        (Control::Step(step), None) if same => format!(
+            "A step of {step} s was too long for {method}, and no shorter one was found to hold."
+        ),
+        (Control::Step(step), _) => format!("A step of {step} s was too long for {method}."),
+    }));
+}
+
+/// Whether surfaces that are led left no room, whatever the step.
+fn is_squeezed(lost: &BlowUp) -> bool {
+    matches!(lost.cause, Cause::Squeezed { .. })
+}
+
+/// Whether no step would have held.
+fn is_hopeless(lost: &BlowUp) -> bool {
+    is_squeezed(lost) || matches!(lost.cause, Cause::Contradiction(_))
+}
+
+/// The keys that lead out of a blow-up.
+pub fn way_out(lost: &BlowUp) -> String {
+    if is_squeezed(lost) {
+        return "Press , to go back, or x to let surfaces pass through one another, then r.".into();
+    }
+    "Press < to go back, - for a shorter step, or a digit for another solver; or r to begin anew."
+        .into()
+}
+
+#[cfg(test)]
+mod tests {
+    use a3_core::{Control, Simulation, integrators};
+
+    use crate::draw::show::{Manner, Show};
+    use crate::window::hud::{pane, read};
+    use crate::window::session::{Pane, Readings};
+
+    #[test]
+    fn a_blow_up_says_which_limit_was_passed() {
+        let mut pane = pane("mit", "r", 0.05);
+        while pane.simulation.take_steps(1).is_ok() {}
+        pane.read_state();
+        let (words, _) = read(&[pane], &Readings::default(), [1280.0, 720.0]);
+        let words = words.replace('\n', " ");
+        for said in [
+            "A step of 0.05 s was too long for classical Runge-Kutta: past its limit here of 3",
+            "0.03 s would have held",
+        ] {
+            assert!(words.contains(said), "{said} in {words}");
+        }
+    }
+
+    #[test]
+    fn what_leaves_no_room_is_named() {
+        let squeezed = "self_collision = true\n\
+            [[cloth]]\ngrid = [3, 3]\nwidth = 1\nmass = 0.1\nstiffness = [40, 20, 1]\n\
+            down = [0, 0, 1]\npin = [{ at = ['top', 'bottom'] }]\n\
+            [[sphere]]\ncenter = [0, 1, 0]\nradius = 0.2\nshift = { by = [0, -2, 0], end = 1 }\n";
+        let setup = a3_scenes::Description::parse(squeezed).unwrap();
+        let setup = setup.build(None, &mut |_| unreachable!()).unwrap();
+        let method = integrators::find("v").unwrap();
+        let simulation = Simulation::new(setup.scene, method, Control::Step(0.001)).unwrap();
+        let mut pane = Pane::new(simulation, Show::new(setup.presentation, Manner::default()));
+        while pane.simulation.take_steps(1).is_ok() {}
+        let (words, _) = read(&[pane], &Readings::default(), [1280.0, 720.0]);
+        let words = words.replace('\n', " ");
+        for said in [
+            "surfaces are squeezed: pins or moving obstacles leave no room between obstacle 0 and particle 0",
+            "A shorter step does not help. Press , to go back",
+        ] {
+            assert!(words.contains(said), "{said} in {words}");
+        }
+        assert!(!words.contains("too long"), "{words}");
+    }
+
+    #[test]
+    fn a_blow_up_names_what_failed_and_nothing_overlaps() {
+        let mut pane = pane("mit", "e", 0.05);
+        let run = &mut pane.simulation;
+        while run.take_steps(1).is_ok() {}
+        run.set_method(integrators::find("r").unwrap(), Control::Step(0.01))
+            .unwrap();
+        let panes = [pane];
+        let readings = Readings {
+            message: Some("There is no wind here.".into()),
+            ..Readings::default()
+        };
+        for size in [
+            [1280.0, 720.0],
+            [800.0, 600.0],
+            [500.0, 400.0],
+            [260.0, 860.0],
+        ] {
+            let (words, sheets) = read(&panes, &readings, size);
+            let words = words.replace('\n', " ");
+            assert!(
+                words.contains("blew up at step") && words.contains("no wind here"),
+                "{words}"
+            );
+            assert!(
+                words.contains("A step of 0.05 s was too long for explicit Euler."),
+                "{words}"
+            );
+            assert!(sheets.len() >= 3);
+            for (k, a) in sheets.iter().enumerate() {
+                assert!(a.right() <= size[0] + 1.0, "{a:?} in {size:?}");
+                assert!(
+                    sheets[..k].iter().all(|b| !a.shrink(1.0).intersects(*b)),
+                    "{sheets:?} in {size:?}"
+                );
+            }
+        }
+    }
+}

@@ -1,0 +1,89 @@
+//! The text over the picture, the timeline, and the panel of knobs and plots: all that egui draws.
+
+mod blow_up;
+mod help;
+pub mod layout;
+mod legend;
+mod list;
+mod overlay;
+pub mod panel;
+mod panes;
+mod picture;
+mod selection;
+mod single;
+mod style;
+mod text;
+mod timeline;
+mod words;
+
+pub use list::show as show_list;
+pub use overlay::Overlay;
+pub use picture::Studio;
+pub use text::show;
+pub use words::digits;
+
+#[cfg(test)]
+pub use tests::{pane, read};
+
+#[cfg(test)]
+mod tests {
+    //! Panes for tests, and a reader of what is written over them.
+
+    use a3_core::{Simulation, integrators};
+
+    use super::show;
+    use super::style::PAPER;
+    use crate::draw::show::{Manner, Show};
+    use crate::window::session::{Pane, Readings};
+
+    /// All that is written, in a window of that size, and the rectangles of the sheets.
+    pub fn read(panes: &[Pane], readings: &Readings, size: [f32; 2]) -> (String, Vec<egui::Rect>) {
+        fn collect(shape: &egui::Shape, words: &mut String, sheets: &mut Vec<egui::Rect>) {
+            match shape {
+                egui::Shape::Text(text) => words.extend([text.galley.text(), "\n"]),
+                egui::Shape::Rect(rect) if rect.fill == PAPER => sheets.push(rect.rect),
+                egui::Shape::Vec(shapes) => shapes
+                    .iter()
+                    .for_each(|shape| collect(shape, words, sheets)),
+                _ => {}
+            }
+        }
+        let ctx = crate::window::hud::style::context();
+        let screen = egui::Rect::from_min_size(egui::Pos2::ZERO, size.into());
+        let mut output = egui::FullOutput::default();
+        // The first pass measures, the next ones draw.
+        for pass in 0..3 {
+            let input = egui::RawInput {
+                screen_rect: Some(screen),
+                time: Some(f64::from(pass)),
+                ..Default::default()
+            };
+            output.textures_delta.set.clear();
+            output.textures_delta.free.clear();
+            output = ctx.run_ui(input, |ui| show(ui.ctx(), panes, readings));
+        }
+        let (mut words, mut sheets) = (String::new(), vec![]);
+        for clipped in &output.shapes {
+            let cut = clipped.clip_rect.intersect(screen).expand(1.0);
+            if let egui::Shape::Text(text) = &clipped.shape {
+                let rect = text.visual_bounding_rect();
+                assert!(
+                    cut.contains_rect(rect),
+                    "{:?} is cut off in {size:?}",
+                    text.galley.text()
+                );
+            }
+            collect(&clipped.shape, &mut words, &mut sheets);
+        }
+        output.textures_delta.set.clear();
+        output.textures_delta.free.clear();
+        (words, sheets)
+    }
+
+    pub fn pane(scene: &str, method: &str, step: f64) -> Pane {
+        let setup = a3_scenes::find(scene).unwrap().build(None).unwrap();
+        let method = integrators::find(method).unwrap();
+        let simulation = Simulation::new(setup.scene, method, method.control(step)).unwrap();
+        Pane::new(simulation, Show::new(setup.presentation, Manner::default()))
+    }
+}

@@ -1,0 +1,388 @@
+//! Knobs: all that can be tuned while a scene runs, in one table for the mouse and the keys.
+
+use a3_core::contact::Shape;
+use a3_core::{Network, Vector3};
+
+use super::dial::{Dial, DialScale, Turn};
+use super::seen::{arrows, colour, film, film_of, frame_limit, full_colour, style};
+use super::values::{
+    damping, drag, floor, gravity, gusts, network, own, radii, solver, sphere, springs_of, step,
+    stiffness, strain_limit, strain_limits, switch,
+};
+use crate::draw::show::{Arrows, Quantity, Show};
+use crate::files::ending::Ending;
+use crate::window::session::{Change, RunAction, Session, Tuning, looks};
+
+/// A knob: a row of the table.
+#[derive(Clone, Copy)]
+pub struct Knob {
+    /// The name of its row.
+    pub name: &'static str,
+    /// What it is, and its unit.
+    pub about: &'static str,
+    /// Whether its row stands apart from the one above it.
+    pub apart: bool,
+    /// Whether it tunes the scene itself, of which a checkpoint knows nothing.
+    pub tunes: bool,
+    /// The dial for a session and the number of a pane, if the knob has a meaning there.
+    pub read: fn(&Session, usize) -> Option<Dial>,
+    /// Sets its value in a session and the pane of that number.
+    pub(super) set: fn(&mut Session, usize, f64),
+}
+
+const fn knob(
+    name: &'static str,
+    about: &'static str,
+    read: fn(&Session, usize) -> Option<Dial>,
+    set: fn(&mut Session, usize, f64),
+) -> Knob {
+    Knob {
+        name,
+        about,
+        apart: false,
+        tunes: false,
+        read,
+        set,
+    }
+}
+
+/// The knob, apart from the one above it.
+const fn apart(knob: Knob) -> Knob {
+    Knob {
+        apart: true,
+        ..knob
+    }
+}
+
+/// The knob, as one that tunes the scene itself.
+const fn tunes(knob: Knob) -> Knob {
+    Knob {
+        tunes: true,
+        ..knob
+    }
+}
+
+/// All knobs, from top to bottom.
+pub static KNOBS: &[Knob] = &[
+    knob("solver", "The integrator.", solver, |session, at, i| {
+        session.act(RunAction::Solver(i as usize), at);
+    }),
+    knob(
+        "step",
+        "The step in seconds, or the relative tolerance of an adaptive solver.",
+        step,
+        |session, at, value| {
+            session.set_step_of(at, value);
+        },
+    ),
+    apart(tunes(knob(
+        "stiffness",
+        "Stiffness of all springs, as a multiple of the scene's own.",
+        stiffness,
+        |session, _, factor| {
+            session.tuning.stiffness = factor;
+            set_springs(session);
+        },
+    ))),
+    tunes(knob(
+        "damping",
+        "Damping of all springs, as a multiple of the scene's own.",
+        damping,
+        |session, _, factor| {
+            session.tuning.damping = factor;
+            set_springs(session);
+        },
+    )),
+    tunes(knob(
+        "strain limit",
+        "Springs that a step leaves longer than so many rest lengths are shortened to that.",
+        strain_limit,
+        |session, _, value| {
+            let limits: Vec<_> = own(session).into_iter().flat_map(strain_limits).collect();
+            let Some(&(_, first)) = limits.first() else {
+                return;
+            };
+            session.adjust(|network| {
+                for (particles, own) in &limits {
+                    // Each is as far above 1 in proportion to its own as the first is.
+                    let limit = match (first, own) {
+                        (Some(first), Some(own)) => {
+                            1.0 + (own - 1.0) * (value - 1.0) / (first - 1.0)
+                        }
+                        _ => value,
+                    };
+                    let limit = (value > 1.0).then_some(limit);
+                    // The value is within its scale, so it is not refused.
+                    let _ = network.set_strain_limit(particles.clone(), limit);
+                }
+            });
+        },
+    )),
+    tunes(knob(
+        "drag",
+        "Drag of the air on each particle over its velocity, in kg/s.",
+        drag,
+        |session, _, drag| {
+            session.adjust(|network| {
+                // The value is within its scale, so it is not refused.
+                let _ = network.set_drag(drag);
+            });
+        },
+    )),
+    tunes(knob(
+        "gravity",
+        "Acceleration downwards, in m/s².",
+        gravity,
+        |session, _, g| {
+            session.adjust(|network| {
+                let sideways = network.gravity().unwrap_or_default();
+                network.set_gravity(Vector3::new(sideways.x, -g, sideways.z));
+            });
+        },
+    )),
+    apart(knob(
+        "wind",
+        "Whether the wind blows.",
+        |session, _| {
+            session.runs.first().scene().wind?;
+            Some(switch(session.runs.first().windy(), false))
+        },
+        |session, at, _| {
+            session.act(RunAction::Wind, at);
+        },
+    )),
+    tunes(knob(
+        "gusts",
+        "Force or velocity of the wind, as a multiple of the scene's own.",
+        gusts,
+        |session, _, factor| {
+            session.tuning.gusts = factor;
+            if let Some(wind) = session.tuning.own.wind {
+                session
+                    .runs
+                    .change_all(|run| run.change_wind(wind.scaled(factor)));
+            }
+        },
+    )),
+    knob(
+        "swing",
+        "Whether the pins swing.",
+        |session, _| {
+            session.runs.first().scene().swing?;
+            Some(switch(session.runs.first().swinging(), false))
+        },
+        |session, at, _| {
+            session.act(RunAction::Swing, at);
+        },
+    ),
+    knob(
+        "pins",
+        "Whether the scene's pins hold.",
+        |session, _| {
+            own(session)?.pins().next()?;
+            Some(switch(session.runs.first().pinned(), true))
+        },
+        |session, _, on| session.runs.change_all(|run| run.set_pinned(on != 0.0)),
+    ),
+    knob(
+        "self-collision",
+        "Whether surfaces touch one another and themselves, or pass through.",
+        |session, _| {
+            session.runs.first().scene().touch.as_ref()?;
+            let own = own(session).and_then(Network::touch);
+            let own = own.is_some_and(|touch| touch.bodies);
+            Some(switch(session.runs.first().touching(), own))
+        },
+        |session, at, _| {
+            session.act(RunAction::Touch, at);
+        },
+    ),
+    tunes(knob(
+        "sphere",
+        "Radius of the sphere, in m. Other spheres grow in proportion.",
+        sphere,
+        |session, _, radius| {
+            let radii: Vec<_> = own(session).into_iter().flat_map(radii).collect();
+            let Some(&(_, first)) = radii.first() else {
+                return;
+            };
+            session.adjust(|network| {
+                for &(k, own) in &radii {
+                    let radius = own * (radius / first);
+                    let _ = network.reshape_obstacle(k, Shape::Sphere { radius });
+                }
+            });
+        },
+    )),
+    tunes(knob(
+        "floor",
+        "Whether there is a floor.",
+        |session, _| {
+            floor(own(session)?)?;
+            let there = floor(network(session)?).is_some();
+            Some(switch(there, true))
+        },
+        |session, _, on| {
+            let own = own(session).and_then(floor).filter(|_| on != 0.0);
+            let own = own.map(|(_, floor)| floor.clone());
+            session.adjust(|network| {
+                if let Some((k, _)) = floor(network) {
+                    let _ = network.remove_obstacle(k);
+                }
+                if let Some(floor) = &own {
+                    let _ = network.add_obstacle(floor.clone());
+                }
+            });
+        },
+    )),
+    apart(knob(
+        "springs of",
+        "The particle whose springs are listed and highlighted, by its number.",
+        springs_of,
+        |session, _, i| {
+            for pane in &mut session.runs.panes {
+                pane.show.springs_of = (i >= 0.0).then_some(i as usize);
+            }
+        },
+    )),
+    knob(
+        "colour by",
+        "The quantity that colours show.",
+        colour,
+        |session, _, k| {
+            looks::set_colour(
+                &mut session.runs.panes,
+                Quantity::ALL.get(k as usize).copied(),
+            );
+        },
+    ),
+    knob(
+        "full colour",
+        "The value at the end of the scale of colours. It fits the largest value until it is set.",
+        full_colour,
+        |session, at, end| {
+            let fits = end == session.runs.panes[at].show.colouring.scale.fitting;
+            looks::fix_scale(&mut session.runs.panes, (!fits).then_some(end));
+        },
+    ),
+    knob(
+        "arrows",
+        "The vectors that arrows show.",
+        arrows,
+        |session, _, k| {
+            looks::set_arrows(
+                &mut session.runs.panes,
+                Arrows::ALL.get(k as usize).copied(),
+            );
+        },
+    ),
+    knob(
+        "drawn as",
+        "The surface, its wires, or all springs, each kind in its colour and width.",
+        style,
+        |session, _, k| {
+            let styles = Show::styles(session.runs.first());
+            looks::set_style(
+                &mut session.runs.panes,
+                styles.get(k as usize).copied().unwrap_or_default(),
+            );
+        },
+    ),
+    apart(knob(
+        "dark",
+        "Whether light things are drawn on a dark background.",
+        |session, _| Some(switch(session.runs.panes[0].show.dark, false)),
+        |session, _, on| looks::set_dark(&mut session.runs.panes, on != 0.0),
+    )),
+    knob(
+        "frames",
+        "The most frames a second, to spare the processor. Simulated time stays real time.",
+        frame_limit,
+        |session, _, limit| session.panel.frame_limit = limit as u32,
+    ),
+    knob(
+        "film as",
+        "The format of films by the keys n and m.",
+        film,
+        |session, _, k| {
+            session.panel.film = Ending::ALL.get(k as usize).copied().unwrap_or_default();
+        },
+    ),
+    knob(
+        "film of",
+        "Simulated time that key n films, in s.",
+        |session, _| Some(film_of(session)),
+        |session, _, seconds| {
+            session.panel.film_of = seconds;
+        },
+    ),
+];
+
+/// What is tuned other than the scene has it, by the names of its rows.
+pub fn tuned(session: &Session) -> Vec<(String, f64)> {
+    let tuning = KNOBS.iter().filter(|knob| knob.tunes);
+    let dials = tuning.filter_map(|knob| Some((knob.name, (knob.read)(session, 0)?)));
+    let other = dials.filter(|(_, dial)| dial.value != dial.own);
+    other
+        .map(|(name, dial)| (name.into(), dial.value))
+        .collect()
+}
+
+/// Tunes a session so, and all else as the scene has it.
+pub fn tune(session: &mut Session, tuned: &[(String, f64)]) {
+    for knob in KNOBS.iter().filter(|knob| knob.tunes) {
+        let Some(dial) = (knob.read)(session, 0) else {
+            continue;
+        };
+        let value = tuned.iter().find(|(name, _)| name == knob.name);
+        let value = value.map_or(dial.own, |(_, value)| dial.scale.within(*value));
+        if value != dial.value {
+            (knob.set)(session, 0, value);
+        }
+    }
+}
+
+impl Knob {
+    /// Turns the knob, if it has a meaning.
+    pub fn turn(&self, session: &mut Session, at: usize, turn: Turn) {
+        let Some(dial) = (self.read)(session, at) else {
+            return;
+        };
+        let to = match turn {
+            Turn::To(value) => dial.scale.nearest(value),
+            Turn::By { up, other } => dial.scale.next(dial.value, up, other),
+            Turn::Toggle if dial.scale == DialScale::Switch => 1.0 - dial.value,
+            Turn::Toggle | Turn::Own => dial.own,
+            Turn::Exactly(value) => value,
+        };
+        if to != dial.value {
+            (self.set)(session, at, to);
+            let row = KNOBS.iter().position(|knob| knob.name == self.name);
+            session.history.note(Change::Knob {
+                row: row.unwrap_or(0),
+                pane: at,
+                from: dial.value,
+                to,
+            });
+        }
+    }
+}
+
+/// Gives the springs the stiffness and the damping that they are tuned to.
+fn set_springs(session: &mut Session) {
+    let Tuning {
+        own,
+        stiffness,
+        damping,
+        ..
+    } = session.tuning.clone();
+    let Some(own) = own.model.network() else {
+        return;
+    };
+    session.adjust(|network| {
+        // The springs are those of the same scene, and the factors within their scales.
+        let _ = network
+            .copy_springs(own)
+            .and_then(|()| network.scale_springs(stiffness, damping));
+    });
+}

@@ -1,0 +1,339 @@
+//! Plots of the last seconds of a run.
+
+use a3_plot::Axis;
+use egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Shape, Stroke, pos2};
+
+use super::super::style::{FAINT, TEXT};
+use super::super::words::digits;
+use crate::window::session::{Pane, SPAN, Sample, Samples};
+
+/// Least height of a plot (points).
+const LEAST: f32 = 56.0;
+/// Largest height of a plot over its width.
+const MOST: f32 = 0.6;
+/// Height of the line with the title (points).
+const HEAD: f32 = 17.0;
+/// Height of the numbers below the last plot (points).
+const FOOT: f32 = 15.0;
+/// Width of the numbers on the left (points).
+const NUMBERS: f32 = 40.0;
+/// Size of the numbers (points).
+const SMALL: f32 = 10.5;
+/// Length of the piece of a curve before its name (points).
+const SAMPLE: f32 = 14.0;
+
+const TEAL: Color32 = Color32::from_rgb(0, 122, 128);
+const AMBER: Color32 = Color32::from_rgb(190, 106, 0);
+const VIOLET: Color32 = Color32::from_rgb(112, 62, 158);
+const GRID: Color32 = Color32::from_rgb(196, 197, 200);
+
+/// A curve of a plot.
+#[derive(Clone, Copy)]
+struct Curve {
+    name: &'static str,
+    /// Its name in a file, with its unit.
+    column: &'static str,
+    colour: Color32,
+    /// Lengths of its dashes and of the gaps after them (points); empty for a whole line.
+    dashes: &'static [f32],
+    of: fn(&Sample) -> Option<f64>,
+}
+
+/// A plot, whose title has the unit.
+struct Plot {
+    title: &'static str,
+    curves: &'static [Curve],
+}
+
+const fn curve(
+    name: &'static str,
+    column: &'static str,
+    colour: Color32,
+    of: fn(&Sample) -> Option<f64>,
+) -> Curve {
+    Curve {
+        name,
+        column,
+        colour,
+        dashes: &[],
+        of,
+    }
+}
+
+/// The curve, in dashes: curves of one plot differ in more than their colours.
+const fn dashed(dashes: &'static [f32], curve: Curve) -> Curve {
+    Curve { dashes, ..curve }
+}
+
+static PLOTS: &[Plot] = &[
+    Plot {
+        title: "energy (J)",
+        curves: &[
+            dashed(
+                &[7.0, 3.0],
+                curve("kinetic", "kinetic energy (J)", TEAL, |s| {
+                    Some(s.energy?.kinetic)
+                }),
+            ),
+            dashed(
+                &[1.6, 2.4],
+                curve("elastic", "elastic energy (J)", AMBER, |s| {
+                    Some(s.energy?.elastic)
+                }),
+            ),
+            dashed(
+                &[7.0, 2.4, 1.6, 2.4],
+                curve("gravity", "gravitational energy (J)", VIOLET, |s| {
+                    Some(s.energy?.gravitational)
+                }),
+            ),
+            curve("total", "total energy (J)", TEXT, |s| {
+                Some(s.energy?.total())
+            }),
+        ],
+    },
+    Plot {
+        title: "largest stretch",
+        curves: &[curve("", "largest stretch", AMBER, |s| s.stretch)],
+    },
+    Plot {
+        title: "computing (ms per simulated s)",
+        curves: &[curve("", "computing (ms per simulated s)", TEAL, |s| {
+            Some(s.cost?[1])
+        })],
+    },
+    Plot {
+        title: "evaluations per simulated s",
+        curves: &[curve("", "evaluations per simulated s", VIOLET, |s| {
+            Some(s.cost?[0])
+        })],
+    },
+];
+
+/// The samples of all panes as CSV: a row for each sample.
+pub fn csv(panes: &[Pane]) -> Result<Vec<u8>, csv::Error> {
+    let curves = || PLOTS.iter().flat_map(|plot| plot.curves);
+    let mut writer = csv::Writer::from_writer(vec![]);
+    let names = curves().map(|curve| curve.column);
+    writer.write_record(["solver", "time (s)"].into_iter().chain(names))?;
+    for pane in panes {
+        for sample in pane.samples.iter() {
+            let values = curves().map(|curve| (curve.of)(sample));
+            let values = values.map(|value| value.map_or(String::new(), |v| v.to_string()));
+            let solver = pane.simulation.method().name.to_owned();
+            let first = [solver, sample.time.to_string()];
+            writer.write_record(first.into_iter().chain(values))?;
+        }
+    }
+    writer.into_inner().map_err(|e| e.into_error().into())
+}
+
+/// Draws the plots that have something to show, as many as there is room for. Where the pointer is
+/// over them, they say the values there.
+pub fn draw(painter: &Painter, room: Rect, samples: &Samples, pointer: Option<Pos2>) {
+    let Some(last) = samples.iter().last() else {
+        return;
+    };
+    let to = last.time.max(SPAN);
+    let time = [to - SPAN, to];
+    let shown = PLOTS.iter().filter(|plot| {
+        let of = |s: &Sample| (plot.curves[0].of)(s);
+        samples.iter().filter_map(of).count() > 1
+    });
+    let shown: Vec<_> = shown.collect();
+    let high = room.height() - FOOT;
+    let count = shown.len().min((high / LEAST).max(0.0) as usize);
+    if count == 0 {
+        return;
+    }
+    let plots = Rect::from_x_y_ranges(room.left() + NUMBERS..=room.right() - 2.0, room.y_range());
+    let pointed = pointer
+        .filter(|pointer| plots.contains(*pointer))
+        .and_then(|pointer| {
+            let share = (pointer.x - plots.left()) / plots.width();
+            samples.nearest(time[0] + f64::from(share) * SPAN)
+        });
+    let height = (high / count as f32).min(MOST * room.width());
+    for (k, plot) in shown[..count].iter().enumerate() {
+        let top = room.top() + k as f32 * height;
+        let rect = Rect::from_min_max(pos2(room.left(), top), pos2(room.right(), top + height));
+        plot.draw(painter, rect, samples, time, k + 1 == count, pointed);
+    }
+}
+
+impl Plot {
+    fn draw(
+        &self,
+        painter: &Painter,
+        rect: Rect,
+        samples: &Samples,
+        time: [f64; 2],
+        last: bool,
+        pointed: Option<&Sample>,
+    ) {
+        let words = |at: Pos2, anchor, words: &str, size, colour| {
+            painter.text(at, anchor, words, FontId::proportional(size), colour)
+        };
+        // The values where the pointer is take the places of the names.
+        let title = match pointed {
+            Some(sample) => format!("at {:.2} s", sample.time),
+            None => self.title.into(),
+        };
+        words(rect.left_top(), Align2::LEFT_TOP, &title, 11.5, FAINT);
+        let mut right = rect.right();
+        for curve in self.curves.iter().rev() {
+            let signed = |v: f64| format!("{}{}", if v < 0.0 { "-" } else { "" }, digits(v.abs()));
+            let value = pointed.and_then(curve.of).map(signed);
+            let Some(said) = value.or((!curve.name.is_empty()).then(|| curve.name.into())) else {
+                continue;
+            };
+            let at = pos2(right, rect.top());
+            right = words(at, Align2::RIGHT_TOP, &said, 11.5, curve.colour).left() - 7.0;
+            if !curve.name.is_empty() {
+                let ends = [right + 4.0 - SAMPLE, right + 4.0];
+                curve.draw(painter, &ends.map(|x| pos2(x, rect.top() + 7.5)));
+                right = ends[0] - 5.0;
+            }
+        }
+        let area = Rect::from_min_max(
+            rect.left_top() + egui::vec2(NUMBERS, HEAD),
+            rect.right_bottom() - egui::vec2(2.0, 5.0),
+        );
+        let values = || {
+            let each = self.curves.iter();
+            each.flat_map(|curve| samples.iter().filter_map(curve.of))
+        };
+        let [low, high] = ends(values());
+        let x = Axis::linear(time).between(area.left().into(), area.right().into());
+        let y = Axis::linear([low, high]).between(area.bottom().into(), area.top().into());
+        let rule = Stroke::new(0.7, GRID);
+        for tick in y.ticks(18.0) {
+            let at = y.at(tick.value) as f32;
+            painter.hline(area.x_range(), at, rule);
+            let place = pos2(area.left() - 5.0, at);
+            let label = label(tick.value, tick.label);
+            words(place, Align2::RIGHT_CENTER, &label, SMALL, FAINT);
+        }
+        for tick in x.ticks(44.0) {
+            let at = x.at(tick.value) as f32;
+            painter.vline(at, area.y_range(), rule);
+            if last {
+                let unit = if at > area.right() - 30.0 { " s" } else { "" };
+                let (place, anchor) = if unit.is_empty() {
+                    (pos2(at, area.bottom() + 2.0), Align2::CENTER_TOP)
+                } else {
+                    (
+                        pos2(area.right() + 2.0, area.bottom() + 2.0),
+                        Align2::RIGHT_TOP,
+                    )
+                };
+                let label = format!("{}{unit}", tick.label);
+                words(place, anchor, &label, SMALL, FAINT);
+            }
+        }
+        if let Some(sample) = pointed {
+            let at = x.at(sample.time) as f32;
+            painter.vline(at, area.y_range(), Stroke::new(1.0, FAINT));
+            for curve in self.curves {
+                if let Some(value) = (curve.of)(sample) {
+                    painter.circle_filled(pos2(at, y.at(value) as f32), 2.6, curve.colour);
+                }
+            }
+        }
+        for curve in self.curves {
+            let points = samples.iter().filter_map(|sample| {
+                let value = (curve.of)(sample)?;
+                Some(pos2(x.at(sample.time) as f32, y.at(value) as f32))
+            });
+            curve.draw(painter, &points.collect::<Vec<_>>());
+        }
+    }
+}
+
+impl Curve {
+    fn draw(&self, painter: &Painter, points: &[Pos2]) {
+        let stroke = Stroke::new(1.4, self.colour);
+        if self.dashes.is_empty() {
+            painter.add(Shape::line(points.to_vec(), stroke));
+        } else {
+            let (lengths, gaps): (Vec<_>, Vec<_>) =
+                self.dashes.chunks(2).map(|dash| (dash[0], dash[1])).unzip();
+            painter.extend(Shape::dashed_line_with_offset(
+                points, stroke, &lengths, &gaps, 0.0,
+            ));
+        }
+    }
+}
+
+/// The ends of an axis around all values, with some room.
+fn ends(values: impl Iterator<Item = f64>) -> [f64; 2] {
+    let finite = values.filter(|v| v.is_finite());
+    let [low, high] = finite.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], v| {
+        [low.min(v), high.max(v)]
+    });
+    if low > high {
+        return [0.0, 1.0];
+    }
+    // A value that hardly changes is shown as a level line, not as a magnified rounding error.
+    let gap = (0.08 * (high - low))
+        .max(0.02 * high.abs().max(low.abs()))
+        .max(1e-9);
+    [low - gap, high + gap]
+}
+
+/// The label of a tick, short enough to stand beside a plot.
+fn label(value: f64, label: String) -> String {
+    if label.chars().count() > 6 {
+        format!("{value:.1e}")
+    } else {
+        label
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::window::session::{compared, session};
+
+    #[test]
+    fn a_file_has_the_samples_of_all_panes() {
+        let mut session = compared(&["e:0.01", "r:0.01", "--scene", "chain"], 0.0);
+        for k in 1..=5 {
+            session.run_to(0.1 * f64::from(k));
+        }
+        let text = String::from_utf8(super::csv(&session.runs.panes).unwrap()).unwrap();
+        let mut lines = text.lines();
+        let heading = lines.next().unwrap();
+        assert!(
+            heading.starts_with("solver,time (s),kinetic energy (J),"),
+            "{heading}"
+        );
+        let rows: Vec<Vec<_>> = lines.map(|line| line.split(',').collect()).collect();
+        let samples: Vec<_> = session
+            .runs
+            .panes
+            .iter()
+            .map(|pane| pane.samples.iter().count())
+            .collect();
+        assert_eq!(rows.len(), samples.iter().sum::<usize>());
+        assert!(
+            rows.iter()
+                .all(|row| row.len() == heading.split(',').count())
+        );
+        let last = session.runs.panes[1].samples.iter().last().unwrap();
+        let row = rows.last().unwrap();
+        assert_eq!((row[0], row[1]), ("rk4", &*last.time.to_string()));
+        assert_eq!(row[5].parse(), Ok(last.energy.unwrap().total()));
+    }
+
+    #[test]
+    fn the_sample_nearest_to_the_pointer_is_found() {
+        let mut session = session(&["r", "0.01", "--scene", "chain"]);
+        for k in 1..=20 {
+            session.run_to(0.1 * f64::from(k));
+        }
+        let samples = &session.runs.panes[0].samples;
+        assert!((samples.nearest(1.04).unwrap().time - 1.0).abs() < 1e-9);
+        assert!((samples.nearest(2.2).unwrap().time - 2.0).abs() < 1e-9);
+        assert!(samples.nearest(7.0).is_none());
+    }
+}

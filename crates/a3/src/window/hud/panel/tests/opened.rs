@@ -1,0 +1,37 @@
+//! Sessions whose panel is open, and what its rows say.
+
+use crate::window::hud::panel::request::{PanelKey, press, rows};
+use crate::window::session::{RunAction, Session, session};
+
+pub fn opened(words: &[&str]) -> Session {
+    let mut session = session(words);
+    session.act(RunAction::Panel, 0);
+    session
+}
+
+/// Every scene of the table, in a window with its panel.
+pub fn every_scene() -> impl Iterator<Item = Session> {
+    let names = a3_scenes::SCENES.iter().map(|entry| entry.name);
+    names.map(|name| opened(&["r", "0.005", "--scene", name]))
+}
+
+pub fn type_key(session: &mut Session, key: PanelKey, shift: bool) {
+    assert!(press(session, key, shift), "{key:?}");
+}
+
+/// What all rows say.
+pub fn dials(session: &Session) -> Vec<(&'static str, f64)> {
+    let rows = rows(session).into_iter();
+    rows.map(|(_, knob, dial)| (knob.name, dial.value))
+        .collect()
+}
+
+/// Those that differ. The scale of colours is there while there are colours.
+pub fn changed(before: &[(&'static str, f64)], session: &Session) -> Vec<&'static str> {
+    let always = |row: &&(&'static str, f64)| row.0 != "full colour";
+    let after = dials(session);
+    let [before, after] = [before, &after].map(|rows| rows.iter().filter(always));
+    assert_eq!(before.clone().count(), after.clone().count());
+    let pairs = before.zip(after);
+    pairs.filter(|(a, b)| *a != *b).map(|(a, _)| a.0).collect()
+}

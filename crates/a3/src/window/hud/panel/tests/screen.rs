@@ -1,0 +1,117 @@
+//! A window as egui sees it.
+
+use egui::{Context, Event, PointerButton, Pos2, RawInput, Rect, Shape, pos2};
+
+use crate::window::hud::panel::request::{Request, apply};
+use crate::window::hud::panel::view::{MARGIN, inset, show, width};
+use crate::window::hud::{style, text};
+use crate::window::session::Session;
+
+/// A window, as egui sees it.
+pub struct Screen {
+    ctx: Context,
+    pub size: [f32; 2],
+    pub time: f64,
+}
+
+impl Screen {
+    pub fn new(size: [f32; 2]) -> Self {
+        Self {
+            ctx: style::context(),
+            size,
+            time: 0.0,
+        }
+    }
+
+    /// A frame: what was drawn, and what the hand in the panel wants.
+    pub fn frame(
+        &mut self,
+        session: &Session,
+        events: Vec<Event>,
+    ) -> (egui::FullOutput, Option<Request>) {
+        self.time += 0.05;
+        let px = self.size.map(|side| side as u32);
+        let right = inset(session, px.into(), 1.0);
+        let input = RawInput {
+            screen_rect: Some(Rect::from_min_size(Pos2::ZERO, self.size.into())),
+            safe_area_insets: Some(egui::SafeAreaInsets(egui::epaint::MarginF32 {
+                right,
+                ..Default::default()
+            })),
+            time: Some(self.time),
+            events,
+            ..Default::default()
+        };
+        let mut request = None;
+        let mut output = self.ctx.run_ui(input, |ui| {
+            text::show(ui.ctx(), &session.runs.panes, &session.readings);
+            request = show(ui.ctx(), session).or(request);
+        });
+        output.textures_delta.set.clear();
+        output.textures_delta.free.clear();
+        (output, request)
+    }
+
+    /// All that is written, where, and what is seen of it.
+    pub fn written(&mut self, session: &Session) -> Vec<(String, Rect, Rect)> {
+        self.frame(session, vec![]);
+        self.time += 10.0;
+        let (output, _) = self.frame(session, vec![]);
+        let screen = Rect::from_min_size(Pos2::ZERO, self.size.into());
+        let text = |clipped: &egui::epaint::ClippedShape| match &clipped.shape {
+            Shape::Text(text) => Some((
+                text.galley.text().to_owned(),
+                text.visual_bounding_rect(),
+                clipped.clip_rect.intersect(screen).expand(1.0),
+            )),
+            _ => None,
+        };
+        output.shapes.iter().filter_map(text).collect()
+    }
+
+    /// All that is written, and where. Nothing may be cut off.
+    pub fn read(&mut self, session: &Session) -> Vec<(String, Rect)> {
+        let all = self.written(session).into_iter();
+        all.map(|(words, rect, seen)| {
+            assert!(seen.contains_rect(rect), "{words} is cut off at {rect:?}");
+            (words, rect)
+        })
+        .collect()
+    }
+
+    /// Presses and lets go of the left button at one place, or from one to another: what that does
+    /// to the session.
+    pub fn click(&mut self, session: &mut Session, from: Pos2, to: Pos2) {
+        let button = |pos, pressed| Event::PointerButton {
+            pos,
+            button: PointerButton::Primary,
+            pressed,
+            modifiers: egui::Modifiers::default(),
+        };
+        for event in [
+            vec![Event::PointerMoved(from)],
+            vec![button(from, true)],
+            vec![Event::PointerMoved(to)],
+            vec![button(to, false)],
+            vec![],
+        ] {
+            if let (_, Some(Request::Change(request))) = self.frame(session, event) {
+                apply(session, request);
+            }
+        }
+    }
+
+    /// Where a row's value is, and its slider's ends.
+    pub fn place(&mut self, session: &Session, name: &str) -> (Pos2, [Pos2; 2]) {
+        let texts = self.read(session);
+        let left = self.size[0] - width(self.size[0]);
+        let (_, row) = texts
+            .iter()
+            .find(|(words, rect)| words == name && rect.left() > left)
+            .unwrap();
+        let y = row.center().y;
+        let at = |x: f32| pos2(left + MARGIN + x, y);
+        let wide = width(self.size[0]) - 2.0 * MARGIN;
+        (at(wide - 10.0), [at(82.0), at(wide - 86.0)])
+    }
+}

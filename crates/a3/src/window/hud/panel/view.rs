@@ -1,0 +1,170 @@
+//! The panel as egui draws it: a row for each knob, a button, and plots where there is room.
+
+use egui::{Align2, Area, Context, FontId, Id, Rect, Sense, Stroke, pos2, vec2};
+
+use super::super::style::{FAINT, TEXT};
+use super::plots;
+use super::request::{self, Request, is_shown, rows};
+use super::row::{self, Row};
+use crate::window::session::{Action, RunAction, Session, WindowAction};
+
+/// Least and largest width of the panel (points), and the share of a window's width between them.
+const WIDTH: (f32, f32, f32) = (304.0, 460.0, 0.2);
+/// Width of a window that has room for a picture beside the panel (points). In a narrower one the
+/// panel covers the picture, until it is closed.
+const BESIDE: f32 = 480.0;
+/// Distance of the rows from the edges of the panel (points).
+pub(super) const MARGIN: f32 = 14.0;
+/// Height of the title (points).
+const HEAD: f32 = 36.0;
+/// Height of the button and its margins (points).
+const FOOT: f32 = 46.0;
+/// Distance between groups of rows (points).
+const GAP: f32 = 7.0;
+
+/// Width of the panel in a window of that width (points).
+pub(super) fn width(window: f32) -> f32 {
+    let (least, most, share) = WIDTH;
+    if window < BESIDE {
+        window
+    } else {
+        (share * window).round().clamp(least, most)
+    }
+}
+
+/// Size that the panel leaves of a window of `size` (px) at `scale` pixels per point.
+pub fn leaves(session: &Session, size: (u32, u32), scale: f32) -> (u32, u32) {
+    if !is_shown(session) {
+        return size;
+    }
+    let window = size.0 as f32 / scale;
+    if window < BESIDE {
+        return size;
+    }
+    let taken = (width(window) * scale).round() as u32;
+    (size.0.saturating_sub(taken).max(1), size.1)
+}
+
+/// Width on the right that text must keep clear of (points).
+pub fn inset(session: &Session, size: (u32, u32), scale: f32) -> f32 {
+    (size.0 - leaves(session, size, scale).0) as f32 / scale
+}
+
+/// Draws the panel, if it is shown, and returns what the mouse asks for.
+pub fn show(ctx: &Context, session: &Session) -> Option<Request> {
+    if !is_shown(session) {
+        return None;
+    }
+    let window = ctx.viewport_rect();
+    let rect = Rect::from_min_max(
+        pos2(window.right() - width(window.width()), window.top()),
+        window.right_bottom(),
+    );
+    let mut request = None;
+    Area::new(Id::unique("panel"))
+        .fixed_pos(rect.min)
+        .constrain_to(window)
+        .fade_in(false)
+        .show(ctx, |ui| {
+            ui.allocate_rect(rect, Sense::click());
+            ui.painter().rect_filled(rect, 0.0, row::SHEET);
+            ui.painter()
+                .vline(rect.left(), rect.y_range(), Stroke::new(1.0, row::EDGE));
+            let inner = rect.shrink2(vec2(MARGIN, 0.0));
+            head(ui, inner, session);
+            let rows = rows(session);
+            let chosen = rows.iter().rposition(|(k, ..)| *k <= session.panel.row);
+            let chosen = chosen.unwrap_or(0);
+            // In a low window there are as many rows as fit, the chosen one among them.
+            let room = inner.bottom() - FOOT - (inner.top() + HEAD);
+            let fit = ((room / row::HEIGHT) as usize).max(1);
+            let gap = if fit > rows.len() { GAP } else { 0.0 };
+            let first = (chosen + 1).saturating_sub(fit);
+            let mut top = inner.top() + HEAD;
+            for (n, (k, knob, dial)) in rows.iter().enumerate().skip(first).take(fit) {
+                if knob.apart && n > first {
+                    top += gap;
+                }
+                let place =
+                    Rect::from_min_size(pos2(inner.left(), top), vec2(inner.width(), row::HEIGHT));
+                let row = Row {
+                    number: *k,
+                    knob,
+                    dial,
+                    chosen: n == chosen,
+                    typed: session.panel.typed.as_deref().filter(|_| n == chosen),
+                };
+                request = row.show(ui, place).map(Request::Change).or(request);
+                top += row::HEIGHT;
+            }
+            request = foot(ui, inner, session).or(request);
+            let room = Rect::from_min_max(
+                pos2(inner.left(), top + 12.0),
+                pos2(inner.right(), inner.bottom() - FOOT),
+            );
+            let pane = &session.runs.panes[request::pane(session)];
+            let pointer = ui.ctx().pointer_latest_pos();
+            plots::draw(ui.painter(), room, &pane.samples, pointer);
+        });
+    request
+}
+
+/// Draws the title.
+fn head(ui: &egui::Ui, inner: Rect, session: &Session) {
+    let painter = ui.painter();
+    let line = inner.top() + 19.0;
+    let words = match session.runs.panes.len() {
+        1 => "Tuning".into(),
+        count => format!(
+            "Tuning  pane {} of {count}",
+            session.panel.pane.min(count - 1) + 1
+        ),
+    };
+    let at = pos2(inner.left(), line);
+    painter.text(
+        at,
+        Align2::LEFT_CENTER,
+        words,
+        FontId::proportional(17.0),
+        TEXT,
+    );
+    let at = pos2(inner.right(), line);
+    painter.text(
+        at,
+        Align2::RIGHT_CENTER,
+        "Tab",
+        FontId::proportional(12.5),
+        FAINT,
+    );
+}
+
+/// Draws the buttons: they write a scene file and the plots, film from now on, and film the last
+/// seconds.
+fn foot(ui: &egui::Ui, inner: Rect, session: &Session) -> Option<Request> {
+    let last = format!("last {} s", session.panel.film_of);
+    let live = session.readings.film.as_ref().is_some_and(|film| film.live);
+    let record = if live { "stop" } else { "film" };
+    let buttons = [
+        ("scene", "f", Action::Run(RunAction::WriteScene)),
+        ("plots", "u", Action::Window(WindowAction::WritePlots)),
+        (record, "m", Action::Window(WindowAction::Record)),
+        (&last, "n", Action::Window(WindowAction::FilmLast)),
+    ];
+    let gap = 5.0;
+    let width = (inner.width() - 3.0 * gap) / 4.0;
+    let mut request = None;
+    for (k, (words, key, action)) in buttons.into_iter().enumerate() {
+        let left = inner.left() + k as f32 * (width + gap);
+        let rect = Rect::from_min_max(
+            pos2(left, inner.bottom() - FOOT + 8.0),
+            pos2(left + width, inner.bottom() - 10.0),
+        );
+        let response = ui.interact(rect, Id::unique(("button", k)), Sense::click());
+        row::button(ui, rect, &response, words, key);
+        request = response
+            .clicked()
+            .then_some(Request::Act(action))
+            .or(request);
+    }
+    request
+}

@@ -1,0 +1,26 @@
+//! The box in which particles are pinned or let go of.
+
+use egui::{Align2, Context, FontId, Id, LayerId, Order, Pos2, Rect, Stroke, StrokeKind, vec2};
+
+use super::style::{TEXT, WARNING};
+use crate::window::session::Selection;
+
+/// Draws the box, and says what a release would do.
+pub fn show(ctx: &Context, selection: &Selection) {
+    let [a, b] = selection.corners.map(Pos2::from);
+    let rect = Rect::from_two_pos(a, b);
+    let painter = ctx.layer_painter(LayerId::new(Order::Foreground, Id::unique("box")));
+    let fill = WARNING.colour.gamma_multiply(0.12);
+    let stroke = Stroke::new(1.4, WARNING.colour);
+    painter.rect(rect, 2.0, fill, stroke, StrokeKind::Middle);
+    let does = if selection.pinned { "pin" } else { "let go of" };
+    let words = format!("{does} {}", selection.count);
+    let at = rect.left_top() + vec2(6.0, 4.0);
+    painter.text(
+        at,
+        Align2::LEFT_TOP,
+        words,
+        FontId::proportional(13.5),
+        TEXT,
+    );
+}

@@ -1,0 +1,334 @@
+//! The readings of a run in words.
+
+use a3_core::stability::tenfold_time;
+use a3_core::{Control, Simulation};
+use egui::{RichText, Sense, Ui, vec2};
+
+use super::style::{ALARM, Mark, SAFE, WARNING, faint, text};
+use crate::window::session::{FilmProgress, Pane, Readings};
+
+/// A number with three digits, however small it is.
+pub fn digits(number: f64) -> String {
+    match number {
+        0.0 => "0".into(),
+        small if small < 1e-3 => format!("{small:.2e}"),
+        large if large >= 100.0 => format!("{large:.0}"),
+        middling => {
+            let places = (2.0 - middling.log10().floor()).clamp(0.0, 5.0) as usize;
+            format!("{middling:.places$}")
+        }
+    }
+}
+
+/// The scene's name, and its grid if it has one.
+pub fn scene(simulation: &Simulation) -> String {
+    let scene = simulation.scene();
+    let grid = scene.grid().map_or(String::new(), |grid| {
+        format!("  {} × {}", grid.rows(), grid.cols())
+    });
+    format!("{}{grid}", scene.name)
+}
+
+/// The method, and its step or tolerance.
+pub fn method(simulation: &Simulation) -> String {
+    let control = match simulation.control() {
+        Control::Step(step) => format!("step {} s", seconds(step)),
+        control @ Control::Tolerance(_) => control.to_string(),
+    };
+    format!("{},  {control}", simulation.method().title)
+}
+
+/// A step (s) as one would type it: 1/60 rather than all of its digits.
+fn seconds(step: f64) -> String {
+    let (decimal, rate) = (step.to_string(), 1.0 / step);
+    if decimal.len() > 10 && (rate - rate.round()).abs() < 1e-9 * rate {
+        return format!("1/{}", rate.round());
+    }
+    decimal
+}
+
+/// The steps of an adaptive method: their length now, and how many were rejected.
+pub fn steps(simulation: &Simulation) -> Option<String> {
+    let step = simulation.step_size()?;
+    let rejections = simulation.work().rejections;
+    simulation
+        .control()
+        .tolerance()
+        .map(|_| format!("{} ms, {rejections} rejected", digits(1e3 * step)))
+}
+
+/// The largest step with which nothing grows and the share of it that the step is, marked as safe
+/// while there is room, with a warning near it and where motion grows slowly, and with an alarm
+/// where it grows fast.
+pub fn limit(pane: &Pane) -> Option<(String, Mark)> {
+    let limit = pane.limit.limit()?;
+    // With constraints or rigid bodies, more than modes limits the step: they tell which steps are
+    // too long, and no more.
+    let network = pane.simulation.model().network();
+    let modes_tell_all =
+        network.is_none_or(|n| n.constraints().is_empty() && n.bodies().is_empty());
+    if limit.step.is_infinite() {
+        return modes_tell_all.then(|| ("none: every step is stable".into(), SAFE));
+    }
+    let step = pane.simulation.step_size()?;
+    let mark = match step {
+        fast if fast > limit.step => ALARM,
+        near if near > 0.8 * limit.bounded => WARNING,
+        _ if modes_tell_all => SAFE,
+        _ => return None,
+    };
+    let ms = |step: f64| digits(1e3 * step);
+    let time = tenfold_time(limit.step);
+    let tenfold = format!("tenfold in {time:.0} s at {} ms", ms(limit.step));
+    let bounded = |largest: f64| {
+        format!(
+            "{} ms (step at {:.0} %)",
+            ms(largest),
+            100.0 * step / largest
+        )
+    };
+    let words = if limit.bounded == 0.0 {
+        format!("always grows, {tenfold}")
+    } else if limit.is_sharp() {
+        bounded(limit.step)
+    } else {
+        format!("{}, {tenfold}", bounded(limit.bounded))
+    };
+    Some((words, mark))
+}
+
+/// What the guard of surfaces did since the beginning, if it did anything: its impulses, and the
+/// ways of vertices that it cut with the momentum that this took.
+pub fn contact(simulation: &Simulation) -> Option<String> {
+    let guarded = simulation.guarded();
+    let count = |n: usize, what: &str| match n {
+        1 => format!("1 {what}"),
+        n => format!("{n} {what}s"),
+    };
+    let impulses = count(guarded.impulses, "impulse");
+    let cuts = count(guarded.cuts, "cut");
+    match (guarded.impulses, guarded.cuts) {
+        (0, 0) => None,
+        (_, 0) => Some(impulses),
+        _ => Some(format!(
+            "{impulses}, {cuts} ({} N s lost)",
+            digits(guarded.lost)
+        )),
+    }
+}
+
+/// The simulated time, with as many digits as tell one step from the next.
+pub fn time(simulation: &Simulation) -> String {
+    let step = simulation.control().step().unwrap_or(1e-3);
+    let digits = (-step.log10()).ceil().clamp(2.0, 7.0) as usize;
+    format!("{:.digits$} s", simulation.time())
+}
+
+/// The reading that tells best whether the run holds: its energy, with its change where the forces
+/// keep it, or the radius of the circle.
+pub fn energy(pane: &Pane) -> (&'static str, String) {
+    match pane.energy {
+        Some(energy) => {
+            let change = pane.simulation.energy_change().unwrap_or_default();
+            let percent = format!("{:+.2}", 100.0 * change);
+            let is_kept = percent.trim_start_matches(['+', '-']) == "0.00";
+            let said = if is_kept {
+                String::new()
+            } else {
+                format!(" ({percent} %)")
+            };
+            ("energy", format!("{energy:.3} J{said}"))
+        }
+        None => (
+            "radius",
+            format!("{:.6} m", pane.simulation.position(0).norm()),
+        ),
+    }
+}
+
+/// The energy that nothing put into the run, if it is much.
+pub fn gained(simulation: &Simulation) -> Option<RichText> {
+    let gain = simulation.gained()?;
+    let words = format!("{} J from nowhere: shorten the step", digits(gain.energy));
+    Some(WARNING.text(&words))
+}
+
+/// The constraint that the run does not meet, if it is off by much.
+pub fn broken(simulation: &Simulation) -> Option<RichText> {
+    let unmet = simulation.worst_constraint()?;
+    let words = format!(
+        "{} was off by {:.1} %",
+        unmet.constraint,
+        100.0 * unmet.share
+    );
+    unmet.is_visible().then(|| WARNING.text(&words))
+}
+
+/// The rate of frames.
+pub fn frames(readings: &Readings) -> String {
+    format!("{:.0} per second", readings.rate)
+}
+
+/// The time that a frame takes.
+pub fn each(readings: &Readings) -> String {
+    let (simulating, drawing) = (readings.simulating, readings.drawing);
+    format!("{simulating:.1} ms steps + {drawing:.1} ms drawing")
+}
+
+/// What is said of a film that is being made, behind a red dot.
+pub fn film(ui: &mut Ui, film: &FilmProgress) {
+    ui.horizontal(|ui| {
+        let (rect, _) = ui.allocate_exact_size(vec2(10.0, 10.0), Sense::hover());
+        ui.painter().circle_filled(rect.center(), 4.5, ALARM.colour);
+        ui.label(text(&film.said));
+    });
+}
+
+/// The states that are on: pause, wind, swing, a hand.
+pub fn states(simulation: &Simulation, readings: &Readings) -> RichText {
+    let states = [
+        (readings.paused, "paused"),
+        (simulation.windy(), "wind"),
+        (simulation.swinging(), "swing"),
+        (
+            simulation.grabbed().is_some() || simulation.grabbed_obstacle().is_some(),
+            "pulling",
+        ),
+    ];
+    let on: Vec<_> = states
+        .iter()
+        .filter(|(on, _)| *on)
+        .map(|(_, name)| *name)
+        .collect();
+    if on.is_empty() {
+        faint("no wind, no swing")
+    } else {
+        text(on.join("   ")).strong()
+    }
+}
+
+/// Simulated time over real time.
+pub fn speed(readings: &Readings) -> String {
+    match readings.factor {
+        _ if readings.paused => "paused".into(),
+        0.0 => "-".into(),
+        slow if slow < 0.01 => format!("{slow:.1e} × real time"),
+        factor => format!("{factor:.2} × real time"),
+    }
+}
+
+/// The slow motion that was asked for, if any.
+pub fn slow_motion(readings: &Readings) -> Option<String> {
+    let slowness = Some(readings.slowness).filter(|slowness| *slowness > 0)?;
+    Some(format!("1/{} of real time", 1 << slowness))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::window::hud::{pane, read};
+
+    #[test]
+    fn steps_are_written_as_one_would_type_them() {
+        for (step, words) in [
+            (0.005, "0.005"),
+            (1.0 / 60.0, "1/60"),
+            (0.016_666_666_666_666_7, "1/60"),
+            (0.001_234_567_890_123, "0.001234567890123"),
+            (1e-7, "0.0000001"),
+        ] {
+            assert_eq!(seconds(step), words);
+        }
+    }
+
+    #[test]
+    fn three_digits() {
+        for (number, words) in [
+            (0.0, "0"),
+            (1.234e-7, "1.23e-7"),
+            (0.012_34, "0.0123"),
+            (1.234, "1.23"),
+            (99.99, "100.0"),
+            (12345.6, "12346"),
+        ] {
+            assert_eq!(digits(number), words);
+        }
+    }
+
+    #[test]
+    fn what_held_a_run_is_said_where_it_was_held() {
+        let said = |steps| {
+            let mut pane = pane("jelly", "t", 0.005);
+            pane.simulation.set_touching(true).unwrap();
+            pane.simulation.take_steps(steps).unwrap();
+            let guarded = pane.simulation.guarded();
+            (
+                read(&[pane], &Readings::default(), [1280.0, 720.0]).0,
+                guarded,
+            )
+        };
+        let (words, guarded) = said(20);
+        assert!(
+            guarded.impulses == 0 && !words.contains("contact"),
+            "{words}"
+        );
+        let (words, guarded) = said(200);
+        let held = format!("contact\n{} impulses\n", guarded.impulses);
+        assert!(guarded.impulses > 1 && words.contains(&held), "{words}");
+    }
+
+    #[test]
+    fn no_step_is_called_safe_where_modes_do_not_tell() {
+        for (method, value) in [("t", 0.1), ("t", 0.3), ("r", 0.005), ("r", 0.05)] {
+            let mut pane = pane("double-pendulum", method, value);
+            pane.simulation.take_steps(1).unwrap();
+            pane.read_state();
+            assert!(limit(&pane).is_none_or(|(_, mark)| mark != SAFE));
+        }
+    }
+
+    #[test]
+    fn the_limit_is_said_with_its_mark() {
+        let said = |scene: &str, method: &str, value: f64| {
+            let mut pane = pane(scene, method, value);
+            pane.simulation.take_steps(1).unwrap();
+            pane.read_state();
+            let mark = limit(&pane).unwrap().1;
+            let (words, _) = read(&[pane], &Readings::default(), [1280.0, 720.0]);
+            (words.replace('\n', " "), mark)
+        };
+        for (step, mark) in [(0.01, SAFE), (0.032, WARNING), (0.04, ALARM)] {
+            let (words, found) = said("mit", "r", step);
+            // Within 1 % of 34.9 ms.
+            let share = format!("35.2 ms (step at {:.0} %)", step / 0.0352 * 100.0);
+            let share = mark.text(&share).text().to_owned();
+            assert!(words.contains(&share), "{share} in {words}");
+            assert_eq!(found, mark);
+        }
+        assert!(
+            said("mit", "i", 0.1)
+                .0
+                .contains("none: every step is stable")
+        );
+        for (step, mark) in [(0.01, WARNING), (0.1, ALARM)] {
+            let (words, found) = said("simple", "e", step);
+            assert!(
+                words.contains("always grows, tenfold in 68 s at 67.9 ms"),
+                "{words}"
+            );
+            assert_eq!(found, mark);
+        }
+        // With drag, the cloth grows from 0.37 ms on, and slowly at first.
+        for (step, mark) in [(0.000_2, SAFE), (0.000_4, WARNING), (0.000_6, ALARM)] {
+            let (words, found) = said("mit", "e", step);
+            assert!(words.contains(" %), tenfold in 10 s at 0.4"), "{words}");
+            assert_eq!(found, mark);
+        }
+        let (words, _) = said("cloth", "a", 1e-4);
+        assert!(words.contains("tolerance 1e-4"), "{words}");
+        assert!(
+            words.contains("rejected") && words.contains("limit"),
+            "{words}"
+        );
+    }
+}

@@ -1,0 +1,20 @@
+//! The window and the page: sessions, what stands over their pictures, and what the user does.
+
+pub mod app;
+pub mod begin;
+pub mod command_line;
+#[cfg(not(target_arch = "wasm32"))]
+pub mod compare;
+#[cfg(not(target_arch = "wasm32"))]
+mod headless;
+pub mod hud;
+mod keep;
+#[cfg(not(target_arch = "wasm32"))]
+mod open;
+#[cfg(not(target_arch = "wasm32"))]
+mod recorder;
+pub mod session;
+pub mod settings;
+
+#[cfg(not(target_arch = "wasm32"))]
+pub use open::{compare as open_comparison, run};

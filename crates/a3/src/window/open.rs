@@ -1,0 +1,49 @@
+//! `a3` and `a3 compare` in a window; without a display, its job is done without one.
+
+use std::path::PathBuf;
+
+use crate::base::failure::Failure;
+use crate::base::terminal;
+use crate::cli::{Compare, Look, WindowOptions};
+use crate::draw::show;
+use crate::files::output;
+use crate::window::app::{self, End};
+use crate::window::session::Session;
+use crate::window::settings::Settings;
+use crate::window::{begin, headless, keep};
+
+/// Opens the window on one run.
+pub fn run(options: &WindowOptions) -> Result<(), Failure> {
+    let mut session = begin::window(options)?;
+    // The scene, its meshes and their buffers.
+    let files = if options.watch {
+        output::files_read()
+    } else {
+        vec![]
+    };
+    if let Some(path) = &options.resume {
+        keep::take_up(&mut session, path)?;
+    }
+    if let Some(i) = options.springs_of {
+        terminal::say(&show::list_springs_of(session.runs.first(), i))?;
+    }
+    open(session, &options.look, files)
+}
+
+/// Opens the window on several runs.
+pub fn compare(options: &Compare) -> Result<(), Failure> {
+    open(begin::comparison(options)?, &options.look, vec![])
+}
+
+fn open(session: Session, look: &Look, files: Vec<PathBuf>) -> Result<(), Failure> {
+    let settings = if look.no_config {
+        None
+    } else {
+        // A file of another program, or of another version, is left as it is.
+        Settings::read().map_err(|why| terminal::warn(&why)).ok()
+    };
+    match app::open(session, look.status, files, settings)? {
+        End::Closed => Ok(()),
+        End::NoWindow(why, session) => headless::run(&why, *session),
+    }
+}

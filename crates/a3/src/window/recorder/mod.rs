@@ -1,0 +1,206 @@
+//! Films of what a window shows: of the seconds that it keeps, or from now on. The window draws the
+//! frames, one between two of its own, and a thread encodes them.
+
+mod encoder;
+
+use std::path::PathBuf;
+
+use a3_core::{Checkpoint, Simulation};
+use a3_render::{Camera, Gpu, Offscreen};
+
+use crate::base::failure::Failure;
+use crate::files::ending::Ending;
+use crate::files::film;
+use crate::window::hud::Studio;
+use crate::window::session::{FilmProgress, Pane, Readings, Session};
+use encoder::Encoder;
+
+/// A film in the making.
+pub struct Recorder {
+    studio: Studio,
+    encoder: Encoder,
+    path: PathBuf,
+    /// Pixels per point.
+    scale: f32,
+    source: Source,
+    /// Number of frames drawn so far.
+    drawn: usize,
+    /// Frames in a second.
+    rate: f64,
+}
+
+/// What is filmed.
+enum Source {
+    /// The session, at the time (s) on its clock that is next, and that far apart (s).
+    Session { next: f64, interval: f64 },
+    /// The moments that were kept, by runs of their own.
+    Kept {
+        panes: Vec<Pane>,
+        camera: Camera,
+        moments: std::vec::IntoIter<Vec<Option<Checkpoint>>>,
+        count: usize,
+    },
+}
+
+/// How a film is made.
+#[derive(Clone, Copy)]
+pub struct Format {
+    pub ending: Ending,
+    /// Size of the window's picture (px).
+    pub size: (u32, u32),
+    /// Pixels per point in the window.
+    pub scale: f32,
+}
+
+impl Recorder {
+    /// Films the session from now on.
+    pub fn from_now(gpu: &Gpu, session: &Session, format: Format) -> Result<Self, Failure> {
+        let interval = 1.0 / format.ending.rate();
+        let next = session.runs.clock;
+        Self::new(gpu, session, format, Source::Session { next, interval })
+    }
+
+    /// Films the last seconds that the session has kept, as many as its panel says.
+    pub fn of_kept(gpu: &Gpu, session: &Session, format: Format) -> Result<Self, Failure> {
+        let (seconds, interval) = (session.panel.film_of, 1.0 / format.ending.rate());
+        let moments = session.timeline.last(seconds, interval);
+        if moments.len() < 2 {
+            return Err(Failure::run("Nothing is kept yet that could be filmed."));
+        }
+        let copy = |pane: &Pane| {
+            let run = &pane.simulation;
+            let mut copy = Simulation::new(run.scene().clone(), run.method(), run.control())?;
+            // A run that is lost has no moments: it stands as it was last.
+            copy.restore(&run.moment())?;
+            Ok(Pane::new(copy, pane.show.clone()))
+        };
+        let panes: Result<_, a3_core::Error> = session.runs.panes.iter().map(copy).collect();
+        let source = Source::Kept {
+            panes: panes.map_err(Failure::run)?,
+            camera: session.view.camera,
+            count: moments.len(),
+            moments: moments.into_iter(),
+        };
+        Self::new(gpu, session, format, source)
+    }
+
+    fn new(gpu: &Gpu, session: &Session, format: Format, source: Source) -> Result<Self, Failure> {
+        let Format {
+            ending,
+            size,
+            scale,
+        } = format;
+        let within = ending.fit(size);
+        let (path, film) = film::begin_new(&session.runs.first().scene().name, ending, within)?;
+        let offscreen = Offscreen::new(gpu, within).map_err(Failure::run)?;
+        Ok(Self {
+            studio: Studio::new(gpu, offscreen, &session.runs.panes),
+            encoder: Encoder::new(film),
+            path,
+            scale: scale * within.1 as f32 / size.1 as f32,
+            source,
+            drawn: 0,
+            rate: ending.rate(),
+        })
+    }
+
+    /// Whether it films the session from now on.
+    pub fn is_live(&self) -> bool {
+        matches!(self.source, Source::Session { .. })
+    }
+
+    /// Real time (s) for which the session goes on in a frame of the window that takes `real`: not
+    /// past the next frame of the film, and not at all while the encoder has no room for one.
+    pub fn pace(&self, session: &Session, real: f64) -> f64 {
+        match self.source {
+            Source::Session { .. } if !self.encoder.has_room() => 0.0,
+            Source::Session { next, .. } => {
+                let left = (next - session.runs.clock).max(0.0);
+                real.min(left * 2f64.powi(session.readings.slowness))
+            }
+            Source::Kept { .. } => real,
+        }
+    }
+
+    /// Draws the next frame if it is due, and returns whether more are to come.
+    pub fn go_on(&mut self, gpu: &Gpu, session: &mut Session) -> Result<bool, Failure> {
+        if self.encoder.has_failed() {
+            return Ok(false);
+        }
+        if !self.encoder.has_room() {
+            return Ok(true);
+        }
+        let readings = Readings::default();
+        let pixels = match &mut self.source {
+            Source::Session { next, interval } => {
+                let apart = *interval * 0.5f64.powi(session.readings.slowness);
+                // After going back or a reset, the next frame is the one that is shown.
+                if session.runs.clock < *next - apart - 1e-9 {
+                    *next = session.runs.clock;
+                }
+                if session.runs.clock < *next - 1e-9 {
+                    return Ok(true);
+                }
+                *next += apart;
+                let camera = session.view.camera;
+                let panes = &mut session.runs.panes;
+                self.studio
+                    .draw(gpu, panes, camera, self.scale, &readings)?
+            }
+            Source::Kept {
+                panes,
+                camera,
+                moments,
+                ..
+            } => {
+                let Some(moment) = moments.next() else {
+                    return Ok(false);
+                };
+                for (pane, moment) in panes.iter_mut().zip(&moment) {
+                    // The checkpoint is of this scene, so it fits.
+                    let _ = moment
+                        .as_ref()
+                        .map(|moment| pane.simulation.restore(moment));
+                    let energy = pane.simulation.energy();
+                    pane.energy = energy.map(|energy| energy.total());
+                }
+                self.studio
+                    .draw(gpu, panes, *camera, self.scale, &readings)?
+            }
+        };
+        self.encoder.add(pixels);
+        self.drawn += 1;
+        Ok(true)
+    }
+
+    /// What is said of the film while it is made.
+    pub fn progress(&self) -> FilmProgress {
+        let path = self.path.display();
+        let said = match &self.source {
+            Source::Session { .. } => {
+                let seconds = self.drawn as f64 / self.rate;
+                format!("recording {path}: {seconds:.1} s")
+            }
+            Source::Kept { count, .. } => {
+                format!("writing {path}: {} %", 100 * self.drawn / count)
+            }
+        };
+        FilmProgress {
+            live: self.is_live(),
+            said,
+        }
+    }
+
+    /// Completes the film, and returns what is said of it.
+    pub fn finish(self) -> Result<String, Failure> {
+        let (path, seconds) = (self.path.display(), self.drawn as f64 / self.rate);
+        if self.drawn == 0 {
+            return Ok(format!("{path}: nothing was filmed"));
+        }
+        self.encoder.finish()?;
+        Ok(format!(
+            "wrote {path}: {} frames, {seconds:.1} s",
+            self.drawn
+        ))
+    }
+}

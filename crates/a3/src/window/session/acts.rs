@@ -1,0 +1,323 @@
+//! What the user does to a session: by keys, by the mouse, and by lists to choose from.
+
+use std::path::Path;
+
+use a3_core::{Network, integrators};
+use a3_scenes::Setup;
+
+use super::actions::RunAction;
+use super::history::Change;
+use super::list::{List, TextKey, Topic, solvers};
+use super::looks;
+use super::runs::KEY_BUDGET;
+use super::save;
+use super::state::Session;
+use super::tuning::Tuning;
+use crate::draw::show;
+
+/// The slowest motion is 1 / 2^6 of real time.
+const SLOWEST: i32 = 6;
+
+impl Session {
+    /// Does an action, and returns whether another scene is shown. A solver is for the pane `at`,
+    /// all else for every pane.
+    pub fn act(&mut self, action: RunAction, at: usize) -> bool {
+        match action {
+            RunAction::NextScene | RunAction::PreviousScene => {
+                let by = if action == RunAction::NextScene {
+                    1
+                } else {
+                    -1
+                };
+                self.show_scene(self.scenes.beside(by));
+                return true;
+            }
+            RunAction::Scenes => self.toggle_list(Topic::Scenes),
+            RunAction::Solvers => self.toggle_list(Topic::Solvers { pane: at }),
+            RunAction::Reset => self.reset(),
+            RunAction::Swing if self.runs.first().scene().swing.is_none() => {
+                self.readings.say("There is nothing to swing here.");
+            }
+            RunAction::Swing => {
+                let on = !self.runs.first().swinging();
+                self.runs.align();
+                self.runs.all_mut().for_each(|run| run.set_swinging(on));
+            }
+            RunAction::Wind if self.runs.first().scene().wind.is_none() => {
+                self.readings.say("There is no wind here.");
+            }
+            RunAction::Wind => {
+                let on = !self.runs.first().windy();
+                self.runs.align();
+                self.runs.all_mut().for_each(|run| run.set_wind(on));
+            }
+            RunAction::Touch => {
+                let done = self.runs.toggle_touch();
+                self.tell(done);
+            }
+            RunAction::Wireframe => looks::next_style(&mut self.runs.panes),
+            RunAction::Colour => self.readings.say(looks::next_colour(&mut self.runs.panes)),
+            RunAction::Arrows => self.readings.say(looks::next_arrows(&mut self.runs.panes)),
+            RunAction::Pause => {
+                self.readings.paused = !self.readings.paused;
+                self.start_anew();
+            }
+            RunAction::Step if self.readings.rewound.is_some() => self.scrub(1),
+            RunAction::Scrub(by) => self.scrub(by),
+            RunAction::Slower => self.readings.slowness = (self.readings.slowness + 1).min(SLOWEST),
+            RunAction::Faster => self.readings.slowness = (self.readings.slowness - 1).max(0),
+            RunAction::Step => self.step(),
+            RunAction::Solver(i) => match integrators::METHODS.get(i) {
+                Some(method) => {
+                    let done = self.runs.set_method(method, at, &self.tuning.defaults);
+                    self.tell(done);
+                }
+                None => self
+                    .readings
+                    .say(format!("There are {} solvers.", integrators::METHODS.len())),
+            },
+            RunAction::LongerStep | RunAction::ShorterStep => {
+                let done = self.runs.set_steps(action == RunAction::LongerStep);
+                self.tell(done);
+            }
+            RunAction::Camera => {
+                self.view.see_from(self.runs.panes[0].show.camera());
+                self.view.stay();
+            }
+            RunAction::FreeAll => {
+                let all: Vec<_> = (0..self.runs.first().particles()).collect();
+                self.pin_all(&all, false);
+            }
+            RunAction::Projection => self.readings.say(self.view.toggle_projection()),
+            RunAction::SeeAll => self.view.see_all(&self.runs.panes),
+            RunAction::NextView => self.readings.say(self.view.next_view()),
+            RunAction::Panel => self.panel.open = !self.panel.open,
+            RunAction::WriteScene => {
+                let pane = &self.runs.panes[at.min(self.runs.panes.len() - 1)];
+                let said = match save::write_scene(self, &pane.simulation) {
+                    Ok(name) => format!("wrote {name}"),
+                    Err(why) => why,
+                };
+                self.readings.say(said);
+            }
+            RunAction::Help => self.readings.help = !self.readings.help,
+        }
+        false
+    }
+
+    /// Takes all runs back to the beginning of their scene.
+    fn reset(&mut self) {
+        let touching = self.runs.first().touching();
+        self.runs.reset();
+        if touching && !self.runs.first().touching() {
+            self.readings
+                .say("Surfaces cross at the beginning, so they pass through one another again.");
+        }
+        self.readings.read_reference(self.runs.reference.as_ref());
+        self.another_run();
+    }
+
+    /// Pauses, and takes the longest step, and as many of the shorter ones as fit.
+    fn step(&mut self) {
+        self.readings.paused = true;
+        self.runs.settle();
+        self.advance(self.runs.longest_step(), KEY_BUDGET, KEY_BUDGET);
+    }
+
+    /// Says why something was refused, if it was.
+    fn tell(&mut self, done: Result<(), impl ToString>) {
+        if let Err(why) = done {
+            self.readings.say(why.to_string());
+        }
+    }
+
+    /// Sets the step (s) or the tolerance of one pane.
+    pub fn set_step_of(&mut self, at: usize, value: f64) {
+        let done = self.runs.set_step_of(at, value);
+        self.tell(done);
+    }
+
+    /// Changes the model of every run. A reset keeps the change. Where surfaces touch and would
+    /// cross then, a message names what does, and nothing is changed.
+    pub fn adjust(&mut self, change: impl Fn(&mut Network)) {
+        let done = self.runs.adjust(change);
+        self.tell(done);
+    }
+
+    /// Lets go of the held particle or sphere.
+    pub fn release(&mut self) {
+        if let Some(push) = self.runs.release() {
+            self.history.note(push);
+        }
+    }
+
+    /// Pins particle i where it is in every run, or frees it if the first run has it pinned.
+    pub fn toggle_pin(&mut self, i: usize) {
+        let pinned = !self.runs.is_pinned(i);
+        if self.pin(&[i], pinned) > 0 {
+            let now = if pinned { "pinned" } else { "free" };
+            self.readings.say(format!("particle {i} is {now} now"));
+        }
+    }
+
+    /// Pins particles where they are in every run, or lets go of them, and says how many.
+    pub fn pin_all(&mut self, particles: &[usize], pinned: bool) {
+        let count = self.pin(particles, pinned);
+        self.readings.say(match (count, pinned) {
+            (0, true) => "There is nothing here that could be pinned.".into(),
+            (0, false) => "There are no pins here.".into(),
+            (1, true) => "1 particle is pinned now.".into(),
+            (1, false) => "1 particle is free now.".into(),
+            (n, true) => format!("{n} particles are pinned now."),
+            (n, false) => format!("{n} particles are free now."),
+        });
+    }
+
+    /// Pins or frees particles, notes what can be undone of that, and returns how many were
+    /// changed in the first run.
+    fn pin(&mut self, particles: &[usize], pinned: bool) -> usize {
+        let particles = self.runs.pin(particles, pinned);
+        let count = particles.len();
+        if count > 0 {
+            self.history.note(Change::Pins { particles, pinned });
+        }
+        count
+    }
+
+    /// Opens a list, or closes the one that is open.
+    fn toggle_list(&mut self, topic: Topic) {
+        if self.list.take().is_some_and(|list| list.topic == topic) {
+            return;
+        }
+        let panes = &self.runs.panes;
+        let entries = match topic {
+            Topic::Scenes => self.scenes.entries(),
+            Topic::Solvers { pane } => solvers(&panes[pane.min(panes.len() - 1)].simulation),
+        };
+        self.readings.help = false;
+        self.list = Some(List::new(topic, entries));
+    }
+
+    /// Does what a key means in the list that is open, and returns whether another scene is shown.
+    pub fn press_list(&mut self, key: TextKey) -> bool {
+        let Some(list) = &mut self.list else {
+            return false;
+        };
+        if key == TextKey::Close {
+            self.list = None;
+            return false;
+        }
+        list.press(key).is_some_and(|number| self.take(number))
+    }
+
+    /// Takes an entry by its number, closes the list, and returns whether another scene is shown.
+    pub fn take(&mut self, number: usize) -> bool {
+        match self.list.take().map(|list| list.topic) {
+            Some(Topic::Scenes) => {
+                if let Some(file) = self.scenes.earlier_file(number) {
+                    return self.open(&file);
+                }
+                self.show_scene(number);
+                true
+            }
+            Some(Topic::Solvers { pane }) => self.act(RunAction::Solver(number), pane),
+            None => false,
+        }
+    }
+
+    /// Shows the scene of this number among all names. Where that is not possible, a message says
+    /// why.
+    fn show_scene(&mut self, number: usize) {
+        match self.scenes.show(number) {
+            Ok(setup) => {
+                self.see_scene(&setup);
+                self.set_scene(&setup);
+            }
+            Err(why) => self.readings.warn(why),
+        }
+    }
+
+    /// Shows the scene of a file, with the same solvers and steps where they serve it, and returns
+    /// whether that was possible; if not, a message says why, and all goes on.
+    pub fn open(&mut self, file: &Path) -> bool {
+        match self.scenes.open(file) {
+            Ok(setup) => {
+                let source = &self.scenes.shown.source;
+                let summary = source.description.summary.as_deref();
+                let what = summary.map_or(String::new(), |what| format!(": {what}"));
+                self.readings.say(format!("opened {}{what}", source.typed));
+                self.see_scene(&setup);
+                self.set_scene(&setup);
+                true
+            }
+            Err(why) => {
+                self.readings.warn(why);
+                false
+            }
+        }
+    }
+
+    /// Loads the scene again from its file, and returns whether that was possible; if not, a
+    /// message says why, and all goes on. Camera, solvers and steps stay as they are, unless the
+    /// file says others than before.
+    pub fn reload(&mut self) -> bool {
+        let reloaded = match self.scenes.reload() {
+            Ok(Some(reloaded)) => reloaded,
+            Ok(None) => return false,
+            Err(why) => {
+                self.readings.warn(why);
+                return false;
+            }
+        };
+        let setup = &reloaded.setup;
+        if reloaded.camera {
+            self.see_scene(setup);
+        }
+        let typed = &self.scenes.shown.source.typed;
+        self.readings.say(format!("loaded {typed} again"));
+        let before = self.runs.first();
+        let (windy, swinging) = (before.windy(), before.swinging());
+        let touching = before.touching();
+        self.set_scene(setup);
+        for run in self.runs.all_mut() {
+            run.set_wind(windy);
+            run.set_swinging(swinging);
+            // What crosses in the file as it is now begins as the file has it.
+            let _ = run.set_touching(touching);
+        }
+        if let Some(method) = reloaded.method {
+            let control = setup.defaults.control_of(method);
+            for pane in &mut self.runs.panes {
+                if let Err(why) = pane.simulation.set_method(method, control) {
+                    self.readings.say(why.to_string());
+                }
+                pane.wanted = method;
+            }
+            self.runs.adapt();
+        }
+        true
+    }
+
+    /// Sees a scene as it is first seen.
+    fn see_scene(&mut self, setup: &Setup) {
+        self.view.see_from(show::camera(&setup.presentation));
+    }
+
+    /// Begins another scene, with the same solvers and steps where they serve it.
+    fn set_scene(&mut self, setup: &Setup) {
+        let said = match self.runs.set_scene(setup) {
+            Ok(said) => {
+                self.tuning = Tuning::of(setup);
+                self.view.stay();
+                self.history.clear();
+                self.readings.read_reference(self.runs.reference.as_ref());
+                self.another_run();
+                said
+            }
+            Err(why) => Some(why.to_string()),
+        };
+        if let Some(said) = said {
+            self.readings.say(said);
+        }
+    }
+}

@@ -1,0 +1,216 @@
+//! What the user changed, to be undone and done again.
+
+use web_time::{Duration, Instant};
+
+use a3_core::Path;
+
+/// The most changes that are kept.
+const MOST: usize = 200;
+/// Turns of the same knob by keys within this time of one another are one change.
+const ONE: Duration = Duration::from_millis(800);
+
+/// A change, which can be undone.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Change {
+    /// Particles were pinned, or let go of.
+    Pins { particles: Vec<usize>, pinned: bool },
+    /// An obstacle was pushed: its paths before and after.
+    Push {
+        obstacle: usize,
+        paths: Box<[Path; 2]>,
+    },
+    /// A knob was turned: its row in the table, its pane, and its value before and after.
+    Knob {
+        row: usize,
+        pane: usize,
+        from: f64,
+        to: f64,
+    },
+}
+
+/// Changes that were made, and those that were undone.
+#[derive(Default)]
+pub struct History {
+    done: Vec<Change>,
+    undone: Vec<Change>,
+    /// Time of the last change since a button was pressed.
+    last: Option<Instant>,
+    /// Whether a button is held.
+    held: bool,
+}
+
+impl History {
+    /// Notes a change. What was undone before cannot be done again.
+    pub fn note(&mut self, change: Change) {
+        let soon = self
+            .last
+            .is_some_and(|last| self.held || last.elapsed() < ONE);
+        self.last = Some(Instant::now());
+        self.undone.clear();
+        if let Change::Knob { row, pane, to, .. } = change
+            && let Some(Change::Knob {
+                row: last_row,
+                pane: last_pane,
+                to: last_to,
+                ..
+            }) = self.done.last_mut()
+            && soon
+            && (*last_row, *last_pane) == (row, pane)
+        {
+            *last_to = to;
+            return;
+        }
+        self.done.push(change);
+        if self.done.len() > MOST {
+            self.done.remove(0);
+        }
+    }
+
+    /// Notes that a button of the mouse was pressed or let go of: a slider that is dragged is one
+    /// change.
+    pub fn hold(&mut self, held: bool) {
+        if held {
+            self.last = None;
+        }
+        self.held = held;
+    }
+
+    /// The change that is undone now, or with `again` done again.
+    pub fn step(&mut self, again: bool) -> Option<Change> {
+        let (from, to) = if again {
+            (&mut self.undone, &mut self.done)
+        } else {
+            (&mut self.done, &mut self.undone)
+        };
+        let change = from.pop()?;
+        to.push(change.clone());
+        self.last = None;
+        Some(change)
+    }
+
+    /// Forgets all changes.
+    pub fn clear(&mut self) {
+        *self = Self::default();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::window::hud::panel;
+    use crate::window::session::{RunAction, compared, frames, session};
+
+    #[test]
+    fn a_drag_is_one_change_and_a_new_change_ends_what_was_undone() {
+        let knob = |row, from: f64, to: f64| Change::Knob {
+            row,
+            pane: 0,
+            from,
+            to,
+        };
+        let mut history = History::default();
+        for (from, to) in [(1.0, 2.0), (2.0, 3.0), (3.0, 4.0)] {
+            history.note(knob(5, from, to));
+        }
+        // Another drag of the same knob is another change, however soon.
+        history.hold(true);
+        history.note(knob(5, 4.0, 5.0));
+        history.note(knob(5, 5.0, 6.0));
+        history.hold(false);
+        assert_eq!(history.step(false), Some(knob(5, 4.0, 6.0)));
+        history.note(knob(6, 0.0, 1.0));
+        assert_eq!(history.step(false), Some(knob(6, 0.0, 1.0)));
+        assert_eq!(history.step(false), Some(knob(5, 1.0, 4.0)));
+        assert_eq!(history.step(false), None);
+        assert_eq!(history.step(true), Some(knob(5, 1.0, 4.0)));
+        history.note(knob(7, 0.0, 1.0));
+        assert_eq!(history.step(true), None);
+        for k in 0..300 {
+            history.note(Change::Pins {
+                particles: vec![k],
+                pinned: true,
+            });
+        }
+        assert_eq!(history.done.len(), MOST);
+    }
+
+    #[test]
+    fn pins_are_undone_and_done_again_in_every_run() {
+        let mut session = compared(&["t:0.01", "r:0.01", "--scene", "mit"], 0.2);
+        let pins = |session: &crate::window::session::Session| {
+            let runs = session.runs.panes.iter().map(|pane| &pane.simulation);
+            runs.map(|run| run.model().network().unwrap().pins().count())
+                .collect::<Vec<_>>()
+        };
+        assert_eq!(pins(&session), [2, 2]);
+        session.pin_all(&[40, 41, 42, 0], true);
+        let said = session.readings.message.clone().unwrap();
+        assert_eq!(
+            (pins(&session), &*said),
+            (vec![5, 5], "3 particles are pinned now.")
+        );
+        session.act(RunAction::FreeAll, 0);
+        assert_eq!(pins(&session), [0, 0]);
+        frames(&mut session, 0.1);
+        for expected in [5, 2] {
+            panel::undo(&mut session, false);
+            assert_eq!(pins(&session), [expected; 2]);
+        }
+        panel::undo(&mut session, false);
+        assert_eq!(
+            session.readings.message.as_deref(),
+            Some("There is nothing to undo.")
+        );
+        panel::undo(&mut session, true);
+        assert_eq!(pins(&session), [5, 5]);
+        // Another scene knows of none of that.
+        session.act(RunAction::NextScene, 0);
+        panel::undo(&mut session, false);
+        assert_eq!(
+            session.readings.message.as_deref(),
+            Some("There is nothing to undo.")
+        );
+    }
+
+    #[test]
+    fn what_cannot_be_pinned_is_said() {
+        let mut circle = session(&["t", "0.01", "--scene", "simple"]);
+        circle.pin_all(&[0], true);
+        assert_eq!(
+            circle.readings.message.as_deref(),
+            Some("There is nothing here that could be pinned.")
+        );
+        circle.act(RunAction::FreeAll, 0);
+        assert_eq!(
+            circle.readings.message.as_deref(),
+            Some("There are no pins here.")
+        );
+    }
+
+    #[test]
+    fn a_push_is_undone() {
+        use a3_core::Vector3;
+        let mut session = session(&["r", "0.005", "--scene", "mit-sphere"]);
+        let place = |session: &crate::window::session::Session| {
+            let run = session.runs.first();
+            let sphere = run.model().network().unwrap().obstacles()[0].clone();
+            sphere.path.at(run.time()).position
+        };
+        let before = place(&session);
+        assert!(session.runs.grab_obstacle(0));
+        session.runs.pull(before + Vector3::new(0.2, 0.0, 0.0));
+        frames(&mut session, 1.0);
+        session.release();
+        let pushed = place(&session);
+        assert!((pushed - before).norm() > 0.1);
+        panel::undo(&mut session, false);
+        assert_eq!(place(&session), before);
+        panel::undo(&mut session, true);
+        assert_eq!(place(&session), pushed);
+        // What was held and not moved is no change.
+        assert!(session.runs.grab_obstacle(0));
+        session.release();
+        panel::undo(&mut session, false);
+        assert_eq!(place(&session), before);
+    }
+}

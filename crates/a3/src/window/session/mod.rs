@@ -1,0 +1,87 @@
+//! Runs that keep up with real time, without a window: one run or several side by side, their
+//! common time, the hands that pull at them, the reference, the timeline, and the actions of keys.
+
+mod actions;
+mod acts;
+mod hands;
+mod history;
+mod keys;
+mod ladder;
+mod limit;
+mod list;
+pub mod looks;
+mod meter;
+mod origin;
+mod pane;
+mod predictability;
+mod readings;
+mod reference;
+mod runs;
+mod samples;
+mod save;
+mod scenes;
+mod state;
+mod timeline;
+mod tuning;
+mod view;
+
+pub use actions::{Action, RunAction, WindowAction};
+pub use history::Change;
+pub use keys::{KEYS, MOUSE, action};
+pub use list::{Entry, TextKey, Topic};
+pub use origin::Origin;
+pub use pane::Pane;
+pub use readings::{FilmProgress, Readings, Selection};
+pub use samples::{SPAN, Sample, Samples};
+pub use save::write_scene;
+pub use state::{Beginning, Session};
+pub use timeline::TimelinePosition;
+pub use tuning::{FILM_OF, Tuning};
+
+#[cfg(test)]
+pub use pane::Cost;
+#[cfg(test)]
+pub use tests::{compared, frames, session, times};
+
+#[cfg(test)]
+mod tests {
+    //! Sessions for tests.
+
+    use clap::Parser;
+
+    use super::Session;
+    use crate::base::failure::Failure;
+    use crate::cli;
+    use crate::window::begin;
+
+    /// The session that a command line asks for.
+    pub fn session(words: &[&str]) -> Session {
+        let words = ["a3"].iter().chain(words);
+        let options = cli::Cli::try_parse_from(words).unwrap();
+        let session = match options.command {
+            Some(cli::Command::Compare(options)) => begin::comparison(&options),
+            _ => begin::window(&options.window),
+        };
+        session.map_err(Failure::message).unwrap()
+    }
+
+    /// Several panes, brought to a time (s) in frames of 60 Hz.
+    pub fn compared(words: &[&str], time: f64) -> Session {
+        let mut session = session(&[&["compare"], words].concat());
+        frames(&mut session, time);
+        session
+    }
+
+    /// Goes on by a time (s) in frames of 60 Hz.
+    pub fn frames(session: &mut Session, time: f64) {
+        for _ in 0..(60.0 * time).round() as u32 {
+            session.tick(1.0 / 60.0);
+        }
+    }
+
+    /// The time of each run (s).
+    pub fn times(session: &Session) -> Vec<f64> {
+        let times = session.runs.panes.iter().map(|pane| pane.simulation.time());
+        times.collect()
+    }
+}

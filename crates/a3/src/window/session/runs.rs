@@ -1,0 +1,327 @@
+//! The runs of a session and their common time: panes, and the reference beside them.
+
+use web_time::{Duration, Instant};
+
+use a3_core::{Control, Error, Method, Path, Simulation, integrators};
+use a3_scenes::{Defaults, Setup};
+
+use super::ladder::next_step;
+use super::pane::{PORTION, Pane};
+use super::reference::ReferenceRun;
+use crate::base::bounds;
+use crate::base::failure::Failure;
+use crate::base::holding::shorter_step;
+
+/// Real time that a key may take.
+pub(super) const KEY_BUDGET: Duration = Duration::from_millis(200);
+/// Real time between two looks at the states while they move.
+const READING_INTERVAL: Duration = Duration::from_millis(100);
+
+/// The runs of one scene: those that are shown, and the reference.
+pub struct Runs {
+    /// The runs that are shown, at least one.
+    pub panes: Vec<Pane>,
+    /// The run that the errors are taken from, if there are several panes.
+    pub(super) reference: Option<ReferenceRun>,
+    /// Simulated time that the panes have been brought to (s): each is less than a step behind.
+    pub clock: f64,
+    /// Number of steps and real time when the states were last read.
+    pub(super) read: Option<(u64, Instant)>,
+    /// Number and path of the obstacle that is being pushed, before the push.
+    pub(super) pushed: Option<(usize, Path)>,
+}
+
+impl Runs {
+    /// Runs at the beginning of their scene.
+    pub fn new(panes: Vec<Pane>) -> Result<Self, Failure> {
+        Ok(Self {
+            reference: ReferenceRun::new(&panes)?,
+            panes,
+            clock: 0.0,
+            read: None,
+            pushed: None,
+        })
+    }
+
+    /// The first run, for what is the same in all of them.
+    pub fn first(&self) -> &Simulation {
+        &self.panes[0].simulation
+    }
+
+    /// Whether any pane is not lost.
+    pub fn any_alive(&self) -> bool {
+        self.panes.iter().any(Pane::alive)
+    }
+
+    /// All runs, the reference last.
+    pub(super) fn all(&self) -> impl Iterator<Item = &Simulation> {
+        let panes = self.panes.iter().map(|pane| &pane.simulation);
+        panes.chain(self.reference.as_ref().map(ReferenceRun::any))
+    }
+
+    /// All runs to change, lost and stopped ones too, the reference last.
+    pub(super) fn all_mut(&mut self) -> impl Iterator<Item = &mut Simulation> {
+        let panes = self.panes.iter_mut().map(|pane| &mut pane.simulation);
+        panes.chain(self.reference.as_mut().map(ReferenceRun::any_run))
+    }
+
+    /// Brings all panes to a simulated time (s) in short slices, so that none is ahead of the
+    /// others when the budget of real time is over before.
+    pub(super) fn advance(&mut self, until: f64, budget: Duration, reference_budget: Duration) {
+        let begun = Instant::now();
+        let steps = self.panes.iter().map(Pane::pace);
+        let mut slice = steps.fold(f64::INFINITY, f64::min);
+        while self.clock < until && begun.elapsed() < budget && self.any_alive() {
+            self.clock = (self.clock + slice).min(until);
+            for pane in &mut self.panes {
+                pane.take_due_steps(self.clock);
+            }
+            if begun.elapsed() < budget / 16 {
+                slice *= 2.0;
+            }
+        }
+        if let Some(reference) = &mut self.reference {
+            reference.follow(&mut self.panes, reference_budget);
+        }
+        for pane in &mut self.panes {
+            pane.follow();
+        }
+    }
+
+    /// The longest step of the runs that go on (s).
+    pub(super) fn longest_step(&self) -> f64 {
+        let alive = self.panes.iter().filter(|pane| pane.alive());
+        let step = alive.map(|pane| pane.simulation.step_size().unwrap_or(PORTION));
+        step.fold(0.0, f64::max)
+    }
+
+    /// Brings all runs to `time` (s) exactly, however long that takes.
+    pub(super) fn run_to(&mut self, time: f64) {
+        for pane in &mut self.panes {
+            pane.run_to(time);
+        }
+        if let Some(reference) = &mut self.reference {
+            reference.run_to(time, &mut self.panes);
+        }
+        self.settle();
+    }
+
+    /// Sets the clock to the time of the pane that is farthest, so that no steps are due.
+    pub(super) fn settle(&mut self) {
+        let alive = self.panes.iter().filter(|pane| pane.alive());
+        let times = alive.map(|pane| pane.simulation.time());
+        self.clock = times.reduce(f64::max).unwrap_or(self.clock);
+    }
+
+    /// Begins to read the states again, with no steps due: after a time in which nothing was
+    /// simulated.
+    pub(super) fn start_anew(&mut self) {
+        self.settle();
+        self.read = None;
+    }
+
+    /// Takes readings of the states: ten times a second while they move, and once when they stand
+    /// still.
+    pub(super) fn read_state(&mut self, moving: bool) {
+        let steps = self.panes.iter().map(|pane| pane.simulation.steps()).sum();
+        let due = self.read.is_none_or(|(before, when)| {
+            before != steps && (!moving || when.elapsed() > READING_INTERVAL)
+        });
+        if due {
+            self.read = Some((steps, Instant::now()));
+            self.panes.iter_mut().for_each(Pane::read_state);
+        }
+    }
+
+    /// Begins another scene, with the same solvers and steps where they serve it, and returns what
+    /// is to be said of that. Fails, and goes on, if no solver serves it.
+    pub(super) fn set_scene(&mut self, setup: &Setup) -> Result<Option<String>, Error> {
+        let mut said = None;
+        let mut start = |pane: &Pane| {
+            let own = pane.simulation.control();
+            let control = pane.wanted_step.map_or(own, Control::Step);
+            let start = |method| Simulation::new(setup.scene.clone(), method, control);
+            // Heun serves every scene.
+            start(pane.wanted).or_else(|why| {
+                said = Some(format!("{why}: the explicit trapezoid steps in"));
+                start(integrators::find("trapezoid").unwrap_or(pane.wanted))
+            })
+        };
+        let simulations: Result<Vec<_>, Error> = self.panes.iter().map(&mut start).collect();
+        for (pane, mut simulation) in self.panes.iter_mut().zip(simulations?) {
+            let asked = simulation.control().step();
+            let shorter = shorter_step(&simulation)
+                .filter(|shorter| simulation.set_control(Control::Step(*shorter)).is_ok());
+            pane.wanted_step = asked.filter(|_| shorter.is_some());
+            if let (Some(asked), Some(shorter)) = (pane.wanted_step, shorter) {
+                let solver = simulation.method().title;
+                said = Some(format!(
+                    "{solver}: the step is {shorter} s here, since {asked} s would blow up"
+                ));
+            }
+            pane.set_simulation(simulation, setup.presentation.clone());
+        }
+        // The panes could be built, so the reference can.
+        self.reference = ReferenceRun::new(&self.panes).ok().flatten();
+        Ok(said)
+    }
+
+    /// Takes the runs back to the beginning of their scene.
+    pub(super) fn reset(&mut self) {
+        self.panes.iter_mut().for_each(Pane::reset);
+        if let Some(reference) = &mut self.reference {
+            reference.reset();
+        }
+    }
+
+    /// Measures errors and costs again, after the runs were given other states.
+    pub(super) fn states_changed(&mut self) {
+        for pane in &mut self.panes {
+            pane.set_errors(vec![]);
+            pane.restart_cost();
+        }
+        if let Some(reference) = &mut self.reference {
+            reference.follow(&mut self.panes, Duration::ZERO);
+        }
+    }
+
+    /// Gives pane `at` another solver. Fails if that does not serve the scene.
+    pub(super) fn set_method(
+        &mut self,
+        method: &'static Method,
+        at: usize,
+        defaults: &Defaults,
+    ) -> Result<(), Error> {
+        let at = at.min(self.panes.len() - 1);
+        let set = self.panes[at].set_method(method, defaults);
+        self.adapt();
+        set
+    }
+
+    /// Gives every pane the next longer or shorter step or tolerance. Fails with the last refusal.
+    pub(super) fn set_steps(&mut self, longer: bool) -> Result<(), Error> {
+        let mut all = Ok(());
+        for pane in &mut self.panes {
+            let control = pane.simulation.control();
+            let range = bounds::of(control);
+            let next = next_step(control.value(), longer).clamp(*range.start(), *range.end());
+            all = pane.set_step(next).and(all);
+        }
+        self.adapt();
+        all
+    }
+
+    /// Sets the step (s) or the tolerance of one pane. Fails if it is refused.
+    pub(super) fn set_step_of(&mut self, at: usize, value: f64) -> Result<(), Error> {
+        let set = self.panes[at].set_step(value);
+        self.adapt();
+        set
+    }
+
+    /// Fits the reference to the solvers and steps of the panes.
+    pub(super) fn adapt(&mut self) {
+        if let Some(reference) = &mut self.reference {
+            reference.adapt(&self.panes);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use a3_core::Vector3;
+
+    use super::*;
+    use crate::window::session::{RunAction, compared, session, times};
+
+    #[test]
+    fn a_digit_is_for_one_pane_and_plus_for_all() {
+        let mut session = compared(&["e:0.05", "r:0.01", "--scene", "chain"], 0.1);
+        session.act(RunAction::Solver(1), 1);
+        session.act(RunAction::LongerStep, 1);
+        let methods: Vec<_> = session
+            .runs
+            .panes
+            .iter()
+            .map(|pane| (pane.simulation.method().name, pane.simulation.control()))
+            .collect();
+        assert_eq!(
+            methods,
+            [
+                ("euler", Control::Step(0.06)),
+                ("trapezoid", Control::Step(0.012))
+            ]
+        );
+        // One step of the longest.
+        session.act(RunAction::Reset, 0);
+        session.act(RunAction::Step, 0);
+        let steps: Vec<_> = session
+            .runs
+            .panes
+            .iter()
+            .map(|p| p.simulation.steps())
+            .collect();
+        assert_eq!(steps, [1, 5]);
+    }
+
+    #[test]
+    fn panes_keep_the_same_time() {
+        let session = compared(&["t:0.03", "r:0.07", "v", "--scene", "chain"], 2.0);
+        for pane in &session.runs.panes {
+            let (run, step) = (&pane.simulation, pane.pace());
+            assert!(
+                run.time() < session.runs.clock + 1e-9
+                    && run.time() > session.runs.clock - step - 1e-9,
+                "{}",
+                run.time()
+            );
+            assert!(
+                session.runs.clock > 1.5 && (run.time() - step * run.steps() as f64).abs() < 1e-9
+            );
+        }
+    }
+
+    #[test]
+    fn the_error_is_the_distance_from_the_truth() {
+        let session = compared(&["e:0.05", "r:0.07", "--scene", "simple"], 5.0);
+        for (pane, bound) in session.runs.panes.iter().zip([0.2, 1e-5]) {
+            let (run, error) = (&pane.simulation, pane.error.unwrap());
+            let (sin, cos) = run.time().sin_cos();
+            let truth = (run.position(0) - Vector3::new(cos, sin, 0.0)).norm();
+            assert!(
+                error < bound && (error - truth).abs() < 0.02 * truth,
+                "{error} {truth}"
+            );
+        }
+    }
+
+    #[test]
+    fn without_a_window_all_end_at_the_same_time() {
+        let mut session = session(&["compare", "e:0.03", "r:0.07", "--scene", "simple"]);
+        session.run_to(1.0);
+        assert_eq!(times(&session), [1.0, 1.0]);
+        let errors: Vec<_> = session
+            .runs
+            .panes
+            .iter()
+            .map(|p| p.error.unwrap())
+            .collect();
+        assert!(errors[0] > 0.01 && errors[1] < 1e-5, "{errors:?}");
+        let cost = session.runs.panes[0].cost.unwrap();
+        assert_eq!(cost.evaluations, 34.0);
+        assert!(cost.computing > 0.0);
+    }
+
+    #[test]
+    fn when_one_is_slow_all_are() {
+        let mut session = session(&["compare", "e:0.0000001", "r:0.0001"]);
+        for _ in 0..4 {
+            session.tick(0.1);
+        }
+        let times = times(&session);
+        assert!(times[0] > 0.0 && times[0] < 0.2, "{times:?}");
+        assert!(
+            times[1] <= times[0] + 1e-9 && times[0] - times[1] < 1.1e-4,
+            "{times:?}"
+        );
+    }
+}

@@ -1,0 +1,272 @@
+//! A run as it is now, written as a scene file.
+
+use std::fmt::{Debug, Write};
+use std::path::{Path, PathBuf};
+
+use a3_core::Simulation;
+use a3_scenes::{Camera, Description, snapshot};
+
+use super::origin::Origin;
+use super::state::Session;
+use crate::base::failure::Failure;
+use crate::files::output;
+
+/// The most particles of a scene file that can be read again.
+const MOST: usize = 60_000;
+
+/// Writes a run of the scene that a session shows under the first free name, beside the file of
+/// that scene if there is one, and returns that name.
+pub fn write_scene(session: &Session, run: &Simulation) -> Result<String, String> {
+    let particles = run.particles();
+    if particles > MOST {
+        return Err(format!(
+            "a scene file has at most {MOST} particles, but this run has {particles}"
+        ));
+    }
+    let folder = session
+        .scenes
+        .shown
+        .source
+        .path
+        .as_deref()
+        .and_then(Path::parent);
+    let name = &run.scene().name;
+    let write = || -> Result<PathBuf, Failure> {
+        let text = scene_text(session, run).map_err(Failure::run)?;
+        let folder = folder.unwrap_or("".as_ref());
+        output::write_new(folder, name, "toml", text.as_bytes())
+    };
+    write()
+        .map(|path| path.display().to_string())
+        .map_err(Failure::message)
+}
+
+/// The text of the scene file.
+fn scene_text(session: &Session, run: &Simulation) -> Result<String, a3_core::Error> {
+    let mut description = description(session, run);
+    let state = description.state.take();
+    let mut text = format!(
+        "# The scene {} as it was at t = {} s, written by a3 {}. Its clock begins at 0 again.\n\n{}",
+        run.scene().name.replace(char::is_control, " "),
+        run.time(),
+        env!("CARGO_PKG_VERSION"),
+        description.to_toml()?,
+    );
+    let state = state.unwrap_or_default();
+    text += "\n[state]\n";
+    write_rows(&mut text, "positions", &state.positions);
+    write_rows(&mut text, "velocities", &state.velocities);
+    if !state.orientations.is_empty() {
+        write_rows(&mut text, "orientations", &state.orientations);
+        write_rows(&mut text, "angular_momenta", &state.angular_momenta);
+    }
+    Ok(text)
+}
+
+/// The description of the run: the scene as it is tuned, and the state as it is now.
+fn description(session: &Session, run: &Simulation) -> Description {
+    let Origin { source, grid, .. } = &session.scenes.shown;
+    let mut description = Description::clone(&source.description);
+    if let (Some(grid), Some(cloth)) = (grid, description.cloth.first_mut()) {
+        cloth.grid = [grid.rows(), grid.cols()];
+    }
+    snapshot::scale_springs(
+        &mut description,
+        session.tuning.stiffness,
+        session.tuning.damping,
+    );
+    snapshot::scale_wind(&mut description, session.tuning.gusts);
+    snapshot::begin_with(&mut description, run.model(), &run.moment());
+    let triple = |p: nalgebra::Point3<f32>| [p.x, p.y, p.z].map(f64::from);
+    description.camera = Some(Camera {
+        eye: triple(session.view.camera.eye()),
+        target: triple(session.view.camera.target()),
+    });
+    description
+}
+
+/// Writes a list of rows of numbers, with as many digits as they need.
+fn write_rows(text: &mut String, key: &str, rows: &[impl Debug]) {
+    // Writing to a string does not fail.
+    let _ = writeln!(text, "{key} = [");
+    for row in rows {
+        let _ = writeln!(text, "  {row:?},");
+    }
+    *text += "]\n";
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::window::session::RunAction;
+    use crate::window::session::session;
+    use a3_core::contact::Shape;
+    use a3_core::{Network, Vector3};
+
+    use crate::files::scene_file::Source;
+
+    fn forces(run: &Simulation) -> Vec<f64> {
+        let mut f = vec![0.0; run.state().len()];
+        run.model().system().eval_f(run.time(), run.state(), &mut f);
+        f
+    }
+
+    /// What was written, read again: the same state to the last digit, and the same forces.
+    fn check(session: &Session, path: &Path) {
+        let source = Source::find(path.to_str().unwrap()).unwrap();
+        let run = session.runs.first();
+        let setup = source.build(None).unwrap();
+        let (scene, defaults) = (setup.scene, setup.defaults);
+        let name = &run.scene().name;
+        assert_eq!(&scene.name, name);
+        assert_eq!(
+            defaults.solver.map(|solver| solver.name),
+            Some(run.method().name)
+        );
+        assert_eq!(defaults.control, Some(run.control()));
+        let again = Simulation::new(scene, run.method(), run.control()).unwrap();
+        assert_eq!(again.state(), run.state(), "{name}");
+        // Where surfaces touch, their skins are made anew for springs that were tuned.
+        let touches = |network: &Network| network.contact_layer().is_some();
+        if !run.model().network().is_some_and(touches) {
+            for (a, b) in forces(run).into_iter().zip(forces(&again)) {
+                assert!((a - b).abs() <= 1e-12 * a.abs().max(1.0), "{name}: {a} {b}");
+            }
+        }
+        let eye = crate::draw::show::camera(&setup.presentation).eye();
+        assert!((eye - session.view.camera.eye()).norm() < 1e-4);
+        let pins = |run: &Simulation| {
+            let network = run.model().network();
+            let pins = network.into_iter().flat_map(Network::pins);
+            let free = pins.filter(|(i, _)| run.grabbed() != Some(*i));
+            free.map(|(i, _)| i).collect::<Vec<_>>()
+        };
+        assert_eq!(pins(&again), pins(run), "{name}");
+    }
+
+    /// Runs for a second of simulated time, in frames.
+    fn run_on(session: &mut Session) {
+        for _ in 0..60 {
+            session.tick(1.0 / 60.0);
+        }
+    }
+
+    fn written(session: &Session, folder: &Path) -> PathBuf {
+        let path = folder.join("scene.toml");
+        std::fs::write(&path, scene_text(session, session.runs.first()).unwrap()).unwrap();
+        path
+    }
+
+    #[test]
+    fn every_scene_goes_on_where_it_was_written() {
+        let folder = tempfile::tempdir().unwrap();
+        let mut session = session(&["r", "0.005"]);
+        for entry in a3_scenes::SCENES {
+            assert_eq!(session.runs.first().scene().name, entry.name);
+            session.tuning.stiffness = 1.5;
+            session.tuning.gusts = 2.0;
+            session.adjust(|network| {
+                network.scale_springs(1.5, 1.0).unwrap();
+                network.set_gravity(Vector3::new(0.0, -5.0, 0.0));
+                network.set_drag(0.03).unwrap();
+                for k in (0..network.obstacles().len()).rev() {
+                    match network.obstacles()[k].shape {
+                        Shape::Floor => {
+                            network.remove_obstacle(k).unwrap();
+                        }
+                        _ => network
+                            .reshape_obstacle(k, Shape::Sphere { radius: 1.25 })
+                            .unwrap(),
+                    }
+                }
+            });
+            session.runs.change_all(|run| {
+                if let Some(wind) = run.scene().wind {
+                    run.change_wind(wind.scaled(2.0));
+                }
+            });
+            session.act(RunAction::Wind, 0);
+            session.act(RunAction::Swing, 0);
+            session.view.camera.orbit(0.4, 0.2);
+            run_on(&mut session);
+            check(&session, &written(&session, folder.path()));
+            // In the hand, of which the file knows nothing: what is free stays free.
+            let run = session.runs.first();
+            let walls = run.model().network();
+            let in_wall = |i: &usize| walls.is_some_and(|network| network.is_wall(*i));
+            let last = (0..run.particles()).rev().find(|i| !in_wall(i)).unwrap();
+            session.runs.grab(last);
+            session.runs.pull(Vector3::new(0.3, 0.1, 0.2));
+            session.tick(0.01);
+            let text = std::fs::read_to_string(written(&session, folder.path())).unwrap();
+            assert!(text.starts_with(&format!("# The scene {} as it was at t = ", entry.name)));
+            let source = Source::find(folder.path().join("scene.toml").to_str().unwrap()).unwrap();
+            let scene = source.build(None).unwrap().scene;
+            let network = scene.model.network();
+            assert!(network.is_none_or(|network| !network.is_pinned(last)));
+            session.release();
+            session.act(RunAction::NextScene, 0);
+        }
+    }
+
+    #[test]
+    fn a_grid_of_ones_own_is_written_too() {
+        let folder = tempfile::tempdir().unwrap();
+        let mut session = session(&["r", "0.002", "--grid", "12x9"]);
+        session.tick(0.1);
+        check(&session, &written(&session, folder.path()));
+    }
+
+    #[test]
+    fn what_has_broken_stays_broken() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("rag.toml");
+        let rag = "tear = 1.3\n\
+             [wind]\nvelocity = [3, 0, 1]\n\
+             [[cloth]]\ngrid = [6, 5]\nwidth = 1\nmass = 0.01\nstiffness = [20, 10, 5]\ndamping_ratio = 0.1\n\
+             pin = [{ at = ['left'] }, { at = ['right'], shift = { by = [0.9, 0, 0], start = 0.1, end = 0.7 } }]\n";
+        std::fs::write(&path, rag).unwrap();
+        let mut session = session(&["r", "0.002", "--scene", path.to_str().unwrap()]);
+        session.act(RunAction::Wind, 0);
+        run_on(&mut session);
+        let torn = session
+            .runs
+            .first()
+            .model()
+            .network()
+            .unwrap()
+            .torn()
+            .to_vec();
+        assert!(torn.len() > 5, "{torn:?}");
+        let path = written(&session, folder.path());
+        check(&session, &path);
+        let again = Source::find(path.to_str().unwrap()).unwrap();
+        let again = again.build(None).unwrap().scene;
+        assert_eq!(again.model.network().unwrap().torn(), torn);
+    }
+
+    #[test]
+    fn it_is_written_beside_its_scene_and_finds_the_mesh() {
+        let folder = tempfile::tempdir().unwrap();
+        std::fs::write(
+            folder.path().join("leaf.obj"),
+            "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nf 1 2 3\nf 2 4 3\n",
+        )
+        .unwrap();
+        let path = folder.path().join("leaf.toml");
+        std::fs::write(
+            &path,
+            "gravity = [0, -9.81, 0]\n[[mesh]]\nfile = 'leaf.obj'\ndensity = 0.3\nstiffness = [40, 10]\n\
+             damping_ratio = 0.1\npin = [{ at = ['top'] }]\n",
+        )
+        .unwrap();
+        let mut session = session(&["r", "0.005", "--scene", path.to_str().unwrap()]);
+        session.tick(0.1);
+        for k in 1..=2 {
+            let name = write_scene(&session, session.runs.first()).unwrap();
+            let expected = folder.path().join(format!("a3-leaf-{k}.toml"));
+            assert_eq!(name, expected.to_str().unwrap());
+            check(&session, &expected);
+        }
+    }
+}

@@ -1,0 +1,307 @@
+//! The scenes and files that a session can show.
+
+use std::path::{Path, PathBuf};
+
+use a3_core::Method;
+use a3_scenes::Setup;
+
+use super::list::Entry;
+use super::origin::Origin;
+use crate::files::scene_file::Source;
+
+/// The scenes that a session can show, and the one that it shows.
+pub struct Scenes {
+    /// The scenes that were asked for or opened, to come back to, the last one first.
+    asked: Vec<Origin>,
+    /// The name or the file that the session began with.
+    begun: String,
+    /// The scene that is shown.
+    pub shown: Origin,
+    /// Number of the scene that is shown: the user's files come first, then those of the table.
+    number: usize,
+    /// Files that were opened in earlier windows, the last one first.
+    pub recent: Vec<PathBuf>,
+    /// The checkpoint that was written or opened last.
+    pub kept: Option<PathBuf>,
+}
+
+/// A scene that was loaded again, and what is new in its file.
+pub struct Reloaded {
+    pub setup: Setup,
+    /// Whether the file has another camera than before.
+    pub camera: bool,
+    /// The solver of the file, if solver or step are others than before.
+    pub method: Option<&'static Method>,
+}
+
+impl Scenes {
+    /// Creates the list of the built-in scenes and of the scene that is shown first.
+    pub fn new(origin: Origin) -> Self {
+        Self {
+            begun: origin.source.typed.clone(),
+            number: a3_scenes::SCENES
+                .iter()
+                .position(|entry| entry.name == origin.source.typed)
+                .unwrap_or(0),
+            shown: origin.clone(),
+            asked: vec![origin],
+            recent: vec![],
+            kept: None,
+        }
+    }
+
+    /// The names of all scenes: the files that were asked for or opened, then those of the table.
+    fn names(&self) -> Vec<String> {
+        let files = self.asked.iter().map(|origin| &origin.source);
+        let files = files.filter(|source| source.path.is_some());
+        let table = a3_scenes::SCENES.iter().map(|entry| entry.name.to_owned());
+        files
+            .map(|source| source.typed.clone())
+            .chain(table)
+            .collect()
+    }
+
+    /// The scene that was asked for by a name.
+    fn asked(&self, name: &str) -> Option<&Origin> {
+        self.asked.iter().find(|it| it.source.typed == name)
+    }
+
+    /// The files that were asked for or opened, the last one first.
+    pub fn files(&self) -> impl Iterator<Item = PathBuf> {
+        let sources = self.asked.iter().map(|origin| &origin.source);
+        let files = sources.filter(|source| !source.is_input());
+        let paths = files.filter_map(|source| source.path.as_ref());
+        paths.filter_map(|path| std::path::absolute(path).ok())
+    }
+
+    /// Files that were opened in earlier windows and are there still.
+    fn earlier_files(&self) -> Vec<PathBuf> {
+        let now: Vec<_> = self.files().collect();
+        let earlier = self
+            .recent
+            .iter()
+            .filter(|path| !now.contains(*path) && path.is_file());
+        earlier.cloned().collect()
+    }
+
+    /// All scenes, and then the files that were opened in earlier windows, as entries of a list.
+    pub fn entries(&self) -> Vec<Entry> {
+        let names = self.names();
+        let count = names.len();
+        let earlier = self.earlier_files().into_iter().enumerate();
+        let earlier = earlier.map(|(k, path)| Entry {
+            number: count + k,
+            key: String::new(),
+            name: path
+                .file_name()
+                .unwrap_or_default()
+                .to_string_lossy()
+                .into(),
+            about: path.display().to_string(),
+            current: false,
+        });
+        let names = names.into_iter().enumerate();
+        names
+            .map(|(number, name)| {
+                let summary = if let Some(entry) = a3_scenes::find(&name) {
+                    entry.description().ok().and_then(|d| d.summary)
+                } else {
+                    let asked = self.asked(&name);
+                    asked.and_then(|origin| origin.source.description.summary.clone())
+                };
+                Entry {
+                    number,
+                    key: String::new(),
+                    about: summary.unwrap_or_default(),
+                    current: number == self.number,
+                    name,
+                }
+            })
+            .chain(earlier)
+            .collect()
+    }
+
+    /// The earlier file that has this number in the list of scenes.
+    pub fn earlier_file(&self, number: usize) -> Option<PathBuf> {
+        let k = number.checked_sub(self.names().len())?;
+        self.earlier_files().into_iter().nth(k)
+    }
+
+    /// The number of the scene `by` places after the one that is shown, or before it if that is
+    /// negative.
+    pub fn beside(&self, by: isize) -> usize {
+        let count = self.names().len() as isize;
+        (self.number as isize + by).rem_euclid(count) as usize
+    }
+
+    /// Builds the scene of this number among all names, and takes it as the one that is shown.
+    pub fn show(&mut self, number: usize) -> Result<Setup, String> {
+        let names = self.names();
+        let name = names.get(number).ok_or("There is no such scene.")?;
+        let asked = self.asked(name).cloned();
+        let origin = asked.map_or_else(|| Source::find(name).map(Origin::of), Ok)?;
+        let setup = origin.build()?;
+        self.shown = origin;
+        self.number = number;
+        Ok(setup)
+    }
+
+    /// Builds the scene of a file, and takes it as the one that is shown.
+    pub fn open(&mut self, file: &Path) -> Result<Setup, String> {
+        let source = Source::find(&file.to_string_lossy())?;
+        let setup = source.build(None)?;
+        self.asked.retain(|it| it.source.typed != source.typed);
+        self.shown = Origin::of(source);
+        self.asked.insert(0, self.shown.clone());
+        self.number = 0;
+        Ok(setup)
+    }
+
+    /// Builds the scene that the session began with again from its file, and takes it as the one
+    /// that is shown; `None` if it was not of a file.
+    pub fn reload(&mut self) -> Result<Option<Reloaded>, String> {
+        let begun = |origin: &Origin| origin.source.typed == self.begun;
+        let Some(number) = self.asked.iter().position(begun) else {
+            return Ok(None);
+        };
+        let old = self.asked[number].clone();
+        let origin = Origin {
+            source: Source::find(&old.source.typed)?,
+            ..old
+        };
+        let setup = origin.build()?;
+        let (new, old) = (&origin.source.description, &old.source.description);
+        let ran = (new.solver != old.solver || new.step != old.step).then_some(&setup.defaults);
+        let reloaded = Reloaded {
+            camera: new.camera != old.camera,
+            method: ran.and_then(|defaults| defaults.solver),
+            setup,
+        };
+        self.asked[number] = origin.clone();
+        self.shown = origin;
+        self.number = number;
+        Ok(Some(reloaded))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use a3_core::Simulation;
+
+    use super::*;
+    use crate::window::session::{RunAction, compared, session};
+
+    #[test]
+    fn scenes_come_round_and_the_solver_comes_back() {
+        let mut session = session(&["v", "0.005"]);
+        let mut seen = vec![];
+        for _ in 0..a3_scenes::SCENES.len() {
+            seen.push((
+                session.runs.panes[0].simulation.scene().name.clone(),
+                session.runs.panes[0].simulation.method().name,
+            ));
+            assert!(session.act(RunAction::NextScene, 0));
+        }
+        let expected: Vec<_> = a3_scenes::SCENES.iter().map(|entry| entry.name).collect();
+        assert_eq!(
+            seen.iter()
+                .map(|(scene, _)| scene.as_str())
+                .collect::<Vec<_>>(),
+            expected
+        );
+        // Verlet cannot serve the circle, and serves the others again.
+        let solvers: Vec<_> = seen.iter().map(|(_, solver)| *solver).collect();
+        for (scene, solver) in expected.iter().zip(solvers) {
+            assert_eq!(
+                solver,
+                if *scene == "simple" {
+                    "trapezoid"
+                } else {
+                    "verlet"
+                }
+            );
+        }
+        assert_eq!(session.runs.panes[0].simulation.scene().name, "cloth");
+    }
+
+    #[test]
+    fn the_grid_asked_for_comes_back() {
+        let mut session = session(&["t", "0.005", "--grid", "30x25"]);
+        for _ in 0..a3_scenes::SCENES.len() {
+            session.act(RunAction::NextScene, 0);
+        }
+        assert_eq!(session.runs.panes[0].simulation.particles(), 750);
+    }
+
+    const FLAG: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/scenes/strip.toml");
+
+    #[test]
+    fn a_step_that_a_scene_does_not_hold_is_shortened_and_comes_back() {
+        let mut session = compared(&["t:0.02", "i:0.02", "--scene", "pendulum"], 0.1);
+        let (mut shortened, mut kept) = (0, 0);
+        for _ in 0..a3_scenes::SCENES.len() {
+            session.readings.message = None;
+            assert!(session.act(RunAction::NextScene, 0));
+            let [heun, implicit] = [0, 1].map(|k| {
+                let run = &session.runs.panes[k].simulation;
+                (run.scene().name.clone(), run.control().step().unwrap())
+            });
+            if heun.1 < 0.02 {
+                shortened += 1;
+                let said = session.readings.message.clone().unwrap();
+                let step = format!("the step is {} s here, since 0.02 s would blow up", heun.1);
+                assert!(said.contains(&step), "{}: {said}", heun.0);
+                if !["boxes", "dominoes", "ball-on-cloth", "t-handle", "drop"].contains(&&*heun.0) {
+                    let run = &session.runs.panes[0].simulation;
+                    let scene = run.scene().clone();
+                    let mut again = Simulation::new(scene, run.method(), run.control()).unwrap();
+                    again.advance_to(3.0).unwrap();
+                }
+            } else {
+                kept += 1;
+            }
+            if session.runs.panes[1].simulation.method().is_implicit() {
+                assert_eq!(implicit.1, 0.02, "{}", implicit.0);
+            }
+        }
+        assert!(shortened > 2 && kept > 2, "{shortened} {kept}");
+        // A step that is set by hand is wanted from then on.
+        while session.runs.panes[0].wanted_step.is_none() {
+            session.act(RunAction::NextScene, 0);
+        }
+        session.act(RunAction::ShorterStep, 0);
+        assert_eq!(session.runs.panes[0].wanted_step, None);
+    }
+
+    #[test]
+    fn a_file_is_opened_and_one_that_is_none_is_refused() {
+        let mut session = session(&["v", "0.001"]);
+        assert!(session.open(Path::new(FLAG)));
+        let name = session.runs.first().scene().name.clone();
+        assert!(
+            session
+                .readings
+                .message
+                .clone()
+                .unwrap()
+                .contains("strip.toml")
+        );
+        assert!(!session.open(Path::new("/nowhere/flag.toml")));
+        assert!(
+            session
+                .readings
+                .message
+                .clone()
+                .unwrap()
+                .contains("/nowhere/flag.toml")
+        );
+        assert_eq!(session.runs.first().scene().name, name);
+        // It is one of the scenes from now on.
+        session.act(RunAction::NextScene, 0);
+        assert_eq!(session.runs.first().scene().name, a3_scenes::SCENES[0].name);
+        for _ in 0..a3_scenes::SCENES.len() {
+            session.act(RunAction::NextScene, 0);
+        }
+        assert_eq!(session.runs.first().scene().name, name);
+    }
+}

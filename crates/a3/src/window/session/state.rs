@@ -1,0 +1,331 @@
+//! A session: its parts, and the time that goes by for all of them.
+
+use web_time::{Duration, Instant};
+
+use a3_core::{Checkpoint, Error, Simulation};
+use a3_scenes::Setup;
+
+use super::history::History;
+use super::list::List;
+use super::meter::Meter;
+use super::origin::Origin;
+use super::pane::Pane;
+use super::readings::Readings;
+use super::runs::Runs;
+use super::scenes::Scenes;
+use super::timeline::Timeline;
+use super::tuning::{PanelState, Tuning};
+use super::view::View;
+use crate::base::failure::Failure;
+use crate::draw::show::{Manner, Show};
+
+/// Real time that a frame may spend on steps: at least so much, and at least this share of the real
+/// time that the frame stands for, so that steps may take as long as a slow display. Steps that do
+/// not fit are left out: all runs are then slower than real time. Tests run several at a time and
+/// must not depend on it.
+const BUDGET: (Duration, f64) = (
+    Duration::from_millis(if cfg!(test) { 400 } else { 12 }),
+    0.5,
+);
+/// Real time that a frame may spend on the reference: at least so much, and at least this share of
+/// the real time that the frame stands for. Tests run several at a time and must not depend on it.
+const REFERENCE_BUDGET: (Duration, f64) =
+    (Duration::from_millis(if cfg!(test) { 400 } else { 4 }), 0.1);
+/// The most real time (s) that a frame makes up for, however long the last one took.
+const LONGEST_FRAME: f64 = 0.3;
+
+/// How a session begins.
+#[derive(Clone, Copy, Default)]
+pub struct Beginning {
+    /// How the runs are shown.
+    pub manner: Manner,
+    /// Whether they are paused.
+    pub paused: bool,
+}
+
+/// One run on the screen, or several of one scene side by side.
+pub struct Session {
+    /// The runs and their time.
+    pub runs: Runs,
+    /// From where they are seen.
+    pub view: View,
+    /// The scenes that can be shown.
+    pub scenes: Scenes,
+    /// The last seconds of all runs, to go back to.
+    pub timeline: Timeline,
+    /// What can be undone.
+    pub history: History,
+    /// Changes that the panel made to the scene.
+    pub tuning: Tuning,
+    /// State of the panel.
+    pub panel: PanelState,
+    /// The list that is open to choose from.
+    pub list: Option<List>,
+    /// Values for the text over the picture.
+    pub readings: Readings,
+    /// Time spent since the readings were last taken.
+    meter: Meter,
+}
+
+impl Session {
+    /// A session on these runs, at least one, of the scene from `origin`, which was built as
+    /// `setup`.
+    pub fn new(
+        origin: Origin,
+        setup: &Setup,
+        simulations: Vec<Simulation>,
+        beginning: &Beginning,
+    ) -> Result<Self, Failure> {
+        let panes: Vec<_> = simulations
+            .into_iter()
+            .map(|run| {
+                let presentation = setup.presentation.clone();
+                let show = Show::new(presentation, beginning.manner);
+                Pane::new(run, show)
+            })
+            .collect();
+        Ok(Self {
+            view: View::new(panes[0].show.camera()),
+            runs: Runs::new(panes)?,
+            scenes: Scenes::new(origin),
+            timeline: Timeline::default(),
+            history: History::default(),
+            tuning: Tuning::of(setup),
+            panel: PanelState::default(),
+            list: None,
+            readings: Readings {
+                paused: beginning.paused,
+                ..Readings::default()
+            },
+            meter: Meter::new(),
+        })
+    }
+
+    /// Whether the next frame will look different by itself.
+    pub fn animated(&self) -> bool {
+        !self.readings.paused && self.runs.any_alive()
+    }
+
+    /// Brings the runs on by `real` seconds of real time, in steps of exactly the lengths that were
+    /// asked for.
+    pub fn tick(&mut self, real: f64) {
+        if self.animated() {
+            let real = real.min(LONGEST_FRAME);
+            let budget = |(least, share): (Duration, f64)| {
+                let share = Duration::from_secs_f64(share * real);
+                share.max(least)
+            };
+            let simulated = real * 0.5f64.powi(self.readings.slowness);
+            self.advance(simulated, budget(BUDGET), budget(REFERENCE_BUDGET));
+        } else {
+            self.runs.settle();
+        }
+    }
+
+    /// Brings the runs on by so much simulated time (s), as far as the budgets of real time
+    /// suffice, and keeps their states on the timeline.
+    pub(super) fn advance(&mut self, simulated: f64, budget: Duration, reference_budget: Duration) {
+        self.keep(false);
+        let (begun, start) = (Instant::now(), self.runs.clock);
+        self.runs
+            .advance(start + simulated, budget, reference_budget);
+        self.meter
+            .count_steps(self.runs.clock - start, begun.elapsed());
+        self.readings.read_reference(self.runs.reference.as_ref());
+        self.keep(false);
+    }
+
+    /// Keeps the states on the timeline if the last ones are old enough, or at once with `now`.
+    fn keep(&mut self, now: bool) {
+        if self.readings.in_window {
+            let runs = &self.runs;
+            self.timeline.keep(runs.clock, now, runs.all());
+        }
+        self.readings.rewound = self.timeline.position();
+    }
+
+    /// Brings all runs to `time` (s) exactly, however long that takes: without a window.
+    pub fn run_to(&mut self, time: f64) {
+        self.runs.run_to(time);
+        self.readings.read_reference(self.runs.reference.as_ref());
+    }
+
+    /// Takes readings of the states, if they are due.
+    pub fn read_state(&mut self) {
+        self.runs.read_state(self.animated());
+    }
+
+    /// Counts a frame that took `drawing` to draw. Twice a second the rates are taken, unless all
+    /// runs stand still.
+    pub fn drawn(&mut self, drawing: Duration) {
+        if !self.animated() {
+            self.readings.factor = 0.0;
+            self.meter = Meter::new();
+            return;
+        }
+        let Some(rates) = self.meter.count_frame(drawing) else {
+            return;
+        };
+        self.readings.rate = rates.rate;
+        self.readings.factor = rates.factor;
+        self.readings.simulating = rates.simulating;
+        self.readings.drawing = rates.drawing;
+        self.runs.panes.iter_mut().for_each(Pane::read_cost);
+    }
+
+    /// Begins to measure again, with no steps due: after a time in which nothing was simulated.
+    pub fn start_anew(&mut self) {
+        self.runs.start_anew();
+        self.meter = Meter::new();
+    }
+
+    /// Pauses and goes `by` kept moments on, or back if it is negative. The runs go on from the
+    /// moment that is shown.
+    pub fn scrub(&mut self, by: isize) {
+        self.pause_to_scrub();
+        if self.timeline.go(by) {
+            self.show_moment();
+        } else if by < 0 {
+            self.readings.say("There is nothing earlier to go back to.");
+        }
+    }
+
+    /// Pauses and goes to a share of the kept time: 0 is the oldest moment, 1 the newest.
+    pub fn scrub_to(&mut self, share: f32) {
+        self.pause_to_scrub();
+        if self.timeline.go_to(share) {
+            self.show_moment();
+        }
+    }
+
+    /// Pauses, and keeps the newest states to come back to.
+    fn pause_to_scrub(&mut self) {
+        self.readings.paused = true;
+        if self.readings.rewound.is_none() {
+            self.runs.settle();
+            self.keep(true);
+        }
+    }
+
+    /// Gives all runs the states of the moment that is shown.
+    fn show_moment(&mut self) {
+        self.timeline.show(self.runs.all_mut());
+        self.runs.states_changed();
+        self.readings.rewound = self.timeline.position();
+        self.runs.hide_hand();
+        self.start_anew();
+    }
+
+    /// Takes the first run up where it was kept in a checkpoint. A hand lets go.
+    pub fn take_up(&mut self, checkpoint: &Checkpoint) -> Result<(), Error> {
+        self.runs.panes[0].take_up(checkpoint)?;
+        self.another_run();
+        Ok(())
+    }
+
+    /// Clears the timeline and begins to measure again, because another run begins.
+    pub(super) fn another_run(&mut self) {
+        self.timeline.clear();
+        self.readings.rewound = None;
+        self.runs.hide_hand();
+        self.start_anew();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::window::session::{RunAction, compared, frames, session, times};
+    #[test]
+    fn time_keeps_up_whatever_the_frame_rate() {
+        for rate in [17.0, 60.0, 144.0] {
+            let mut session = session(&["t", "0.01", "--scene", "chain"]);
+            for _ in 0..(3.0 * rate) as u32 {
+                session.tick(1.0 / rate);
+            }
+            assert!(
+                (session.runs.panes[0].simulation.time() - 3.0).abs() < 0.011,
+                "{rate}: {}",
+                session.runs.panes[0].simulation.time()
+            );
+        }
+    }
+
+    #[test]
+    fn a_frame_of_minutes_is_no_huge_step() {
+        let mut session = session(&["t", "0.01", "--scene", "chain"]);
+        session.tick(300.0);
+        assert!(session.runs.panes[0].simulation.time() <= LONGEST_FRAME + 1e-9);
+        assert!(session.runs.panes[0].simulation.steps() <= 30);
+    }
+
+    #[test]
+    fn a_long_step_waits_until_it_is_due() {
+        let mut session = session(&["r", "0.5", "--scene", "simple"]);
+        for _ in 0..65 {
+            session.tick(1.0 / 60.0);
+        }
+        assert_eq!(session.runs.panes[0].simulation.steps(), 2);
+    }
+
+    #[test]
+    fn paused_it_stands_still() {
+        let mut session = session(&["t", "0.01", "--paused"]);
+        session.tick(0.05);
+        assert_eq!(session.runs.panes[0].simulation.steps(), 0);
+        session.act(RunAction::Step, 0);
+        assert_eq!(session.runs.panes[0].simulation.steps(), 1);
+        session.act(RunAction::Pause, 0);
+        session.tick(0.05);
+        assert_eq!(session.runs.panes[0].simulation.steps(), 6);
+    }
+
+    #[test]
+    fn a_lost_run_leaves_no_line_across_the_picture() {
+        let mut session = session(&["e", "2", "--scene", "simple"]);
+        while session.runs.panes[0].simulation.blow_up().is_none() {
+            session.act(RunAction::Step, 0);
+        }
+        let radius = |p: &[f32; 3]| p[0].hypot(p[1]);
+        assert!(
+            session.runs.panes[0]
+                .show
+                .trail()
+                .all(|p| radius(p) <= 100.0)
+        );
+        let last = session.runs.panes[0].show.trail().last().copied();
+        session.act(RunAction::Step, 0);
+        assert_eq!(session.runs.panes[0].show.trail().last().copied(), last);
+    }
+
+    #[test]
+    fn slow_motion_is_slow_and_its_steps_are_the_same() {
+        let mut session = session(&["t", "0.001", "--scene", "chain"]);
+        for _ in 0..2 {
+            session.act(RunAction::Slower, 0);
+        }
+        frames(&mut session, 2.0);
+        let run = session.runs.first();
+        assert!((run.time() - 0.5).abs() < 2e-3, "{}", run.time());
+        assert!((run.time() - 1e-3 * run.steps() as f64).abs() < 1e-9);
+        for _ in 0..9 {
+            session.act(RunAction::Slower, 0);
+        }
+        assert_eq!(session.readings.slowness, 6);
+        for _ in 0..9 {
+            session.act(RunAction::Faster, 0);
+        }
+        frames(&mut session, 1.0);
+        assert!((session.runs.first().time() - 1.5).abs() < 3e-3);
+    }
+
+    #[test]
+    fn one_that_is_lost_leaves_the_others_alone() {
+        let mut session = compared(&["e:0.05", "r:0.01", "--scene", "mit"], 2.0);
+        assert!(!session.runs.panes[0].alive() && session.runs.panes[0].error.is_none());
+        assert!(session.animated() && session.runs.panes[1].error.unwrap() < 1e-3);
+        assert!((times(&session)[1] - session.runs.clock).abs() < 0.011);
+        session.act(RunAction::Reset, 0);
+        assert!(session.runs.panes[0].alive());
+    }
+}

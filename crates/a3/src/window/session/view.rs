@@ -1,0 +1,202 @@
+//! From where the runs are seen.
+
+use std::f32::consts::FRAC_PI_2;
+
+use a3_render::Camera;
+
+use super::pane::Pane;
+use crate::draw::show;
+
+/// Yaw and pitch (rad) of the views of a key, and their names.
+const VIEWS: [([f32; 2], &str); 3] = [
+    ([0.0, 0.0], "from the front"),
+    ([FRAC_PI_2, 0.0], "from the right"),
+    // Almost: the camera does not pass over the poles.
+    ([0.0, FRAC_PI_2], "from above"),
+];
+
+/// The camera, which all panes share, and the particle that it follows.
+pub struct View {
+    /// The camera.
+    pub camera: Camera,
+    followed: Option<Followed>,
+}
+
+/// A particle that the camera follows.
+#[derive(Clone, Copy)]
+struct Followed {
+    /// Number of its pane.
+    pane: usize,
+    particle: usize,
+    /// Its last seen position (m).
+    at: [f32; 3],
+}
+
+impl View {
+    /// A view by a camera that follows nothing.
+    pub fn new(camera: Camera) -> Self {
+        Self {
+            camera,
+            followed: None,
+        }
+    }
+
+    /// Sees from another camera, in the same projection.
+    pub fn see_from(&mut self, camera: Camera) {
+        let parallel = self.camera.is_parallel();
+        self.camera = camera;
+        self.camera.set_parallel(parallel);
+    }
+
+    /// Goes from perspective to an orthographic projection, or back, and says so.
+    pub fn toggle_projection(&mut self) -> &'static str {
+        let parallel = !self.camera.is_parallel();
+        self.camera.set_parallel(parallel);
+        if parallel {
+            "The projection is orthographic."
+        } else {
+            "The projection is perspective."
+        }
+    }
+
+    /// Follows a particle of a pane, or stops if it is already followed or `None`. Says which.
+    pub fn follow(&mut self, panes: &[Pane], pane: usize, particle: Option<usize>) -> String {
+        let before = self.followed.take();
+        let again = |i: &usize| before.is_some_and(|it| (it.pane, it.particle) == (pane, *i));
+        let Some(particle) = particle.filter(|i| !again(i)) else {
+            return match before {
+                Some(_) => "The camera stays where it is.".into(),
+                None => "Nothing is there that the camera could follow.".into(),
+            };
+        };
+        let at = show::to_f32(panes[pane].simulation.position(particle));
+        self.followed = Some(Followed { pane, particle, at });
+        format!("The camera follows particle {particle}.")
+    }
+
+    /// Follows nothing.
+    pub fn stay(&mut self) {
+        self.followed = None;
+    }
+
+    /// The particle that the camera follows.
+    pub fn followed(&self) -> Option<usize> {
+        self.followed.map(|followed| followed.particle)
+    }
+
+    /// Moves the camera as the particle that it follows has moved.
+    pub fn go_along(&mut self, panes: &[Pane]) {
+        if let Some(followed) = &mut self.followed {
+            let run = &panes[followed.pane].simulation;
+            let now = show::to_f32(run.position(followed.particle));
+            self.camera
+                .shift([0, 1, 2].map(|axis| now[axis] - followed.at[axis]));
+            followed.at = now;
+        }
+    }
+
+    /// Moves the camera so that all particles of all panes are seen, from the same side.
+    pub fn see_all(&mut self, panes: &[Pane]) {
+        let (mut low, mut high) = ([f32::INFINITY; 3], [f32::NEG_INFINITY; 3]);
+        for pane in panes {
+            let run = &pane.simulation;
+            for point in (0..run.particles()).map(|i| run.position(i)) {
+                for axis in 0..3 {
+                    low[axis] = low[axis].min(point[axis] as f32);
+                    high[axis] = high[axis].max(point[axis] as f32);
+                }
+            }
+        }
+        let middle = [0, 1, 2].map(|axis| 0.5 * (low[axis] + high[axis]));
+        let [x, y, z] = [0, 1, 2].map(|axis| 0.5 * (high[axis] - low[axis]));
+        // What is drawn around particles is seen too.
+        let radius = x.hypot(y).hypot(z) + 0.1;
+        self.camera.see(middle, radius);
+    }
+
+    /// Turns the camera to the next view (from the front, from the right, or from above), and
+    /// returns its name.
+    pub fn next_view(&mut self) -> &'static str {
+        let seen = |[yaw, pitch]: [f32; 2]| {
+            let mut turned = self.camera;
+            turned.turn_to(yaw, pitch);
+            turned == self.camera
+        };
+        let now = VIEWS.iter().position(|(view, _)| seen(*view));
+        let ([yaw, pitch], name) = VIEWS[now.map_or(0, |now| (now + 1) % VIEWS.len())];
+        self.camera.turn_to(yaw, pitch);
+        name
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::window::session::{RunAction, Session, frames, session};
+
+    #[test]
+    fn the_camera_follows_a_particle_forth_and_back() {
+        let mut session = session(&["v", "0.005", "--scene", "pendulum"]);
+        session.readings.in_window = true;
+        let last = session.runs.first().particles() - 1;
+        let offset = |session: &Session| {
+            let p = session.runs.first().position(last);
+            let t = session.view.camera.target();
+            [p.x as f32 - t.x, p.y as f32 - t.y, p.z as f32 - t.z]
+        };
+        let near = |a: [f32; 3], b: [f32; 3]| (0..3).all(|k| (a[k] - b[k]).abs() < 1e-4);
+        let before = offset(&session);
+        session.view.follow(&session.runs.panes, 0, Some(last));
+        let begun = session.view.camera.target();
+        frames(&mut session, 0.7);
+        session.view.go_along(&session.runs.panes);
+        assert!(
+            near(offset(&session), before) && (session.view.camera.target() - begun).norm() > 0.1
+        );
+        session.act(RunAction::Scrub(-20), 0);
+        session.view.go_along(&session.runs.panes);
+        assert!(near(offset(&session), before));
+        // The same particle again, or none, ends it; and so does another scene.
+        session.view.follow(&session.runs.panes, 0, Some(last));
+        assert_eq!(session.view.followed(), None);
+        session.view.follow(&session.runs.panes, 0, Some(0));
+        assert_eq!(session.view.followed(), Some(0));
+        session.act(RunAction::NextScene, 0);
+        assert_eq!(session.view.followed(), None);
+    }
+
+    #[test]
+    fn the_projection_stays_with_another_scene_and_when_the_camera_goes_home() {
+        let mut session = session(&["v", "0.005", "--orthographic"]);
+        assert!(session.view.camera.is_parallel());
+        for action in [RunAction::NextScene, RunAction::Camera] {
+            session.act(action, 0);
+            assert!(session.view.camera.is_parallel());
+        }
+        session.act(RunAction::Projection, 0);
+        session.act(RunAction::NextScene, 0);
+        assert!(!session.view.camera.is_parallel());
+    }
+
+    #[test]
+    fn all_is_seen_from_every_side() {
+        let mut session = session(&["v", "0.005", "--scene", "mit"]);
+        for _ in 0..4 {
+            session.act(RunAction::NextView, 0);
+            session.view.camera.pan(30.0, 5.0);
+            session.act(RunAction::SeeAll, 0);
+            let run = session.runs.first();
+            for i in 0..run.particles() {
+                let p = run.position(i);
+                let point = [p.x as f32, p.y as f32, p.z as f32];
+                let ([x, y], _) = session.view.camera.project(point, 1.6).unwrap();
+                assert!(
+                    (0.0..1.0).contains(&x) && (0.0..1.0).contains(&y),
+                    "{i}: {x} {y}"
+                );
+            }
+        }
+        // From the front again, after the right and the top.
+        let (_, _, towards) = session.view.camera.axes();
+        assert!(towards.z > 0.999);
+    }
+}

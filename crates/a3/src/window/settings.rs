@@ -1,0 +1,260 @@
+//! Settings of the window that are remembered from one time to the next.
+
+use std::path::{Path, PathBuf};
+#[cfg(not(target_arch = "wasm32"))]
+use std::{env, fs, io};
+
+use serde::{Deserialize, Serialize};
+
+#[cfg(target_arch = "wasm32")]
+use crate::base::browser;
+use crate::base::failure::Failure;
+#[cfg(not(target_arch = "wasm32"))]
+use crate::base::terminal;
+use crate::files::ending::Ending;
+use crate::files::output;
+use crate::window::session::{FILM_OF, SPAN};
+
+/// Size of the largest file (bytes).
+#[cfg(not(target_arch = "wasm32"))]
+const LARGEST: u64 = 1 << 20;
+/// The most files that are remembered.
+const MOST: usize = 12;
+/// Factors of the size of text and panel.
+pub const SCALES: [f32; 8] = [0.75, 0.9, 1.0, 1.15, 1.3, 1.5, 1.75, 2.0];
+
+/// What is not of a scene.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Settings {
+    /// Size of text and panel over that of the screen's own scale.
+    pub interface_scale: f32,
+    /// Whether the window fills the screen.
+    pub full_screen: bool,
+    /// Whether the background is dark, and text light.
+    pub dark: bool,
+    /// Whether the panel is open.
+    pub panel: bool,
+    /// The most frames a second, or 0 for as many as the screen shows.
+    pub frame_limit: u32,
+    /// The format of films.
+    pub film: Ending,
+    /// Simulated time that a film of what was kept covers (s).
+    pub film_seconds: f64,
+    /// Files of scenes, the one opened last first.
+    pub recent: Vec<PathBuf>,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self {
+            interface_scale: 1.0,
+            full_screen: false,
+            dark: false,
+            panel: false,
+            frame_limit: 0,
+            film: Ending::default(),
+            film_seconds: FILM_OF,
+            recent: vec![],
+        }
+    }
+}
+
+impl Settings {
+    /// The settings in the user's folder, or the first ones where there are none yet.
+    pub fn read() -> Result<Self, String> {
+        Self::read_from(&file())
+    }
+
+    fn read_from(path: &Path) -> Result<Self, String> {
+        let place = path.display();
+        let Some(text) = text_of(path)? else {
+            return Ok(Self::default());
+        };
+        let read: Self = toml::from_str(&text).map_err(|why| {
+            let line = why
+                .span()
+                .map_or(1, |span| 1 + text[..span.start].matches('\n').count());
+            format!("{place}:{line}: this is no setting of a3")
+        })?;
+        let [least, .., most] = SCALES;
+        let limit = f64::from(read.frame_limit);
+        for (name, value, low, high) in [
+            (
+                "interface_scale",
+                f64::from(read.interface_scale),
+                least.into(),
+                most.into(),
+            ),
+            ("film_seconds", read.film_seconds, 1.0, SPAN),
+            ("frame_limit", limit, 0.0, 1000.0),
+        ] {
+            if !(low..=high).contains(&value) {
+                return Err(format!("{place}: {name} must be from {low} to {high}"));
+            }
+        }
+        Ok(read)
+    }
+
+    /// Writes the settings to the user's folder.
+    pub fn write(&self) -> Result<(), Failure> {
+        self.write_to(&file())
+    }
+
+    fn write_to(&self, path: &Path) -> Result<(), Failure> {
+        let text = toml::to_string(self).map_err(Failure::run)?;
+        keep(path, &text)
+    }
+
+    /// Remembers files, the last one first, before those that were remembered already.
+    pub fn remember(&mut self, files: impl Iterator<Item = PathBuf>) {
+        let mut all: Vec<PathBuf> = files.chain(std::mem::take(&mut self.recent)).collect();
+        let mut seen = std::collections::HashSet::new();
+        all.retain(|file| seen.insert(file.clone()));
+        all.truncate(MOST);
+        self.recent = all;
+    }
+}
+
+/// The text of a file, if there is one.
+#[cfg(not(target_arch = "wasm32"))]
+fn text_of(path: &Path) -> Result<Option<String>, String> {
+    let place = path.display();
+    match fs::metadata(path) {
+        Ok(there) if there.is_file() && there.len() <= LARGEST => {}
+        Ok(_) => {
+            return Err(format!(
+                "{place}: it is no ordinary file of at most 1 MiB: the settings are neither read nor kept"
+            ));
+        }
+        Err(why) if why.kind() == io::ErrorKind::NotFound => return Ok(None),
+        Err(why) => return Err(format!("{place}: {}", terminal::reason(&why))),
+    }
+    let text = fs::read_to_string(path);
+    text.map(Some)
+        .map_err(|why| format!("{place}: {}", terminal::reason(&why)))
+}
+
+/// Writes a file, in a folder that is made if it is not there.
+#[cfg(not(target_arch = "wasm32"))]
+fn keep(path: &Path, text: &str) -> Result<(), Failure> {
+    if let Some(folder) = path.parent() {
+        fs::create_dir_all(folder)
+            .map_err(|why| Failure::run(format!("{}: {why}", folder.display())))?;
+    }
+    output::write(path, text.as_bytes())
+}
+
+/// What the browser remembers under that name.
+#[cfg(target_arch = "wasm32")]
+fn text_of(path: &Path) -> Result<Option<String>, String> {
+    let storage = browser::storage();
+    Ok(storage.and_then(|it| it.get_item(&path.to_string_lossy()).ok().flatten()))
+}
+
+/// Lets the browser remember a text under that name, if it does.
+#[cfg(target_arch = "wasm32")]
+fn keep(path: &Path, text: &str) -> Result<(), Failure> {
+    if let Some(storage) = browser::storage() {
+        let _ = storage.set_item(&path.to_string_lossy(), text);
+    }
+    Ok(())
+}
+
+/// What the browser remembers the settings by.
+#[cfg(target_arch = "wasm32")]
+fn file() -> PathBuf {
+    "a3 settings".into()
+}
+
+/// The file of the settings.
+#[cfg(not(target_arch = "wasm32"))]
+fn file() -> PathBuf {
+    let named = |name| {
+        env::var_os(name)
+            .map(PathBuf::from)
+            .filter(|path| path.is_absolute())
+    };
+    let home = |below: &str| env::home_dir().map(|home| home.join(below));
+    let folder = if cfg!(windows) {
+        named("APPDATA")
+    } else if cfg!(target_os = "macos") {
+        home("Library/Application Support")
+    } else {
+        named("XDG_CONFIG_HOME").or_else(|| home(".config"))
+    };
+    folder
+        .unwrap_or_else(env::temp_dir)
+        .join("a3")
+        .join("settings.toml")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_was_written_is_read_again() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a3").join("settings.toml");
+        assert_eq!(Settings::read_from(&path), Ok(Settings::default()));
+        let mut settings = Settings {
+            interface_scale: 1.5,
+            panel: true,
+            film: Ending::Mp4,
+            ..Settings::default()
+        };
+        let files = ["/b.toml", "/a.toml", "/b.toml"].map(PathBuf::from);
+        settings.remember(files.into_iter());
+        settings.remember(std::iter::once(PathBuf::from("/c.toml")));
+        let names: Vec<_> = settings
+            .recent
+            .iter()
+            .map(|p| p.to_str().unwrap())
+            .collect();
+        assert_eq!(names, ["/c.toml", "/b.toml", "/a.toml"]);
+        assert!(settings.write_to(&path).is_ok());
+        assert_eq!(Settings::read_from(&path), Ok(settings));
+    }
+
+    /// What is no file for settings is not waited for, and no more of it is read than a file has.
+    #[test]
+    fn what_is_no_ordinary_file_is_passed_over() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("settings.toml");
+        let refused = |path: &Path| {
+            let why = Settings::read_from(path).unwrap_err();
+            assert!(why.contains("no ordinary file of at most 1 MiB"), "{why}");
+        };
+        refused(folder.path());
+        fs::write(&path, vec![b'#'; (1 << 20) + 1]).unwrap();
+        refused(&path);
+        #[cfg(unix)]
+        {
+            refused(Path::new("/dev/zero"));
+            fs::remove_file(&path).unwrap();
+            let made = std::process::Command::new("mkfifo").arg(&path).status();
+            assert!(made.unwrap().success());
+            refused(&path);
+        }
+    }
+
+    #[test]
+    fn what_is_no_settings_is_refused_with_its_line() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("settings.toml");
+        for (text, line) in [
+            ("panel = true\nscale = 2\n", ":2: "),
+            ("panel = 3\n", ":1: "),
+            (
+                "interface_scale = 1e9\n",
+                ": interface_scale must be from 0.75 to 2",
+            ),
+            ("\u{0}", ":1: "),
+        ] {
+            fs::write(&path, text).unwrap();
+            let why = Settings::read_from(&path).unwrap_err();
+            assert!(why.contains(line) && !why.contains('\n'), "{why}");
+        }
+    }
+}
