@@ -1,8 +1,8 @@
 #![doc = include_str!("../README.md")]
 #![forbid(unsafe_code)]
 
+mod assemble;
 mod budget;
-mod build;
 mod builtin;
 mod check;
 mod description;
@@ -17,7 +17,7 @@ mod surface;
 mod text;
 mod wording;
 
-pub use build::LAYERS as TANK_LAYERS;
+pub use assemble::LAYERS as TANK_LAYERS;
 pub use builtin::{SCENES, SceneEntry, find};
 pub use description::*;
 pub use fault::Fault;
