@@ -1,17 +1,17 @@
-//! Faults in the text of a scene, and where they are.
+//! Faults in the text of a scene, with their places.
 
 use std::fmt;
 
 use crate::text::line;
 use crate::wording::{brief, of_json, of_toml};
 
-/// Most characters of a key or a reason.
-const LONGEST: usize = 1000;
+/// Largest number of characters of a key or a reason.
+const MAX_CHARACTERS: usize = 1000;
 
 /// Fault in a description, with its place in the text.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fault {
-    /// Line of the text, counted from 1, once it is known.
+    /// Line of the text, counted from 1, if it is known.
     pub line: Option<usize>,
     /// Key, such as `cloth.spacing`, or `cloth.1.spacing` of the second of several cloths. It is
     /// empty for the description as a whole.
@@ -26,9 +26,9 @@ impl fmt::Display for Fault {
             write!(f, "line {line}: ")?;
         }
         if !self.key.is_empty() {
-            write!(f, "{}: ", brief(&self.key, LONGEST))?;
+            write!(f, "{}: ", brief(&self.key, MAX_CHARACTERS))?;
         }
-        f.write_str(&brief(&self.why, LONGEST))
+        f.write_str(&brief(&self.why, MAX_CHARACTERS))
     }
 }
 
@@ -41,7 +41,7 @@ impl From<Fault> for a3_core::Error {
 }
 
 impl Fault {
-    /// Fault of that key, whose line is not yet known.
+    /// Creates a fault of a key, whose line is not yet known.
     pub(crate) fn new(key: impl Into<String>, why: impl fmt::Display) -> Self {
         Self {
             line: None,
@@ -50,12 +50,12 @@ impl Fault {
         }
     }
 
-    /// Fault of one of two keys of which only one may be given.
+    /// Creates the fault of the second of two keys of which only one may be given.
     pub(crate) fn not_both(a: &str, b: &str) -> Self {
         Self::new(b, format!("give either `{a}` or `{b}`, not both"))
     }
 
-    /// Fault of a number that no particle has, among this many.
+    /// Creates the fault of a number i that none of the `particles` has.
     pub(crate) fn no_particle(key: &str, i: usize, particles: usize) -> Self {
         let last = particles - 1;
         Self::new(
@@ -64,7 +64,7 @@ impl Fault {
         )
     }
 
-    /// The fault with its key inside that of a part of the description.
+    /// Prefixes the key with that of the part of the description that it is in.
     pub(crate) fn within(self, key: &str) -> Self {
         Self {
             key: join(key, &self.key),
@@ -72,7 +72,7 @@ impl Fault {
         }
     }
 
-    /// The fault with that line, unless its line is known.
+    /// Sets the line, unless it is known.
     pub(crate) fn at(self, line: impl FnOnce() -> usize) -> Self {
         Self {
             line: self.line.or_else(|| Some(line())),
@@ -80,7 +80,7 @@ impl Fault {
         }
     }
 
-    /// Fault of a text that is no TOML.
+    /// Creates the fault of a text that is no TOML.
     pub(crate) fn of_toml(text: &str, error: &toml::de::Error) -> Self {
         let at = error.span().map(|span| span.start);
         let rest = at.and_then(|at| text.get(at..)).unwrap_or_default();
@@ -90,10 +90,10 @@ impl Fault {
         }
     }
 
-    /// Fault of a text that is no JSON and begins at that line.
+    /// Creates the fault of a text that is no JSON and begins at this line.
     pub(crate) fn of_json(first: usize, error: &serde_json::Error) -> Self {
         let message = error.to_string();
-        // The reader ends with the place.
+        // The reader appends the place.
         let message = message.split(" at line ").next().unwrap_or_default();
         Self {
             line: Some(first + error.line().saturating_sub(1)),
@@ -102,7 +102,7 @@ impl Fault {
     }
 }
 
-/// The key of a part, within that of the whole.
+/// Joins the key of a whole and that of a part of it.
 pub(crate) fn join(whole: &str, part: &str) -> String {
     match (whole, part) {
         ("", key) | (key, "") => key.into(),

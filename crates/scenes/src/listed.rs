@@ -1,4 +1,4 @@
-//! Scenes as JSON: a list of particles and springs, with states that the motion is known to reach.
+//! Scenes as JSON: lists of particles and springs, with the reference states of other programs.
 
 use serde::Deserialize;
 use serde::de::IgnoredAny;
@@ -31,7 +31,7 @@ struct Listed {
     _states: Option<IgnoredAny>,
 }
 
-/// Beginnings of the keys of a description, and those of the list.
+/// Prefixes of keys: that of a description, and that of the list which stands for it.
 const NAMES: &[(&str, &str)] = &[
     ("particles.masses", "mass"),
     ("particles.pin.particles", "pinned"),
@@ -39,12 +39,12 @@ const NAMES: &[(&str, &str)] = &[
     ("particles.", ""),
 ];
 
-/// Reads a description from JSON: a list of particles and springs. With it come the places of its
-/// keys, by which the lines of faults are found that show when it is built.
+/// Reads a description from a list of particles and springs in JSON. The places of its keys tell
+/// the lines of faults that [`Description::build`] finds.
 ///
 /// # Errors
-/// The text is not JSON, a key is unknown or missing, or a value is of the wrong kind, or a number
-/// beyond -1e9 to 1e9.
+/// The text is not JSON, a key is unknown or missing, a value is of the wrong kind, or a
+/// number is not from -1e9 to 1e9.
 pub fn parse_json(text: &str) -> Result<(Description, Places), Fault> {
     let (listed, places): (Listed, Places) = reader::read_json(text)?;
     let pin = Pin {

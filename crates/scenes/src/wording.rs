@@ -1,13 +1,13 @@
-//! What readers say of a text, in the words of those who write scenes.
+//! Messages about the text of a scene, in the words of those who write scenes.
 
 use std::borrow::Cow;
 
 use crate::likeness::nearest;
 
-/// What a whole number must be.
+/// Description of a whole number.
 pub(crate) const WHOLE: &str = "a whole number of at least 0";
 
-/// A message with at most that many characters: it may quote a whole file.
+/// Shortens a message, which may quote a whole file, to `most` characters.
 pub(crate) fn brief(message: &str, most: usize) -> Cow<'_, str> {
     match message.char_indices().nth(most) {
         Some((end, _)) => format!("{} ...", &message[..end]).into(),
@@ -15,19 +15,19 @@ pub(crate) fn brief(message: &str, most: usize) -> Cow<'_, str> {
     }
 }
 
-/// A text as it is quoted.
+/// Quotes a text.
 pub(crate) fn quoted(text: &str) -> String {
     format!("the text \"{}\"", brief(text, 60))
 }
 
-/// What a list of numbers must be.
+/// Describes a list of `count` numbers.
 pub(crate) fn list_of(count: impl std::fmt::Display) -> String {
     format!("a list of {count} numbers in square brackets")
 }
 
-/// What is said of a list of another length.
+/// Message for a list of the wrong length.
 pub(crate) fn wrong_length(wanted: usize, found: usize) -> String {
-    // 0,5 is two numbers.
+    // A decimal comma makes two numbers of one.
     let advice = if found > wanted {
         "; write decimal points, as in 0.5, and commas between numbers"
     } else {
@@ -36,17 +36,17 @@ pub(crate) fn wrong_length(wanted: usize, found: usize) -> String {
     format!("it must be a list of {wanted} numbers, not of {found}{advice}")
 }
 
-/// What is said of a whole number that is too large.
+/// Message for a whole number that is too large.
 pub(crate) fn too_large(number: impl std::fmt::Display) -> String {
     format!("the number {number} is too large")
 }
 
-/// What is said of a key that is not there.
+/// Message for a missing key.
 pub(crate) fn missing(key: &str) -> String {
     format!("the key `{key}` is missing")
 }
 
-/// What is said of a key that there is not.
+/// Message for an unknown key.
 pub(crate) fn unknown_key(key: &str, known: &[&str]) -> String {
     unknown(
         &format!("there is no key `{}`", brief(key, 60)),
@@ -56,7 +56,7 @@ pub(crate) fn unknown_key(key: &str, known: &[&str]) -> String {
     )
 }
 
-/// What is said of a name that none of the choices has.
+/// Message for a name that is not among the choices.
 pub(crate) fn unknown_choice(name: &str, known: &[&str]) -> String {
     unknown(
         &format!("there is no `{}`", brief(name, 60)),
@@ -74,7 +74,7 @@ fn unknown(what: &str, word: &str, all: &str, known: &[&str]) -> String {
     }
 }
 
-/// What the JSON reader says of a text that is no JSON.
+/// Translates a message of the JSON parser.
 pub(crate) fn of_json(message: &str) -> &str {
     match message {
         "EOF while parsing a list" => "the text ends within a list: `]` is missing",
@@ -101,7 +101,7 @@ pub(crate) fn of_json(message: &str) -> &str {
     }
 }
 
-/// What the TOML reader says of a text that is no TOML. `rest` is the text from where it says so.
+/// Translates a message of the TOML parser. `rest` is the text from the place of the error on.
 pub(crate) fn of_toml(message: &str, rest: &str) -> Cow<'static, str> {
     const VALUE: &str = "the value must be a number such as 0.5, a text in quotes, true, false, a list \
                          such as [1, 2] or a table such as { a = 1 }";

@@ -16,11 +16,11 @@ use crate::check::{beyond, within};
 pub enum Floor {
     /// Height of a smooth floor (m).
     Height(f64),
-    /// Floor of more than a height.
+    /// Floor with friction, restitution or thickness.
     Table(FloorSpec),
 }
 
-/// Level floor with what it does to bodies.
+/// Level floor with its friction, restitution and thickness.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct FloorSpec {

@@ -1,5 +1,4 @@
-//! What a scene file may say, in TOML: plain data, without a check of its numbers. `docs/scenes.md`
-//! shows it by example.
+//! Keys of scene files, as plain data. `docs/scenes.md` shows them by example.
 
 mod bodies;
 mod constraints;
@@ -26,8 +25,8 @@ pub use motion::{Pin, Shift, Sine, Spot, Triple, Turn};
 pub use obstacles::{BoxSpec, CapsuleSpec, ObstacleSpec, SphereSpec};
 pub use rigid::{PartSpec, RigidBody};
 
-/// A scene: bodies, what acts on them, how it is run and where it is seen from. Units are m, kg, s,
-/// N and rad.
+/// Description of a scene: its bodies, the forces and obstacles that act on them, how it is run,
+/// and where it is seen from. Units are m, kg, s, N and rad.
 ///
 /// Particles are numbered through all bodies: those of cloths come first, then those of jellies,
 /// meshes, solids, chains, single particles and rigid bodies, and last those of fluids, each
@@ -157,8 +156,8 @@ pub struct State {
     pub angular_momenta: Vec<Triple>,
 }
 
-/// Reads a description from TOML, with the places of its keys, by which the lines of faults are
-/// found that show when it is built.
+/// Reads a description from TOML. The places of its keys tell the lines of faults that
+/// [`Description::build`] finds.
 ///
 /// # Errors
 /// As [`Description::parse`].
@@ -171,8 +170,8 @@ impl Description {
     /// Reads a description from TOML.
     ///
     /// # Errors
-    /// The text is not TOML or too long, a key is unknown or missing, or a value is of the wrong
-    /// kind, or a number beyond -1e9 to 1e9.
+    /// The text is not TOML or too long, a key is unknown or missing, a value is of the
+    /// wrong kind, or a number is not from -1e9 to 1e9.
     pub fn parse(text: &str) -> Result<Self, Fault> {
         parse_toml(text).map(|(description, _)| description)
     }
@@ -185,7 +184,7 @@ impl Description {
         toml::to_string(self).map_err(|e| a3_core::Error::Invalid(e.to_string()))
     }
 
-    /// JSON Schema of scene files, by which editors complete and check them.
+    /// Returns the JSON Schema of scene files, by which editors complete and check them.
     #[must_use]
     pub fn schema() -> String {
         let schema = schemars::schema_for!(Self);

@@ -1,5 +1,5 @@
-//! Deserialization of values: each must be of the kind and the length that is wanted, and each
-//! number within the bounds.
+//! Deserialisation of values: each must be of the expected kind and length, and each number within
+//! the bounds.
 
 use std::vec;
 
@@ -15,7 +15,7 @@ use crate::wording::{
     WHOLE, list_of, missing, quoted, too_large, unknown_choice, unknown_key, wrong_length,
 };
 
-impl<'a> Value<'a> {
+impl Value<'_> {
     fn fault(&self, why: String) -> Fault {
         Fault::new("", why).at(|| self.line())
     }
@@ -179,7 +179,7 @@ impl<'de> Deserializer<'de> for Value<'de> {
     }
 }
 
-/// The items of a list, one after another.
+/// Items of a list, one after another.
 struct Items<'a> {
     rest: Box<dyn ExactSizeIterator<Item = Value<'a>> + 'a>,
     count: usize,
@@ -206,7 +206,7 @@ impl<'de> de::SeqAccess<'de> for Items<'de> {
         let read = seed.deserialize(item.clone());
         let read = read.map_err(|fault| {
             let fault = fault.at(|| item.line());
-            // The only item goes without a number, and so do single numbers and texts.
+            // The key of the only item has no number, nor that of a number or a text in a list.
             if (item.is_list() || item.is_table()) && self.count > 1 {
                 fault.within(&k.to_string())
             } else {
@@ -221,11 +221,11 @@ impl<'de> de::SeqAccess<'de> for Items<'de> {
     }
 }
 
-/// The keys and values of a table, one after another.
+/// Entries of a table, one after another.
 struct Entries<'a> {
     text: &'a str,
     rest: vec::IntoIter<Entry<'a>>,
-    /// The entry whose value comes next.
+    /// Entry whose value comes next.
     entry: Option<Entry<'a>>,
 }
 

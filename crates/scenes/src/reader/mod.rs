@@ -1,5 +1,5 @@
-//! Reading TOML and JSON as values of the kinds and lengths that are wanted. What is wrong is a
-//! fault with its key and line.
+//! Reader of TOML and JSON, which deserialises values of the expected kinds and lengths. Its faults
+//! have keys and lines.
 
 mod deserializer;
 mod places;
@@ -12,11 +12,10 @@ use crate::fault::Fault;
 pub use places::Places;
 use value::Value;
 
-/// Reads a text in TOML, with words for what is wrong that say what would be right. No number may
-/// be beyond the bounds of a scene's.
+/// Reads a text in TOML. Each number that is not a whole one must be within the bounds of a scene.
 ///
 /// # Errors
-/// The text is not TOML, or not what is wanted: with the line.
+/// The text is not TOML, or a key or a value is wrong: with its line, and with what would be right.
 pub fn read<T: DeserializeOwned>(text: &str) -> Result<T, Fault> {
     let table = table_of(text)?;
     T::deserialize(Value::of_toml(text, &table))
@@ -25,12 +24,12 @@ pub fn read<T: DeserializeOwned>(text: &str) -> Result<T, Fault> {
 /// Reads a text in TOML as [`read`] does, with the places of its keys.
 pub(crate) fn read_toml<T: DeserializeOwned>(text: &str) -> Result<(T, Places), Fault> {
     let table = table_of(text)?;
-    with_places(Value::of_toml(text, &table))
+    with_places(&Value::of_toml(text, &table))
 }
 
 /// Reads a text in JSON as [`read`] does, with the places of its keys.
 pub(crate) fn read_json<T: DeserializeOwned>(text: &str) -> Result<(T, Places), Fault> {
-    with_places(Value::of_json(text, text))
+    with_places(&Value::of_json(text, text))
 }
 
 fn table_of(text: &str) -> Result<DeValue<'_>, Fault> {
@@ -38,9 +37,9 @@ fn table_of(text: &str) -> Result<DeValue<'_>, Fault> {
     Ok(DeValue::Table(table.into_inner()))
 }
 
-/// Keys that are known have few parts, so their places take little memory: they come second.
-fn with_places<T: DeserializeOwned>(value: Value) -> Result<(T, Places), Fault> {
+/// Reads a value, and then its places: only keys that are known are short enough to be kept.
+fn with_places<T: DeserializeOwned>(value: &Value) -> Result<(T, Places), Fault> {
     let read = T::deserialize(value.clone())?;
-    let places = Places::of(&value)?;
+    let places = Places::of(value)?;
     Ok((read, places))
 }

@@ -1,4 +1,4 @@
-//! Places of the keys of a text, by which the line of a fault is found that shows later.
+//! Places of the keys of a text, which tell the line of a fault that is found after reading.
 
 use std::collections::BTreeMap;
 use std::iter;
@@ -9,15 +9,14 @@ use crate::fault::{Fault, join};
 /// Lines of the keys in the text of a description.
 #[derive(Clone, Debug, Default)]
 pub struct Places {
-    /// Line of each key, counted from 1. Keys are as in faults: `cloth.1.spacing`.
+    /// Line of each key, counted from 1. Keys are written as in faults, such as `cloth.1.spacing`.
     lines: BTreeMap<String, usize>,
-    /// Keys of a description that the text has under other names: the beginning of a key, and that
-    /// of the text.
+    /// Prefixes of keys of the description, and those that the text has in their place.
     names: &'static [(&'static str, &'static str)],
 }
 
 impl Places {
-    /// The places of a table and of all tables in it.
+    /// Collects the places of the keys of a table, and of all tables in it.
     pub(super) fn of(whole: &Value) -> Result<Self, Fault> {
         let ends = whole.text.bytes().enumerate().filter(|(_, b)| *b == b'\n');
         let mut walk = Walk {
@@ -31,13 +30,12 @@ impl Places {
         })
     }
 
-    /// The places of a text in which keys have these names: the beginning of a key of the
-    /// description, and that of the text.
+    /// Sets the prefixes of keys of the description, and those that the text has in their place.
     pub(crate) fn named(self, names: &'static [(&'static str, &'static str)]) -> Self {
         Self { names, ..self }
     }
 
-    /// The places of a text whose lines tell nobody anything, because nobody wrote it.
+    /// Forgets the lines, for a text that was generated and that the user has not seen.
     #[must_use]
     pub fn without_lines(self) -> Self {
         Self {
@@ -46,8 +44,8 @@ impl Places {
         }
     }
 
-    /// The fault with its key as the text has it, and with its line: that of the longest part of
-    /// the key that is there.
+    /// Adds the line to a fault, and rewrites its key as in the text. The line is that of the
+    /// longest prefix of the key that the text has.
     #[must_use]
     pub fn locate(&self, fault: Fault) -> Fault {
         let mut names = self.names.iter();
@@ -66,7 +64,7 @@ impl Places {
     }
 }
 
-/// A way through all tables.
+/// Walk through all tables.
 struct Walk {
     /// Bytes at which lines end.
     ends: Vec<usize>,
@@ -79,7 +77,7 @@ impl Walk {
         self.lines.insert(key, line);
     }
 
-    /// Adds the keys of a value that has that key. Lists of numbers have no keys.
+    /// Adds the keys in a value, which has the key `key` itself. Numbers in lists have no keys.
     fn add(&mut self, key: &str, value: &Value) -> Result<(), Fault> {
         match value.found()? {
             Found::Table(entries) => {

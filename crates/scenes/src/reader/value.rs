@@ -14,7 +14,7 @@ use toml::de::DeValue;
 use crate::fault::Fault;
 use crate::text::line;
 
-/// A value, and where it is in the text. The span of a table in TOML is its header.
+/// Value with its place in the text. The span of a table in TOML is its header.
 #[derive(Clone)]
 pub(super) struct Value<'a> {
     pub text: &'a str,
@@ -22,14 +22,14 @@ pub(super) struct Value<'a> {
     span: Range<usize>,
 }
 
-/// A value in TOML, which was parsed, or in JSON, which is parsed level by level.
+/// Value in TOML, which is parsed as a whole, or in JSON, which is parsed level by level.
 #[derive(Clone)]
 enum Node<'a> {
     Toml(&'a DeValue<'a>),
     Json(&'a str),
 }
 
-/// A value, with the values that are in it.
+/// Value that is opened: its kind, and the values in it.
 pub(super) enum Found<'a> {
     Text(Cow<'a, str>),
     /// Whole number: its digits, and their radix.
@@ -42,16 +42,16 @@ pub(super) enum Found<'a> {
     Table(Vec<Entry<'a>>),
 }
 
-/// Key of a table with its value.
+/// Entry of a table.
 pub(super) struct Entry<'a> {
     pub key: Cow<'a, str>,
-    /// Byte at which the key begins, or in JSON its value.
+    /// Byte at which the key begins, or, in JSON, its value.
     pub at: usize,
     pub value: Value<'a>,
 }
 
 impl<'a> Value<'a> {
-    /// The value that is the whole text, as it was parsed.
+    /// Creates the value of a whole text in TOML.
     pub fn of_toml(text: &'a str, whole: &'a DeValue<'a>) -> Self {
         Self {
             text,
@@ -60,7 +60,7 @@ impl<'a> Value<'a> {
         }
     }
 
-    /// The value that a part of a text is in JSON.
+    /// Creates the value of a part of a text in JSON.
     pub fn of_json(text: &'a str, part: &'a str) -> Self {
         let start = part.as_ptr() as usize - text.as_ptr() as usize;
         Self {
@@ -78,17 +78,17 @@ impl<'a> Value<'a> {
         }
     }
 
-    /// Byte at which it begins.
+    /// Returns the byte at which it begins.
     pub fn at(&self) -> usize {
         self.span.start
     }
 
-    /// Line at which it begins, counted from 1.
+    /// Returns the line at which it begins, counted from 1.
     pub fn line(&self) -> usize {
         line(self.text, self.span.start)
     }
 
-    /// The text of the value, or of its header.
+    /// Returns the text of the value, or of its header.
     pub fn source(&self) -> &'a str {
         self.text.get(self.span.clone()).unwrap_or_default()
     }
@@ -111,7 +111,8 @@ impl<'a> Value<'a> {
         matches!(self.node, Node::Json("null"))
     }
 
-    /// How a table is made a list of tables; `None` in JSON.
+    /// Says how to turn a table into a list of tables; `None` in JSON, where no list of tables is
+    /// wanted.
     pub fn in_list(&self) -> Option<String> {
         match (&self.node, self.source()) {
             (Node::Json(_), _) => None,
@@ -122,7 +123,7 @@ impl<'a> Value<'a> {
         }
     }
 
-    /// Opens the value.
+    /// Opens the value, one level deep.
     ///
     /// # Errors
     /// It is no JSON.
@@ -146,7 +147,7 @@ impl<'a> Value<'a> {
             }
             DeValue::Table(table) => {
                 let mut entries: Vec<_> = table.iter().collect();
-                // What is wrong first is said first.
+                // Of several faults, the first in the text is reported.
                 entries.sort_by_key(|(key, _)| key.span().start);
                 let entries = entries.into_iter().map(|(key, value)| Entry {
                     key: key.get_ref().as_ref().into(),
@@ -199,7 +200,8 @@ impl<'a> Value<'a> {
     }
 }
 
-/// Keys of an object in JSON with their values, in the order of the text.
+/// Keys of an object in JSON with their values, in the order of the text, also if a key is there
+/// twice.
 struct Members<'a>(Vec<(String, &'a RawValue)>);
 
 impl<'de> Deserialize<'de> for Members<'de> {

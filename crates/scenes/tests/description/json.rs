@@ -1,11 +1,11 @@
-//! Lists of particles and springs in JSON: what is wrong is said in plain English.
+//! Lists of particles and springs in JSON: messages are in plain English.
 
 use super::words::check;
 use a3_scenes::parse_json;
 
 use super::*;
 
-/// What stands in a list of two particles, what stands there instead, and how what is said begins.
+/// A part of a list of two particles, its replacement, and the beginning of the message.
 const JSON: &[(&str, &str, &str)] = &[
     (
         "[1, 1]",

@@ -1,4 +1,4 @@
-//! Solids: their boxes, their files, and what is wrong with them.
+//! Solids: boxes, files, and their faults.
 
 use a3_core::{Element, Network, Vector3};
 use a3_scenes::{Description, Mesh, Setup, parse_toml, snapshot};
@@ -39,7 +39,7 @@ fn a_box_is_filled_with_tetrahedra() {
             .all(|volume| (volume - 1.0 / 6.0).abs() < 1e-12)
     );
     assert!((network.masses().iter().sum::<f64>() - 7200.0).abs() < 1e-9);
-    // Two triangles on each outer face of a cell, which close the surface.
+    // Two triangles on each outer face of a cell close the surface.
     assert_eq!(network.triangles().len(), 2 * 2 * (3 * 2 + 3 + 2));
     let n = network.particles();
     let at = |i: u32| {
@@ -82,7 +82,8 @@ fn from_file(mesh: &Mesh, extra: &str) -> Result<Setup, String> {
     built.map_err(|fault| places.locate(fault).to_string())
 }
 
-/// All formats have the same two tetrahedra, whose corners `TetGen`'s file counts the other way.
+/// The files of all formats have the same two tetrahedra. `TetGen`'s counts their corners the other
+/// way round.
 #[test]
 fn files_hold_tetrahedra() {
     let meshes = [
