@@ -24,12 +24,13 @@ pub fn read<T: DeserializeOwned>(text: &str) -> Result<T, Fault> {
 /// Reads a text in TOML as [`read`] does, with the places of its keys.
 pub(crate) fn read_toml<T: DeserializeOwned>(text: &str) -> Result<(T, Places), Fault> {
     let table = table_of(text)?;
-    with_places(&Value::of_toml(text, &table))
+    with_places(&Value::of_toml(text, &table), usize::MAX)
 }
 
-/// Reads a text in JSON as [`read`] does, with the places of its keys.
+/// Reads a text in JSON as [`read`] does, with the places of the keys of its top level. Values that
+/// are ignored may have any depth.
 pub(crate) fn read_json<T: DeserializeOwned>(text: &str) -> Result<(T, Places), Fault> {
-    with_places(&Value::of_json(text, text))
+    with_places(&Value::of_json(text, text), 1)
 }
 
 fn table_of(text: &str) -> Result<DeValue<'_>, Fault> {
@@ -37,9 +38,10 @@ fn table_of(text: &str) -> Result<DeValue<'_>, Fault> {
     Ok(DeValue::Table(table.into_inner()))
 }
 
-/// Reads a value, and then its places: only keys that are known are short enough to be kept.
-fn with_places<T: DeserializeOwned>(value: &Value) -> Result<(T, Places), Fault> {
+/// Reads a value, and then the places of its keys down to a level: only keys that are known are
+/// short enough to be kept.
+fn with_places<T: DeserializeOwned>(value: &Value, levels: usize) -> Result<(T, Places), Fault> {
     let read = T::deserialize(value.clone())?;
-    let places = Places::of(value)?;
+    let places = Places::of(value, levels)?;
     Ok((read, places))
 }

@@ -16,14 +16,14 @@ pub struct Places {
 }
 
 impl Places {
-    /// Collects the places of the keys of a table, and of all tables in it.
-    pub(super) fn of(whole: &Value) -> Result<Self, Fault> {
+    /// Collects the places of the keys of a table, and of the tables in it down to a level.
+    pub(super) fn of(whole: &Value, levels: usize) -> Result<Self, Fault> {
         let ends = whole.text.bytes().enumerate().filter(|(_, b)| *b == b'\n');
         let mut walk = Walk {
             ends: ends.map(|(at, _)| at).collect(),
             lines: BTreeMap::new(),
         };
-        walk.add("", whole)?;
+        walk.add("", whole, levels)?;
         Ok(Self {
             lines: walk.lines,
             names: &[],
@@ -77,13 +77,17 @@ impl Walk {
         self.lines.insert(key, line);
     }
 
-    /// Adds the keys in a value, which has the key `key` itself. Numbers in lists have no keys.
-    fn add(&mut self, key: &str, value: &Value) -> Result<(), Fault> {
+    /// Adds the keys in a value, which has the key `key` itself, down to a level. Numbers in lists
+    /// have no keys.
+    fn add(&mut self, key: &str, value: &Value, levels: usize) -> Result<(), Fault> {
+        if levels == 0 {
+            return Ok(());
+        }
         match value.found()? {
             Found::Table(entries) => {
                 for entry in entries {
                     let key = join(key, &entry.key);
-                    self.add(&key, &entry.value)?;
+                    self.add(&key, &entry.value, levels - 1)?;
                     self.insert(key, entry.at);
                 }
             }
@@ -94,10 +98,10 @@ impl Walk {
                         break;
                     }
                     if count == 1 {
-                        self.add(key, &item)?;
+                        self.add(key, &item, levels)?;
                     } else {
                         let key = join(key, &k.to_string());
-                        self.add(&key, &item)?;
+                        self.add(&key, &item, levels)?;
                         self.insert(key, item.at());
                     }
                 }

@@ -108,6 +108,8 @@ fn json_is_refused_in_plain_english() {
         built.map_err(|fault| places.locate(fault).to_string())
     };
     assert!(read(PAIR).is_ok());
+    let deep = format!("{}1{}", "{\"a\":".repeat(100_000), "}".repeat(100_000));
+    assert!(read(&PAIR.replace("\"mass\"", &format!("\"states\": {deep}, \"mass\""))).is_ok());
     for (part, instead, expected) in JSON {
         let text = PAIR.replace(part, instead);
         assert!(text != PAIR, "{part}");
