@@ -25,7 +25,7 @@ pub fn start() {
         browser::show("a3 has failed; the console of the browser says where. Load the page again.");
     }));
     if let Err(failure) = begin() {
-        browser::show(&failure.message());
+        browser::show(&failure.to_string());
     }
 }
 
@@ -59,7 +59,7 @@ pub fn run_steps(words: &str, steps: u32) -> String {
     let words = ["a3"].into_iter().chain(words.split_whitespace());
     let session = Cli::try_parse_from(words)
         .map_err(|why| why.to_string())
-        .and_then(|cli| begin::window(&cli.window).map_err(Failure::message));
+        .and_then(|cli| begin::window(&cli.window).map_err(|failure| failure.to_string()));
     let begun = Instant::now();
     let run = session.and_then(|session| {
         let first = session.runs.first();

@@ -47,15 +47,17 @@ pub fn main() -> ExitCode {
         },
         Err(error) => cli::explain(&error),
     };
-    let (why, code) = match result {
-        Ok(()) => return ExitCode::SUCCESS,
-        Err(Failure::Usage(why)) => (why, 2),
-        Err(Failure::Run(why)) => (why, 1),
-        Err(Failure::Interrupted(why)) => {
-            terminal::warn(&why);
+    let Err(failure) = result else {
+        return ExitCode::SUCCESS;
+    };
+    let code = match failure {
+        Failure::Usage(_) | Failure::Input(_) => 2,
+        Failure::Run(_) => 1,
+        Failure::Interrupted(_) => {
+            terminal::warn(&failure.to_string());
             return ExitCode::from(interrupt::exit_code());
         }
     };
-    terminal::warn(&format!("error: {why}"));
+    terminal::warn(&format!("error: {failure}"));
     ExitCode::from(code)
 }

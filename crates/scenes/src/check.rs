@@ -1,27 +1,31 @@
-//! Checks of the numbers in a description. The core's errors have the same words.
+//! Checks of the numbers in a description, in the words of the core's errors.
 
 use std::fmt::Display;
 
 use crate::fault::Fault;
 
-/// Largest magnitude of a number of a scene, whatever its unit: its square fits into single
-/// precision.
-const LARGEST: f64 = 1e9;
+/// Largest magnitude of a number of a scene, in any unit: its square fits into single precision.
+const MAX_NUMBER: f64 = 1e9;
 
-/// What is said of a number that is larger.
+/// Message for a number beyond the bounds.
 pub(crate) const BOUNDS: &str = "it must be a number from -1e9 to 1e9";
 
-/// Whether a number is finite and of a reasonable size.
+/// Whether a number is within the bounds, and not NaN.
 pub(crate) fn within(x: f64) -> bool {
-    x.abs() <= LARGEST
+    x.abs() <= MAX_NUMBER
 }
 
-/// The result, its error as a fault of that key.
+/// Returns the message for a number that is not.
+pub(crate) fn beyond(x: f64) -> String {
+    format!("{BOUNDS}, not {x:e}")
+}
+
+/// Turns the error of a result into a fault of a key.
 pub(crate) fn at<T>(key: &str, result: Result<T, impl Display>) -> Result<T, Fault> {
     result.map_err(|why| Fault::new(key, why))
 }
 
-/// `Ok` if `value` is finite and at least `low`, else what is wrong with `what`.
+/// Checks that `value` is finite and at least `low`. The error calls it `what`.
 pub(crate) fn at_least(low: f64, what: &str, value: f64) -> Result<(), String> {
     if value.is_finite() && value >= low {
         Ok(())
@@ -32,7 +36,7 @@ pub(crate) fn at_least(low: f64, what: &str, value: f64) -> Result<(), String> {
     }
 }
 
-/// `Ok` if `value` is from 0 to 1, else what is wrong with `what`.
+/// Checks that `value` is from 0 to 1. The error calls it `what`.
 pub(crate) fn share(what: &str, value: f64) -> Result<(), String> {
     if (0.0..=1.0).contains(&value) {
         Ok(())
@@ -41,7 +45,7 @@ pub(crate) fn share(what: &str, value: f64) -> Result<(), String> {
     }
 }
 
-/// `Ok` if `value` is finite and above 0, else what is wrong with `what`.
+/// Checks that `value` is finite and above 0. The error calls it `what`.
 pub(crate) fn positive(what: &str, value: f64) -> Result<(), String> {
     if value.is_finite() && value > 0.0 {
         Ok(())
@@ -52,7 +56,7 @@ pub(crate) fn positive(what: &str, value: f64) -> Result<(), String> {
     }
 }
 
-/// The number of exactly one of two keys, and whether it is that of the first.
+/// Returns the number of the one key of two that is given, and whether that is the first.
 pub(crate) fn one_of(
     (a, first): (&str, Option<f64>),
     (b, second): (&str, Option<f64>),
@@ -68,7 +72,7 @@ pub(crate) fn one_of(
     }
 }
 
-/// The key of one of several parts of a kind, which goes without a number if it is the only one.
+/// Returns the key of part k of a kind. The only part of a kind has no number.
 pub(crate) fn key_of(kind: &str, k: usize, count: usize) -> String {
     if count == 1 {
         kind.into()

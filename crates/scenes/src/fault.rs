@@ -1,20 +1,17 @@
-//! Faults in the text of a scene, and where they are.
+//! Faults in the text of a scene, with their places.
 
 use std::fmt;
 
-use toml::de::{DeTable, DeValue};
+use crate::text::line;
+use crate::wording::{brief, of_json, of_toml};
 
-use crate::wording::{brief, of_serde, of_toml};
-
-/// Most characters of a key or a reason.
-const LONGEST: usize = 1000;
-/// What is said of a list of fixed length that goes on.
-const TOO_LONG: &str = "the list has too many numbers; write decimal points, as in 0.5";
+/// Largest number of characters of a key or a reason.
+const MAX_CHARACTERS: usize = 1000;
 
 /// Fault in a description, with its place in the text.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fault {
-    /// Line of the text, counted from 1, once it is known.
+    /// Line of the text, counted from 1, if it is known.
     pub line: Option<usize>,
     /// Key, such as `cloth.spacing`, or `cloth.1.spacing` of the second of several cloths. It is
     /// empty for the description as a whole.
@@ -29,9 +26,9 @@ impl fmt::Display for Fault {
             write!(f, "line {line}: ")?;
         }
         if !self.key.is_empty() {
-            write!(f, "{}: ", brief(&self.key, LONGEST))?;
+            write!(f, "{}: ", brief(&self.key, MAX_CHARACTERS))?;
         }
-        f.write_str(&brief(&self.why, LONGEST))
+        f.write_str(&brief(&self.why, MAX_CHARACTERS))
     }
 }
 
@@ -44,7 +41,7 @@ impl From<Fault> for a3_core::Error {
 }
 
 impl Fault {
-    /// Fault of that key, whose line is not yet known.
+    /// Creates a fault of a key, whose line is not yet known.
     pub(crate) fn new(key: impl Into<String>, why: impl fmt::Display) -> Self {
         Self {
             line: None,
@@ -53,12 +50,12 @@ impl Fault {
         }
     }
 
-    /// Fault of one of two keys of which only one may be given.
+    /// Creates the fault of the second of two keys of which only one may be given.
     pub(crate) fn not_both(a: &str, b: &str) -> Self {
         Self::new(b, format!("give either `{a}` or `{b}`, not both"))
     }
 
-    /// Fault of a number that no particle has, among this many.
+    /// Creates the fault of a number i that none of the `particles` has.
     pub(crate) fn no_particle(key: &str, i: usize, particles: usize) -> Self {
         let last = particles - 1;
         Self::new(
@@ -67,52 +64,23 @@ impl Fault {
         )
     }
 
-    /// The fault with its key inside that of a part of the description.
+    /// Prefixes the key with that of the part of the description that it is in.
     pub(crate) fn within(self, key: &str) -> Self {
         Self {
-            key: join(Some(key.into()), self.key),
+            key: join(key, &self.key),
             ..self
         }
     }
 
-    /// The fault with the line of its key in that text.
-    #[must_use]
-    pub fn locate(self, text: &str) -> Self {
-        if text.trim_start().starts_with('{') {
-            return self.in_json(text);
-        }
-        let offset = || {
-            // The text as a whole has no line, and may be too long to be read.
-            if self.key.is_empty() {
-                return None;
-            }
-            let table = DeTable::parse(text).ok()?;
-            offset_of(table.get_ref(), &self.key)
-        };
+    /// Sets the line, unless it is known.
+    pub(crate) fn at(self, line: impl FnOnce() -> usize) -> Self {
         Self {
-            line: self.line.or_else(|| Some(line(text, offset()?))),
+            line: self.line.or_else(|| Some(line())),
             ..self
         }
     }
 
-    /// The fault with the key and the line that it has in JSON, where there are single particles
-    /// alone.
-    fn in_json(self, text: &str) -> Self {
-        let key = match self.key.strip_prefix("particles.") {
-            Some("masses") => "mass",
-            Some("pin" | "pin.particles") => "pinned",
-            Some(key) => key,
-            None => &self.key,
-        };
-        let at = || text.find(&format!("\"{key}\"")).filter(|_| !key.is_empty());
-        Self {
-            line: self.line.or_else(|| Some(line(text, at()?))),
-            key: key.into(),
-            why: self.why,
-        }
-    }
-
-    /// Fault of a text that is no TOML.
+    /// Creates the fault of a text that is no TOML.
     pub(crate) fn of_toml(text: &str, error: &toml::de::Error) -> Self {
         let at = error.span().map(|span| span.start);
         let rest = at.and_then(|at| text.get(at..)).unwrap_or_default();
@@ -122,74 +90,22 @@ impl Fault {
         }
     }
 
-    /// Fault that the JSON reader found in a table of lists.
-    pub(crate) fn of_json(text: &str, error: &serde_json::Error) -> Self {
-        let why = error.to_string();
-        // The reader ends with the place.
-        let why = why.split(" at line ").next().unwrap_or_default();
-        let mut lines = text.split_inclusive('\n');
-        let before: usize = lines
-            .by_ref()
-            .take(error.line().saturating_sub(1))
-            .map(str::len)
-            .sum();
-        let head = text.get(..before + error.column()).unwrap_or_default();
-        let is_in_list = head.matches('[').count() > head.matches(']').count();
-        let (key, why) = match why {
-            "trailing characters" if is_in_list => (last_key(head), TOO_LONG.into()),
-            _ if why.starts_with("invalid ") && error.is_data() => (last_key(head), of_serde(why)),
-            _ => (None, of_serde(why)),
-        };
+    /// Creates the fault of a text that is no JSON and begins at this line.
+    pub(crate) fn of_json(first: usize, error: &serde_json::Error) -> Self {
+        let message = error.to_string();
+        // The reader appends the place.
+        let message = message.split(" at line ").next().unwrap_or_default();
         Self {
-            line: Some(error.line()),
-            ..Self::new(key.unwrap_or_default(), why)
+            line: Some(first + error.line().saturating_sub(1)),
+            ..Self::new("", of_json(message))
         }
     }
 }
 
-/// The last key of a text in JSON: a text in quotes before a colon.
-fn last_key(text: &str) -> Option<&str> {
-    text.rmatch_indices(':').find_map(|(colon, _)| {
-        let key = text[..colon].trim_end().strip_suffix('"')?;
-        Some(&key[key.rfind('"')? + 1..])
-    })
-}
-
-/// Line of a byte, counted from 1.
-pub(crate) fn line(text: &str, at: usize) -> usize {
-    1 + text.bytes().take(at).filter(|b| *b == b'\n').count()
-}
-
-/// Byte at which the value of a key begins, or that of the longest part of the key that is there.
-fn offset_of(table: &DeTable, key: &str) -> Option<usize> {
-    let mut parts = key.split('.');
-    let first = parts.next()?;
-    let (name, value) = table.get_key_value(first)?;
-    let mut at = name.span().start;
-    let mut value = value.get_ref();
-    for part in parts {
-        let next = match value {
-            DeValue::Table(table) => table.get_key_value(part).map(|(name, v)| (name.span(), v)),
-            DeValue::Array(array) => match part.parse::<usize>() {
-                Ok(i) => array.get(i).map(|v| (v.span(), v)),
-                // The only element goes without a number.
-                Err(_) => array
-                    .first()
-                    .and_then(|v| v.get_ref().as_table()?.get_key_value(part))
-                    .map(|(name, v)| (name.span(), v)),
-            },
-            _ => None,
-        };
-        let Some((span, v)) = next else { break };
-        (at, value) = (span.start, v.get_ref());
-    }
-    Some(at)
-}
-
-fn join(first: Option<String>, rest: String) -> String {
-    match first {
-        None => rest,
-        Some(first) if rest.is_empty() => first,
-        Some(first) => format!("{first}.{rest}"),
+/// Joins the key of a whole and that of a part of it.
+pub(crate) fn join(whole: &str, part: &str) -> String {
+    match (whole, part) {
+        ("", key) | (key, "") => key.into(),
+        _ => format!("{whole}.{part}"),
     }
 }

@@ -1,8 +1,8 @@
 #![doc = include_str!("../README.md")]
 #![forbid(unsafe_code)]
 
+mod assemble;
 mod budget;
-mod build;
 mod builtin;
 mod check;
 mod description;
@@ -10,7 +10,6 @@ mod fault;
 mod likeness;
 mod listed;
 mod mesh;
-mod numbers;
 mod reader;
 mod setup;
 pub mod snapshot;
@@ -18,14 +17,14 @@ mod surface;
 mod text;
 mod wording;
 
-pub use build::LAYERS as TANK_LAYERS;
+pub use assemble::LAYERS as TANK_LAYERS;
 pub use builtin::{SCENES, SceneEntry, find};
 pub use description::*;
 pub use fault::Fault;
 pub use likeness::nearest;
 pub use listed::parse_json;
 pub use mesh::Mesh;
-pub use reader::read;
+pub use reader::{Places, read};
 pub use setup::{Defaults, Presentation, Setup, Viewpoint};
 pub use surface::Surface;
 pub use text::unmarked;

@@ -1,14 +1,15 @@
-//! What was probably meant by a word that nothing is called.
+//! Suggestions for misspelt names.
 
-/// Least likeness of two words that are taken for one another, from 0 to 1.
-const ALIKE: f64 = 0.55;
-/// Length that no name has (bytes). The time that a comparison takes grows with the length.
+/// Smallest similarity, from 0 to 1, at which a name is suggested for a word.
+const MIN_SIMILARITY: f64 = 0.55;
+/// Length from which on a word has no suggestion (bytes). The time of a comparison grows with the
+/// length.
 const TOO_LONG: usize = 50;
-/// Least length of a word that is taken for the beginning of a name (bytes).
-const BEGINNING: usize = 3;
+/// Shortest word that counts as the beginning of a name (bytes).
+const MIN_PREFIX: usize = 3;
 
-/// The name that is most like a word, if one is: two neighbouring letters in the wrong order count
-/// as one slip, and small and capital letters are the same.
+/// Finds the name that is most similar to a word, if one is similar enough. Two neighbouring
+/// letters in the wrong order count as one error, and small and capital letters as equal.
 #[must_use]
 pub fn nearest<'a>(word: &str, names: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     if word.len() >= TOO_LONG {
@@ -16,15 +17,15 @@ pub fn nearest<'a>(word: &str, names: impl IntoIterator<Item = &'a str>) -> Opti
     }
     let word = word.to_lowercase();
     let likeness = |name: &str| {
-        if word.len() >= BEGINNING && name.starts_with(&word) {
+        if word.len() >= MIN_PREFIX && name.starts_with(&word) {
             1.0
         } else {
             strsim::normalized_damerau_levenshtein(&word, &name.to_lowercase())
         }
     };
     let alike = names.into_iter().map(|name| (likeness(name), name));
-    let alike = alike.filter(|(likeness, _)| *likeness > ALIKE);
-    // Of several that are equally near, the first.
+    let alike = alike.filter(|(likeness, _)| *likeness > MIN_SIMILARITY);
+    // The first of several names that are equally similar.
     let nearest = alike.reduce(|best, next| if next.0 > best.0 { next } else { best });
     nearest.map(|(_, name)| name)
 }

@@ -1,10 +1,11 @@
-//! Scenes as JSON: a list of particles and springs, with states that the motion is known to reach.
+//! Scenes as JSON: lists of particles and springs, with the reference states of other programs.
 
 use serde::Deserialize;
 use serde::de::IgnoredAny;
 
 use crate::description::{Description, Particles, Pin};
 use crate::fault::Fault;
+use crate::reader::{self, Places};
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -30,18 +31,27 @@ struct Listed {
     _states: Option<IgnoredAny>,
 }
 
-/// Reads a description from JSON: a list of particles and springs.
+/// Prefixes of keys: that of a description, and that of the list which stands for it.
+const NAMES: &[(&str, &str)] = &[
+    ("particles.masses", "mass"),
+    ("particles.pin.particles", "pinned"),
+    ("particles.pin", "pinned"),
+    ("particles.", ""),
+];
+
+/// Reads a description from a list of particles and springs in JSON. The places of its keys tell
+/// the lines of faults that [`Description::build`] finds.
 ///
 /// # Errors
-/// The text is not JSON, a key is unknown or missing, or a value is of the wrong kind.
-pub fn parse_json(text: &str) -> Result<Description, Fault> {
-    let listed: Listed =
-        serde_json::from_str(text).map_err(|error| Fault::of_json(text, &error))?;
+/// The text is not JSON, a key is unknown or missing, a value is of the wrong kind, or a
+/// number is not from -1e9 to 1e9.
+pub fn parse_json(text: &str) -> Result<(Description, Places), Fault> {
+    let (listed, places): (Listed, Places) = reader::read_json(text)?;
     let pin = Pin {
         particles: listed.pinned,
         ..Pin::default()
     };
-    Ok(Description {
+    let description = Description {
         name: listed.name,
         summary: listed.note,
         gravity: listed.gravity,
@@ -62,5 +72,6 @@ pub fn parse_json(text: &str) -> Result<Description, Fault> {
             },
         }),
         ..Description::default()
-    })
+    };
+    Ok((description, places.named(NAMES)))
 }

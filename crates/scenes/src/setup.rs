@@ -1,4 +1,4 @@
-//! Setups: scenes with how they are shown, and how they are run unless one says otherwise.
+//! Setups: scenes with their presentation and with the defaults of their runs.
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -12,20 +12,21 @@ use crate::surface::Surface;
 pub struct Setup {
     /// Scene that is simulated.
     pub scene: Scene,
-    /// What of the scene is shown, and from where.
+    /// How the scene is drawn.
     pub presentation: Arc<Presentation>,
-    /// How the scene is run unless one says otherwise.
+    /// Defaults of its runs.
     pub defaults: Defaults,
 }
 
-/// What of a scene is shown, and from where.
+/// Presentation of a scene: its viewpoint, and the parts that are drawn in a way of their own.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Presentation {
-    /// Position and target of the camera.
+    /// Camera.
     pub viewpoint: Viewpoint,
     /// Surface of the bodies that have one.
     pub surface: Surface,
-    /// Particles of the walls of each tank of fluid, which are shown by the edges of the tank.
+    /// Particles of the walls of each tank of fluid. Only the edges of the tank are drawn in their
+    /// place.
     pub tanks: Vec<Range<usize>>,
     /// Number of the particle whose path is drawn.
     pub trail: Option<usize>,
@@ -41,7 +42,7 @@ pub struct Viewpoint {
 }
 
 impl Viewpoint {
-    /// View of a whole scene from the front, a little from the right and from above.
+    /// Returns the view of a whole scene from the front, a little from the right and from above.
     #[must_use]
     pub fn of(scene: &Scene) -> Self {
         let (target, radius) = scene.extent();
@@ -50,16 +51,17 @@ impl Viewpoint {
     }
 }
 
-/// How a scene is run unless one says otherwise.
+/// Defaults of the runs of a scene.
 #[derive(Clone, Copy, Debug)]
 pub struct Defaults {
-    /// Method to begin with, if the scene says one.
+    /// Method that the scene names, if it does.
     pub solver: Option<&'static Method>,
     /// Step or tolerance of that method.
     pub control: Option<Control>,
     /// Length of a run (s).
     pub duration: Option<f64>,
-    /// Factor of the methods' default steps: less than 1 for a cloth finer than in its description.
+    /// Factor of the methods' default steps: below 1 for a cloth with a finer grid than in its
+    /// description.
     pub step_scale: f64,
 }
 
@@ -75,10 +77,9 @@ impl Default for Defaults {
 }
 
 impl Defaults {
-    /// The step or tolerance of a method on this scene: the scene's own, or else the method's
-    /// default. Where the scene's own step is shorter than the default of its solver, the steps of
-    /// others are shorter in proportion. A step that is scaled has two digits, as one would type
-    /// it.
+    /// Returns the step or tolerance of a method on this scene: the scene's own, or else the
+    /// method's default. If the scene's step is shorter than the default of its solver, the steps
+    /// of other methods are shortened in proportion. A scaled step is rounded to two digits.
     #[must_use]
     pub fn control_of(&self, method: &Method) -> Control {
         let own = self.control.filter(|_| {

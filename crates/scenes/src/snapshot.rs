@@ -1,5 +1,5 @@
-//! Descriptions of runs as they are now, from which other runs go on. The clock of such a run
-//! begins at 0 again: paths and gusts are shifted in time.
+//! Descriptions of the present state of runs, from which other runs continue. Their time begins at
+//! 0 again: paths and gusts are shifted in time.
 
 use a3_core::contact::Shape;
 use a3_core::{Checkpoint, Model, Network, Path, Pose, rotation};
@@ -10,8 +10,8 @@ use crate::description::{
     SpringSpec, State, Triple, Turn,
 };
 
-/// Multiplies the stiffness and the damping of the springs of every body by these factors, and
-/// likewise those of fluids: the square of the speed of sound, and the viscosity.
+/// Multiplies the stiffness and the damping of all springs by these factors. In fluids, the square
+/// of the speed of sound and the viscosity are multiplied.
 pub fn scale_springs(description: &mut Description, stiffness: f64, damping: f64) {
     // Factors of damping over stiffness, and of damping over the critical one, which grows with
     // the root of the stiffness.
@@ -70,7 +70,7 @@ pub fn scale_springs(description: &mut Description, stiffness: f64, damping: f64
     scale_list(&mut description.springs);
 }
 
-/// Multiplies the force or velocity of the wind by this factor, if there is wind.
+/// Multiplies the force or velocity of the wind by a factor, if there is wind.
 pub fn scale_wind(description: &mut Description, factor: f64) {
     if let Some(wind) = &mut description.wind {
         for mean in [
@@ -83,9 +83,9 @@ pub fn scale_wind(description: &mut Description, factor: f64) {
     }
 }
 
-/// Makes the description begin with a run as it is `now`: its method, state, pins, obstacles,
-/// wind, gravity and drag. Springs stay as they are described, except for those that have
-/// broken. A particle in a hand is let go of.
+/// Replaces the initial state of the description by that of a run `now`: its method, state, pins,
+/// obstacles, wind, gravity and drag. Springs stay as described, except for broken ones. A grabbed
+/// particle is released.
 pub fn begin_with(description: &mut Description, model: &Model, now: &Checkpoint) {
     let (n, t) = (model.particles(), now.time());
     description.solver = Some(now.run.method.name.into());
@@ -127,8 +127,8 @@ pub fn begin_with(description: &mut Description, model: &Model, now: &Checkpoint
     description.pin = pins(now);
 }
 
-/// Describes the obstacles as they are at time t (s). Those of each kind are in the order in
-/// which they were added; the floor may have been removed.
+/// Describes the obstacles as they are at time t (s). The obstacles of each kind are in the order
+/// in which they were added. The floor may have been removed.
 fn write_obstacles(description: &mut Description, network: &Network, t: f64) {
     let mut spheres = description.sphere.iter_mut();
     let mut boxes = description.boxes.iter_mut();
@@ -206,8 +206,8 @@ fn write_obstacles(description: &mut Description, network: &Network, t: f64) {
     }
 }
 
-/// Describes the limits of strain as they are: those of the bodies that had one, or else, if
-/// limits were set since, those of the cloths.
+/// Describes the limits of strain: those of the bodies that had one, or else, if limits were set
+/// during the run, those of the cloths.
 fn write_strain_limits(description: &mut Description, network: &Network) {
     let cloths = description
         .cloth
@@ -231,7 +231,7 @@ fn write_strain_limits(description: &mut Description, network: &Network) {
     }
 }
 
-/// Pins of each body.
+/// Returns the pins of each body.
 fn body_pins(description: &mut Description) -> impl Iterator<Item = &mut Vec<Pin>> {
     let cloths = description.cloth.iter_mut().map(|body| &mut body.pin);
     let rigid = description.body.iter_mut().map(|body| &mut body.pin);
@@ -249,14 +249,14 @@ fn body_pins(description: &mut Description) -> impl Iterator<Item = &mut Vec<Pin
         .chain(rigid)
 }
 
-/// Pins as they go on from now, with those that move alike put together. A particle in a hand stays
-/// pinned where it is if it was pinned before.
+/// Describes the pins from now on. Pins with the same motion are merged. A grabbed particle that
+/// was pinned before stays pinned where it is.
 fn pins(now: &Checkpoint) -> Vec<Pin> {
     let mut pins: Vec<Pin> = vec![];
     let held = now.run.grabbed.filter(|grabbed| grabbed.was_pinned);
     let held = held.map(|grabbed| (grabbed.particle, grabbed.path));
-    let is_led = |i: usize| now.pins.iter().any(|(pin, _)| *pin == i);
-    let held = held.filter(|(i, _)| !is_led(*i));
+    let is_pinned = |i: usize| now.pins.iter().any(|(pin, _)| *pin == i);
+    let held = held.filter(|(i, _)| !is_pinned(*i));
     for (i, path) in now.pins.iter().copied().chain(held) {
         let Motion { sine, shift, about } =
             match now.run.grabbed.filter(|grabbed| grabbed.particle == i) {
@@ -288,7 +288,7 @@ fn pins(now: &Checkpoint) -> Vec<Pin> {
     pins
 }
 
-/// Continuation of a path from a time, which becomes time 0.
+/// Motion that continues a path from a time, which becomes time 0.
 #[derive(Default)]
 struct Motion {
     sine: Option<Sine>,
@@ -297,7 +297,7 @@ struct Motion {
     about: Option<Triple>,
 }
 
-/// Continuation of a path from time t (s).
+/// Returns the motion that continues a path from time t (s).
 fn motion(path: &Path, t: f64) -> Motion {
     match *path {
         Path::Sine {
@@ -344,7 +344,7 @@ fn motion(path: &Path, t: f64) -> Motion {
     }
 }
 
-/// Continuation of a turn from time t (s), if it has not ended.
+/// Returns the continuation of a turn from time t (s), if it has not ended.
 fn going_on(turn: a3_core::Turn, about: Option<Triple>, t: f64) -> Option<Turn> {
     turn.end.is_none_or(|end| t < end).then(|| Turn {
         about,
@@ -356,7 +356,7 @@ fn going_on(turn: a3_core::Turn, about: Option<Triple>, t: f64) -> Option<Turn> 
     })
 }
 
-/// Rotation vector of a body that had this one before it turned to a pose.
+/// Returns the rotation vector of a body after it turned to a pose, from the one before.
 fn turned(before: Option<Triple>, pose: &Pose) -> Option<Triple> {
     let Some(orientation) = pose.orientation else {
         return before;

@@ -1,4 +1,4 @@
-//! Texts as programs of all systems write them: byte order marks, and ends of lines.
+//! Texts from all systems: byte order marks, and ends of lines.
 
 use std::borrow::Cow;
 use std::ops::Range;
@@ -6,7 +6,7 @@ use std::ops::Range;
 /// Byte order mark of UTF-8.
 const MARK: &[u8] = b"\xef\xbb\xbf";
 
-/// What other files begin with, and what to do with them.
+/// Beginnings of files that are no texts, and advice for each.
 const OTHERS: [(&[u8], &str); 5] = [
     (b"\x1f\x8b", "it is compressed by gzip: unpack it"),
     (b"PK\x03\x04", "it is a zip archive: unpack it"),
@@ -18,15 +18,15 @@ const OTHERS: [(&[u8], &str); 5] = [
     (b"<html", "it is a web page: download the file itself"),
 ];
 
-/// The text without its byte order mark, if it has one.
+/// Returns the text without its byte order mark, if it has one.
 ///
 /// # Errors
-/// The text is UTF-16 or UTF-32, or it is no text but an archive, say.
+/// The text is UTF-16 or UTF-32, or it is no text, such as an archive.
 pub fn unmarked(text: &[u8]) -> Result<&[u8], String> {
     if let Some((_, why)) = OTHERS.iter().find(|(begins, _)| text.starts_with(begins)) {
         return Err((*why).into());
     }
-    // Without a mark, most bytes of what is ASCII are 0.
+    // In ASCII text without a mark, the other bytes of each character are 0.
     let is_ascii = |b: &u8| b.is_ascii_graphic() || b.is_ascii_whitespace();
     let begin = text.get(..8).unwrap_or_default();
     let is_wide_by = |size: usize| {
@@ -47,10 +47,15 @@ pub fn unmarked(text: &[u8]) -> Result<&[u8], String> {
     Ok(text.strip_prefix(MARK).unwrap_or(text))
 }
 
-/// Lines of a text, which end in LF, CR LF or CR.
+/// Returns the line of a byte, counted from 1.
+pub(crate) fn line(text: &str, at: usize) -> usize {
+    1 + text.bytes().take(at).filter(|b| *b == b'\n').count()
+}
+
+/// Iterator over the lines of a text, which end in LF, CR LF or CR.
 pub(crate) struct Lines<'a> {
     text: &'a [u8],
-    /// Where the next line begins.
+    /// Byte at which the next line begins.
     next: usize,
     /// Number of lines that were read.
     read: usize,
@@ -65,9 +70,9 @@ impl<'a> Lines<'a> {
         }
     }
 
-    /// The next line without its comment, which begins with `#`; where `goes_on` says so of its
-    /// beginning and it ends in a backslash, with the lines after it that it goes on in. Before it
-    /// the number of its first line, counted from 1.
+    /// Returns the next statement without its comment, which begins with `#`, and the number of its
+    /// first line, counted from 1. A line that ends in a backslash continues in the next one, if
+    /// `goes_on` is true for it.
     pub fn statement(&mut self, goes_on: impl Fn(&[u8]) -> bool) -> Option<(usize, &'a [u8])> {
         let Range { start, mut end } = self.line()?;
         let number = self.read;
@@ -86,7 +91,7 @@ impl<'a> Lines<'a> {
         }
     }
 
-    /// The next line, without its end.
+    /// Returns the next line, without its end.
     fn line(&mut self) -> Option<Range<usize>> {
         let start = self.next;
         let rest = self.text.get(start..).filter(|rest| !rest.is_empty())?;
@@ -103,18 +108,18 @@ impl<'a> Lines<'a> {
 impl<'a> Iterator for Lines<'a> {
     type Item = (usize, &'a [u8]);
 
-    /// The next line without its comment, and before it its number, counted from 1.
+    /// Returns the number of the next line, counted from 1, and the line without its comment.
     fn next(&mut self) -> Option<Self::Item> {
         self.statement(|_| false)
     }
 }
 
-/// The beginning of a word, for a message.
+/// Shortens a word for a message.
 pub(crate) fn brief(word: &[u8]) -> Cow<'_, str> {
     String::from_utf8_lossy(&word[..word.len().min(40)])
 }
 
-/// Words of a statement: what is between spaces, ends of lines and the backslashes before these.
+/// Splits a statement into words, at spaces, ends of lines and backslashes.
 pub(crate) fn words(statement: &[u8]) -> impl Iterator<Item = &[u8]> {
     let is_gap = |b: &u8| b.is_ascii_whitespace() || *b == b'\\';
     statement.split(is_gap).filter(|word| !word.is_empty())

@@ -1,13 +1,13 @@
-//! What readers say of a text, in the words of those who write scenes.
+//! Messages about the text of a scene, in the words of those who write scenes.
 
 use std::borrow::Cow;
 
 use crate::likeness::nearest;
 
-/// What a whole number must be.
+/// Description of a whole number.
 pub(crate) const WHOLE: &str = "a whole number of at least 0";
 
-/// A message with at most that many characters: it may quote a whole file.
+/// Shortens a message, which may quote a whole file, to `most` characters.
 pub(crate) fn brief(message: &str, most: usize) -> Cow<'_, str> {
     match message.char_indices().nth(most) {
         Some((end, _)) => format!("{} ...", &message[..end]).into(),
@@ -15,19 +15,19 @@ pub(crate) fn brief(message: &str, most: usize) -> Cow<'_, str> {
     }
 }
 
-/// A text as it is quoted.
+/// Quotes a text.
 pub(crate) fn quoted(text: &str) -> String {
     format!("the text \"{}\"", brief(text, 60))
 }
 
-/// What a list of numbers must be.
+/// Describes a list of `count` numbers.
 pub(crate) fn list_of(count: impl std::fmt::Display) -> String {
     format!("a list of {count} numbers in square brackets")
 }
 
-/// What is said of a list of another length.
+/// Message for a list of the wrong length.
 pub(crate) fn wrong_length(wanted: usize, found: usize) -> String {
-    // 0,5 is two numbers.
+    // A decimal comma makes two numbers of one.
     let advice = if found > wanted {
         "; write decimal points, as in 0.5, and commas between numbers"
     } else {
@@ -36,17 +36,17 @@ pub(crate) fn wrong_length(wanted: usize, found: usize) -> String {
     format!("it must be a list of {wanted} numbers, not of {found}{advice}")
 }
 
-/// What is said of a whole number that is too large.
+/// Message for a whole number that is too large.
 pub(crate) fn too_large(number: impl std::fmt::Display) -> String {
     format!("the number {number} is too large")
 }
 
-/// What is said of a key that is not there.
+/// Message for a missing key.
 pub(crate) fn missing(key: &str) -> String {
     format!("the key `{key}` is missing")
 }
 
-/// What is said of a key that there is not.
+/// Message for an unknown key.
 pub(crate) fn unknown_key(key: &str, known: &[&str]) -> String {
     unknown(
         &format!("there is no key `{}`", brief(key, 60)),
@@ -56,7 +56,7 @@ pub(crate) fn unknown_key(key: &str, known: &[&str]) -> String {
     )
 }
 
-/// What is said of a name that none of the choices has.
+/// Message for a name that is not among the choices.
 pub(crate) fn unknown_choice(name: &str, known: &[&str]) -> String {
     unknown(
         &format!("there is no `{}`", brief(name, 60)),
@@ -74,68 +74,8 @@ fn unknown(what: &str, word: &str, all: &str, known: &[&str]) -> String {
     }
 }
 
-/// What serde says, by whichever reader.
-pub(crate) fn of_serde(message: &str) -> String {
-    let quoted: Vec<_> = message.split('`').skip(1).step_by(2).collect();
-    if let Some((found, wanted)) = message
-        .strip_prefix("invalid type: ")
-        .or_else(|| message.strip_prefix("invalid value: "))
-        .and_then(|rest| rest.rsplit_once(", expected "))
-    {
-        return format!(
-            "it must be {}, not {}",
-            wanted_by_serde(wanted),
-            found_by_serde(found)
-        );
-    }
-    let length = message.strip_prefix("invalid length ");
-    if let Some((found, wanted)) = length.and_then(|rest| rest.split_once(", expected ")) {
-        return match (wanted.rsplit(' ').next().map(str::parse), found.parse()) {
-            (Some(Ok(wanted)), Ok(found)) => wrong_length(wanted, found),
-            _ => format!("it must be {}, not a list", wanted_by_serde(wanted)),
-        };
-    }
-    match &quoted[..] {
-        [key, known @ ..] if message.starts_with("unknown field") => unknown_key(key, known),
-        [name, known @ ..] if message.starts_with("unknown variant") => unknown_choice(name, known),
-        [key, ..] if message.starts_with("missing field") => missing(key),
-        [key, ..] if message.starts_with("duplicate field") => {
-            format!("the key `{key}` is there twice")
-        }
-        _ => of_json(message).into(),
-    }
-}
-
-fn wanted_by_serde(wanted: &str) -> String {
-    let last = wanted.rsplit(' ').next().unwrap_or_default();
-    match wanted {
-        "f64" | "f32" => "a number".into(),
-        "usize" | "u64" | "u32" => WHOLE.into(),
-        "a boolean" => "true or false".into(),
-        "a string" | "str" | "a borrowed string" => "a text in double quotes".into(),
-        "a sequence" => "a list in square brackets".into(),
-        _ if wanted.starts_with("an array of") || wanted.starts_with("a tuple of") => list_of(last),
-        _ if wanted.starts_with("struct") || wanted.starts_with("tuple struct") => {
-            "keys and values in braces".into()
-        }
-        _ => wanted.into(),
-    }
-}
-
-fn found_by_serde(found: &str) -> String {
-    if let Some(text) = found.strip_prefix("string ") {
-        return quoted(text.trim_matches('"'));
-    }
-    match found {
-        "sequence" => "a list".into(),
-        "map" => "keys and values in braces".into(),
-        // Numbers, `true`, `false` and null.
-        _ => found.split('`').nth(1).unwrap_or(found).into(),
-    }
-}
-
-/// What the JSON reader says of a text that is no JSON.
-fn of_json(message: &str) -> &str {
+/// Translates a message of the JSON parser.
+pub(crate) fn of_json(message: &str) -> &str {
     match message {
         "EOF while parsing a list" => "the text ends within a list: `]` is missing",
         "EOF while parsing an object" => "the text ends too early: `}` is missing",
@@ -150,11 +90,9 @@ fn of_json(message: &str) -> &str {
             "a value is expected: a number such as 0.5, a text in double quotes, a list or braces"
         }
         "invalid number" => "a number must be written like 5, 0.5 or 1e-3",
-        "number out of range" => "a number is too large",
         "key must be a string" | "expected `\"`" => "a key must be in double quotes",
         "trailing comma" => "there must be no `,` after the last value",
         "trailing characters" => "something follows after the end",
-        "recursion limit exceeded" => "too many brackets are within one another",
         "invalid escape" => "after `\\` must be one of `\"`, `\\`, `/`, b, f, n, r, t, u",
         _ if message.starts_with("control character") => {
             "a text in quotes must have no line break and no control character in it"
@@ -163,7 +101,7 @@ fn of_json(message: &str) -> &str {
     }
 }
 
-/// What the TOML reader says of a text that is no TOML. `rest` is the text from where it says so.
+/// Translates a message of the TOML parser. `rest` is the text from the place of the error on.
 pub(crate) fn of_toml(message: &str, rest: &str) -> Cow<'static, str> {
     const VALUE: &str = "the value must be a number such as 0.5, a text in quotes, true, false, a list \
                          such as [1, 2] or a table such as { a = 1 }";

@@ -1,6 +1,8 @@
 //! What the program ends with when it does not succeed.
 
-use std::fmt::Display;
+use std::fmt::{self, Display};
+
+use super::input_error::InputError;
 
 /// Exit codes, and what each says.
 pub const EXIT_CODES: [(&str, &str); 6] = [
@@ -24,9 +26,12 @@ pub const EXIT_CODES: [(&str, &str); 6] = [
 ];
 
 /// The reason why a command failed, by who can help it.
+#[derive(Debug)]
 pub enum Failure {
     /// The command line asks for something impossible: exit code 2.
     Usage(String),
+    /// A scene or a file that the command line names is refused: exit code 2.
+    Input(InputError),
     /// The work was possible and failed: exit code 1.
     Run(String),
     /// A signal interrupted the work: exit code 128 and its number.
@@ -43,11 +48,20 @@ impl Failure {
     pub fn usage(why: impl Display) -> Self {
         Self::Usage(why.to_string())
     }
+}
 
-    /// The message, without its kind.
-    pub fn message(self) -> String {
+/// The message, without its kind.
+impl Display for Failure {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         match self {
-            Self::Usage(why) | Self::Run(why) | Self::Interrupted(why) => why,
+            Self::Usage(why) | Self::Run(why) | Self::Interrupted(why) => f.write_str(why),
+            Self::Input(error) => error.fmt(f),
         }
+    }
+}
+
+impl From<InputError> for Failure {
+    fn from(error: InputError) -> Self {
+        Self::Input(error)
     }
 }

@@ -125,9 +125,9 @@ mod tests {
     fn every_file_of_the_lessons_is_carried_and_written() {
         let folder = tempfile::tempdir().unwrap();
         let lessons = folder.path().join("a3/lessons");
-        write(&lessons).map_err(Failure::message).unwrap();
+        write(&lessons).unwrap();
         fs::write(lessons.join("README.md"), "of another version").unwrap();
-        write(&lessons).map_err(Failure::message).unwrap();
+        write(&lessons).unwrap();
         let mut count = 0;
         for part in ["", "pictures"] {
             for entry in fs::read_dir(Path::new(SOURCE).join(part)).unwrap() {

@@ -7,9 +7,10 @@ use a3_scenes::{Presentation, Setup};
 
 use crate::base::bounds;
 use crate::base::failure::Failure;
+use crate::base::input_error::InputError;
 use crate::base::terminal;
 use crate::cli::{RunOptions, What};
-use crate::files::scene_file::{SceneError, Source};
+use crate::files::scene_file::Source;
 
 /// A scene, with the options that the command line gives for it.
 pub struct Request<'a> {
@@ -87,7 +88,7 @@ impl<'a> Request<'a> {
             let threads = rayon::ThreadPoolBuilder::new().num_threads(count);
             let _ = threads.build_global();
         }
-        let setup = self.source.build(options.grid).map_err(Failure::usage)?;
+        let setup = self.source.build(options.grid)?;
         if let Some(network) = setup.scene.model.network() {
             let count = network.particles();
             if count > 1 && network.pins().count() == count {
@@ -162,8 +163,8 @@ impl<'a> Request<'a> {
 /// The scene that an option names.
 pub fn find(typed: &str, option: &str) -> Result<Source, Failure> {
     Source::find(typed).map_err(|error| match error {
-        SceneError::Unknown(why) => Failure::usage(format!("`{option} {typed}`: {why}")),
-        SceneError::File(why) => Failure::usage(why),
+        InputError::Unknown(why) => Failure::usage(format!("`{option} {typed}`: {why}")),
+        error => error.into(),
     })
 }
 

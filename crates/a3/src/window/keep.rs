@@ -68,7 +68,7 @@ mod tests {
         let mut second = session(&words[2..]);
         second.readings.in_window = true;
         take_up(&mut second, &path)
-            .map_err(Failure::message)
+            .map_err(|failure| failure.to_string())
             .unwrap();
         assert_eq!(panel::tuned(&first), panel::tuned(&second));
         for session in [&mut first, &mut second] {
@@ -87,12 +87,12 @@ mod tests {
         // A run that is not tuned takes it back.
         let plain = keep(&mut session(&words), 0).ok().unwrap();
         take_up(&mut second, &plain)
-            .map_err(Failure::message)
+            .map_err(|failure| failure.to_string())
             .unwrap();
         assert_eq!(panel::tuned(&second), []);
         assert_eq!(second.runs.first().time(), 0.0);
         let mut other = session(&["r", "0.01"]);
-        let why = take_up(&mut other, &path).err().unwrap().message();
+        let why = take_up(&mut other, &path).err().unwrap().to_string();
         assert!(why.contains("of the scene flag, not of cloth"), "{why}");
     }
 }

@@ -200,7 +200,7 @@ fn what_is_wrong_is_said_with_file_and_line() {
     assert!(refused("latin.toml").contains("is not UTF-8 text: see byte 8"));
     fs::write(at("list.json"), "{\n\"mass\": [1],\n\"position\": []}").unwrap();
     assert!(refused("list.json").starts_with(
-        "error: list.json:3: there is no key `position`; did you mean `positions`? The valid keys are name, "
+        "error: list.json:3: position: there is no key `position`; did you mean `positions`? The valid keys are name, "
     ));
     for (name, content) in [
         ("none.obj", ""),

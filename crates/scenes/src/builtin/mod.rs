@@ -8,14 +8,14 @@ use crate::setup::Setup;
 /// Built-in scene.
 #[derive(Debug)]
 pub struct SceneEntry {
-    /// Name, as it is typed on the command line.
+    /// Name on the command line.
     pub name: &'static str,
     /// Text of its file.
     pub text: &'static str,
 }
 
 impl SceneEntry {
-    /// Description that its file holds.
+    /// Reads the description in its file.
     ///
     /// # Errors
     /// Never fails for a scene of [`SCENES`].
@@ -62,7 +62,7 @@ pub static SCENES: &[SceneEntry] = &[
     entry!("cantilever"),
 ];
 
-/// The scene of this name.
+/// Finds the scene with this name.
 #[must_use]
 pub fn find(name: &str) -> Option<&'static SceneEntry> {
     SCENES.iter().find(|scene| scene.name == name)

@@ -1,4 +1,4 @@
-//! Bodies: what particles and springs come from.
+//! Bodies of particles: cloths, jellies, meshes, solids, chains and single particles.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

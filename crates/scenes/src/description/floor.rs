@@ -4,10 +4,11 @@ use std::fmt;
 
 use schemars::JsonSchema;
 use serde::de::value::MapAccessDeserializer;
-use serde::de::{MapAccess, Visitor};
+use serde::de::{self, MapAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize};
 
 use super::obstacles::is_zero;
+use crate::check::{beyond, within};
 
 /// Level floor: `floor = -1.0`, or `floor = { height = -1.0, friction = 0.4, restitution = 0.8 }`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
@@ -15,11 +16,11 @@ use super::obstacles::is_zero;
 pub enum Floor {
     /// Height of a smooth floor (m).
     Height(f64),
-    /// Floor of more than a height.
+    /// Floor with friction, restitution or thickness.
     Table(FloorSpec),
 }
 
-/// Level floor with what it does to bodies.
+/// Level floor with its friction, restitution and thickness.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct FloorSpec {
@@ -52,16 +53,20 @@ impl<'de> Visitor<'de> for HeightOrTable {
         f.write_str("a height (m), or a table with the keys `height` and `friction`")
     }
 
-    fn visit_f64<E>(self, height: f64) -> Result<Floor, E> {
-        Ok(Floor::Height(height))
+    fn visit_f64<E: de::Error>(self, height: f64) -> Result<Floor, E> {
+        if within(height) {
+            Ok(Floor::Height(height))
+        } else {
+            Err(E::custom(beyond(height)))
+        }
     }
 
-    fn visit_i64<E>(self, height: i64) -> Result<Floor, E> {
-        Ok(Floor::Height(height as f64))
+    fn visit_i64<E: de::Error>(self, height: i64) -> Result<Floor, E> {
+        self.visit_f64(height as f64)
     }
 
-    fn visit_u64<E>(self, height: u64) -> Result<Floor, E> {
-        Ok(Floor::Height(height as f64))
+    fn visit_u64<E: de::Error>(self, height: u64) -> Result<Floor, E> {
+        self.visit_f64(height as f64)
     }
 
     fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<Floor, A::Error> {

@@ -1,5 +1,4 @@
-//! What a scene file may say, in TOML: plain data, without a check of its numbers. `docs/scenes.md`
-//! shows it by example.
+//! Keys of scene files, as plain data. `docs/scenes.md` shows them by example.
 
 mod bodies;
 mod constraints;
@@ -15,7 +14,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::budget::check_text;
 use crate::fault::Fault;
-use crate::reader;
+use crate::reader::{self, Places};
 
 pub use bodies::{Chain, Circle, Cloth, Jelly, MeshCloth, Particles, Solid, SolidModel};
 pub use constraints::{BallSpec, CircleSpec, ConstraintSpec, LineSpec};
@@ -26,8 +25,8 @@ pub use motion::{Pin, Shift, Sine, Spot, Triple, Turn};
 pub use obstacles::{BoxSpec, CapsuleSpec, ObstacleSpec, SphereSpec};
 pub use rigid::{PartSpec, RigidBody};
 
-/// A scene: bodies, what acts on them, how it is run and where it is seen from. Units are m, kg, s,
-/// N and rad.
+/// Description of a scene: its bodies, the forces and obstacles that act on them, how it is run,
+/// and where it is seen from. Units are m, kg, s, N and rad.
 ///
 /// Particles are numbered through all bodies: those of cloths come first, then those of jellies,
 /// meshes, solids, chains, single particles and rigid bodies, and last those of fluids, each
@@ -157,15 +156,24 @@ pub struct State {
     pub angular_momenta: Vec<Triple>,
 }
 
+/// Reads a description from TOML. The places of its keys tell the lines of faults that
+/// [`Description::build`] finds.
+///
+/// # Errors
+/// As [`Description::parse`].
+pub fn parse_toml(text: &str) -> Result<(Description, Places), Fault> {
+    check_text(text.as_bytes()).map_err(|why| Fault::new("", why))?;
+    reader::read_toml(text)
+}
+
 impl Description {
     /// Reads a description from TOML.
     ///
     /// # Errors
-    /// The text is not TOML or too long, a key is unknown or missing, or a value is of the wrong
-    /// kind.
+    /// The text is not TOML or too long, a key is unknown or missing, a value is of the
+    /// wrong kind, or a number is not from -1e9 to 1e9.
     pub fn parse(text: &str) -> Result<Self, Fault> {
-        check_text(text.as_bytes()).map_err(|why| Fault::new("", why))?;
-        reader::read(text)
+        parse_toml(text).map(|(description, _)| description)
     }
 
     /// Writes TOML that [`parse`](Self::parse) reads as the same description.
@@ -176,7 +184,7 @@ impl Description {
         toml::to_string(self).map_err(|e| a3_core::Error::Invalid(e.to_string()))
     }
 
-    /// JSON Schema of scene files, by which editors complete and check them.
+    /// Returns the JSON Schema of scene files, by which editors complete and check them.
     #[must_use]
     pub fn schema() -> String {
         let schema = schemars::schema_for!(Self);

@@ -99,7 +99,7 @@ pub struct CapsuleSpec {
 #[serde(deny_unknown_fields)]
 pub struct ObstacleSpec {
     /// A file (.obj, .gltf, .glb, .stl, .ply) in the scene's folder or in one below it. The
-    /// triangles at each edge are pairs that wind alike.
+    /// triangles at each edge form pairs with the same winding order.
     pub file: String,
     /// Unit of length of the file (m); 1 if not given.
     #[serde(default)]

@@ -55,7 +55,7 @@ pub struct PartSpec {
     /// Length of the axis of a capsule, along y, and its radius (m).
     pub capsule: Option<[f64; 2]>,
     /// A file (.obj, .gltf, .glb, .stl, .ply) in the scene's folder or in one below it. The
-    /// triangles at each edge are pairs that wind alike.
+    /// triangles at each edge form pairs with the same winding order.
     pub file: Option<String>,
     /// Unit of length of the file (m); 1 if not given.
     pub scale: Option<f64>,

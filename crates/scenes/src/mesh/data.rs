@@ -1,4 +1,4 @@
-//! A mesh: its points, its triangles and tetrahedra, and the springs of a cloth that has its shape.
+//! Meshes: points, triangles and tetrahedra, and the springs of a cloth with the shape of a mesh.
 
 use std::collections::BTreeMap;
 
@@ -14,7 +14,7 @@ pub(super) const MAX_TRIANGLES: usize = 2 * MAX_POINTS;
 /// Largest number of tetrahedra in a file.
 pub(super) const MAX_TETRAHEDRA: usize = MAX_POINTS;
 
-/// Height of a triangle over its longest side, as a share of that, from which it is no sliver.
+/// Height of a triangle relative to its longest side, below which it is a sliver.
 const SLIVER: f64 = 1e-3;
 
 /// Mesh of triangles, or of tetrahedra with the triangles around them.
@@ -24,23 +24,23 @@ pub struct Mesh {
     pub positions: Vec<Triple>,
     /// Corners of the triangles, all in the same winding order.
     pub triangles: Vec<[u32; 3]>,
-    /// Corners of the tetrahedra within, if the file has any: each with a positive volume, unless
-    /// it differs from others.
+    /// Corners of the tetrahedra, if the file has any. Their volumes are positive, unless the file
+    /// mixes orientations.
     pub tetrahedra: Vec<[u32; 4]>,
-    /// Numbers of the points in the file, if it does not count them from 0.
+    /// Numbers of the points in the file; empty if it counts them from 0.
     pub numbers: Vec<u64>,
     /// Numbers of the tetrahedra in the file.
     pub tetrahedron_numbers: Vec<u64>,
 }
 
 impl Mesh {
-    /// Number of a point in its file.
+    /// Returns the number of a point in its file.
     pub(crate) fn number(&self, i: usize) -> u64 {
         self.numbers.get(i).copied().unwrap_or(i as u64)
     }
 
-    /// The mesh with points at the same place made one. Triangles with two equal corners and points
-    /// without triangles are left out.
+    /// Returns the mesh with points at the same place merged, without triangles that have two equal
+    /// corners, and without points that are in no triangle.
     #[must_use]
     pub fn welded(&self) -> Self {
         let same = weld::places(&self.positions);
@@ -62,7 +62,7 @@ impl Mesh {
         mesh
     }
 
-    /// The mesh magnified by that factor.
+    /// Returns the mesh magnified by a factor.
     pub(crate) fn scaled(&self, factor: f64) -> Self {
         let positions = self.positions.iter().map(|p| p.map(|x| x * factor));
         Self {
@@ -74,8 +74,8 @@ impl Mesh {
         }
     }
 
-    /// Least height of a triangle over a point or beside it, for each point (m). Slivers count as
-    /// higher than they are, lest a surface without thickness is infinitely stiff.
+    /// Finds the smallest height of the triangles around each point (m). A sliver counts as higher
+    /// than it is, because the stiffness of contact grows as the height shrinks.
     pub(crate) fn heights(&self) -> Vec<f64> {
         let mut heights = vec![f64::INFINITY; self.positions.len()];
         for t in &self.triangles {
@@ -90,7 +90,7 @@ impl Mesh {
         heights
     }
 
-    /// A third of the area of the triangles around each point (m2).
+    /// Returns a third of the area of the triangles around each point (m2).
     pub(crate) fn areas(&self) -> Vec<f64> {
         let mut areas = vec![0.0; self.positions.len()];
         for t in &self.triangles {
@@ -103,8 +103,9 @@ impl Mesh {
         areas
     }
 
-    /// Springs: a structural one on each edge, and a bend one between the two corners opposite to
-    /// an edge of two triangles. `law` gives the law of a kind of spring of that length (m).
+    /// Lists the springs: a structural one on each edge, and a bend one between the two corners
+    /// opposite to an edge of two triangles. `law` gives the law of a spring by its kind and length
+    /// (m).
     pub(crate) fn springs(
         &self,
         law: impl Fn(SpringKind, f64) -> Result<SpringLaw, Error>,

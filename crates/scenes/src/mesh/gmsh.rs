@@ -1,5 +1,5 @@
-//! Tetrahedra from Gmsh's text files, versions 2.2 and 4.1: `$Nodes` and `$Elements`. All other
-//! sections are passed over, and so are elements of other kinds.
+//! Tetrahedra from Gmsh's text files, versions 2.2 and 4.1: `$Nodes` and `$Elements`. Other
+//! sections are skipped, and so are points, lines and faces.
 
 use super::data::Mesh;
 use super::tetrahedra::{Numbered, lines, position, whole};
@@ -14,14 +14,14 @@ fn is_other_solid(kind: u64) -> bool {
     matches!(kind, 5..=7 | 12..=14 | 17..=19 | 35 | 88..=132 | 140)
 }
 
-/// Lines with their numbers, of which the last that was read is known.
+/// Reader of lines, which knows the number of the last one.
 struct Reader<I> {
     lines: I,
     line: usize,
 }
 
 impl<'a, I: Iterator<Item = (usize, Vec<&'a str>)>> Reader<I> {
-    /// The next line; `within` is the section that must not end before it.
+    /// Reads the next line. `within` is the section that must not end before it.
     fn next(&mut self, within: &str) -> Result<Vec<&'a str>, String> {
         let Some((line, words)) = self.lines.next() else {
             return Err(format!("the file ends within {within}"));
@@ -35,7 +35,7 @@ impl<'a, I: Iterator<Item = (usize, Vec<&'a str>)>> Reader<I> {
         Ok(words)
     }
 
-    /// The whole numbers of the next line, so many at least.
+    /// Reads the whole numbers of the next line, at least `least` of them.
     fn numbers(&mut self, within: &str, least: usize) -> Result<Vec<u64>, String> {
         let words = self.next(within)?;
         let numbers = whole(&words).map_err(|why| self.wrong(&why))?;
@@ -50,7 +50,7 @@ impl<'a, I: Iterator<Item = (usize, Vec<&'a str>)>> Reader<I> {
     }
 }
 
-/// The mesh in a file.
+/// Reads the mesh of a file.
 pub(super) fn read(bytes: &[u8]) -> Result<Mesh, String> {
     let mut reader = Reader {
         lines: lines(bytes),
@@ -87,7 +87,7 @@ enum Version {
     Four,
 }
 
-/// The version that a line such as `4.1 0 8` says.
+/// Reads the version in a line such as `4.1 0 8`.
 fn format(words: &[&str]) -> Result<Version, String> {
     match words {
         ["2.2", "0", ..] => Ok(Version::Two),
@@ -98,7 +98,7 @@ fn format(words: &[&str]) -> Result<Version, String> {
     }
 }
 
-/// Refusal of a format of Gmsh.
+/// Error of a format of Gmsh that is not supported.
 fn refused(format: &str) -> String {
     format!(
         "it is Gmsh's format {format}, and only the text formats 2.2 and 4.1 are read: save with `-format msh41` or `msh22`"
@@ -180,8 +180,8 @@ fn elements_4<'a>(
     Ok(())
 }
 
-/// Whether elements of this kind are tetrahedra. Other solid ones are refused, lest a body has
-/// holes where they were.
+/// Whether elements of a kind are tetrahedra. Other solid elements are refused, because a body
+/// without them would have holes.
 fn is_tetrahedron(kind: u64) -> Result<bool, String> {
     if is_other_solid(kind) {
         return Err(format!(
@@ -191,7 +191,7 @@ fn is_tetrahedron(kind: u64) -> Result<bool, String> {
     Ok(is_simplex(kind))
 }
 
-/// Adds the tetrahedron of a line, which has that number.
+/// Adds the tetrahedron with this number, which is on this line.
 fn add(line: usize, number: u64, points: &[u64], numbered: &mut Numbered) -> Result<(), String> {
     let added = match *points {
         [a, b, c, d, ..] => numbered.add_tetrahedron(number, [a, b, c, d], line),

@@ -1,5 +1,4 @@
-//! Meshes of triangles, with tetrahedra within them or without, and the springs of a cloth that has
-//! their shape.
+//! Meshes of triangles or of tetrahedra from files.
 
 mod data;
 mod gltf;

@@ -1,4 +1,4 @@
-//! Meshes from Wavefront OBJ files: points (`v`) and faces (`f`). All else is passed over.
+//! Meshes from Wavefront OBJ files: points (`v`) and faces (`f`). Other statements are skipped.
 
 use super::data::{MAX_POINTS, MAX_TRIANGLES, Mesh};
 use super::polygon::Cutter;
@@ -9,20 +9,20 @@ use crate::text::{Lines, brief, words};
 #[derive(Default)]
 struct Faces {
     corners: Vec<u32>,
-    /// Where the corners of each face end, and its line.
+    /// End of the corners of each face, and its line.
     ends: Vec<(u32, u32)>,
     /// Number of triangles that the faces make.
     triangles: usize,
-    /// The largest corner, and its line.
+    /// Largest number of a corner, and its line.
     last: (u32, usize),
 }
 
-/// The mesh in an OBJ file.
+/// Reads the mesh of a file.
 pub(super) fn read(text: &[u8]) -> Result<Mesh, String> {
     let mut mesh = Mesh::default();
     let mut faces = Faces::default();
     let mut lines = Lines::new(text);
-    // A folder or a material may end in a backslash.
+    // The name of a folder or a material may end in a backslash.
     let is_read = |line: &[u8]| matches!(words(line).next(), Some(b"v" | b"f"));
     while let Some((line, statement)) = lines.statement(is_read) {
         let wrong = |why: String| format!("line {line}: {why}");
@@ -44,7 +44,7 @@ pub(super) fn read(text: &[u8]) -> Result<Mesh, String> {
     Ok(mesh)
 }
 
-/// The point that has these coordinates.
+/// Reads the coordinates of a point.
 fn point<'a>(mut words: impl Iterator<Item = &'a [u8]>) -> Result<Triple, String> {
     let mut point = [0.0; 3];
     for x in &mut point {
@@ -59,7 +59,7 @@ fn point<'a>(mut words: impl Iterator<Item = &'a [u8]>) -> Result<Triple, String
 }
 
 impl Faces {
-    /// Adds the face of a line that has these corners, after `count` points.
+    /// Adds the face of a line from its corners, after `count` points.
     fn add<'a>(
         &mut self,
         words: impl Iterator<Item = &'a [u8]>,
@@ -119,8 +119,8 @@ impl Faces {
     }
 }
 
-/// The point of a corner such as `3`, `3/1`, `3//2` or `-1/2/3`, counted from 0. A negative number
-/// counts back from the last of `count` points.
+/// Reads the point of a corner such as `3`, `3/1`, `3//2` or `-1/2/3`, counted from 0. A negative
+/// number counts back from the last of `count` points.
 fn corner(word: &[u8], count: usize) -> Option<u32> {
     let number = word.split(|b| *b == b'/').next()?;
     let number: i64 = str::from_utf8(number).ok()?.parse().ok()?;

@@ -1,14 +1,14 @@
 //! Meshes from PLY files (Turk, *The PLY Polygon File Format*, 1994), text or binary: the elements
-//! `vertex` and `face`. All others are passed over.
+//! `vertex` and `face`. Other elements are skipped.
 
 use super::data::{MAX_POINTS, MAX_TRIANGLES, Mesh};
 use super::polygon::Cutter;
 use crate::text::{Lines, words};
 
-/// What says that the head ends.
+/// Line that ends the header.
 const END: &[u8] = b"end_header";
 
-/// How numbers are written.
+/// Encoding of the numbers.
 #[derive(Clone, Copy, PartialEq)]
 enum Form {
     Text,
@@ -43,7 +43,7 @@ struct Element {
     properties: Vec<Property>,
 }
 
-/// The mesh in a file.
+/// Reads the mesh of a file.
 pub(super) fn read(bytes: &[u8]) -> Result<Mesh, String> {
     let (form, elements, body) = head(bytes)?;
     if elements.iter().any(|element| element.name == "tristrips") {
@@ -64,7 +64,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Mesh, String> {
     faces.cut()
 }
 
-/// The form of the numbers, the elements, and what comes after the head.
+/// Reads the header: the encoding of the numbers, the elements, and the bytes after the header.
 fn head(bytes: &[u8]) -> Result<(Form, Vec<Element>, &[u8]), String> {
     let no_ply = "it is no PLY file: one begins with the lines `ply` and `format`";
     let end = bytes.windows(END.len()).position(|window| window == END);
@@ -73,7 +73,7 @@ fn head(bytes: &[u8]) -> Result<(Form, Vec<Element>, &[u8]), String> {
     }
     let end = end.ok_or("its head does not end: the line `end_header` is missing")?;
     let after = &bytes[end + END.len()..];
-    // One end of a line, lest a byte of the numbers is taken for another.
+    // One end of a line only: the next byte may belong to a number.
     let body = after.strip_prefix(b"\r\n").or(after.strip_prefix(b"\n"));
     let body = body.or(after.strip_prefix(b"\r")).unwrap_or(after);
     let (mut form, mut elements): (_, Vec<Element>) = (None, vec![]);
@@ -136,14 +136,14 @@ fn kind_of(name: &str) -> Option<Kind> {
     })
 }
 
-/// Numbers that are not yet read.
+/// Numbers that are still to be read.
 struct Numbers<'a> {
     form: Form,
     rest: &'a [u8],
 }
 
 impl Numbers<'_> {
-    /// Passes over what a line of text has beside its element.
+    /// Skips the rest of a line of text.
     fn end_line(&mut self) {
         if self.form == Form::Text {
             let is_end = |b: &u8| matches!(b, b'\n' | b'\r');
@@ -152,7 +152,7 @@ impl Numbers<'_> {
         }
     }
 
-    /// The next number, of that type.
+    /// Reads the next number, of this type.
     fn next(&mut self, kind: Kind) -> Result<f64, String> {
         if self.form == Form::Text {
             let rest = self.rest.trim_ascii_start();
@@ -179,7 +179,7 @@ impl Numbers<'_> {
             .split_at_checked(size)
             .ok_or("the file ends within it")?;
         self.rest = rest;
-        // As little endian, with zeros after it.
+        // In little-endian order, padded with zeros.
         let mut bytes = [0; 8];
         bytes[..size].copy_from_slice(number);
         if self.form == Form::Big {
@@ -197,18 +197,18 @@ impl Numbers<'_> {
     }
 }
 
-/// Points and faces so far.
+/// Points and faces that were read so far.
 #[derive(Default)]
 struct Faces {
     mesh: Mesh,
     corners: Vec<u32>,
-    /// Where the corners of each face end.
+    /// End of the corners of each face.
     ends: Vec<u32>,
     triangles: usize,
 }
 
 impl Faces {
-    /// Adds the next element.
+    /// Reads and adds the next element.
     fn add(&mut self, element: &Element, numbers: &mut Numbers) -> Result<(), String> {
         let (is_vertex, is_face) = (element.name == "vertex", element.name == "face");
         let mut point = [None; 3];
@@ -258,7 +258,7 @@ impl Faces {
         Ok(())
     }
 
-    /// The mesh, with all faces cut into triangles.
+    /// Cuts all faces into the triangles of a mesh.
     fn cut(mut self) -> Result<Mesh, String> {
         let count = self.mesh.positions.len();
         if let Some(k) = self.corners.iter().position(|i| *i as usize >= count) {

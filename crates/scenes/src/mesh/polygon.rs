@@ -1,16 +1,16 @@
 //! Triangles of faces with many corners, by ear clipping (Meisters, *Polygons have ears*, 1975).
-//! Every corner keeps its place, also one on a straight side, so that the faces beside it still
-//! meet it. Sides that coincide, as those of a bridge to a hole, are no crossing.
+//! Every corner is kept, also one on a straight side, so that the neighbouring faces still meet it.
+//! Sides that coincide, such as those of a bridge to a hole, do not count as a crossing.
 
 use robust::{Coord, orient2d};
 
 use crate::description::Triple;
 
-/// Largest number of tests in the faces of a file: of a corner in an ear, and of an ear.
-const MOST_TESTS: usize = 100_000_000;
+/// Largest number of tests for the faces of a file, of ears and of corners in ears.
+const MAX_TESTS: usize = 100_000_000;
 
-/// How little is asked of an ear, from an ear of a simple polygon to any corner of one that crosses
-/// itself.
+/// Condition for an ear. That for a simple polygon comes first; the last serves polygons that cross
+/// themselves.
 #[derive(Clone, Copy, PartialEq)]
 enum Asked {
     /// No corner is in it or on its sides.
@@ -25,22 +25,22 @@ enum Asked {
 /// Cutter of faces into triangles.
 #[derive(Default)]
 pub(super) struct Cutter {
-    /// Tests in all faces so far.
+    /// Number of tests in all faces so far.
     tests: usize,
-    /// Corners of the face in its plane, in which it is anticlockwise, and in space.
+    /// Corners of the face in its plane, where they are in anticlockwise order, and in space.
     corners: Vec<Coord<f64>>,
     places: Vec<Triple>,
-    /// Corners beside each one, of those that are left.
+    /// Neighbours of each corner, among the corners that are left.
     beside: Vec<[u32; 2]>,
-    /// Corners where the face is not convex.
+    /// Corners at which the face is not convex.
     reflex: Vec<u32>,
     /// Whether a corner was found to be no ear.
     blocked: Vec<bool>,
 }
 
 impl Cutter {
-    /// Adds the triangles of a face with these corners, which are numbers of points; `None` if
-    /// that takes too many tests.
+    /// Adds the triangles of a face, whose corners are given as numbers of points; `None` if that
+    /// takes too many tests.
     pub fn cut(
         &mut self,
         face: &[u32],
@@ -63,9 +63,9 @@ impl Cutter {
         self.clip(|ear| triangles.push(ear.map(|k| face[k])))
     }
 
-    /// Finds the corners in the plane of the axes across which the face is largest; of those across
-    /// which it is half as large, one in which no two corners that are apart in space fall on one
-    /// place is taken before others. Returns whether the face has an area.
+    /// Projects the corners onto the plane of two axes in which the face is largest. A plane in
+    /// which it is at least half as large is preferred if it keeps apart the corners that are apart
+    /// in space. Returns whether the face has an area.
     fn flatten(&mut self, face: &[u32], positions: &[Triple]) -> bool {
         let at = |k: usize| positions[face[k] as usize];
         let (origin, mut normal) = (at(0), [0.0; 3]);
@@ -92,7 +92,7 @@ impl Cutter {
         least > 0.0
     }
 
-    /// Leaves out the coordinates along an axis.
+    /// Projects the corners along an axis.
     fn project(&mut self, axis: usize, is_up: bool) {
         let (next, last) = ((axis + 1) % 3, (axis + 2) % 3);
         let (u, v) = if is_up { (next, last) } else { (last, next) };
@@ -104,8 +104,7 @@ impl Cutter {
         self.corners.extend(self.places.iter().map(flat));
     }
 
-    /// Whether corners beside one another, or next but one, fall on one place in the plane but not
-    /// in space.
+    /// Whether a corner and one of the next two are at one place in the plane but not in space.
     fn falls_together(&self) -> bool {
         let n = self.corners.len();
         let together = |a: usize, b: usize| {
@@ -114,7 +113,7 @@ impl Cutter {
         (0..n).any(|k| together(k, (k + 1) % n) || together(k, (k + 2) % n))
     }
 
-    /// Twice the area of a triangle of corners, or a number of the same sign.
+    /// Returns twice the signed area of a triangle of corners, or a number of the same sign.
     fn turn(&self, [a, b, c]: [usize; 3]) -> f64 {
         let [a, b, c] = [a, b, c].map(|k| self.corners[k]);
         orient2d(a, b, c)
@@ -135,13 +134,13 @@ impl Cutter {
         }
     }
 
-    /// The triangle that a corner makes with those beside it.
+    /// Returns the triangle of a corner and its two neighbours.
     fn ear(&self, k: usize) -> [usize; 3] {
         let [before, after] = self.beside[k];
         [before as usize, k, after as usize]
     }
 
-    /// Cuts off ears until none is left, each of which `add` takes.
+    /// Cuts off ears until none is left, and passes each to `add`.
     fn clip(&mut self, mut add: impl FnMut([usize; 3])) -> Option<()> {
         let (mut left, mut k) = (self.corners.len(), 0);
         let (mut asked, mut looked, mut is_stale) = (Asked::Clear, 0, false);
@@ -151,7 +150,7 @@ impl Cutter {
             if !is_nothing && !self.is_ear(ear, asked)? {
                 (k, looked) = (after, looked + 1);
                 if looked > left {
-                    // What was in the way of an ear may be cut off since.
+                    // A corner that blocked an ear may have been cut off since.
                     if !is_stale {
                         asked = asked.less();
                     }
@@ -178,7 +177,7 @@ impl Cutter {
                     _ => {}
                 }
             }
-            // Two ears beside one another make thin triangles.
+            // Two neighbouring ears make thin triangles.
             k = if is_nothing {
                 after
             } else {
@@ -194,20 +193,21 @@ impl Cutter {
         Some(())
     }
 
-    /// Whether a corner is where one beside it is, or the end of a line there and back.
+    /// Whether a corner coincides with a neighbour, or is the end of a line that goes there and
+    /// back.
     fn is_nothing(&self, [a, b, c]: [usize; 3]) -> bool {
         let [a, b, c] = [a, b, c].map(|k| self.places[k]);
         a == b || b == c || a == c
     }
 
-    /// Whether an ear is one; `None` after too many tests.
+    /// Whether a triangle meets the condition for an ear; `None` after too many tests.
     fn is_ear(&mut self, ear: [usize; 3], asked: Asked) -> Option<bool> {
         self.tests += 1;
         if self.blocked[ear[1]] {
             return Some(false);
         }
         self.tests += self.reflex.len();
-        if self.tests > MOST_TESTS {
+        if self.tests > MAX_TESTS {
             return None;
         }
         let area = self.turn(ear);
@@ -240,7 +240,7 @@ impl Cutter {
             [0, 1, 2].map(|side| orient2d(corners[side], corners[(side + 1) % 3], to))
         };
         if let Some(corner) = corners.iter().position(|corner| *corner == at) {
-            // Of two corners at one place, the sides of the other may lead into the ear.
+            // If two corners are at one place, the sides of the other one may lead into the ear.
             let leads_in = |to: &u32| {
                 let turns = turns(self.corners[*to as usize]);
                 turns[corner] > 0.0 && turns[(corner + 2) % 3] > 0.0

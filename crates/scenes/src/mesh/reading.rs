@@ -7,7 +7,7 @@ use crate::description::Triple;
 use crate::text::unmarked;
 
 impl Mesh {
-    /// The triangles of all objects in a Wavefront OBJ file.
+    /// Reads the triangles of all objects in a Wavefront OBJ file.
     ///
     /// # Errors
     /// A point or a face is wrong, there is no triangle, or there are too many.
@@ -15,8 +15,8 @@ impl Mesh {
         obj::read(unmarked(bytes)?)?.checked(1)
     }
 
-    /// The triangles of the first scene of a glTF file, or of the scene that it names; `file` reads
-    /// another file that it names.
+    /// Reads the triangles of the scene that a glTF file names, or else of its first scene. `file`
+    /// reads another file that it refers to.
     ///
     /// # Errors
     /// The file is no glTF 2.0 or needs an extension of it, there is no triangle, or there are too
@@ -28,7 +28,7 @@ impl Mesh {
         gltf::read(bytes, file)?.checked(0)
     }
 
-    /// The triangles of an STL file, binary or text.
+    /// Reads the triangles of an STL file, binary or text.
     ///
     /// # Errors
     /// A triangle is wrong, there is none, or there are too many.
@@ -36,7 +36,7 @@ impl Mesh {
         stl::read(bytes)?.checked(0)
     }
 
-    /// The triangles of the faces in a PLY file, text or binary.
+    /// Reads the triangles of the faces in a PLY file, text or binary.
     ///
     /// # Errors
     /// The head or an element is wrong, there is no face, or there are too many.
@@ -44,7 +44,7 @@ impl Mesh {
         ply::read(unmarked(bytes)?)?.checked(0)
     }
 
-    /// The tetrahedra in a text file of Gmsh, version 2.2 or 4.1.
+    /// Reads the tetrahedra in a text file of Gmsh, version 2.2 or 4.1.
     ///
     /// # Errors
     /// A point or an element is wrong, there is no tetrahedron, or there are too many.
@@ -52,7 +52,7 @@ impl Mesh {
         gmsh::read(unmarked(bytes)?)?.checked(0)
     }
 
-    /// The tetrahedra in a pair of `TetGen`'s files, `.node` and `.ele`.
+    /// Reads the tetrahedra in a pair of `TetGen`'s files, `.node` and `.ele`.
     ///
     /// # Errors
     /// A point or an element is wrong, there is no tetrahedron, or there are too many.
@@ -60,8 +60,8 @@ impl Mesh {
         tetgen::read(unmarked(node)?, unmarked(ele)?)?.checked(0)
     }
 
-    /// The mesh without points that are in nothing, if it has triangles, and its points are where
-    /// they can be. The file numbers points from `first` on, if it does not say their numbers.
+    /// Checks that the mesh has triangles and that its points are within the bounds, and leaves out
+    /// unused points. A file that does not give the numbers of points counts them from `first`.
     fn checked(self, first: u64) -> Result<Self, String> {
         if self.triangles.is_empty() {
             return Err("the file has no triangles".into());
@@ -78,7 +78,7 @@ impl Mesh {
         Ok(mesh)
     }
 
-    /// The mesh without triangles at points around which none has an area, unless it has
+    /// Leaves out the triangles at points all of whose triangles have no area, unless the mesh has
     /// tetrahedra.
     fn with_areas(mut self) -> Result<Self, String> {
         if self.tetrahedra.is_empty() {
@@ -92,7 +92,8 @@ impl Mesh {
         Ok(self)
     }
 
-    /// The mesh without points that are in nothing, with the numbers of the others.
+    /// Leaves out the points that are in no triangle or tetrahedron, and keeps the numbers of the
+    /// others.
     fn in_use(self, first: u64) -> Self {
         let mut is_used = vec![false; self.positions.len()];
         let corners = self.triangles.iter().flatten();

@@ -5,11 +5,11 @@ use std::collections::HashMap;
 use super::data::{MAX_POINTS, MAX_TRIANGLES, Mesh};
 use crate::text::{Lines, unmarked, words};
 
-/// Lengths of what a binary file begins with, and of a triangle (bytes).
+/// Lengths of the header of a binary file and of a triangle (bytes).
 const HEAD: usize = 84;
 const TRIANGLE: usize = 50;
 
-/// The mesh so far, in which corners with the same bits are one point.
+/// Mesh that was read so far, in which corners with the same bits are one point.
 #[derive(Default)]
 struct Corners {
     mesh: Mesh,
@@ -17,7 +17,7 @@ struct Corners {
 }
 
 impl Corners {
-    /// The point at that place.
+    /// Returns the point at a place, and adds it if it is new.
     fn point(&mut self, at: [f64; 3]) -> Result<u32, String> {
         if !at.iter().all(|x| x.is_finite()) {
             return Err("a corner has three finite coordinates".into());
@@ -44,7 +44,8 @@ impl Corners {
     }
 }
 
-/// The mesh in a file. Binary files may begin like text, but have the length that they say.
+/// Reads the mesh of a file. A binary file may begin like text, but it has the length that it
+/// gives.
 pub(super) fn read(bytes: &[u8]) -> Result<Mesh, String> {
     let count = bytes.get(HEAD - 4..HEAD).and_then(|n| n.try_into().ok());
     let count = count.map(|n| u32::from_le_bytes(n) as usize);

@@ -3,7 +3,8 @@
 use super::data::Mesh;
 use super::tetrahedra::{Numbered, lines, position, whole};
 
-/// The mesh in a pair of files. The first points of tetrahedra of ten are their corners.
+/// Reads the mesh of a pair of files. Of a tetrahedron with ten points, the first four are the
+/// corners.
 pub(super) fn read(node: &[u8], ele: &[u8]) -> Result<Mesh, String> {
     let mut numbered = Numbered::default();
     let head = "its number of points and their dimension, 3";
@@ -24,8 +25,8 @@ pub(super) fn read(node: &[u8], ele: &[u8]) -> Result<Mesh, String> {
     numbered.mesh()
 }
 
-/// Visits the lines that the first one announces: each with its number, the first of its words, and
-/// the others.
+/// Visits the lines whose count the first one gives. `visit` gets the number of each line, its
+/// first word, and the others.
 fn each(
     bytes: &[u8],
     name: &str,

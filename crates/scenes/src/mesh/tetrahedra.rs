@@ -1,4 +1,4 @@
-//! Tetrahedra of a mesh, from whichever file, and the triangles around them.
+//! Tetrahedra of a mesh from any file, and the triangles that bound them.
 
 use std::collections::HashSet;
 
@@ -11,8 +11,8 @@ use crate::text::Lines;
 /// Faces of a tetrahedron, counterclockwise as seen from outside.
 const FACES: [[usize; 3]; 4] = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
 
-/// The faces that are in one tetrahedron, in the order of these, counterclockwise as seen from
-/// outside.
+/// Lists the faces that belong to one tetrahedron only, in the order of the tetrahedra,
+/// counterclockwise as seen from outside.
 pub(crate) fn boundary(tetrahedra: &[[u32; 4]]) -> Vec<[u32; 3]> {
     let faces = |t: &[u32; 4]| FACES.map(|face| face.map(|k| t[k]));
     let mut all: Vec<_> = tetrahedra
@@ -79,8 +79,8 @@ impl Numbered {
         Ok(())
     }
 
-    /// The mesh, with its points numbered in their order. Where all tetrahedra are inside out, the
-    /// file counts corners the other way round, and they are turned.
+    /// Creates the mesh, with its points numbered in their order. If the volumes of all tetrahedra
+    /// are negative, the file counts corners the other way round, and all are turned.
     pub fn mesh(mut self) -> Result<Mesh, String> {
         self.points.sort_by_key(|(number, _)| *number);
         if let Some(twice) = self.points.windows(2).find(|w| w[0].0 == w[1].0) {
@@ -101,7 +101,7 @@ impl Numbered {
         if tetrahedra.is_empty() {
             return Err("the file has no tetrahedra".into());
         }
-        // Gmsh writes what is in two groups twice.
+        // Gmsh writes an element twice that is in two groups.
         let mut seen = HashSet::new();
         let mut is_new: Vec<_> = tetrahedra
             .iter()
@@ -135,19 +135,19 @@ impl Numbered {
     }
 }
 
-/// Lines of a file that have words, with their numbers from 1, without their comments.
+/// Lists the lines of a file that have words, with their numbers from 1, without comments.
 pub(super) fn lines(text: &[u8]) -> impl Iterator<Item = (usize, Vec<&str>)> {
     Lines::new(text).filter_map(|(number, line)| {
         let text = std::str::from_utf8(line).unwrap_or("?");
-        let words: Vec<_> = text.split_ascii_whitespace().take(MOST_WORDS).collect();
+        let words: Vec<_> = text.split_ascii_whitespace().take(MAX_WORDS).collect();
         (!words.is_empty()).then_some((number, words))
     })
 }
 
-/// Most words of a line that are looked at.
-const MOST_WORDS: usize = 64;
+/// Largest number of words of a line that are read.
+const MAX_WORDS: usize = 64;
 
-/// The words as whole numbers, or which of them is none.
+/// Reads words as whole numbers. The error names the first word that is none.
 pub(super) fn whole(words: &[&str]) -> Result<Vec<u64>, String> {
     let each = words.iter().map(|word| {
         let number = word.parse().ok();
@@ -156,7 +156,7 @@ pub(super) fn whole(words: &[&str]) -> Result<Vec<u64>, String> {
     each.collect()
 }
 
-/// Three coordinates at the beginning of these words.
+/// Reads the three coordinates at the beginning of some words.
 pub(super) fn position(words: &[&str]) -> Result<Triple, String> {
     let mut position = [0.0; 3];
     for (axis, x) in position.iter_mut().enumerate() {

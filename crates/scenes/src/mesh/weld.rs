@@ -1,16 +1,17 @@
-//! Points that are at the same place, since files have several there where normals, textures or
-//! nodes change: one for all of them.
+//! Welding: points at the same place become one. Files have several points at a place where
+//! normals, textures or nodes change.
 
 use crate::description::Triple;
 
-/// Distance of points that are at the same place, as a share of the mesh's longest side: what the
-/// roundings of a few single-precision numbers add up to.
-const SAME: f64 = 1e-6;
+/// Largest distance of points that count as one, relative to the mesh's longest side: the sum of a
+/// few rounding errors in single precision.
+const WELD_DISTANCE: f64 = 1e-6;
 
-/// Sides of the cells in which points are sorted, in that distance: a point is near to few.
+/// Side of the cells into which points are sorted, relative to that distance: few points are near
+/// the border of a cell.
 const CELL: f64 = 4.0;
 
-/// For each point the first one that is at the same place.
+/// Finds for each point the first one at the same place.
 pub(super) fn places(positions: &[Triple]) -> Vec<u32> {
     let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
     for p in positions {
@@ -20,8 +21,11 @@ pub(super) fn places(positions: &[Triple]) -> Vec<u32> {
         }
     }
     let size = [0, 1, 2].map(|axis| high[axis] - low[axis]);
-    let near = SAME * size.into_iter().fold(f64::MIN_POSITIVE / SAME, f64::max);
-    // Where a point is among the cells: of sides 1, from 0 on.
+    let near = WELD_DISTANCE
+        * size
+            .into_iter()
+            .fold(f64::MIN_POSITIVE / WELD_DISTANCE, f64::max);
+    // Coordinates in which the cells have sides of 1 and begin at 0.
     let scaled = |i: usize| [0, 1, 2].map(|axis| (positions[i][axis] - low[axis]) / (CELL * near));
     let cell = |i: usize| scaled(i).map(|x| x.floor() as u32);
     let mut cells: Vec<_> = (0..positions.len()).map(cell).collect();
@@ -31,7 +35,7 @@ pub(super) fn places(positions: &[Triple]) -> Vec<u32> {
         let apart = [0, 1, 2].map(|axis| positions[i][axis] - positions[k][axis]);
         apart.iter().map(|x| x * x).sum::<f64>() <= near * near
     };
-    // Of the points in a cell, those that are the first at their place: few, as they are apart.
+    // The points in a cell that are the first at their place. They are few, because they are apart.
     let mut firsts = vec![vec![]; cells.len()];
     let mut same = Vec::with_capacity(positions.len());
     for i in 0..positions.len() {

@@ -6,7 +6,7 @@ use a3_scenes::{Description, SCENES, snapshot};
 
 use super::*;
 
-/// Every built-in file can be read, has a summary, and is written as what is read as the same.
+/// Every built-in scene has a summary, and is the same again after it was written and read.
 #[test]
 fn what_is_written_is_read_as_the_same() {
     for entry in SCENES {
@@ -61,7 +61,7 @@ springs = [[0, 1, 3, 1, 0]]
 particles = [0]
 "
     );
-    // At the root, before the tables.
+    // Springs of the whole scene come before the tables.
     let setup = set_up(&format!("springs = [[11, 27, 2, 1, 0]]\n{text}")).unwrap();
     let (scene, surface) = (setup.scene, &setup.presentation.surface);
     let network = scene.model.network().unwrap();
@@ -97,7 +97,7 @@ particles = [0]
     assert_eq!(scene.state[3 * 33 + 31], 1.0);
 }
 
-/// A second cloth is held together as the first is.
+/// A second cloth has springs like the first.
 #[test]
 fn every_cloth_has_its_springs() {
     let one = build(CLOTH).unwrap();
@@ -191,8 +191,8 @@ fn editors_get_a_schema() {
     }
 }
 
-/// Bodies with a limit of strain have it on their own particles, and what is written of a run has
-/// the limits as they are then.
+/// A limit of strain applies to the particles of its body only, and a snapshot has the limits of
+/// the run.
 #[test]
 fn strain_is_limited_body_by_body() {
     let limited = CLOTH.replace("[10, 5, 2]", "[10, 5, 2]\nstrain_limit = 1.25");
@@ -289,7 +289,7 @@ fn constraints_are_met_at_the_start() {
     let hung = "[[body]]\nparts = [{ ball = 0.1 }]\nmass = 1\n\
         [[constraint]]\nparticle = 1\npoint = [0, 0.5, 0]\n";
     assert!(build(hung).is_err());
-    // What goes on from a run tells its own errors.
+    // A scene with a given state reports the errors of its constraints in the run.
     let state = "[state]\npositions = [[0, 0, 0], [1, 0, 0], [2.05, 0, 0]]\n";
     build(&format!("{}{state}", rods(1.0))).unwrap();
 }

@@ -1,10 +1,10 @@
-//! Faults: what is wrong is named with its line and key, whatever the text.
+//! Faults have a line and a key, in any text.
 
 use a3_scenes::SCENES;
 
 use super::*;
 
-/// A line of the cloth's, what stands there instead, and how what is said begins.
+/// A line of the cloth, its replacement, and the beginning of the message.
 const WRONG: &[(&str, &str, &str)] = &[
     (
         "spacing = 0.5",
@@ -278,7 +278,7 @@ fn nothing_at_all_is_said_to_be_too_little() {
     assert!(said("").contains("the scene is empty: it needs at least one of cloth"));
 }
 
-/// Sizes are looked at before memory is taken.
+/// Sizes are checked before memory is reserved.
 #[test]
 fn what_is_too_much_is_refused_at_once() {
     let begun = std::time::Instant::now();
@@ -300,8 +300,8 @@ fn what_is_too_much_is_refused_at_once() {
     assert!(begun.elapsed().as_secs() < 5);
 }
 
-/// Texts that were damaged at random are read or refused, and nothing else; what is read can be
-/// evaluated.
+/// Texts that are damaged at random are read or refused without a panic, and the forces of a scene
+/// that is read are finite.
 #[test]
 fn damaged_texts_are_refused_or_read() {
     let mut seed = 1u64;

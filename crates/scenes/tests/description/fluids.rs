@@ -1,4 +1,4 @@
-//! Fluids: where their particles and walls are, and what is refused.
+//! Fluids: the places of their particles and walls, and their faults.
 
 use super::*;
 
@@ -36,12 +36,12 @@ fn fluids_stand_in_tanks() {
     let x = &scene.state[..3 * n];
     let (_, nearest) = fluid.nearest_pair(x).unwrap();
     assert!((nearest - 0.1).abs() < 1e-12);
-    // A particle that has all its neighbours has the density at rest.
+    // A particle with all its neighbours has the rest density.
     let inside = fluid.densities(x)[0];
     assert!(inside < 500.0 && inside > 400.0, "{inside}");
 }
 
-/// A fluid in a tank: what stands there instead, and how what is said begins.
+/// Faults of a fluid in a tank: a line, its replacement, and the beginning of the message.
 #[test]
 fn what_is_wrong_with_a_fluid_is_said() {
     let fluid = "[[fluid]]

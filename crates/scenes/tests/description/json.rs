@@ -1,9 +1,11 @@
-//! Lists of particles and springs in JSON: what is wrong is said in plain English.
+//! Lists of particles and springs in JSON: messages are in plain English.
 
 use super::words::check;
+use a3_scenes::parse_json;
+
 use super::*;
 
-/// What stands in a list of two particles, what stands there instead, and how what is said begins.
+/// A part of a list of two particles, its replacement, and the beginning of the message.
 const JSON: &[(&str, &str, &str)] = &[
     (
         "[1, 1]",
@@ -18,7 +20,7 @@ const JSON: &[(&str, &str, &str)] = &[
     (
         "[1, 1]",
         "{}",
-        "line 2: mass: it must be a list in square brackets, not keys and values in braces",
+        "line 2: mass: it must be a list in square brackets, not a table",
     ),
     (
         "[1, 1]",
@@ -35,7 +37,11 @@ const JSON: &[(&str, &str, &str)] = &[
         "[1, 01]",
         "line 2: a number must be written like 5, 0.5 or 1e-3",
     ),
-    ("[1, 1]", "[1, 1e999]", "line 2: a number is too large"),
+    (
+        "[1, 1]",
+        "[1, 1e999]",
+        "line 2: mass: it must be a number from -1e9 to 1e9, not inf",
+    ),
     (
         "[1, 1]",
         "[1, 1, 1]",
@@ -44,24 +50,24 @@ const JSON: &[(&str, &str, &str)] = &[
     (
         "\"mass\"",
         "\"mas\"",
-        "line 2: there is no key `mas`; did you mean `mass`? The valid keys are name, ",
+        "line 2: mas: there is no key `mas`; did you mean `mass`? The valid keys are name, ",
     ),
     ("\"mass\"", "mass", "line 2: a key must be in double quotes"),
     (
         "\"mass\"",
         "\"mass\": [1, 1], \"mass\"",
-        "line 2: the key `mass` is there twice",
+        "line 2: mass: the key is there twice",
     ),
-    ("\"mass\": [1, 1],", "", "line 5: the key `mass` is missing"),
+    ("\"mass\": [1, 1],", "", "the key `mass` is missing"),
     (
         "[0, 0, 0]",
         "[0, 0]",
-        "line 3: positions: it must be a list of 3 numbers, not of 2",
+        "line 3: positions.0: it must be a list of 3 numbers, not of 2",
     ),
     (
         "[0, 0, 0]",
         "[0,5, 0, 0]",
-        "line 3: positions: the list has too many numbers; write decimal points",
+        "line 3: positions.0: it must be a list of 3 numbers, not of 4; write decimal points",
     ),
     (
         "[0, 0, 0]",
@@ -97,10 +103,13 @@ const PAIR: &str = "{\n\"mass\": [1, 1],\n\"positions\": [[0, 0, 0], [1, 0, 0]],
 #[test]
 fn json_is_refused_in_plain_english() {
     let read = |text: &str| {
-        let built = a3_scenes::parse_json(text).and_then(|d| d.build(None, &mut mesh));
-        built.map_err(|fault| fault.locate(text).to_string())
+        let (description, places) = parse_json(text).map_err(|fault| fault.to_string())?;
+        let built = description.build(None, &mut mesh);
+        built.map_err(|fault| places.locate(fault).to_string())
     };
     assert!(read(PAIR).is_ok());
+    let deep = format!("{}1{}", "{\"a\":".repeat(100_000), "}".repeat(100_000));
+    assert!(read(&PAIR.replace("\"mass\"", &format!("\"states\": {deep}, \"mass\""))).is_ok());
     for (part, instead, expected) in JSON {
         let text = PAIR.replace(part, instead);
         assert!(text != PAIR, "{part}");
@@ -110,9 +119,12 @@ fn json_is_refused_in_plain_english() {
         ("", "line 1: the text ends where a value should be"),
         (
             "[]",
-            "line 1: it must be keys and values in braces, not a list",
+            "line 1: it must be a table with keys among name, note, units, ",
         ),
-        ("3", "line 1: it must be keys and values in braces, not 3"),
+        (
+            "3",
+            "line 1: it must be a table with keys among name, note, units, ",
+        ),
     ] {
         check(&read(text).err().unwrap(), expected, text);
     }

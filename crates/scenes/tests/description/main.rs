@@ -1,5 +1,4 @@
-//! Scenes as text: what is read is what was written, and what is wrong is named with its line and
-//! key.
+//! Scenes as text: reading and writing them, building them, and their faults.
 
 mod building;
 mod faults;
@@ -10,9 +9,9 @@ mod solids;
 mod words;
 
 use a3_core::{Grid, Scene};
-use a3_scenes::{Description, Fault, Mesh, Setup, find};
+use a3_scenes::{Fault, Mesh, Setup, find, parse_toml};
 
-/// A built-in scene, with this grid or its own.
+/// Builds a built-in scene, with this grid or its own.
 fn scene(name: &str, grid: Option<[usize; 2]>) -> Setup {
     let grid = grid.map(|[rows, cols]| Grid::new(rows, cols).unwrap());
     find(name).unwrap().build(grid).unwrap()
@@ -38,15 +37,16 @@ fn mesh(name: &str) -> Result<Mesh, String> {
 }
 
 fn set_up(text: &str) -> Result<Setup, Fault> {
-    let built = Description::parse(text).and_then(|d| d.build(None, &mut mesh));
-    built.map_err(|fault| fault.locate(text))
+    let (description, places) = parse_toml(text)?;
+    let built = description.build(None, &mut mesh);
+    built.map_err(|fault| places.locate(fault))
 }
 
 fn build(text: &str) -> Result<Scene, Fault> {
     set_up(text).map(|setup| setup.scene)
 }
 
-/// What is said of a text that is wrong.
+/// Returns the message about a wrong text.
 fn said(text: &str) -> String {
     match build(text) {
         Ok(_) => panic!("this was taken:\n{text}"),

@@ -1,4 +1,4 @@
-//! Masses: what is given by a density weighs density times its area or volume.
+//! Masses: a body that is given by its density weighs density times area or volume.
 
 use std::f64::consts::PI;
 
@@ -14,7 +14,7 @@ fn masses(text: &str) -> Vec<f64> {
     scene.model.network().unwrap().masses().to_vec()
 }
 
-/// Asserts that the particles of a scene weigh so much (kg) together.
+/// Asserts the mass of all particles of a scene together (kg).
 fn assert_weight(text: &str, expected: f64) {
     let weight: f64 = masses(text).iter().sum();
     let off = (weight / expected - 1.0).abs();
@@ -22,7 +22,7 @@ fn assert_weight(text: &str, expected: f64) {
 }
 
 /// Cloths of any grid, given by their width or by the distance of their particles, in any unit: all
-/// particles share the weight equally.
+/// particles have equal shares of the mass.
 #[test]
 fn a_cloth_weighs_its_density_times_its_area() {
     for unit in UNITS {
@@ -36,15 +36,15 @@ fn a_cloth_weighs_its_density_times_its_area() {
             assert_weight(&text, 0.2 * width * width * down * along);
             let masses = masses(&text);
             assert!(masses.iter().all(|m| *m == masses[0]));
-            // Given by the masses of its particles, it weighs what these do.
+            // A cloth that is given by the mass of its particles weighs as much as these.
             let text = format!("{body}width = {width}\nmass = 0.5\n");
             assert_weight(&text, 0.5 * f64::from(rows * cols));
         }
     }
 }
 
-/// The grid asked for samples the same cloth, whose default steps are shorter as its fastest motion
-/// is faster.
+/// Another grid samples the same cloth. Its default steps are shorter in proportion to its shortest
+/// period.
 #[test]
 fn another_grid_weighs_as_much() {
     for name in ["cloth", "flag"] {
@@ -60,8 +60,8 @@ fn another_grid_weighs_as_much() {
         let scale = (lighter / mass).sqrt();
         assert!(scale < 0.6 && (defaults.step_scale - scale).abs() < 1e-12);
     }
-    // The same width in two rows: the area falls to a nineteenth, the number of particles to a
-    // tenth.
+    // With the same width in two rows, the area falls to a nineteenth and the number of particles
+    // to a tenth.
     let flat = scene("cloth", Some([2, 20])).defaults.step_scale;
     assert!((flat - (10.0_f64 / 19.0).sqrt()).abs() < 1e-12, "{flat}");
     assert!(scene("mit", Some([40, 30])).defaults.step_scale == 1.0);
@@ -120,7 +120,7 @@ fn ball() -> Mesh {
         for j in 0..around {
             let at = |i: u32, j: u32| i * around + j % around;
             let [a, b, c, d] = [at(i, j), at(i, j + 1), at(i + 1, j + 1), at(i + 1, j)];
-            // At the poles, a ring is one point.
+            // At a pole, the ring is one point.
             if i > 0 {
                 mesh.triangles.push([a, b, c]);
             }
@@ -132,8 +132,8 @@ fn ball() -> Mesh {
     mesh
 }
 
-/// Each part by its formula, in its own place, and two of them together. The centre has the mass of
-/// the body, and the points that it carries have none.
+/// Each part has the mass of its formula in any place, and so have two parts together. The centre
+/// has the mass of the body, and its points have none.
 #[test]
 fn a_rigid_body_weighs_its_density_times_its_volume() {
     for unit in UNITS {
@@ -153,7 +153,7 @@ fn a_rigid_body_weighs_its_density_times_its_volume() {
         for (parts, volume) in [cuboid, ball, capsule, both] {
             let text = format!("[[body]]\nparts = [{parts}]\ndensity = 700\nat = [1, 2, 3]\n");
             assert_weight(&text, 700.0 * volume);
-            // Drag divided by the mass is the rate at which the body is braked.
+            // Drag over mass is the rate at which the body slows down.
             let scene = build(&format!("drag_per_mass = 0.4\n{text}")).unwrap();
             let drag = scene.model.network().unwrap().drag().unwrap();
             assert!(
@@ -164,8 +164,8 @@ fn a_rigid_body_weighs_its_density_times_its_volume() {
     }
 }
 
-/// A box of fluid weighs its density times its volume. A ball consists of the places of a lattice
-/// that are in it, so its weight comes near that of a ball as the spacing shrinks.
+/// A box of fluid weighs its density times its volume. The particles of a ball are the lattice
+/// points in it, so its mass converges to that of a ball as the spacing shrinks.
 #[test]
 fn a_fluid_weighs_its_density_times_its_volume() {
     for unit in UNITS {

@@ -1,7 +1,7 @@
-//! Solids: their boxes, their files, and what is wrong with them.
+//! Solids: boxes, files, and their faults.
 
 use a3_core::{Element, Network, Vector3};
-use a3_scenes::{Description, Mesh, Setup, snapshot};
+use a3_scenes::{Description, Mesh, Setup, parse_toml, snapshot};
 
 use crate::{build, said};
 
@@ -39,7 +39,7 @@ fn a_box_is_filled_with_tetrahedra() {
             .all(|volume| (volume - 1.0 / 6.0).abs() < 1e-12)
     );
     assert!((network.masses().iter().sum::<f64>() - 7200.0).abs() < 1e-9);
-    // Two triangles on each outer face of a cell, which close the surface.
+    // Two triangles on each outer face of a cell close the surface.
     assert_eq!(network.triangles().len(), 2 * 2 * (3 * 2 + 3 + 2));
     let n = network.particles();
     let at = |i: u32| {
@@ -77,12 +77,13 @@ fn from_file(mesh: &Mesh, extra: &str) -> Result<Setup, String> {
     let text = format!(
         "[[solid]]\nfile = 'a'\ndensity = 12\nyoung = 1\npoisson = 0\nat = [0, 0, 0]\n{extra}"
     );
-    let description = Description::parse(&text).map_err(|fault| fault.to_string())?;
+    let (description, places) = parse_toml(&text).map_err(|fault| fault.to_string())?;
     let built = description.build(None, &mut |_| Ok(mesh.clone()));
-    built.map_err(|fault| fault.locate(&text).to_string())
+    built.map_err(|fault| places.locate(fault).to_string())
 }
 
-/// All formats have the same two tetrahedra, whose corners `TetGen`'s file counts the other way.
+/// The files of all formats have the same two tetrahedra. `TetGen`'s counts their corners the other
+/// way round.
 #[test]
 fn files_hold_tetrahedra() {
     let meshes = [

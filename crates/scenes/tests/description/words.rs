@@ -1,8 +1,8 @@
-//! What is said of texts that are wrong is plain English, whichever reader found it.
+//! Messages about wrong texts are in plain English, from any parser.
 
 use super::*;
 
-/// Words of programmers, which those who write scenes need not know.
+/// Words of programmers, which authors of scenes need not know.
 const JARGON: &[&str] = &[
     "invalid type",
     "invalid value",
@@ -25,7 +25,7 @@ const JARGON: &[&str] = &[
     "parsing",
 ];
 
-/// A line of the cloth's, what stands there instead, and how what is said begins.
+/// A line of the cloth, its replacement, and the beginning of the message.
 const TOML: &[(&str, &str, &str)] = &[
     (
         "spacing = 0.5",
@@ -224,7 +224,7 @@ const TOML: &[(&str, &str, &str)] = &[
         "camera = [0, 0, 1]",
         "line 1: camera: it must be a table with keys among eye, target, not a list",
     ),
-    // The values of a table in a list without their keys.
+    // A table that is written as a list, without keys.
     (
         "gravity = [0, -9.81, 0]",
         "camera = [[0, 0, 1], [0, 0, 0]]",

@@ -1,11 +1,11 @@
-//! Faces of many corners.
+//! Faces with many corners.
 
 use std::fmt::Write;
 
 use crate::{area, data, obj, vector_area};
 
-/// A face with these corners in a plane, turned and stretched into space by a fixed matrix, and its
-/// area.
+/// Returns a face in OBJ, whose corners in a plane are turned and stretched into space by a fixed
+/// matrix, and its area.
 fn face(corners: &[[f64; 2]]) -> (String, f64) {
     let mut text = String::new();
     for [x, y] in corners {
@@ -23,7 +23,7 @@ fn face(corners: &[[f64; 2]]) -> (String, f64) {
     (text + "\n", 0.5 * (0..count).map(cross).sum::<f64>())
 }
 
-/// Whether the triangles cover the face, and no place twice.
+/// Asserts that the triangles cover the face, and no place twice.
 fn is_covered(corners: &[[f64; 2]]) {
     let (text, expected) = face(corners);
     let mesh = obj(&text);
@@ -42,7 +42,7 @@ fn is_covered(corners: &[[f64; 2]]) {
 fn concave_faces_keep_their_notches() {
     let mesh = obj(data("concave.obj"));
     assert_eq!((mesh.triangles.len(), area(&mesh)), (6, 7.0));
-    // An arrow, from each of its corners on and both ways round.
+    // An arrow, beginning at each of its corners, in both directions.
     let mut arrow = vec![[0.0, 0.0], [2.0, 1.0], [0.0, 2.0], [0.5, 1.0]];
     for _ in 0..2 {
         for _ in 0..4 {
@@ -59,7 +59,7 @@ fn concave_faces_keep_their_notches() {
     }
     comb.extend([[40.0, 0.0], [0.0, 0.0]]);
     is_covered(&comb);
-    // A spiral of two turns, whose plane area no fan covers.
+    // A spiral of two turns, which no fan of triangles covers.
     let arm = |r: f64| {
         (0..60).map(move |k| {
             let (angle, r) = (f64::from(k) * 0.21, r + f64::from(k) * 0.1);
@@ -72,8 +72,8 @@ fn concave_faces_keep_their_notches() {
     is_covered(&spiral);
 }
 
-/// Corners on straight sides stay corners, so that the faces beside them still meet them, and
-/// corners that are there twice do no harm.
+/// Corners on straight sides are kept, so that neighbouring faces still meet them. Corners that are
+/// there twice are harmless.
 #[test]
 fn corners_on_sides_stay() {
     let tee = [
@@ -114,7 +114,7 @@ fn corners_on_sides_stay() {
     ]);
 }
 
-/// Holes, to which a bridge leads there and back.
+/// Holes, each joined to the outer sides by a bridge that goes there and back.
 #[test]
 fn bridges_lead_to_holes() {
     let frame = |hole: [[f64; 2]; 4]| {
@@ -129,7 +129,7 @@ fn bridges_lead_to_holes() {
         is_covered(&corners);
         corners.rotate_left(1);
     }
-    // Two holes, each with a bridge from the same corner.
+    // Two holes with bridges from the same corner.
     let small = |x: f64, y: f64| {
         [
             [x, y],
@@ -172,7 +172,7 @@ fn random_faces_are_covered_once() {
     }
 }
 
-/// A face that crosses itself is cut in some way, and one that would take for ever is refused.
+/// A face that crosses itself is cut in some way, and one that would take too long is refused.
 #[test]
 fn crossing_faces_come_to_an_end() {
     let star = |count: usize| {

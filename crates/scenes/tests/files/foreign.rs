@@ -1,16 +1,16 @@
-//! Files of other programs, each with what was once read wrongly or refused without its cause.
+//! Files of other programs that were once read wrongly, or refused without the cause.
 
 use a3_scenes::Mesh;
 
 use crate::{area, obj};
 
-/// Corners that fall on one place in the plane of a face, but not in space, keep their triangles.
+/// Corners that are at one place in the plane of a face, but not in space, keep their triangles.
 #[test]
 fn bent_faces_keep_all_triangles() {
     let mesh = obj("v 0 0 0\nv 1 0 0\nv 1 0 1\nv 0 1 0\nf 1 2 3 4\n");
     assert_eq!((mesh.positions.len(), mesh.triangles.len()), (4, 2));
     assert!(area(&mesh) > 1.0, "{}", area(&mesh));
-    // All bent faces with whole corners: two triangles each.
+    // All bent faces with four corners on a 3 x 3 x 3 grid: two triangles each.
     let place = |k: usize| [k % 3, k / 3 % 3, k / 9];
     for k in 0..27 * 27 {
         let corners = [[0, 0, 0], [2, 0, 0], place(k % 27), place(k / 27)];
@@ -32,15 +32,14 @@ fn bent_faces_keep_all_triangles() {
     }
 }
 
-/// Coordinates far from the origin keep their digits.
+/// Coordinates far from the origin keep all digits.
 #[test]
 fn coordinates_are_read_with_all_digits() {
     let far = obj("v 500000.125 4000000.03 7.3\nv 500001 4000000 7\nv 500000 4000001 7\nf 1 2 3\n");
     assert_eq!(far.positions[0], [500_000.125, 4_000_000.03, 7.3]);
 }
 
-/// A tetrahedron that is there twice, as Gmsh 2.2 writes one in two groups, counts once; tags may
-/// be negative.
+/// A tetrahedron in two groups, which Gmsh 2.2 writes twice, counts once. Tags may be negative.
 #[test]
 fn tetrahedra_count_once() {
     let nodes = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n4\n1 0 0 0\n2 1 0 0\n3 0 1 0\n\
@@ -81,7 +80,7 @@ fn tetrahedra_count_once() {
     }
 }
 
-/// What has no area is left out, and only that.
+/// Triangles without an area are left out, and no others.
 #[test]
 fn what_has_no_area_is_left_out() {
     let square = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n";
@@ -91,7 +90,7 @@ fn what_has_no_area_is_left_out() {
     assert_eq!(nothing, "the triangles of the file have no area");
 }
 
-/// Text STL in capitals is read; a text or a binary file that is cut short is not.
+/// STL text in capitals is read. A text or a binary file that is cut short is not.
 #[test]
 fn stl_in_capitals_and_cut_short() {
     let text = "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\n\
@@ -109,7 +108,7 @@ fn stl_in_capitals_and_cut_short() {
     let wide: Vec<u8> = text.bytes().flat_map(|b| [b, 0]).collect();
     let refused = Mesh::from_stl(&wide).unwrap_err();
     assert!(refused.starts_with("it is UTF-16"), "{refused}");
-    // A binary file that begins like text and has more bytes after its triangles.
+    // A binary file may begin like text and have more bytes after its triangles.
     let mut binary = [b"solid".as_slice(), &[b' '; 75], &1u32.to_le_bytes()].concat();
     binary.extend([0; 12]);
     for x in [0f32, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0] {
@@ -119,8 +118,7 @@ fn stl_in_capitals_and_cut_short() {
     assert_eq!(Mesh::from_stl(&binary).unwrap().triangles.len(), 1);
 }
 
-/// What a line of a PLY file has beside its element is passed over; the face that is wrong is
-/// named.
+/// The rest of a line of a PLY file after its element is skipped. A wrong face is named.
 #[test]
 fn lines_of_ply_may_have_more() {
     let text = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n\
@@ -140,7 +138,7 @@ fn lines_of_ply_may_have_more() {
     assert!(endless.contains("`end_header` is missing"), "{endless}");
 }
 
-/// Files that are no meshes say so.
+/// Files of other kinds are refused with their kind.
 #[test]
 fn other_files_are_named() {
     for (bytes, why) in [
@@ -161,13 +159,12 @@ fn other_files_are_named() {
         let refused = Mesh::from_obj(bytes).unwrap_err();
         assert!(refused.starts_with(why), "{refused}");
     }
-    // Numbers of a binary file are no text in UTF-32.
+    // The numbers of a binary file are not taken for text in UTF-32.
     let refused = Mesh::from_gmsh(&[200, 0, 0, 0, 1, 0, 0, 0]).unwrap_err();
     assert!(refused.starts_with("it is no Gmsh file"), "{refused}");
 }
 
-/// A hundred thousand points within a few millionths of the longest side take no longer than
-/// others.
+/// A hundred thousand points within a few millionths of the longest side are welded in little time.
 #[test]
 fn crowds_of_points_are_welded_at_once() {
     let mut positions = vec![[1e6, 0.0, 0.0]];
@@ -185,7 +182,7 @@ fn crowds_of_points_are_welded_at_once() {
         positions,
         ..Mesh::default()
     };
-    // Each point is kept or within the tolerance, 1 m, of one that is: a hundred of them fit.
+    // Each point is kept or within the tolerance, 1 m, of one that is kept. At most a hundred fit.
     let welded = mesh.welded();
     assert!(
         (5..150).contains(&welded.positions.len()),

@@ -1,4 +1,4 @@
-//! glTF as engines and other programs write it.
+//! glTF files of engines and other programs.
 
 use a3_scenes::Mesh;
 use base64::Engine;
@@ -18,7 +18,7 @@ fn file(name: &str) -> Mesh {
     read(&data(name)).unwrap()
 }
 
-/// Least and greatest coordinates.
+/// Returns the least and the greatest coordinates.
 fn extent(mesh: &Mesh) -> [[f64; 3]; 2] {
     let along = |axis: usize, pick: fn(f64, f64) -> f64| {
         mesh.positions.iter().map(|p| p[axis]).reduce(pick).unwrap()
@@ -29,8 +29,8 @@ fn extent(mesh: &Mesh) -> [[f64; 3]; 2] {
     ]
 }
 
-/// A triangle with its corners at (0, 0, 0), (1, 0, 0) and (0, 1, 0), joints and weights, all in
-/// one buffer, and two targets, of which the second replaces one element.
+/// Creates a document with a triangle with the corners (0, 0, 0), (1, 0, 0) and (0, 1, 0), with
+/// joints and weights, all in one buffer, and two targets, the second of them sparse.
 fn triangle() -> Value {
     let mut bytes = vec![];
     let mut views = vec![];
@@ -51,14 +51,14 @@ fn triangle() -> Value {
     add(&floats(&[0., 0., 4., 0., 0., 4., 0., 0., 4.]));
     add(&[2, 0]);
     add(&floats(&[0., 2., 0.]));
-    // Places of two joints: identity, and 5 m back along x.
+    // Inverse bind matrices of two joints: identity, and 5 m back along x.
     let mut inverse = [0.0; 32];
     for k in [0, 5, 10, 15] {
         (inverse[k], inverse[16 + k]) = (1.0, 1.0);
     }
     inverse[28] = -5.0;
     add(&floats(&inverse));
-    // The same corners in bytes and in shares of 32767.
+    // The same corners in bytes and in fractions of 32767.
     add(&[0, 0, 0, 0, 100, 0, 0, 0, 0, 100, 0, 0]);
     add(&[0u16, 0, 0, 0, 32767, 0, 0, 0, 0, 32767, 0, 0]
         .map(u16::to_le_bytes)
@@ -90,7 +90,7 @@ fn triangle() -> Value {
     })
 }
 
-/// The corners of the triangle, changed in that way.
+/// Returns the corners of the triangle after a change of its document.
 fn corners(change: impl Fn(&mut Value)) -> Vec<[f64; 3]> {
     let mut document = triangle();
     change(&mut document);
@@ -112,11 +112,11 @@ fn names_are_unescaped() {
     assert!(why.starts_with("no such.bin: "), "{why}");
 }
 
-/// A mirrored node turns its triangles, two mirrors do not.
+/// A reflection of a node reverses its triangles, two reflections do not.
 #[test]
 fn mirrors_turn_triangles() {
     let mesh = file("mirror.gltf").welded();
-    // Two boxes without the faces between them: closed, and around 2 m3.
+    // Two boxes without the faces between them: closed, with a volume of 2 m3.
     assert_eq!((mesh.positions.len(), mesh.triangles.len()), (12, 20));
     let volume = |t: &[u32; 3]| {
         let [a, b, c] = t.map(|i| mesh.positions[i as usize]);
@@ -166,7 +166,7 @@ fn targets_have_their_weights() {
     assert_eq!(moved, [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 3.0, 0.0]]);
 }
 
-/// Joints carry a skinned mesh wherever its node is.
+/// Joints move a skinned mesh, wherever its node is.
 #[test]
 fn joints_carry_skins() {
     assert_eq!(extent(&file("skin.gltf")), [[0.0; 3], [1.0, 1.0, 0.0]]);
@@ -180,7 +180,7 @@ fn joints_carry_skins() {
         ]);
         document["scenes"] = json!([{"nodes": [0, 1]}]);
     });
-    // The second joint is at (0, 7, 1) and stretches what is beyond 5 m.
+    // The second joint is at (0, 7, 1) and stretches the part beyond 5 m.
     let expected = [[0.0, 7.0, 1.0], [-40.0, 7.0, 1.0], [0.8 * -50.0, 8.0, 1.0]];
     for (at, expected) in carried.iter().zip(expected) {
         assert!(
@@ -190,7 +190,7 @@ fn joints_carry_skins() {
     }
 }
 
-/// Whole numbers as they are, and as shares of the largest one.
+/// Positions are whole numbers, as they are, or as fractions of the largest one.
 #[test]
 fn positions_may_be_whole_numbers() {
     let quantized = |accessor: usize| {
@@ -260,7 +260,7 @@ fn files_of_other_programs_are_read_or_named() {
     assert_eq!(read(&glb).unwrap().positions.len(), 3);
 }
 
-/// Primitives that share their points have them all, though each uses a few.
+/// Primitives that share the points of an accessor all have their points, though each uses a few.
 #[test]
 fn primitives_share_points() {
     let mut document = triangle();
@@ -283,7 +283,7 @@ fn primitives_share_points() {
     assert!(begun.elapsed().as_secs() < 10);
 }
 
-/// Files that ask for more work than a mesh is.
+/// Files that ask for more work than any mesh needs are refused.
 #[test]
 fn targets_and_joints_are_counted() {
     let changed = |change: &dyn Fn(&mut Value)| {

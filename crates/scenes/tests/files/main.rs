@@ -1,5 +1,4 @@
-//! Files as other programs write them: what is in them, and what is said of those that are not
-//! read.
+//! Mesh files of other programs: their contents, and the messages about files that are refused.
 
 mod faces;
 mod foreign;
@@ -9,7 +8,7 @@ mod texts;
 
 use a3_scenes::Mesh;
 
-/// The bytes of a file of these tests.
+/// Reads a file of these tests.
 fn data(name: &str) -> Vec<u8> {
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/files/data");
     std::fs::read(format!("{folder}/{name}")).unwrap()
@@ -19,7 +18,7 @@ fn obj(text: impl AsRef<[u8]>) -> Mesh {
     Mesh::from_obj(text.as_ref()).unwrap()
 }
 
-/// Vector area of the triangles: half the sum of their cross products.
+/// Returns the vector area of the triangles: half the sum of their cross products.
 fn vector_area(mesh: &Mesh) -> [f64; 3] {
     let mut sum = [0.0; 3];
     for t in &mesh.triangles {
@@ -29,7 +28,7 @@ fn vector_area(mesh: &Mesh) -> [f64; 3] {
     sum
 }
 
-/// Sum of the areas of the triangles.
+/// Returns the sum of the areas of the triangles.
 fn area(mesh: &Mesh) -> f64 {
     let areas = mesh.triangles.iter().map(|t| half_cross(mesh, t));
     areas

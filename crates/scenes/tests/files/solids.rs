@@ -6,7 +6,7 @@ use a3_scenes::Mesh;
 
 use crate::{area, vector_area};
 
-/// Corners of a cube, and its sides.
+/// Sides of a cube, by their corners.
 const SIDES: [[usize; 4]; 6] = [
     [0, 2, 3, 1],
     [4, 5, 7, 6],
@@ -20,7 +20,7 @@ fn corner(k: usize) -> [f32; 3] {
     [0, 1, 2].map(|axis| (k >> axis & 1) as f32)
 }
 
-/// The triangles of the cube.
+/// Lists the triangles of the cube.
 fn triangles() -> Vec<[[f32; 3]; 3]> {
     let halves = SIDES
         .iter()
@@ -84,7 +84,7 @@ fn stl_is_text_or_binary() {
     assert!(said(&infinite).starts_with("triangle 1, counted from 0: a corner has three finite"));
 }
 
-/// The head of a cube in PLY.
+/// Returns the header of a cube in PLY.
 fn head(format: &str, kind: &str) -> String {
     format!(
         "ply\nformat {format} 1.0\ncomment by hand\nelement vertex 8\nproperty uchar red\n\

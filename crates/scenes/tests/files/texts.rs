@@ -1,4 +1,4 @@
-//! Text files of all systems, and the numbers in them.
+//! Text files from all systems, and the numbers in them.
 
 use a3_scenes::Mesh;
 
@@ -6,7 +6,7 @@ use crate::{area, data, obj};
 
 const SQUARE: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n";
 
-/// Byte order marks, ends of lines, comments and lines that go on change nothing.
+/// Byte order marks, ends of lines, comments and continued lines change nothing.
 #[test]
 fn a_square_is_a_square_however_it_is_written() {
     let square = obj(SQUARE);
@@ -23,7 +23,7 @@ fn a_square_is_a_square_however_it_is_written() {
             .replace(" 3", "\r\n3")
             .into(),
         SQUARE.replace("v 1 0 0", "v 1 \\\r0 0").into(),
-        // What is passed over does not go on.
+        // A statement that is skipped is not continued.
         format!("mtllib C:\\things\\\n{SQUARE}usemtl red\\").into(),
         SQUARE.replace('\n', "\r").into(),
     ] {
@@ -60,7 +60,7 @@ fn marks_and_comments_are_in_all_texts() {
     assert_eq!(Mesh::from_tetgen(node, ele).unwrap(), mesh);
 }
 
-/// Ten-node tetrahedra of Gmsh are read by their corners too; other solid elements are refused.
+/// Ten-node tetrahedra of Gmsh are read by their corners. Other solid elements are refused.
 #[test]
 fn elements_of_gmsh_are_read_by_their_corners() {
     let file = |kind: u32| {
@@ -105,7 +105,7 @@ fn utf_16_is_named() {
     }
 }
 
-/// Points that are in no face are no points of the mesh, wherever they are.
+/// Points that are in no face are left out, wherever they are.
 #[test]
 fn loose_points_are_left_out() {
     let mesh = obj(data("loose.obj"));
@@ -119,8 +119,8 @@ fn loose_points_are_left_out() {
     assert!(why.starts_with("point 3 is at (1e0, 2e9, 0e0)"), "{why}");
 }
 
-/// Points where parts of a file meet are one, though roundings put them apart; what is small
-/// beside the mesh but has a shape keeps it.
+/// Points where parts of a file meet are merged, though rounding separates them. A part that is
+/// small relative to the mesh keeps its shape.
 #[test]
 fn seams_are_welded() {
     let halves = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 1.0000002 0 0\nv 2 0 0\nv 2 1 0\nv 0.9999998 1 0\nf 1 2 3 4\nf 5 6 7 8\n";
@@ -146,7 +146,7 @@ fn seams_are_welded() {
     }
     let apart = halves.replace("0002", "0200").replace("9999998", "9999800");
     assert_eq!(obj(apart).welded().positions.len(), 8);
-    // A grid of a thousandth, and a row of points of which each is near to the next.
+    // A triangle with sides of a hundred-thousandth of the mesh's.
     let fine = "v 0 0 0\nv 1000 0 0\nv 0 1000 0\nv 0.01 0 5\nv 0.02 0 5\nv 0.02 0.01 5\nf 1 2 3\nf 4 5 6\n";
     assert_eq!(obj(fine).welded().triangles.len(), 2);
     let same = "v 1 2 3\nv 1 2 3\nv 1 2 3\nf 1 2 3\n";

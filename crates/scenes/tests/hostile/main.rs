@@ -1,10 +1,10 @@
-//! Files that nobody would write: each is taken or refused, without a panic and within the budget.
+//! Hostile files: each is accepted or refused, without a panic and within the memory budget.
 
 mod memory;
 mod mutation;
 
 use a3_core::Element;
-use a3_scenes::{Description, Mesh, SCENES, Setup};
+use a3_scenes::{Description, Mesh, Places, SCENES, Setup, parse_json, parse_toml};
 
 use memory::taken;
 use mutation::{Random, seeds};
@@ -12,10 +12,11 @@ use mutation::{Random, seeds};
 /// Number of inputs of each kind.
 const INPUTS: usize = 10_000;
 
-/// Most memory at once, and in all (bytes).
+/// Largest memory at once, and in total (bytes).
 const MOST: [usize; 2] = [256 << 20, 1 << 30];
 
-/// Gives mutated seeds to a reader, and shows that it takes little memory. How many inputs it took.
+/// Gives mutated seeds to a reader, and asserts that it needs little memory. Returns the number of
+/// inputs that it accepts.
 fn feed(seeds: &[Vec<u8>], mut takes: impl FnMut(&[u8]) -> bool) -> usize {
     let mut random = Random(1);
     let mut count = 0;
@@ -31,7 +32,7 @@ fn feed(seeds: &[Vec<u8>], mut takes: impl FnMut(&[u8]) -> bool) -> usize {
     count
 }
 
-/// Refuses the files of others, but for those of the seeds.
+/// Refuses any file.
 fn no_file(name: &str) -> Result<Vec<u8>, String> {
     Err(format!("{name}: there is no such file"))
 }
@@ -48,10 +49,10 @@ fn mesh(name: &str) -> Result<Mesh, String> {
     }
 }
 
-/// Whether a scene can be built, all of whose numbers are finite then.
-fn is_scene(description: &Description, text: &str) -> bool {
+/// Whether a scene can be built. Asserts that all its numbers are finite.
+fn is_scene((description, places): &(Description, Places), text: &str) -> bool {
     let built = description.build(None, &mut mesh);
-    let Ok(Setup { scene, .. }) = built.map_err(|fault| said(&fault.locate(text).to_string()))
+    let Ok(Setup { scene, .. }) = built.map_err(|fault| said(&places.locate(fault).to_string()))
     else {
         return false;
     };
@@ -80,7 +81,7 @@ fn is_scene(description: &Description, text: &str) -> bool {
     true
 }
 
-/// An error is a line or a few, not a file.
+/// Asserts that an error has a line or a few, and not a whole file.
 fn said(why: &str) {
     assert!(!why.is_empty() && why.len() < 5000, "{why}");
 }
@@ -94,8 +95,8 @@ fn scenes_are_taken_or_refused() {
         let Ok(text) = str::from_utf8(bytes) else {
             return false;
         };
-        match Description::parse(text) {
-            Ok(description) => is_scene(&description, text),
+        match parse_toml(text) {
+            Ok(parsed) => is_scene(&parsed, text),
             Err(fault) => {
                 said(&fault.to_string());
                 false
@@ -111,8 +112,8 @@ fn lists_of_particles_are_taken_or_refused() {
         let Ok(text) = str::from_utf8(bytes) else {
             return false;
         };
-        let parsed = a3_scenes::parse_json(text).map_err(|fault| said(&fault.to_string()));
-        parsed.is_ok_and(|description| is_scene(&description, ""))
+        let parsed = parse_json(text).map_err(|fault| said(&fault.to_string()));
+        parsed.is_ok_and(|parsed| is_scene(&parsed, text))
     });
     assert!(taken > INPUTS / 25, "{taken}");
 }
@@ -162,7 +163,7 @@ fn pairs_of_files_of_tetgen_are_taken_or_refused() {
     assert!(taken > INPUTS / 25, "{taken}");
 }
 
-/// Whether there is a mesh, which is complete then.
+/// Whether there is a mesh. Asserts that it is complete.
 fn is_mesh(mesh: Result<Mesh, String>) -> bool {
     let Ok(mesh) = mesh.map_err(|why| said(&why)) else {
         return false;
@@ -178,7 +179,7 @@ fn is_mesh(mesh: Result<Mesh, String>) -> bool {
     let corners = mesh.tetrahedra.iter().flatten();
     assert!(corners.into_iter().all(|i| (*i as usize) < count));
     if !mesh.tetrahedra.is_empty() {
-        // A solid of it is refused, or has finite numbers.
+        // A solid with this mesh is refused, or has finite masses.
         let text =
             "solid = [{ file = 'a.msh', density = 1, young = 1, poisson = 0.3, at = [0, 0, 0] }]";
         let description = Description::parse(text).unwrap();
@@ -193,7 +194,7 @@ fn is_mesh(mesh: Result<Mesh, String>) -> bool {
     true
 }
 
-/// The reason why an input is refused, which is found with little memory.
+/// Asserts that an input is refused for the expected reason and with little memory.
 fn refused(expected: &str, answer: impl FnOnce() -> Result<(), String>) {
     let mut why = String::new();
     let memory = taken(|| why = answer().unwrap_err());
@@ -204,7 +205,7 @@ fn refused(expected: &str, answer: impl FnOnce() -> Result<(), String>) {
     assert!(memory[0] < MOST[0], "{expected}: {memory:?}");
 }
 
-/// Inputs of a few hundred bytes that would take for ever, or gigabytes.
+/// Inputs of a few hundred bytes that would need hours or gigabytes are refused.
 #[test]
 fn what_is_too_much_is_refused() {
     let seed = |folder: &str, name: &str| {
@@ -274,15 +275,16 @@ fn what_is_too_much_is_refused() {
         (format!("{} = 1", "a".repeat(1_000_000)), "there is no key"),
     ] {
         refused(expected, || {
-            let built = Description::parse(&scene).and_then(|d| d.build(None, &mut mesh));
+            let (description, places) = parse_toml(&scene).map_err(|fault| fault.to_string())?;
+            let built = description.build(None, &mut mesh);
             built
                 .map(|_| ())
-                .map_err(|fault| fault.locate(&scene).to_string())
+                .map_err(|fault| places.locate(fault).to_string())
         });
     }
 }
 
-/// Work that is linear in a scene: pins in descending order, and rods one after another.
+/// The work for large scenes is linear: pins in descending order, and rods one after another.
 #[test]
 fn what_is_large_is_taken() {
     let numbers: Vec<_> = (0..50_000).rev().map(|i| i.to_string()).collect();
@@ -290,7 +292,7 @@ fn what_is_large_is_taken() {
     let pins = format!("{long}pin = [{{ particles = [{}] }}]", numbers.join(","));
     for text in [pins, format!("{long}rigid = true"), SOLID.into()] {
         let begun = std::time::Instant::now();
-        let memory = taken(|| assert!(is_scene(&Description::parse(&text).unwrap(), &text)));
+        let memory = taken(|| assert!(is_scene(&parse_toml(&text).unwrap(), &text)));
         assert!(memory < MOST, "{memory:?}");
         assert!(begun.elapsed().as_secs() < 10);
     }

@@ -1,4 +1,4 @@
-//! Memory that a thread takes: how much at once, and how much in all.
+//! Memory of a thread: how much at once, and how much in total.
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
@@ -16,7 +16,7 @@ fn take(bytes: usize) {
     let now = NOW.get().wrapping_add(bytes);
     NOW.set(now);
     ALL.set(ALL.get() + bytes);
-    // What another thread gave may be freed here.
+    // Memory of another thread may be freed here, so the count may be negative.
     if now as isize > MOST.get() as isize {
         MOST.set(now);
     }
@@ -44,7 +44,7 @@ unsafe impl GlobalAlloc for Counting {
 #[global_allocator]
 static ALLOCATOR: Counting = Counting;
 
-/// Bytes that `run` takes on this thread: the most at once, and all of them.
+/// Returns the bytes that `run` allocates on this thread: the most at once, and the total.
 pub fn taken(run: impl FnOnce()) -> [usize; 2] {
     let (now, all) = (NOW.get(), ALL.get());
     MOST.set(now);

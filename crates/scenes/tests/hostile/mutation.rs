@@ -1,4 +1,4 @@
-//! Seeds, and what becomes of them: repeatable changes of their bytes, words and lines.
+//! Seeds and their mutations: repeatable changes of bytes, words and lines.
 
 use std::fs;
 use std::path::Path;
@@ -37,7 +37,7 @@ const WORDS: [&str; 30] = [
     "\n",
 ];
 
-/// The files of a folder of seeds, in the order of their names.
+/// Reads the files of a folder of seeds, in the order of their names.
 pub fn seeds(folder: &str) -> Vec<Vec<u8>> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR"))
         .join("../../fuzz/seeds")
@@ -58,7 +58,7 @@ pub fn seeds(folder: &str) -> Vec<Vec<u8>> {
 pub struct Random(pub u64);
 
 impl Random {
-    /// A number below `end`.
+    /// Returns a number below `end`.
     pub fn below(&mut self, end: usize) -> usize {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
@@ -66,7 +66,7 @@ impl Random {
         ((z ^ (z >> 31)) % end.max(1) as u64) as usize
     }
 
-    /// A seed with up to four changes.
+    /// Returns a seed with up to four changes.
     pub fn mutated(&mut self, seeds: &[Vec<u8>]) -> Vec<u8> {
         let mut bytes = seeds[self.below(seeds.len())].clone();
         for _ in 0..=self.below(4).min(self.below(4)) {
@@ -116,7 +116,7 @@ impl Random {
     }
 }
 
-/// The piece between two ends around a place.
+/// Returns the range around a place between two bytes that are ends.
 fn piece(bytes: &[u8], at: usize, is_end: impl Fn(u8) -> bool) -> std::ops::Range<usize> {
     let start = bytes[..at]
         .iter()

@@ -1,4 +1,4 @@
-//! Numbers by chance, repeatable.
+//! Repeatable random numbers.
 
 /// Range of numbers, and whether they are spread over its orders of magnitude.
 pub type Range = (f64, f64, bool);
@@ -7,7 +7,7 @@ pub type Range = (f64, f64, bool);
 pub struct Chance(pub u64);
 
 impl Chance {
-    /// A number from 0 to 1.
+    /// Returns a number from 0 to 1.
     pub fn share(&mut self) -> f64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
@@ -15,12 +15,12 @@ impl Chance {
         ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64
     }
 
-    /// A whole number below `end`.
+    /// Returns a whole number below `end`.
     pub fn below(&mut self, end: usize) -> usize {
         (self.share() * end as f64) as usize
     }
 
-    /// True with a probability of 1 / `times`.
+    /// Returns true with a probability of 1 / `times`.
     pub fn once_in(&mut self, times: usize) -> bool {
         self.below(times) == 0
     }
@@ -29,7 +29,7 @@ impl Chance {
         all[self.below(all.len())]
     }
 
-    /// A number of a range.
+    /// Returns a number of a range.
     pub fn within(&mut self, (low, high, spread): Range) -> f64 {
         let share = self.share();
         if spread {
@@ -39,12 +39,12 @@ impl Chance {
         }
     }
 
-    /// Three numbers of a range.
+    /// Returns three numbers of a range.
     pub fn triple(&mut self, range: Range) -> [f64; 3] {
         [(); 3].map(|()| self.within(range))
     }
 
-    /// A direction, of length 1.
+    /// Returns a unit vector.
     pub fn direction(&mut self) -> [f64; 3] {
         loop {
             let d = self.triple((-1.0, 1.0, false));
@@ -55,7 +55,7 @@ impl Chance {
         }
     }
 
-    /// Two directions at a right angle.
+    /// Returns two unit vectors at a right angle.
     pub fn corner(&mut self) -> [[f64; 3]; 2] {
         let a = self.direction();
         loop {

@@ -1,4 +1,4 @@
-//! Scenes by chance, from the schema of scene files: every table and key that it knows.
+//! Random scenes from the schema of scene files, with all its tables and keys.
 
 use std::collections::BTreeSet;
 
@@ -9,7 +9,8 @@ use crate::chance::Chance;
 use crate::ranges::{ALTERNATIVES, COUNTS, NEEDS, NUMBERS, ODD, ONE, TOGETHER, WORDS};
 use crate::sense;
 
-/// Keys of a scene that tell particles by number: they are added when these are known.
+/// Keys of a scene that refer to particles by number. They are added when the number of particles
+/// is known.
 pub const NUMBERED: [&str; 6] = ["springs", "constraint", "pin", "torn", "trail", "state"];
 
 /// Tables of the bodies, and their keys in a scene.
@@ -35,7 +36,7 @@ impl Grammar {
         Self { schema }
     }
 
-    /// All keys, each behind the name of its table.
+    /// Lists all keys, each prefixed by the name of its table.
     pub fn keys(&self) -> BTreeSet<String> {
         let tables = self.schema["$defs"].as_object().unwrap().iter();
         let tables = tables.map(|(name, table)| (name.as_str(), table));
@@ -45,7 +46,8 @@ impl Grammar {
         keys.collect()
     }
 
-    /// The table of a scene's key, or of the scene itself where it is empty, and its keys.
+    /// Returns a random table for a key of the scene, or for the scene itself if the key is empty,
+    /// and the keys in it.
     pub fn table(&self, key: &str, chance: &mut Chance) -> (Value, BTreeSet<String>) {
         let mut writer = Writer {
             grammar: self,
@@ -60,7 +62,7 @@ impl Grammar {
         (value, writer.keys)
     }
 
-    /// The definition that a schema refers to, with its name.
+    /// Returns the definition that a schema refers to, with its name.
     fn resolve<'a>(&'a self, schema: &'a Value) -> (&'a str, &'a Value) {
         let Some(name) = schema["$ref"].as_str() else {
             return ("", schema);
@@ -77,7 +79,7 @@ struct Writer<'a> {
 }
 
 impl Writer<'_> {
-    /// Whether an optional key is there: few of a scene's own, and some of a table's.
+    /// Decides whether an optional key is there: few keys of the scene are, and some of a table.
     fn is_there(&mut self, table: &str, key: &str) -> bool {
         match (table, key) {
             ("", key) if NUMBERED.contains(&key) || key == "circle" => false,
@@ -88,7 +90,7 @@ impl Writer<'_> {
         }
     }
 
-    /// The keys of a table: those that it must have, and others by chance.
+    /// Chooses the keys of a table: the required ones, and others by chance.
     fn choose<'a>(&mut self, name: &str, schema: &'a Value) -> Vec<&'a str> {
         let all = || schema["properties"].as_object().unwrap().keys();
         let required = schema["required"].as_array();
@@ -136,14 +138,14 @@ impl Writer<'_> {
         keys
     }
 
-    /// A table that has that name, and is that of a key.
+    /// Returns a random table of a type, for a key of its owner.
     fn table(&mut self, owner: &str, name: &str, schema: &Value) -> Value {
         let mut table = Map::new();
         for key in self.choose(name, schema) {
             let value = self.value(name, key, &schema["properties"][key]);
             table.insert(key.into(), value);
         }
-        // Now and then it makes no sense.
+        // Now and then, a scene makes no sense.
         if !self.chance.once_in(150) {
             sense::mend(owner, name, &mut table, self.chance);
         }

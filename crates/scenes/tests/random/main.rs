@@ -1,5 +1,5 @@
-//! Short runs of scenes by chance, by all methods: none panics, none hangs, and none explodes
-//! without a word.
+//! Short runs of random scenes by all methods: none panics, none hangs, and none explodes without a
+//! warning.
 
 mod chance;
 mod grammar;
@@ -22,23 +22,22 @@ use chance::Chance;
 use grammar::Grammar;
 use run::{Ended, check_said, run};
 
-/// Number of scenes, where `A3_SCENES` tells no other. `A3_FIRST` is the number of the first.
+/// Default number of scenes. `A3_SCENES` sets another, and `A3_FIRST` the number of the first.
 const SCENES: usize = 2000;
 
-/// Most particles of a scene: it is counted on many small ones.
+/// Largest number of particles of a scene: many small scenes find more than a few large ones.
 const MOST_PARTICLES: usize = 80;
 
-/// Time (s) of a processor after which a run counts as one that never ends: a thousand times what
-/// most take.
+/// Processor time after which a run counts as endless: a thousand times that of most.
 const LONGEST: Duration = Duration::from_secs(5);
 
-/// Real time (s) after which it is ended.
+/// Real time after which the process is ended.
 const NEVER: Duration = Duration::from_secs(120);
 
-/// Most findings that are shown.
+/// Largest number of findings that are shown.
 const SHOWN: usize = 20;
 
-/// Time of a processor that this thread has taken; real time where the system does not tell.
+/// Returns the processor time of this thread, or the real time if the system does not tell.
 fn time_taken(begun: Instant) -> Duration {
     let told = std::fs::read_to_string("/proc/thread-self/schedstat").ok();
     let nanoseconds = told.and_then(|told| told.split(' ').next()?.parse().ok());
@@ -56,7 +55,7 @@ fn mesh(name: &str) -> Result<Mesh, String> {
     }
 }
 
-/// The scene of a text; `None` if it is refused, by a clear line.
+/// Builds the scene of a text; `None` if it is refused with a clear message.
 fn build(text: &str) -> Result<Option<Setup>, String> {
     match Description::parse(text).and_then(|d| d.build(None, &mut mesh)) {
         Ok(setup) => Ok(Some(setup)),
@@ -64,25 +63,25 @@ fn build(text: &str) -> Result<Option<Setup>, String> {
     }
 }
 
-/// What became of the scenes.
+/// Results of all scenes.
 #[derive(Default)]
 struct Results {
     taken: usize,
     well: usize,
     seen: BTreeSet<String>,
     findings: Vec<String>,
-    /// Longest time of a scene, and its number.
+    /// Longest time of a scene, and the number of that scene.
     slowest: (Duration, usize),
 }
 
-/// A scene that is tried: since when, and its text so far.
+/// Scene that is being tried: the time at which it began, and its text so far.
 #[derive(Default)]
 struct Trial {
     since: Option<Instant>,
     text: String,
 }
 
-/// Makes scene k and runs it. What is found wrong is an error.
+/// Creates scene k and runs it. A finding is an error.
 fn try_scene(
     k: usize,
     grammar: &Grammar,
@@ -123,7 +122,7 @@ fn try_scene(
     Ok(())
 }
 
-/// Tries scenes until there are none left, whose numbers `next` gives.
+/// Tries the scenes whose numbers `next` gives, until there are none left.
 fn work(next: impl Fn() -> Option<usize>, trial: &Mutex<Trial>, results: &Mutex<Results>) {
     let grammar = Grammar::new();
     let begun = Instant::now();

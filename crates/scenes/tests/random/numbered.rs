@@ -1,4 +1,4 @@
-//! Keys of a scene that tell its particles by number, and its state.
+//! Keys of a scene that refer to its particles by number, and its state.
 
 use std::collections::BTreeSet;
 
@@ -9,7 +9,7 @@ use serde_json::{Value, json};
 use crate::chance::Chance;
 use crate::grammar::{Grammar, NUMBERED};
 
-/// Adds some of these keys to a scene that is built without them. Returns the keys.
+/// Adds some of these keys to a scene that was built without them. Returns the keys.
 pub fn add(
     grammar: &Grammar,
     scene: &mut Value,
@@ -46,14 +46,14 @@ fn rows(value: &mut Value) -> impl Iterator<Item = &mut Value> {
     value.as_array_mut().unwrap().iter_mut()
 }
 
-/// Two different particles, if there are two.
+/// Chooses two different particles, if there are two.
 fn two(setup: &Setup, chance: &mut Chance) -> Option<[usize; 2]> {
     let n = setup.scene.model.particles();
     let i = chance.below(n);
     (n > 1).then(|| [i, (i + 1 + chance.below(n - 1)) % n])
 }
 
-/// Position of a particle (m).
+/// Returns the position of a particle (m).
 fn place(setup: &Setup, i: usize) -> [f64; 3] {
     let (n, y) = (setup.scene.model.particles(), &setup.scene.state);
     [y[i], y[n + i], y[2 * n + i]]
@@ -69,7 +69,7 @@ fn springs(value: &mut Value, setup: &Setup, chance: &mut Chance) -> bool {
     true
 }
 
-/// Constraints that are met where particles begin.
+/// Adds constraints that the initial positions meet.
 fn constraints(value: &mut Value, setup: &Setup, chance: &mut Chance) -> bool {
     for row in rows(value) {
         let row = row.as_object_mut().unwrap();
@@ -114,7 +114,7 @@ fn pins(value: &mut Value, setup: &Setup, chance: &mut Chance) -> bool {
     let network = setup.scene.model.network();
     for row in rows(value) {
         let i = chance.below(setup.scene.model.particles());
-        // Points of rigid bodies are not pinned by themselves.
+        // Points of rigid bodies cannot be pinned.
         if network.is_none_or(|network| network.is_carried(i)) {
             return false;
         }
@@ -124,7 +124,7 @@ fn pins(value: &mut Value, setup: &Setup, chance: &mut Chance) -> bool {
     true
 }
 
-/// Springs that the scene has.
+/// Adds torn springs, from those of the scene.
 fn torn(value: &mut Value, setup: &Setup, chance: &mut Chance) -> bool {
     let network = setup.scene.model.network();
     let all: Vec<_> = network.into_iter().flat_map(Network::all_springs).collect();
@@ -138,7 +138,7 @@ fn torn(value: &mut Value, setup: &Setup, chance: &mut Chance) -> bool {
     true
 }
 
-/// A state near that in which the scene begins.
+/// Adds a state near the initial one.
 fn state(value: &mut Value, setup: &Setup, chance: &mut Chance) -> bool {
     let network = setup.scene.model.network();
     let bodies = network.map_or(0, |network| network.bodies().len());

@@ -1,4 +1,4 @@
-//! What the values of each key are, mostly: realistic ones.
+//! Ranges of the values of each key, which are mostly realistic.
 
 use crate::chance::Range;
 
@@ -12,7 +12,8 @@ const MASS: Range = (0.01, 10.0, true);
 const STIFFNESS: Range = (0.1, 1e5, true);
 const DAMPING: Range = (1e-3, 10.0, true);
 
-/// Numbers of each key. A key of one table alone stands behind the name of its table.
+/// Numbers of each key. A key that is meant in one table only is prefixed by the name of that
+/// table.
 pub const NUMBERS: &[(&[&str], Range)] = &[
     (&["Jelly.damping", "Cloth.damping"], (1e-5, 0.1, true)),
     (&["Shift.start", "Turn.start"], (0.0, 1.0, false)),
@@ -64,7 +65,7 @@ pub const NUMBERS: &[(&[&str], Range)] = &[
     (&["springs"], (0.1, 100.0, true)),
 ];
 
-/// Numbers that make sense almost nowhere, or hardly.
+/// Numbers that make sense for hardly any key.
 pub const ODD: [f64; 9] = [0.0, -0.0, -1.0, 1e-9, 1e-5, 1e3, 1e6, 1e9, -1e9];
 
 /// Whole numbers of each key: smallest and largest.
@@ -78,7 +79,7 @@ pub const COUNTS: &[(&[&str], usize, usize)] = &[
     (&["springs", "torn", "trail", "seed"], 0, 7),
 ];
 
-/// Words of keys that are no choices.
+/// Texts of keys that are not a choice among names.
 pub const WORDS: &[(&str, &[&str])] = &[
     ("MeshCloth.file", &["solid.obj", "square.obj"]),
     ("Solid.file", &["two.msh"]),
@@ -88,7 +89,7 @@ pub const WORDS: &[(&str, &[&str])] = &[
     ("solver", &["v"]),
 ];
 
-/// Keys that exclude one another: each table has exactly one of its list.
+/// Keys that exclude one another: each table has exactly one key of its list.
 pub const ONE: &[(&str, &[&str])] = &[
     ("Cloth", &["width", "spacing"]),
     ("Cloth", &["density", "mass"]),
@@ -105,7 +106,7 @@ pub const ONE: &[(&str, &[&str])] = &[
     ),
 ];
 
-/// Keys of which any table has one at most.
+/// Keys of which a table has at most one.
 pub const ALTERNATIVES: &[&[&str]] = &[
     &["damping", "damping_ratio"],
     &["drag", "drag_per_mass"],
@@ -114,13 +115,13 @@ pub const ALTERNATIVES: &[&[&str]] = &[
     &["sine", "turn"],
 ];
 
-/// Keys that a table has if, and only if, it has the other one.
+/// Keys that a table has if and only if it has another one.
 pub const TOGETHER: &[(&str, &str, &str)] = &[
     ("Solid", "size", "grid"),
     ("ConstraintSpec", "particle", "point line circle sphere"),
 ];
 
-/// Keys that a table has only if it has the other one.
+/// Keys that a table has only if it has another one.
 pub const NEEDS: &[(&str, &str, &str)] = &[
     ("Solid", "scale", "file"),
     ("PartSpec", "scale", "file"),
@@ -131,7 +132,7 @@ pub const NEEDS: &[(&str, &str, &str)] = &[
     ("", "step", "solver"),
 ];
 
-/// Places of each kind of body.
+/// Spots of each kind of body.
 pub const SPOTS: &[(&str, &[&str])] = &[
     (
         "Cloth",

@@ -1,4 +1,4 @@
-//! A short run of a scene, and what must not happen in it.
+//! A short run of a scene, and the failures that it must not have.
 
 use a3_core::integrators::METHODS;
 use a3_core::{Control, Energy, Error, Simulation};
@@ -12,28 +12,28 @@ const STEPS: u64 = 20;
 /// Number of methods that are tried until one serves a scene.
 const TRIES: usize = 5;
 
-/// Energy over that of the scene at the beginning, above which it has exploded.
+/// Energy relative to that at the beginning, above which a scene has exploded.
 const EXPLODED: f64 = 100.0;
 
-/// Speed (m/s) that nobody sees.
-const UNSEEN: f64 = 1e-3;
+/// Speed (m/s) below which motion is invisible.
+const INVISIBLE_SPEED: f64 = 1e-3;
 
 /// How a run ended.
 #[derive(Debug, PartialEq)]
 pub enum Ended {
     Well,
-    /// With an error, or a warning.
+    /// Ended with an error or a warning.
     Told,
 }
 
-/// Whether anything works on a scene but its own forces.
+/// Whether anything does work on a scene except its own forces.
 fn is_driven(text: &str) -> bool {
     ["sine", "shift", "turn", "wind"]
         .iter()
         .any(|word| text.contains(word))
 }
 
-/// `Ok` if an error is a line, not a file.
+/// Checks that an error is a line, and not a whole file.
 pub fn check_said(why: &str) -> Result<(), String> {
     if why.is_empty() || why.len() > 400 || why.contains('\n') {
         return Err(format!("this is no clear line: {why:?}"));
@@ -41,7 +41,7 @@ pub fn check_said(why: &str) -> Result<(), String> {
     Ok(())
 }
 
-/// Runs a scene by a method by chance, which `begins` is told. Returns how it ended.
+/// Runs a scene by a random method, of which it informs `begins`. Returns how the run ended.
 pub fn run(
     text: &str,
     setup: &Setup,
@@ -95,8 +95,8 @@ pub fn run(
     Ok(Ended::Well)
 }
 
-/// Takes whole steps, and goes on to a state within one. Implicit methods end on a whole step: they
-/// can turn a body by half a turn in a step, and no line between its ends keeps its shape.
+/// Takes whole steps, and ends within a step. Implicit methods end on a whole step: they can turn a
+/// body by half a turn in a step, and interpolation would change its shape.
 fn steps(run: &mut Simulation) -> Result<(), Error> {
     run.take_steps(STEPS - 1)?;
     let before = run.time();
@@ -107,8 +107,9 @@ fn steps(run: &mut Simulation) -> Result<(), Error> {
     run.conclude()
 }
 
-/// Energy (J) of a run that began with that one: what it moves by, what its weight gives it over
-/// its own size, and what errors within its tolerance and a motion that nobody sees have.
+/// Returns the energy (J) that a run may have which began with `begin`: its initial energy, the
+/// work of gravity over the size of the scene, and the energy of errors within the tolerance and of
+/// invisible motion.
 fn own_energy(run: &Simulation, begin: Energy) -> f64 {
     let Some(network) = run.model().network() else {
         return 1.0;
@@ -125,5 +126,5 @@ fn own_energy(run: &Simulation, begin: Energy) -> f64 {
         tolerated = network.energy_of(0.0, &off).elastic - before;
     }
     let moving = begin.kinetic + begin.elastic + begin.contact;
-    moving.max(0.0) + weight * radius + tolerated.max(0.0) + 0.5 * mass * UNSEEN.powi(2)
+    moving.max(0.0) + weight * radius + tolerated.max(0.0) + 0.5 * mass * INVISIBLE_SPEED.powi(2)
 }

@@ -1,4 +1,4 @@
-//! What makes sense of a table by chance: numbers that have to fit together.
+//! Corrections of random tables, whose numbers have to fit together.
 
 use serde_json::{Map, Value, json};
 
@@ -8,7 +8,7 @@ use crate::ranges::SPOTS;
 /// Edge of the cells in which bodies and obstacles begin apart (m).
 const CELL: f64 = 3.0;
 
-/// Makes sense of a table of that name, which is that of a key of its owner.
+/// Corrects a table of a type, for a key of its owner.
 pub fn mend(owner: &str, name: &str, table: &mut Map<String, Value>, chance: &mut Chance) {
     match name {
         "Cloth" if table.contains_key("right") || table.contains_key("down") => {
@@ -18,7 +18,7 @@ pub fn mend(owner: &str, name: &str, table: &mut Map<String, Value>, chance: &mu
         }
         "Fluid" => fluid(table, chance),
         "Turn" => {
-            // That of a pin needs a point, and one by an angle an end.
+            // The turn of a pin needs a point, and a turn by an angle needs an end.
             if owner == "Pin" {
                 table.insert("about".into(), json!(chance.triple((-1.0, 1.0, false))));
             }
@@ -26,7 +26,7 @@ pub fn mend(owner: &str, name: &str, table: &mut Map<String, Value>, chance: &mu
                 table.insert("end".into(), json!(1.5));
             }
         }
-        // A pin begins where it is.
+        // The motion of a pin begins at its place.
         "Sine" if owner == "Pin" => {
             table
                 .retain(|key, _| !["center", "phase"].contains(&key.as_str()) || chance.once_in(8));
@@ -40,7 +40,7 @@ pub fn mend(owner: &str, name: &str, table: &mut Map<String, Value>, chance: &mu
                 None => table.insert("particles".into(), json!([chance.below(2)])),
             };
         }
-        // Its rods are as long as they begin.
+        // Rods have their initial length.
         "Chain" if table.get("rigid") == Some(&json!(true)) => {
             table.remove("rest_length");
         }
@@ -50,7 +50,7 @@ pub fn mend(owner: &str, name: &str, table: &mut Map<String, Value>, chance: &mu
     }
 }
 
-/// Edges of so many spacings each, flat in two dimensions.
+/// Returns edges of up to `most` spacings each, flat in two dimensions.
 fn edges(most: usize, spacing: f64, flat: bool, chance: &mut Chance) -> [f64; 3] {
     let mut size = [(); 3].map(|()| (1 + chance.below(most)) as f64 * spacing);
     if flat {
@@ -59,7 +59,7 @@ fn edges(most: usize, spacing: f64, flat: bool, chance: &mut Chance) -> [f64; 3]
     size
 }
 
-/// Whole multiples of the spacing, within the tank.
+/// Makes the edges whole multiples of the spacing, within the tank.
 fn fluid(table: &mut Map<String, Value>, chance: &mut Chance) {
     let spacing = table["spacing"].as_f64().unwrap();
     let flat = table.get("dimensions").is_some_and(|d| *d == 2);
@@ -74,7 +74,7 @@ fn fluid(table: &mut Map<String, Value>, chance: &mut Chance) {
     }
 }
 
-/// As many of all as there are particles, with springs between two of them.
+/// Makes all lists as long as that of the particles, with springs between them.
 fn particles(table: &mut Map<String, Value>, chance: &mut Chance) {
     let count = table["positions"].as_array().unwrap().len();
     for (key, value) in table.iter_mut() {
@@ -92,7 +92,7 @@ fn particles(table: &mut Map<String, Value>, chance: &mut Chance) {
     }
 }
 
-/// Bodies that begin apart, mostly, and fluids of one liquid.
+/// Moves most bodies apart, and gives all fluids the same liquid.
 fn scene(table: &mut Map<String, Value>, chance: &mut Chance) {
     if let Some(Value::Array(fluids)) = table.get_mut("fluid") {
         fluids.truncate(1);
@@ -105,7 +105,7 @@ fn scene(table: &mut Map<String, Value>, chance: &mut Chance) {
             fluids.push(other);
         }
     }
-    // Springs break before their strain is limited, or it makes no sense.
+    // A limit of strain below the stretch at which springs break makes no sense.
     let tear = table.get("tear").and_then(Value::as_f64);
     for key in ["cloth", "jelly", "mesh"] {
         let bodies = table.get_mut(key).and_then(Value::as_array_mut);
@@ -135,7 +135,7 @@ fn scene(table: &mut Map<String, Value>, chance: &mut Chance) {
             _ => continue,
         };
         for body in bodies {
-            // Some are where others are.
+            // Some bodies are in the same cell.
             cell += usize::from(!chance.once_in(8));
             let offset = [cell % 3, (cell / 3) % 3, cell / 9].map(|k| CELL * k as f64);
             let body = body.as_object_mut().unwrap();

@@ -12,11 +12,11 @@ use serde_json::Value;
 use super::keys;
 use super::values::all;
 use crate::base::bounds;
-use crate::base::failure::Failure;
+use crate::base::input_error::InputError;
 use crate::base::terminal;
 use crate::cli::ErrorScope;
 use crate::files::output;
-use crate::files::scene_file::{Source, place, table};
+use crate::files::scene_file::Source;
 
 /// Size of the largest file (bytes).
 const LARGEST: u64 = 1 << 20;
@@ -64,8 +64,12 @@ pub struct Sweep {
 
 impl Sweep {
     /// Reads the file.
-    pub fn read(path: &Path) -> Result<Self, Failure> {
-        let wrong = |why: String| Failure::usage(place(&path.to_string_lossy(), &why));
+    pub fn read(path: &Path) -> Result<Self, InputError> {
+        let file = path.to_string_lossy().into_owned();
+        let wrong = |why: String| InputError::File {
+            file: file.clone(),
+            why,
+        };
         let size = fs::metadata(path)
             .map_err(|e| wrong(format!("it could not be read: {}", terminal::reason(&e))))?;
         if !size.is_file() || size.len() > LARGEST {
@@ -73,10 +77,10 @@ impl Sweep {
         }
         output::is_read(path);
         let text = fs::read_to_string(path).map_err(|e| wrong(terminal::reason(&e)))?;
-        // Once for words with lines, once for whole numbers.
-        let _: Text = a3_scenes::read(&text).map_err(|fault| wrong(fault.to_string()))?;
-        let table = table(&text).map_err(|fault| wrong(fault.to_string()))?;
-        let text: Text = serde_json::from_value(table).map_err(|why| wrong(why.to_string()))?;
+        let text: Text = a3_scenes::read(&text).map_err(|fault| InputError::Text {
+            file: Some(file.clone()),
+            fault,
+        })?;
         Self::new(path, &text).map_err(wrong)
     }
 
@@ -87,6 +91,7 @@ impl Sweep {
             Some(_) => Source::find(name),
             None => Source::find(&folder.join(name).to_string_lossy()),
         });
+        let scenes = scenes.map(|scene| scene.map_err(|error| error.to_string()));
         let methods = texts("solver", text.solver.as_ref())?;
         let methods = methods.iter().map(|name| {
             let names = integrators::METHODS.iter().map(|m| m.name);

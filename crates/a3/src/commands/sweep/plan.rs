@@ -146,8 +146,8 @@ impl Variant {
 
     /// The scene.
     pub fn scene(&self, sweep: &Sweep) -> Result<Scene, Failure> {
-        let setup = self.source(sweep).and_then(|source| source.build(None));
-        stiffened(&setup.map_err(Failure::usage)?.scene, self.stiffness)
+        let source = self.source(sweep).map_err(Failure::usage)?;
+        stiffened(&source.build(None)?.scene, self.stiffness)
     }
 }
 
@@ -177,15 +177,16 @@ fn variant(
         scope: Scope::default(),
     };
     let source = variant.source(sweep)?;
-    let setup = source.build(None)?;
-    let scene = stiffened(&setup.scene, variant.stiffness).map_err(Failure::message)?;
+    let setup = source.build(None).map_err(|error| error.to_string())?;
+    let scene =
+        stiffened(&setup.scene, variant.stiffness).map_err(|failure| failure.to_string())?;
     variant.name = source.fingerprint(&scene);
     let until = sweep.until.or(source.description.duration);
     variant.until =
         until.ok_or_else(|| format!("the scene {} has no duration: give `until`", scene.name))?;
-    check_metric(sweep.error, &scene).map_err(Failure::message)?;
+    check_metric(sweep.error, &scene).map_err(|failure| failure.to_string())?;
     variant.metric = sweep.error;
-    variant.scope = scope(&sweep.scope, &scene).map_err(Failure::message)?;
+    variant.scope = scope(&sweep.scope, &scene).map_err(|failure| failure.to_string())?;
     let mut hash = Hash::default();
     hash.add(VERSION.bytes());
     hash.add([0]);

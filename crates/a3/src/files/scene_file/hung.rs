@@ -40,7 +40,7 @@ pub fn scene(path: &Path) -> Result<String, String> {
     let longest = size.into_iter().fold(0.0, f64::max);
     let scale = SIDE / longest;
     if !(longest > 0.0 && scale.is_finite() && scale > 0.0) {
-        return Err(format!("{}: the mesh has no size", path.display()));
+        return Err("the mesh has no size".into());
     }
     let at = [0, 1, 2].map(|axis| 0.0 - 0.5 * scale * (low[axis] + high[axis]));
     let name = path.file_name().unwrap_or_default().to_string_lossy();

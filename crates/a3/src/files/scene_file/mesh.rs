@@ -59,7 +59,7 @@ pub fn not_read(extension: Option<&str>) -> String {
 /// The triangles or tetrahedra of all objects in a file.
 pub fn load(path: &Path, reader: &mut Reader) -> Result<Mesh, String> {
     let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase());
-    let mesh = match extension.as_deref() {
+    match extension.as_deref() {
         Some("obj") => reader.bytes(path).and_then(|bytes| Mesh::from_obj(&bytes)),
         Some("gltf" | "glb") => reader.bytes(path).and_then(|bytes| {
             Mesh::from_gltf(&bytes, &mut |uri| reader.bytes(&beside(Some(path), uri)?))
@@ -76,6 +76,5 @@ pub fn load(path: &Path, reader: &mut Reader) -> Result<Mesh, String> {
             Mesh::from_tetgen(&points, &ele)
         }),
         other => Err(not_read(other)),
-    };
-    mesh.map_err(|why| format!("{}: {why}", path.display()))
+    }
 }

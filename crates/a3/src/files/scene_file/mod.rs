@@ -10,4 +10,4 @@ mod read;
 mod source;
 
 pub use hash::Hash;
-pub use source::{SceneError, Source, place, table};
+pub use source::Source;

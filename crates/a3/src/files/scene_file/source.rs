@@ -1,49 +1,21 @@
 //! Scenes as they are asked for: by name or by file.
 
-use std::fmt;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use a3_core::{Grid, Method, Scene, integrators};
-use a3_scenes::{Description, Fault, Setup};
+use a3_scenes::{Description, Fault, Places, Setup, parse_json, parse_toml};
 use serde_json::Value;
 
 use super::files::{beside, read_input, read_text};
 use super::hash::Hash;
 use super::hung;
 use super::mesh;
+use crate::base::input_error::InputError;
 
 /// What stands for standard input in place of a file.
 const INPUT: &str = "-";
-
-/// The reason why a scene cannot be had.
-#[derive(Debug)]
-pub enum SceneError {
-    /// No scene has the name.
-    Unknown(String),
-    /// What is wrong with a file, with its name.
-    File(String),
-}
-
-impl fmt::Display for SceneError {
-    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        let (Self::Unknown(why) | Self::File(why)) = self;
-        f.write_str(why)
-    }
-}
-
-impl From<String> for SceneError {
-    fn from(why: String) -> Self {
-        Self::File(why)
-    }
-}
-
-impl From<SceneError> for String {
-    fn from(error: SceneError) -> Self {
-        error.to_string()
-    }
-}
 
 /// A scene, by name or in a file.
 #[derive(Clone)]
@@ -56,19 +28,25 @@ pub struct Source {
     pub description: Arc<Description>,
     /// The text of the file, also of a built-in scene.
     text: Arc<str>,
+    /// The places of the keys in that text. It has no lines if nobody wrote it.
+    places: Arc<Places>,
     /// The hash of the files of its meshes when it was last built.
     meshes: Arc<AtomicU64>,
 }
 
 impl Source {
     /// Finds a scene by its name or its file, and reads it.
-    pub fn find(typed: &str) -> Result<Self, SceneError> {
+    pub fn find(typed: &str) -> Result<Self, InputError> {
         if let Some(entry) = a3_scenes::find(typed) {
+            let parsed = Description::parse(entry.text);
             return Ok(Self {
                 typed: typed.into(),
                 path: None,
-                description: Arc::new(entry.description().map_err(|e| e.to_string())?),
+                description: Arc::new(
+                    parsed.map_err(|fault| InputError::Text { file: None, fault })?,
+                ),
                 text: entry.text.into(),
+                places: Arc::default(),
                 meshes: Arc::default(),
             });
         }
@@ -77,27 +55,38 @@ impl Source {
             .extension()
             .and_then(|e| e.to_str())
             .map(str::to_lowercase);
-        let read = || read_text(path).map_err(|why| format!("{typed}: {why}"));
+        let wrong = |file: &str, why: String| InputError::File {
+            file: file.into(),
+            why,
+        };
+        let read = || read_text(path).map_err(|why| wrong(typed, why));
+        let mut is_written = true;
         let (text, json) = match extension.as_deref() {
             None if typed == INPUT => {
-                let text = read_input().map_err(|why| format!("standard input: {why}"))?;
+                let text = read_input().map_err(|why| wrong("standard input", why))?;
                 let json = text.trim_start().starts_with('{');
                 (text, json)
             }
             Some("toml") => (read()?, false),
             Some("json") => (read()?, true),
-            Some(extension) if hung::is_mesh(extension) => (hung::scene(path)?, false),
-            Some(extension) if path.is_file() => {
-                return Err(format!("{typed}: {}", mesh::not_read(Some(extension))).into());
+            Some(extension) if hung::is_mesh(extension) => {
+                is_written = false;
+                (hung::scene(path).map_err(|why| wrong(typed, why))?, false)
             }
-            _ => return Err(SceneError::Unknown(unknown(typed))),
+            Some(extension) if path.is_file() => {
+                return Err(wrong(typed, mesh::not_read(Some(extension))));
+            }
+            _ => return Err(InputError::Unknown(unknown(typed))),
         };
         let parsed = if json {
-            a3_scenes::parse_json(&text)
+            parse_json(&text)
         } else {
-            Description::parse(&text)
+            parse_toml(&text)
         };
-        let mut description = parsed.map_err(|fault| place(typed, &fault.to_string()))?;
+        let (mut description, places) = parsed.map_err(|fault| InputError::Text {
+            file: Some(typed.into()),
+            fault,
+        })?;
         if description.name.is_none() {
             let stem = path.file_stem().unwrap_or_default().to_string_lossy();
             let is_input = typed == INPUT;
@@ -108,6 +97,11 @@ impl Source {
             path: Some(path.into()),
             description: Arc::new(description),
             text: text.into(),
+            places: Arc::new(if is_written {
+                places
+            } else {
+                places.without_lines()
+            }),
             meshes: Arc::default(),
         })
     }
@@ -123,28 +117,29 @@ impl Source {
         let mut table: Value = if json {
             serde_json::from_str(&self.text).map_err(|e| e.to_string())?
         } else {
-            table(&self.text).map_err(|fault| fault.to_string())?
+            a3_scenes::read(&self.text).map_err(|fault| fault.to_string())?
         };
         change(&mut table)?;
         let (text, parsed) = if json {
             let text = table.to_string();
-            (text.clone(), a3_scenes::parse_json(&text))
+            (text.clone(), parse_json(&text))
         } else {
             let text = toml::to_string(&table).map_err(|e| e.to_string())?;
-            (text.clone(), Description::parse(&text))
+            (text.clone(), parse_toml(&text))
         };
         // Lines of a text that nobody wrote tell nobody anything.
         let parsed = parsed.map_err(|fault| Fault {
             line: None,
             ..fault
         });
-        let mut description = parsed.map_err(|fault| fault.to_string())?;
+        let (mut description, places) = parsed.map_err(|fault| fault.to_string())?;
         if description.name.is_none() {
             description.name.clone_from(&self.description.name);
         }
         Ok(Self {
             description: Arc::new(description),
             text: text.into(),
+            places: Arc::new(places.without_lines()),
             meshes: Arc::default(),
             ..self.clone()
         })
@@ -156,24 +151,19 @@ impl Source {
     }
 
     /// Builds the scene, with this grid of its cloth or with its own.
-    pub fn build(&self, grid: Option<Grid>) -> Result<Setup, String> {
+    pub fn build(&self, grid: Option<Grid>) -> Result<Setup, InputError> {
         // With a grid of its own, a scene is built with both.
         let mut reader = mesh::Reader::new(if grid.is_some() { 2 } else { 1 });
-        let mut mesh = |name: &str| mesh::load(&beside(self.path.as_deref(), name)?, &mut reader);
+        let mut mesh = |name: &str| {
+            let path = beside(self.path.as_deref(), name)?;
+            let loaded = mesh::load(&path, &mut reader);
+            loaded.map_err(|why| format!("{}: {why}", path.display()))
+        };
         let built = self.description.build(grid, &mut mesh);
         self.meshes.store(reader.hash.value(), Ordering::Relaxed);
-        built.map_err(|fault| {
-            let extension = self.path.as_deref().and_then(Path::extension);
-            let extension = extension.map(|e| e.to_string_lossy().to_lowercase());
-            let fault = match extension {
-                // Its text is not in the file.
-                Some(extension) if hung::is_mesh(&extension) => fault,
-                _ => fault.locate(&self.text),
-            };
-            match &self.path {
-                Some(_) => place(&self.typed, &fault.to_string()),
-                None => fault.to_string(),
-            }
+        built.map_err(|fault| InputError::Text {
+            file: self.path.as_ref().map(|_| self.typed.clone()),
+            fault: self.places.locate(fault),
         })
     }
 
@@ -203,35 +193,6 @@ impl Source {
         hash.add(self.meshes.load(Ordering::Relaxed).to_le_bytes());
         hash.add(scene.state.iter().flat_map(|y| y.to_le_bytes()));
         format!("{} {:016x}", scene.name, hash.value())
-    }
-}
-
-/// The table of a text in TOML, in which whole numbers are whole, however they are written.
-pub fn table(text: &str) -> Result<Value, Fault> {
-    let mut table = a3_scenes::read(text)?;
-    make_whole(&mut table);
-    Ok(table)
-}
-
-fn make_whole(value: &mut Value) {
-    match value {
-        Value::Number(number) => {
-            let whole = |x: &f64| x.fract() == 0.0 && x.abs() < 2f64.powi(53);
-            if let Some(whole) = number.as_f64().filter(whole) {
-                *value = Value::from(whole as i64);
-            }
-        }
-        Value::Array(items) => items.iter_mut().for_each(make_whole),
-        Value::Object(entries) => entries.values_mut().for_each(make_whole),
-        _ => {}
-    }
-}
-
-/// An error with its place: `FILE:LINE: error` if it names a line, as compilers write it.
-pub fn place(file: &str, why: &str) -> String {
-    match why.strip_prefix("line ") {
-        Some(rest) => format!("{file}:{rest}"),
-        None => format!("{file}: {why}"),
     }
 }
 

@@ -54,7 +54,7 @@ impl Films {
         };
         match begin(graphics.gpu(), session, format) {
             Ok(recorder) => self.recorder = Some(recorder),
-            Err(why) => session.readings.warn(why.message()),
+            Err(why) => session.readings.warn(why.to_string()),
         }
         self.tell(session);
     }
@@ -70,7 +70,7 @@ impl Films {
             Ok(false) => self.end(session),
             Err(why) => {
                 self.recorder = None;
-                session.readings.warn(why.message());
+                session.readings.warn(why.to_string());
             }
         }
         self.tell(session);
@@ -97,7 +97,7 @@ impl Films {
         };
         match recorder.finish() {
             Ok(said) => session.readings.say(said),
-            Err(why) => session.readings.warn(why.message()),
+            Err(why) => session.readings.warn(why.to_string()),
         }
         self.tell(session);
     }

@@ -78,7 +78,7 @@ impl Outside {
     pub fn save_picture(&mut self, session: &mut Session, graphics: Option<&Graphics>) -> String {
         match write_picture(session, graphics) {
             Ok(name) => format!("saved {name}"),
-            Err(failure) => failure.message(),
+            Err(failure) => failure.to_string(),
         }
     }
 
@@ -116,7 +116,7 @@ pub fn quit(event_loop: &ActiveEventLoop) -> Option<&'static str> {
 
 /// Opens the lessons. Returns the message to show.
 pub fn open_lessons() -> String {
-    lessons::open().unwrap_or_else(Failure::message)
+    lessons::open().unwrap_or_else(|failure| failure.to_string())
 }
 
 /// Writes a picture under the first free name, and returns the name: one pane without text,

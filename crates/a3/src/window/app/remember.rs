@@ -22,6 +22,6 @@ pub fn remember(before: &Settings, session: &Session, screen: &Screen) {
         return;
     }
     if let Err(why) = now.write() {
-        terminal::warn(&why.message());
+        terminal::warn(&why.to_string());
     }
 }

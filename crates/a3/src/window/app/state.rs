@@ -197,7 +197,7 @@ impl App {
             }
             WindowAction::CommandLine => Some(match command_line::of(session, pane) {
                 Ok(line) => self.outside.copy(&line),
-                Err(failure) => failure.message(),
+                Err(failure) => failure.to_string(),
             }),
             WindowAction::Keep => Some(said("kept in", keep::keep(session, pane))),
             WindowAction::TakeUp => {
@@ -238,7 +238,7 @@ impl App {
 fn said(done: &str, file: Result<PathBuf, Failure>) -> String {
     match file {
         Ok(path) => format!("{done} {}", path.display()),
-        Err(failure) => failure.message(),
+        Err(failure) => failure.to_string(),
     }
 }
 

@@ -233,7 +233,7 @@ impl Session {
                 self.see_scene(&setup);
                 self.set_scene(&setup);
             }
-            Err(why) => self.readings.warn(why),
+            Err(error) => self.readings.warn(error.to_string()),
         }
     }
 
@@ -250,8 +250,8 @@ impl Session {
                 self.set_scene(&setup);
                 true
             }
-            Err(why) => {
-                self.readings.warn(why);
+            Err(error) => {
+                self.readings.warn(error.to_string());
                 false
             }
         }
@@ -264,8 +264,8 @@ impl Session {
         let reloaded = match self.scenes.reload() {
             Ok(Some(reloaded)) => reloaded,
             Ok(None) => return false,
-            Err(why) => {
-                self.readings.warn(why);
+            Err(error) => {
+                self.readings.warn(error.to_string());
                 return false;
             }
         };

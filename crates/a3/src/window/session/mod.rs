@@ -50,7 +50,6 @@ mod tests {
     use clap::Parser;
 
     use super::Session;
-    use crate::base::failure::Failure;
     use crate::cli;
     use crate::window::begin;
 
@@ -62,7 +61,7 @@ mod tests {
             Some(cli::Command::Compare(options)) => begin::comparison(&options),
             _ => begin::window(&options.window),
         };
-        session.map_err(Failure::message).unwrap()
+        session.unwrap()
     }
 
     /// Several panes, brought to a time (s) in frames of 60 Hz.

@@ -3,6 +3,7 @@
 use a3_core::{Grid, StepLimits};
 use a3_scenes::Setup;
 
+use crate::base::input_error::InputError;
 use crate::files::scene_file::Source;
 
 /// A scene's name or file, and what the command line changes in it.
@@ -27,7 +28,7 @@ impl Origin {
     }
 
     /// Builds the scene.
-    pub fn build(&self) -> Result<Setup, String> {
+    pub fn build(&self) -> Result<Setup, InputError> {
         let mut setup = self.source.build(self.grid)?;
         setup.scene.limits = self.limits.or(setup.scene.limits);
         Ok(setup)

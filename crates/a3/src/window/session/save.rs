@@ -38,7 +38,7 @@ pub fn write_scene(session: &Session, run: &Simulation) -> Result<String, String
     };
     write()
         .map(|path| path.display().to_string())
-        .map_err(Failure::message)
+        .map_err(|failure| failure.to_string())
 }
 
 /// The text of the scene file.

@@ -7,6 +7,7 @@ use a3_scenes::Setup;
 
 use super::list::Entry;
 use super::origin::Origin;
+use crate::base::input_error::InputError;
 use crate::files::scene_file::Source;
 
 /// The scenes that a session can show, and the one that it shows.
@@ -135,9 +136,10 @@ impl Scenes {
     }
 
     /// Builds the scene of this number among all names, and takes it as the one that is shown.
-    pub fn show(&mut self, number: usize) -> Result<Setup, String> {
+    pub fn show(&mut self, number: usize) -> Result<Setup, InputError> {
         let names = self.names();
-        let name = names.get(number).ok_or("There is no such scene.")?;
+        let unknown = || InputError::Unknown("There is no such scene.".into());
+        let name = names.get(number).ok_or_else(unknown)?;
         let asked = self.asked(name).cloned();
         let origin = asked.map_or_else(|| Source::find(name).map(Origin::of), Ok)?;
         let setup = origin.build()?;
@@ -147,7 +149,7 @@ impl Scenes {
     }
 
     /// Builds the scene of a file, and takes it as the one that is shown.
-    pub fn open(&mut self, file: &Path) -> Result<Setup, String> {
+    pub fn open(&mut self, file: &Path) -> Result<Setup, InputError> {
         let source = Source::find(&file.to_string_lossy())?;
         let setup = source.build(None)?;
         self.asked.retain(|it| it.source.typed != source.typed);
@@ -159,7 +161,7 @@ impl Scenes {
 
     /// Builds the scene that the session began with again from its file, and takes it as the one
     /// that is shown; `None` if it was not of a file.
-    pub fn reload(&mut self) -> Result<Option<Reloaded>, String> {
+    pub fn reload(&mut self) -> Result<Option<Reloaded>, InputError> {
         let begun = |origin: &Origin| origin.source.typed == self.begun;
         let Some(number) = self.asked.iter().position(begun) else {
             return Ok(None);

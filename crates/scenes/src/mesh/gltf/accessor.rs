@@ -4,7 +4,7 @@ use std::borrow::Cow;
 
 use serde::Deserialize;
 
-// The codes of glTF for types of numbers.
+// Component types: the codes of glTF.
 const I8: u32 = 5120;
 const U8: u32 = 5121;
 const I16: u32 = 5122;
@@ -24,18 +24,18 @@ pub(super) struct Accessor {
     #[serde(rename = "type")]
     kind: String,
     sparse: Option<Sparse>,
-    /// Whether whole numbers are shares of the largest one.
+    /// Whether whole numbers are fractions of the largest one of their type.
     #[serde(default)]
     normalized: bool,
 }
 
 impl Accessor {
-    /// Whether its numbers are in a buffer; else they are 0, or an extension has them.
+    /// Whether its numbers are in a buffer. If not, they are 0, or an extension stores them.
     pub fn is_stored(&self) -> bool {
         self.buffer_view.is_some() || self.sparse.is_some()
     }
 
-    /// The first elements of it, of which there are enough.
+    /// Returns the accessor of its first `count` elements.
     pub fn first(&self, count: usize) -> Self {
         Self {
             count,
@@ -44,7 +44,7 @@ impl Accessor {
     }
 }
 
-/// Elements that are replaced.
+/// Elements that are replaced (sparse storage).
 #[derive(Clone, Deserialize)]
 struct Sparse {
     count: usize,
@@ -52,7 +52,7 @@ struct Sparse {
     values: Part,
 }
 
-/// Part of a view; the component type is that of indices.
+/// Part of a view. Only indices have a component type here.
 #[derive(Clone, Deserialize)]
 #[serde(rename_all = "camelCase")]
 struct Part {
@@ -73,14 +73,14 @@ pub(super) struct View {
     byte_stride: Option<usize>,
 }
 
-/// The bytes of a file's buffers, and the views of them.
+/// Bytes of a file's buffers, and the views of them.
 pub(super) struct Buffers<'a> {
     pub buffers: Vec<Cow<'a, [u8]>>,
     pub views: &'a [View],
 }
 
 impl Buffers<'_> {
-    /// Vectors of three or four numbers, or matrices of sixteen.
+    /// Reads vectors of three or four numbers, or matrices of sixteen.
     pub fn vectors<const N: usize>(&self, accessor: &Accessor) -> Result<Vec<[f32; N]>, String> {
         let kind = match N {
             3 => "VEC3",
@@ -108,7 +108,7 @@ impl Buffers<'_> {
         Ok(rows.map(row).collect())
     }
 
-    /// Numbers of points.
+    /// Reads numbers of points.
     pub fn indices(&self, accessor: &Accessor) -> Result<Vec<u32>, String> {
         if accessor.kind != "SCALAR" {
             return Err("indices are single numbers".into());
@@ -117,7 +117,7 @@ impl Buffers<'_> {
         Ok(whole(&self.bytes(accessor, size)?, size))
     }
 
-    /// The bytes of all elements, each of that size, one after another.
+    /// Returns the bytes of all elements of this size (bytes), one after another.
     fn bytes(&self, accessor: &Accessor, size: usize) -> Result<Vec<u8>, String> {
         let count = accessor.count;
         let mut bytes = match accessor.buffer_view {
@@ -149,7 +149,7 @@ impl Buffers<'_> {
         Ok(bytes)
     }
 
-    /// The bytes of `count` elements of that size in a view, without those between them.
+    /// Returns the bytes of `count` elements of this size (bytes) in a view, without gaps.
     fn packed(
         &self,
         view: usize,
@@ -185,11 +185,11 @@ impl Buffers<'_> {
     }
 }
 
-/// How numbers of a type are written.
+/// Encoding of the numbers of a type.
 struct Number {
     /// Size (bytes).
     size: usize,
-    /// The largest one, which stands for 1 where numbers are normalized; 0 if they never are.
+    /// Largest number, which stands for 1 in normalized numbers; 0 if the type is never normalized.
     largest: f32,
     read: fn(&[u8]) -> f32,
 }
@@ -220,7 +220,7 @@ fn number(component_type: u32) -> Result<Number, String> {
     })
 }
 
-/// Size of a whole number of that type (bytes).
+/// Returns the size of a whole number of a type (bytes).
 fn size(component_type: u32) -> Result<usize, String> {
     match component_type {
         U8 => Ok(1),
@@ -232,7 +232,7 @@ fn size(component_type: u32) -> Result<usize, String> {
     }
 }
 
-/// The whole numbers in bytes, each of that size.
+/// Reads whole numbers of this size (bytes).
 fn whole(bytes: &[u8], size: usize) -> Vec<u32> {
     let number = |bytes: &[u8]| bytes.iter().rev().fold(0, |n, b| n << 8 | u32::from(*b));
     bytes.chunks_exact(size).map(number).collect()

@@ -1,4 +1,4 @@
-//! What glTF is packed in: binary files, data URIs, and names in which signs are escaped.
+//! Containers of glTF: binary files, data URIs, and percent-encoded names.
 
 use std::borrow::Cow;
 
@@ -6,7 +6,7 @@ use base64::Engine;
 
 use crate::text::unmarked;
 
-/// The JSON text of a file, and its binary part if it has one.
+/// Finds the JSON text of a file, and its binary part if it has one.
 pub(super) fn parts(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), String> {
     if !bytes.starts_with(b"glTF") {
         return Ok((unmarked(bytes)?, None));
@@ -24,7 +24,7 @@ pub(super) fn parts(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), String> {
     }
     let json = data(12).filter(|_| kind(12) == Some(b"JSON"));
     let json = json.ok_or("it is no glTF 2.0 file: its JSON part is cut short")?;
-    // Parts begin at multiples of four, but not in the files of all programs.
+    // Parts should begin at multiples of four, but some programs do not pad them.
     let end = 20 + json.len();
     let next = [end, end.next_multiple_of(4)];
     let next = next.into_iter().find(|at| kind(*at) == Some(b"BIN\0"));
@@ -39,14 +39,14 @@ pub(super) fn parts(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), String> {
     Ok((&json[..json.len() - padding], binary))
 }
 
-/// The bytes of a data URI.
+/// Decodes the bytes of a data URI.
 pub(super) fn decoded(data: &str) -> Result<Vec<u8>, String> {
     let (_, text) = data.split_once("base64,").ok_or("its data is not base64")?;
     let decoded = base64::engine::general_purpose::STANDARD.decode(text);
     decoded.map_err(|_| "its data is not base64".into())
 }
 
-/// A name in which `%20` stands for a space, and so on, as it is meant.
+/// Decodes a percent-encoded name, in which `%20` stands for a space.
 pub(super) fn unescaped(uri: &str) -> Cow<'_, str> {
     if !uri.contains('%') {
         return uri.into();

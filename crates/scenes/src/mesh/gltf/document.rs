@@ -1,4 +1,4 @@
-//! The parts of a glTF document that say where triangles are.
+//! The parts of a glTF document that describe triangles.
 
 use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};
@@ -8,7 +8,7 @@ use serde::Deserialize;
 
 use super::accessor::{Accessor, View};
 
-/// Document, but for what is not read.
+/// Document, without the parts that are not read.
 #[derive(Deserialize)]
 #[serde(rename_all = "camelCase")]
 pub(super) struct Document<'a> {
@@ -34,7 +34,7 @@ pub(super) struct Document<'a> {
     pub buffers: Vec<Buffer<'a>>,
 }
 
-/// Part of a glTF file of any version.
+/// Version of a glTF file, in a form that all versions of the format have.
 #[derive(Deserialize)]
 pub(super) struct Head {
     pub asset: HeadAsset,
@@ -85,20 +85,20 @@ pub(super) struct Primitive {
     /// Accessors, by names such as POSITION.
     pub attributes: BTreeMap<String, usize>,
     pub indices: Option<usize>,
-    /// How corners make triangles, if they do; 4, each three of them, if not given.
+    /// How corners make triangles, if they do; 4 if not given: each three of them.
     pub mode: Option<u32>,
     #[serde(default)]
     pub targets: Vec<Target>,
 }
 
-/// What is added to a primitive, times a weight.
+/// Morph target: it is added to the points of a primitive, times a weight.
 #[derive(Deserialize)]
 pub(super) struct Target {
     #[serde(rename = "POSITION")]
     pub position: Option<usize>,
 }
 
-/// Nodes that carry the points of a mesh.
+/// Joints: nodes that move the points of a mesh.
 #[derive(Deserialize)]
 #[serde(rename_all = "camelCase")]
 pub(super) struct Skin {
@@ -112,26 +112,26 @@ pub(super) struct Buffer<'a> {
     pub uri: Option<Text<'a>>,
 }
 
-/// Text that is borrowed from the file where it can be.
+/// Text that is borrowed from the file if it has no escapes.
 #[derive(Deserialize)]
 pub(super) struct Text<'a>(#[serde(borrow)] pub Cow<'a, str>);
 
 impl Document<'_> {
-    /// The extension that compressed geometry, if one did.
+    /// Returns the extension by which the geometry is compressed, if it is.
     pub fn compression(&self) -> Option<&str> {
         let mut used = self.extensions_used.iter().map(String::as_str);
         used.find(|name| name.contains("compression"))
     }
 
-    /// The nodes that are below no other.
+    /// Lists the nodes that have no parent.
     pub fn roots(&self) -> Vec<usize> {
         let below: BTreeSet<_> = self.nodes.iter().flat_map(|node| &node.children).collect();
         let all = 0..self.nodes.len();
         all.filter(|k| !below.contains(k)).collect()
     }
 
-    /// The nodes of trees with these roots, in the order of the file, with the matrix of each that
-    /// all above it make.
+    /// Lists the nodes of the trees with these roots, in the order of the file, each with its
+    /// matrix relative to the scene.
     pub fn placed(&self, roots: &[usize]) -> Result<Vec<(usize, Matrix4<f64>)>, String> {
         let mut seen = vec![false; self.nodes.len()];
         let next = |nodes: &[usize], above: Matrix4<f64>| {
@@ -152,19 +152,20 @@ impl Document<'_> {
     }
 }
 
-/// Refusal of a file that an extension compressed.
+/// Error of a file that is compressed by an extension.
 pub(super) fn compressed(extension: &str) -> String {
     format!("it needs the extension {extension}, which is not read: save it without compression")
 }
 
-/// Item k of a list of the document.
+/// Returns item k of a list of the document.
 pub(super) fn item<'a, T>(list: &'a [T], k: usize, kind: &str) -> Result<&'a T, String> {
     list.get(k)
         .ok_or_else(|| format!("there is no {kind} {k}: the file has {}", list.len()))
 }
 
 impl Node {
-    /// Matrix of the node: its own, or that of its scale, its rotation and its translation.
+    /// Returns the matrix of the node: its own, or that of its scale, its rotation and its
+    /// translation.
     pub fn matrix(&self) -> Matrix4<f64> {
         if let Some(matrix) = self.matrix {
             return Matrix4::from_column_slice(&matrix.map(f64::from));

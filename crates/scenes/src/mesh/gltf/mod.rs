@@ -1,6 +1,6 @@
 //! Meshes from glTF 2.0 files, as JSON or binary (Khronos, *glTF 2.0 Specification*): the triangles
-//! of the nodes of a scene. Every count is compared with the bytes that are there before anything
-//! is reserved.
+//! of the nodes of a scene. Every count is compared with the number of bytes before memory is
+//! reserved.
 
 mod accessor;
 mod container;
@@ -10,14 +10,13 @@ mod skin;
 
 use super::data::Mesh;
 use crate::budget;
-use crate::fault::Fault;
 use accessor::Buffers;
 use container::{decoded, parts, unescaped};
 use document::{Document, Head, Text, compressed, item};
 use primitive::Reader;
 use skin::Skins;
 
-/// Beginnings of the names of extensions that do not touch geometry, and of one that is read.
+/// Beginnings of the names of extensions that leave geometry alone, and of one that is supported.
 const HARMLESS: [&str; 20] = [
     "KHR_materials_",
     "KHR_texture_",
@@ -41,7 +40,7 @@ const HARMLESS: [&str; 20] = [
     "VRM",
 ];
 
-/// The mesh in a glTF file. `file` reads a file that it names.
+/// Reads the mesh of a glTF file. `file` reads another file that it refers to.
 pub(super) fn read(
     bytes: &[u8],
     file: &mut dyn FnMut(&str) -> Result<Vec<u8>, String>,
@@ -97,7 +96,7 @@ pub(super) fn read(
     Ok(reader.mesh)
 }
 
-/// The bytes of the file that a URI names. Some programs write names as they are, without escapes.
+/// Reads the file that a URI names. Some programs do not percent-encode names.
 fn named(
     uri: &str,
     file: &mut dyn FnMut(&str) -> Result<Vec<u8>, String>,
@@ -113,14 +112,14 @@ fn named(
     bytes.map_err(|why| format!("{name}: {why}"))
 }
 
-/// The document in a text.
+/// Reads the document in a text.
 fn document(json: &[u8]) -> Result<Document<'_>, String> {
     let only = |version: &str| format!("it is glTF {version}: convert it to glTF 2.0");
     match serde_json::from_slice::<Document>(json) {
         Ok(document) if document.asset.version.0.starts_with("2.") => Ok(document),
         Ok(document) => Err(only(&document.asset.version.0)),
         Err(error) => {
-            // Version 1.0 has other lists, and its number is not always a text.
+            // Version 1.0 has other lists, and its version number is not always a text.
             let head = serde_json::from_slice::<Head>(json).ok();
             let version = head.map(|head| head.asset.version.to_string());
             if let Some(version) =
@@ -128,8 +127,7 @@ fn document(json: &[u8]) -> Result<Document<'_>, String> {
             {
                 return Err(only(version.trim_matches('"')));
             }
-            let fault = Fault::of_json(&String::from_utf8_lossy(json), &error);
-            Err(format!("it is no glTF 2.0 file: {fault}"))
+            Err(format!("it is no glTF 2.0 file: {error}"))
         }
     }
 }

@@ -1,5 +1,4 @@
-//! A mesh that is read node by node, and primitives: triangles of a mesh, with the targets that
-//! move their points.
+//! Primitives: the triangles of the nodes, with the morph targets that move their points.
 
 use nalgebra::{Matrix4, Point3};
 
@@ -8,23 +7,23 @@ use super::document::{Document, Primitive, Target, compressed, item};
 use super::skin::{Carrier, Skins};
 use crate::mesh::data::{MAX_POINTS, MAX_TRIANGLES, Mesh};
 
-/// How many times points are read and moved by targets, at most.
-const MOST_SHIFTS: usize = 16 * MAX_POINTS;
+/// Largest number of points that are read, and moved by targets, counted again for each target.
+const MAX_SHIFTS: usize = 16 * MAX_POINTS;
 
-/// The mesh so far.
+/// Reader of a mesh, node by node.
 pub(super) struct Reader<'a> {
     pub(super) document: &'a Document<'a>,
     pub(super) buffers: Buffers<'a>,
     pub(super) mesh: Mesh,
     pub(super) skins: Skins<'a>,
-    /// Number of primitives that were looked at.
+    /// Number of primitives that were visited.
     pub(super) primitives: usize,
     /// Number of points that were read, or moved by targets.
     pub(super) shifts: usize,
 }
 
 impl Reader<'_> {
-    /// Adds the triangles of nodes and of those below them, in the order of the file.
+    /// Adds the triangles of nodes and of their descendants, in the order of the file.
     pub(super) fn add(&mut self, roots: &[usize]) -> Result<(), String> {
         let document = self.document;
         for (k, matrix) in document.placed(roots)? {
@@ -41,7 +40,7 @@ impl Reader<'_> {
         Ok(())
     }
 
-    /// Adds the triangles of a primitive; points and lines have none.
+    /// Adds the triangles of a primitive. Points and lines have none.
     fn add_primitive(
         &mut self,
         primitive: &Primitive,
@@ -61,7 +60,7 @@ impl Reader<'_> {
         }
         let accessor = |k: usize| item(&self.document.accessors, k, "accessor");
         let position = primitive.attributes.get("POSITION");
-        // What has no positions is not drawn.
+        // A primitive without positions is not drawn.
         let Some(&position) = position else {
             return Ok(());
         };
@@ -79,9 +78,9 @@ impl Reader<'_> {
         }
         // Many primitives may share the points of one accessor.
         self.shifts += count;
-        if self.shifts > MOST_SHIFTS {
+        if self.shifts > MAX_SHIFTS {
             return Err(format!(
-                "its primitives read points more than {MOST_SHIFTS} times"
+                "its primitives read points more than {MAX_SHIFTS} times"
             ));
         }
         let named = |k: usize| move |why: String| format!("accessor {k}: {why}");
@@ -131,7 +130,7 @@ impl Reader<'_> {
             }
             None => Carrier::Node(matrix),
         };
-        // Of the points, those of triangles are added.
+        // Only points of triangles are added.
         let mut places = vec![u32::MAX; points.len()];
         for t in triangles {
             for i in t.map(|i| i as usize) {
@@ -145,7 +144,7 @@ impl Reader<'_> {
                 let p = carrier.matrix(i).transform_point(&Point3::from(points[i]));
                 self.mesh.positions.push([p.x, p.y, p.z]);
             }
-            // What is mirrored winds the other way.
+            // A reflection reverses the winding order.
             let matrix = carrier.matrix(t[0] as usize);
             let [a, b, c] = t.map(|i| places[i as usize]);
             let is_mirrored = matrix.fixed_view::<3, 3>(0, 0).determinant() < 0.0;
@@ -155,7 +154,7 @@ impl Reader<'_> {
         Ok(())
     }
 
-    /// Points of an accessor, moved by targets as far as their weights say.
+    /// Reads the points of an accessor, and moves them by targets times their weights.
     fn points(
         &mut self,
         position: usize,
@@ -180,8 +179,8 @@ impl Reader<'_> {
                 ));
             }
             self.shifts += count;
-            if self.shifts > MOST_SHIFTS {
-                return Err(format!("targets move points more than {MOST_SHIFTS} times"));
+            if self.shifts > MAX_SHIFTS {
+                return Err(format!("targets move points more than {MAX_SHIFTS} times"));
             }
             for (point, shift) in points.iter_mut().zip(read(k)?) {
                 for axis in 0..3 {

@@ -1,4 +1,4 @@
-//! Skins: meshes that joints carry. The nodes of such meshes do not.
+//! Skins: meshes that are moved by joints instead of by their own nodes.
 
 use std::collections::BTreeMap;
 use std::rc::Rc;
@@ -8,19 +8,19 @@ use nalgebra::Matrix4;
 use super::accessor::Buffers;
 use super::document::{Document, item};
 
-/// Most joints of a point, in sets of four.
+/// Largest number of sets of four joints of a point.
 const SETS: usize = 2;
 
-/// Skins of a document, of which only those in use are read.
+/// Skins of a document, each of which is read when it is first used.
 pub(super) struct Skins<'a> {
     document: &'a Document<'a>,
-    /// Matrix of each node that is in a tree, once it is known.
+    /// Matrix of each node relative to the scene, once it is computed.
     nodes: Option<BTreeMap<usize, Matrix4<f64>>>,
     /// Matrices of the joints of each skin.
     joints: BTreeMap<usize, Rc<Vec<Matrix4<f64>>>>,
 }
 
-/// What carries the points of a primitive.
+/// Transformation of the points of a primitive.
 pub(super) enum Carrier {
     Node(Matrix4<f64>),
     Joints {
@@ -39,7 +39,7 @@ impl<'a> Skins<'a> {
         }
     }
 
-    /// What carries `count` points with these attributes by a skin.
+    /// Reads the joints and weights by which a skin moves `count` points with these attributes.
     pub fn carrier(
         &mut self,
         skin: usize,
@@ -78,7 +78,7 @@ impl<'a> Skins<'a> {
         Ok(Carrier::Joints { matrices, sets })
     }
 
-    /// Matrices of the joints of a skin: from where points are to where the joints carry them.
+    /// Returns the matrices of the joints of a skin, which take points from the mesh to the scene.
     fn joints(&mut self, skin: usize, buffers: &Buffers) -> Result<Rc<Vec<Matrix4<f64>>>, String> {
         if let Some(known) = self.joints.get(&skin) {
             return Ok(known.clone());
@@ -116,7 +116,7 @@ impl<'a> Skins<'a> {
     }
 }
 
-/// The matrices of all nodes that are in a tree.
+/// Returns the matrices of all nodes relative to the scene.
 fn trees(document: &Document) -> Result<BTreeMap<usize, Matrix4<f64>>, String> {
     let mut is_below = vec![false; document.nodes.len()];
     for child in document.nodes.iter().flat_map(|node| &node.children) {
@@ -128,7 +128,7 @@ fn trees(document: &Document) -> Result<BTreeMap<usize, Matrix4<f64>>, String> {
 }
 
 impl Carrier {
-    /// Matrix that carries point i.
+    /// Returns the matrix that moves point i.
     pub fn matrix(&self, i: usize) -> Matrix4<f64> {
         let (matrices, sets) = match self {
             Self::Node(matrix) => return *matrix,
@@ -142,7 +142,8 @@ impl Carrier {
                 matrix += matrices[*joint as usize] * weight;
             }
         }
-        // Weights are rounded; without any, a point stays where it is.
+        // Weights are rounded, so their sum is not exactly 1. A point without weights stays where
+        // it is.
         if sum > 0.0 {
             matrix / sum
         } else {

@@ -30,9 +30,9 @@ const OFFSETS: [(SpringKind, [isize; 3]); 16] = [
     (SpringKind::Bend, [0, 0, 2]),
 ];
 
-/// Axes in the order in which a tetrahedron goes along the edges of its cell, from one corner to
-/// the opposite one (Kuhn). Neighbouring cells agree on the diagonals of their faces.
-const WAYS: [[usize; 3]; 6] = [
+/// Kuhn's tetrahedra of a cell: the order of the axes along which each goes from one corner to the
+/// opposite one. Neighbouring cells agree on the diagonals of their faces.
+const KUHN_PATHS: [[usize; 3]; 6] = [
     [0, 1, 2],
     [1, 2, 0],
     [2, 0, 1],
@@ -42,24 +42,24 @@ const WAYS: [[usize; 3]; 6] = [
 ];
 
 impl Lattice {
-    /// Number of particles; `None` if it overflows.
+    /// Counts the particles; `None` if the number overflows.
     pub fn particles(self) -> Option<usize> {
         let [nx, ny, nz] = self.0;
         nx.checked_mul(ny)?.checked_mul(nz)
     }
 
-    /// Number of the particle in that cell.
+    /// Returns the number of the particle at a lattice point.
     pub fn index_of(self, [i, j, k]: [usize; 3]) -> usize {
         (k * self.0[1] + j) * self.0[0] + i
     }
 
-    /// The cells [i, j, k] of all particles, in the order of their numbers.
+    /// Lists the lattice points [i, j, k] of all particles, in the order of their numbers.
     pub fn cells(self) -> impl Iterator<Item = [usize; 3]> {
         let [nx, ny, nz] = self.0;
         (0..nz).flat_map(move |k| (0..ny).flat_map(move |j| (0..nx).map(move |i| [i, j, k])))
     }
 
-    /// The particles of a face, if the spot is one.
+    /// Lists the particles of a face, if the spot is one.
     pub fn face(self, spot: Spot) -> Option<Vec<usize>> {
         let (axis, far) = match spot {
             Spot::Left => (0, false),
@@ -73,19 +73,19 @@ impl Lattice {
         Some(there.map(|cell| self.index_of(cell)).collect())
     }
 
-    /// The tetrahedra, six in the cell from each particle on, with positive volumes.
+    /// Lists the tetrahedra, six in each cell, with positive volumes.
     pub fn tetrahedra(self) -> impl Iterator<Item = [u32; 4]> {
         let cells = self.cells();
         let whole = cells.filter(move |cell| (0..3).all(|axis| cell[axis] + 1 < self.0[axis]));
         whole.flat_map(move |cell| {
-            WAYS.into_iter().enumerate().map(move |(k, axes)| {
+            KUHN_PATHS.into_iter().enumerate().map(move |(k, axes)| {
                 let mut at = cell;
                 let mut corners = [self.index_of(cell) as u32; 4];
                 for (corner, axis) in corners[1..].iter_mut().zip(axes) {
                     at[axis] += 1;
                     *corner = self.index_of(at) as u32;
                 }
-                // The last three ways turn the other way round.
+                // The last three paths have the opposite orientation.
                 if k >= 3 {
                     corners.swap(1, 2);
                 }
@@ -94,8 +94,8 @@ impl Lattice {
         })
     }
 
-    /// The springs of a lattice of that spacing (m). `law` gives the law of a kind of spring of
-    /// that length (m).
+    /// Lists the springs of a lattice with this spacing (m). `law` gives the law of a spring by its
+    /// kind and length (m).
     pub fn springs(
         self,
         spacing: [f64; 3],
@@ -126,7 +126,7 @@ impl Lattice {
         })
     }
 
-    /// The triangles of the six faces, counterclockwise as seen from outside.
+    /// Lists the triangles of the six faces, counterclockwise as seen from outside.
     pub fn triangles(self) -> Vec<[u32; 3]> {
         let mut triangles = vec![];
         for axis in 0..3 {

@@ -1,4 +1,4 @@
-//! The paths and turns of what moves as the scene says.
+//! Paths and turns of pins and obstacles with a prescribed motion.
 
 use a3_core::{Path, Turn, Vector3};
 
@@ -7,7 +7,7 @@ use crate::description;
 use crate::description::{Shift, Sine};
 use crate::fault::Fault;
 
-/// The path from `from` (m) that a scene describes for a pin or an obstacle, and the turn.
+/// Creates the path of a pin or an obstacle that begins at `from` (m), and its turn.
 pub(super) fn motion(
     sine: Option<&Sine>,
     shift: Option<&Shift>,
@@ -57,7 +57,7 @@ pub(super) fn motion(
     Ok((path, turn))
 }
 
-/// Displacement of a shift (m), and the times between which it happens (s).
+/// Returns the displacement of a shift (m), and its start and end (s).
 fn way(shift: &Shift) -> Result<(Vector3<f64>, [f64; 2]), Fault> {
     let by = Vector3::from(shift.by);
     later("shift.end", shift.start, shift.end)?;

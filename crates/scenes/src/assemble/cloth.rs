@@ -16,7 +16,7 @@ impl Cloth {
         at("grid", Grid::new(rows, cols))
     }
 
-    /// Distance between neighbouring particles (m).
+    /// Returns the distance between neighbouring particles (m).
     pub(super) fn checked_spacing(&self) -> Result<f64, Fault> {
         let (by_width, size) = one_of(("width", self.width), ("spacing", self.spacing))?;
         at(
@@ -27,7 +27,7 @@ impl Cloth {
         Ok(if by_width { size / cells as f64 } else { size })
     }
 
-    /// Mass of each particle (kg): equal shares of the density times the area.
+    /// Returns the mass of each particle (kg): an equal share of the density times the area.
     pub(super) fn checked_mass(&self) -> Result<f64, Fault> {
         let (grid, spacing) = (self.checked_grid()?, self.checked_spacing()?);
         let (by_area, mass) = one_of(("density", self.density), ("mass", self.mass))?;
@@ -40,7 +40,7 @@ impl Cloth {
         Ok(if by_area { mass * share } else { mass })
     }
 
-    /// Unit vector along that key's direction.
+    /// Returns the unit vector along the direction that a key gives.
     fn axis(&self, key: &str) -> Result<Vector3<f64>, Fault> {
         let (given, usual) = match key {
             "right" => (self.right, Vector3::x()),
@@ -155,7 +155,8 @@ impl Body for Cloth {
     }
 }
 
-/// A row of particles along a sine-generated curve: how far along and how far out each one is (m).
+/// Places a row of particles on a sine-generated curve: the offset of each along the row and across
+/// it (m).
 ///
 /// The direction of the curve oscillates, and its length is that of the straight row, so that no
 /// spring is stretched.

@@ -1,4 +1,5 @@
-//! Assembly of the bodies of a scene: their particles, numbered through, and what joins them.
+//! Assembly of the bodies of a scene: their particles, numbered through, and the springs, rods and
+//! skins that join and cover them.
 
 use std::ops::Range;
 
@@ -16,7 +17,7 @@ use crate::description::{Pin, Spot};
 use crate::fault::Fault;
 use crate::surface::Surface;
 
-/// Numbers of the parts of a body that take memory one by one.
+/// Numbers of those parts of a body that the budget counts.
 #[derive(Default)]
 pub(super) struct Counts {
     pub particles: usize,
@@ -33,9 +34,9 @@ pub(super) struct Counts {
     pub tetrahedra: usize,
 }
 
-/// A body that a scene is assembled from. Faults have their keys within the body.
+/// Body of a scene. The keys of its faults are relative to the body.
 pub(super) trait Body {
-    /// Numbers of its parts, checked before memory is taken.
+    /// Counts its parts, before any memory is reserved.
     fn counts(&self) -> Result<Counts, Fault>;
 
     /// Adds the body's particles, springs, constraints and surface.
@@ -49,11 +50,12 @@ pub(super) trait Body {
     /// Pins of the body.
     fn pins(&self) -> &[Pin];
 
-    /// The particles of a spot, numbered from 0 in this body; `None` if the body has no such spot.
+    /// Finds the particles of a spot, numbered from 0 in this body; `None` if the body has no such
+    /// spot.
     fn spot(&self, spot: Spot, positions: &[Vector3<f64>]) -> Option<Vec<usize>>;
 }
 
-/// The bodies so far, put together.
+/// Bodies of a scene that were added so far.
 #[derive(Default)]
 pub(super) struct Assembly {
     /// Whether surfaces touch.
@@ -69,23 +71,23 @@ pub(super) struct Assembly {
     pub springs: Vec<Spring>,
     pub strips: Vec<Buckling>,
     pub rods: Vec<Constraint>,
-    /// Rigid bodies, and how they turn.
+    /// Rigid bodies with their orientations and angular momenta.
     pub rigid: Vec<(rigid::Body, Rotation)>,
     /// Skin of each particle, where surfaces touch.
     pub skins: Vec<Skin>,
-    /// Edges and, with equal ends, points that are in no triangle.
+    /// Edges that are in no triangle, and such points, as edges with equal ends.
     pub edges: Vec<[u32; 2]>,
     pub pins: Vec<(usize, Path)>,
-    /// Keys and particles of the bodies whose strain is limited, and the limits.
+    /// Bodies whose strain is limited: key, particles and limit.
     pub strain_limits: Vec<(String, Range<usize>, f64)>,
-    /// Law of the fluid, and the particles of each body of it.
+    /// Law of the fluid, and the particles of each of its bodies.
     pub fluid: Option<(FluidLaw, Vec<Range<usize>>)>,
     /// Particles of the walls of each tank.
     pub tanks: Vec<Range<usize>>,
 }
 
 impl Assembly {
-    /// No body yet.
+    /// Creates an assembly without bodies.
     pub fn new(touching: bool) -> Self {
         Self {
             touching,
@@ -93,7 +95,7 @@ impl Assembly {
         }
     }
 
-    /// Adds springs between particles that are numbered from `first` on.
+    /// Adds springs whose particles are counted from `first`.
     pub fn add_springs(&mut self, first: usize, springs: impl IntoIterator<Item = Spring>) {
         self.springs.extend(springs.into_iter().map(|s| Spring {
             i: s.i + first,
@@ -102,7 +104,7 @@ impl Assembly {
         }));
     }
 
-    /// Adds buckling springs between particles that are numbered from `first` on.
+    /// Adds buckling springs whose particles are counted from `first`.
     pub fn add_strips(&mut self, first: usize, strips: Vec<Buckling>) {
         self.strips.extend(strips.into_iter().map(|s| Buckling {
             i: s.i + first,
@@ -111,15 +113,14 @@ impl Assembly {
         }));
     }
 
-    /// Adds the surface of the body that was added last, whose particles are numbered from `first`
-    /// on.
+    /// Adds the surface of the body that was added last. Its particles are counted from `first`.
     pub fn add_surface(&mut self, first: usize, triangles: impl IntoIterator<Item = [u32; 3]>) {
         let triangles = triangles.into_iter().map(|t| t.map(|i| i + first as u32));
         self.surface.triangles.extend(triangles);
         self.surface.bodies.push(self.masses.len());
     }
 
-    /// Adds a body that has that key.
+    /// Adds the body of a key, with its pins.
     pub fn add(&mut self, key: &str, body: &dyn Body, budget: &mut Budget) -> Result<(), Fault> {
         let counts = body.counts().map_err(|fault| fault.within(key))?;
         let touching = if self.touching { counts.particles } else { 0 };
@@ -154,8 +155,8 @@ impl Assembly {
         Ok(())
     }
 
-    /// `Ok` if the particles from `first` on are where they can be, and their masses are numbers to
-    /// divide by.
+    /// Checks that the positions of the particles from `first` on are within the bounds, and that
+    /// each mass has a finite reciprocal.
     fn check(&self, first: usize) -> Result<(), Fault> {
         for (i, p) in self.positions[first..].iter().enumerate() {
             if !p.iter().all(|x| within(*x)) {

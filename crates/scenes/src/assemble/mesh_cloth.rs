@@ -12,7 +12,7 @@ use crate::description::{MeshCloth, Pin, Spot};
 use crate::fault::Fault;
 use crate::mesh::Mesh;
 
-/// A cloth with the mesh that its file has.
+/// Cloth with the mesh of its file.
 pub(super) struct LoadedMesh<'a> {
     pub cloth: &'a MeshCloth,
     pub mesh: Mesh,

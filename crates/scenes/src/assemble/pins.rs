@@ -3,12 +3,12 @@
 use a3_core::{Path, Vector3};
 
 use super::motion::motion;
-use crate::budget::{Budget, LOOKED_AT, PINS};
+use crate::budget::{Budget, PINS, SEARCHED};
 use crate::check::key_of;
 use crate::description::{Pin, Spot};
 use crate::fault::Fault;
 
-/// The pinned particles and their paths. `spot` gives the particles of a spot.
+/// Lists the pinned particles with their paths. `spot` finds the particles of a spot.
 pub(super) fn pins(
     pins: &[Pin],
     positions: &[Vector3<f64>],
@@ -24,8 +24,8 @@ pub(super) fn pins(
     Ok(all)
 }
 
-/// The particles as far to a side as the one that is farthest there, to a hundredth of the extent;
-/// `None` if the spot is no side.
+/// Finds the outermost particles on a side, to within a hundredth of the body's extent; `None` if
+/// the spot is no side.
 pub(super) fn extreme(spot: Spot, positions: &[Vector3<f64>]) -> Option<Vec<usize>> {
     let (axis, far) = match spot {
         Spot::Left => (0, false),
@@ -56,7 +56,7 @@ fn pinned(
         return Err(Fault::no_particle("particles", *i, positions.len()));
     }
     for at in &pin.at {
-        budget.spend("at", positions.len(), LOOKED_AT)?;
+        budget.spend("at", positions.len(), SEARCHED)?;
         let Some(there) = spot(*at) else {
             return Err(Fault::new(
                 "at",

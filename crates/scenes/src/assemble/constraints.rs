@@ -6,16 +6,17 @@ use crate::check::{at, key_of};
 use crate::description::{ConstraintSpec, Description};
 use crate::fault::Fault;
 
-/// Largest error of a constraint at the start, over its length.
-const MET: f64 = 1e-3;
+/// Largest error of a constraint at the start, relative to its length.
+const MAX_INITIAL_ERROR: f64 = 1e-3;
 
-/// `Ok` if the scene begins with its constraints met.
+/// Checks that the initial state meets the constraints.
 pub(super) fn check(description: &Description, scene: &Scene) -> Result<(), Fault> {
     let network = scene.model.network();
     let (_, radius) = scene.extent();
     let worst = network
         .and_then(|network| network.worst_constraint(network.halves(&scene.state).0, radius));
-    let Some((network, unmet)) = network.zip(worst.filter(|unmet| unmet.share > MET)) else {
+    let Some((network, unmet)) = network.zip(worst.filter(|unmet| unmet.share > MAX_INITIAL_ERROR))
+    else {
         return Ok(());
     };
     // The rods of chains come first.
@@ -33,7 +34,8 @@ pub(super) fn check(description: &Description, scene: &Scene) -> Result<(), Faul
     Err(Fault::new(key, why))
 }
 
-/// Adds the constraints of the description. The state gives the lengths of rods that have none.
+/// Adds the constraints of the description. A rod without a length has the distance of its
+/// particles in the initial state.
 pub(super) fn add(
     description: &Description,
     network: &mut Network,
@@ -93,7 +95,7 @@ fn constraint(
     }
 }
 
-/// The point, line, circle or sphere that a particle stays on.
+/// Creates the constraint of a particle to a point, a line, a circle or a sphere.
 fn wire(particle: usize, spec: &ConstraintSpec) -> Result<Constraint, Fault> {
     Ok(match (spec.point, &spec.line, &spec.circle, &spec.sphere) {
         (Some(position), None, None, None) => Constraint::Point {

@@ -6,7 +6,7 @@ use a3_core::rigid::ROTATION;
 use crate::description::State;
 use crate::fault::Fault;
 
-/// The state of particles at these positions (m), with these velocities (m/s).
+/// Creates the state of particles from their positions (m) and velocities (m/s).
 pub(super) fn of(positions: &[Vector3<f64>], velocities: &[Vector3<f64>]) -> Vec<f64> {
     [positions, velocities]
         .into_iter()
@@ -14,7 +14,7 @@ pub(super) fn of(positions: &[Vector3<f64>], velocities: &[Vector3<f64>]) -> Vec
         .collect()
 }
 
-/// Sets a state to the one that is given. A first-order system has positions only.
+/// Sets a state to the given one. A first-order system has positions only.
 pub(super) fn write(given: &State, particles: usize, state: &mut [f64]) -> Result<(), Fault> {
     let parts = [
         ("state.positions", &given.positions),
@@ -41,7 +41,7 @@ pub(super) fn write(given: &State, particles: usize, state: &mut [f64]) -> Resul
     Ok(())
 }
 
-/// Sets the rotations of rigid bodies to those that are given, if any are.
+/// Sets the rotations of rigid bodies to the given ones, if there are any.
 fn write_rotations(given: &State, state: &mut [f64]) -> Result<(), Fault> {
     let bodies = state.len() / ROTATION;
     let (turned, momenta) = (&given.orientations, &given.angular_momenta);

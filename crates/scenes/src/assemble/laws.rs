@@ -7,7 +7,7 @@ use crate::check::{at, at_least, positive};
 use crate::description::{BucklingSpec, SpringSpec};
 use crate::fault::Fault;
 
-/// Springs among `particles` particles.
+/// Creates springs between the particles of a body that has `particles` of them.
 pub(super) fn springs(specs: &[SpringSpec], particles: usize) -> Result<Vec<Spring>, Fault> {
     let spring = |(k, &(i, j, stiffness, rest_length, damping)): (usize, &SpringSpec)| {
         let wrong =
@@ -26,8 +26,8 @@ pub(super) fn springs(specs: &[SpringSpec], particles: usize) -> Result<Vec<Spri
     specs.iter().enumerate().map(spring).collect()
 }
 
-/// Damping over stiffness (s), given directly or by the damping ratio of a particle of that mass
-/// (kg) on a spring of that stiffness (N/m).
+/// Returns damping over stiffness (s), which is given directly or by the damping ratio of a
+/// particle of this mass (kg) on a spring of this stiffness (N/m).
 pub(super) fn damping_time(
     damping: Option<f64>,
     ratio: Option<f64>,
@@ -49,8 +49,8 @@ pub(super) fn damping_time(
     }
 }
 
-/// The buckling spring between two particles, of that rest length (m), and of that stiffness (N/m)
-/// and damping (N s/m) under tension.
+/// Creates a buckling spring between two particles from its rest length (m), and its stiffness
+/// (N/m) and damping (N s/m) under tension.
 pub(super) fn strip(
     law: &BucklingSpec,
     [i, j]: [usize; 2],

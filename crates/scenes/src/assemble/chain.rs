@@ -9,9 +9,9 @@ use crate::check::{at, at_least, positive};
 use crate::description::{Chain, Particles, Pin, Spot};
 use crate::fault::Fault;
 
-/// Distance that single particles are taken to have from one another (m), where no thickness is
+/// Assumed distance between single particles (m), from which their thickness follows if none is
 /// given.
-const POINT: f64 = 0.04;
+const POINT_SPACING: f64 = 0.04;
 
 impl Body for Chain {
     fn counts(&self) -> Result<Counts, Fault> {
@@ -69,7 +69,7 @@ impl Body for Chain {
         };
         let masses = vec![self.mass; n];
         let length = (to - from).norm() / (n - 1) as f64;
-        let spacing = if length > 0.0 { length } else { POINT };
+        let spacing = if length > 0.0 { length } else { POINT_SPACING };
         assembly.skins.extend(skin.uniform(&masses, spacing)?);
         let edges = (first..first + n - 1).map(|i| [i as u32, i as u32 + 1]);
         assembly.edges.extend(edges);
@@ -167,7 +167,9 @@ impl Body for Particles {
             stiffness: stiffest,
             time: springs.iter().map(|s| s.law.damping).fold(0.0, f64::max) / stiffest.max(1.0),
         };
-        let spacing = self.thickness.map_or(POINT, |thickness| 4.0 * thickness);
+        let spacing = self
+            .thickness
+            .map_or(POINT_SPACING, |thickness| 4.0 * thickness);
         assembly.skins.extend(skin.uniform(&masses, spacing)?);
         assembly
             .edges

@@ -32,8 +32,7 @@ pub(super) fn is_one_thick(description: &Description) -> bool {
     all.any(|thickness| thickness.is_some())
 }
 
-/// Adds the obstacles of the description, of which the floor acts last. `mesh` reads a file of
-/// triangles.
+/// Adds the obstacles of the description, the floor last. `mesh` reads a file of triangles.
 pub(super) fn add(
     description: &Description,
     network: &mut Network,
@@ -58,7 +57,7 @@ pub(super) fn add(
     }
 }
 
-/// Adds each of the obstacles of a kind.
+/// Adds the obstacles of one kind.
 fn each<T>(
     kind: &str,
     specs: &[T],
@@ -139,7 +138,7 @@ fn capsule(spec: &CapsuleSpec) -> Result<Obstacle, Fault> {
     })
 }
 
-/// The solid within the triangles of a file, whose equal points are made one.
+/// Reads the solid within the triangles of a file. Points at the same place are merged.
 fn solid(
     spec: &ObstacleSpec,
     budget: &mut Budget,

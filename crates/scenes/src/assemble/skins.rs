@@ -1,25 +1,25 @@
-//! Skins of bodies: how thick, stiff and rough they are where surfaces touch.
+//! Skins of bodies: their thickness, stiffness and friction where surfaces touch.
 
 use a3_core::contact::Skin;
 
 use crate::check::{at, at_least, positive, share};
 use crate::fault::Fault;
 
-/// Thickness of a surface if none is given, and the most that is allowed, as a share of the
-/// distance of its particles: neighbours are never so near that they repel each other.
-const SHARE: f64 = 0.25;
+/// Default and largest thickness of a surface, relative to the distance of its particles:
+/// neighbours in a surface do not repel each other.
+const MAX_THICKNESS: f64 = 0.25;
 
-/// Acceleration (m/s2) that contact withstands at least before surfaces meet.
-const WITHSTOOD: f64 = 100.0;
+/// Smallest acceleration (m/s2) against which the contact force keeps surfaces apart.
+const ACCELERATION: f64 = 100.0;
 
-/// Damping of contact over that of a spring of the same stiffness.
+/// Damping of contact, relative to that of a spring of the same stiffness.
 const DAMPING: f64 = 4.0;
 
-/// Damping of the contact of rigid bodies: the speed that a body gains over its thickness, at the
-/// acceleration that contact withstands, over that at which damping counts fully.
+/// Damping of the contact of rigid bodies: the speed that a body gains over its thickness at
+/// `ACCELERATION`, relative to the speed at which damping counts fully.
 const RIGID_DAMPING: f64 = 1.5;
 
-/// What a body says of its skin, and what it is made of.
+/// Material of a body and the keys that describe its skin.
 pub(super) struct SkinSpec {
     pub thickness: Option<f64>,
     pub friction: f64,
@@ -31,11 +31,11 @@ pub(super) struct SkinSpec {
 }
 
 impl SkinSpec {
-    /// Skin of a particle of that mass (kg), at that distance (m) of its neighbours.
+    /// Creates the skin of a particle of this mass (kg) with this thickness (m).
     fn skin(&self, mass: f64, thickness: f64) -> Skin {
         Skin {
             thickness,
-            stiffness: self.stiffness.max(mass * WITHSTOOD / thickness),
+            stiffness: self.stiffness.max(mass * ACCELERATION / thickness),
             // Damping counts fully where the gap would close within four times the springs' own
             // time: bounces die away as fast as the springs' oscillations.
             damping: DAMPING * self.time / thickness,
@@ -45,10 +45,11 @@ impl SkinSpec {
         }
     }
 
-    /// Skins of particles of these masses (kg), all at that distance (m) of their neighbours.
+    /// Creates the skins of particles of these masses (kg), all at this distance (m) from their
+    /// neighbours.
     pub fn uniform(&self, masses: &[f64], spacing: f64) -> Result<Vec<Skin>, Fault> {
         self.check()?;
-        let most = SHARE * spacing;
+        let most = MAX_THICKNESS * spacing;
         let thickness = self.thickness.unwrap_or(most);
         if thickness > most * (1.0 + 1e-9) {
             let why = format!(
@@ -60,12 +61,12 @@ impl SkinSpec {
         Ok(masses.iter().map(skin).collect())
     }
 
-    /// Skins of particles of these masses (kg), at these distances (m) of their neighbours, and no
-    /// thicker than these allow.
+    /// Creates the skins of particles of these masses (kg), which are no thicker than their
+    /// distances (m) from their neighbours allow.
     pub fn fitted(&self, masses: &[f64], spacings: &[f64]) -> Result<Vec<Skin>, Fault> {
         self.check()?;
         let thickness = |spacing: f64| {
-            let most = SHARE * spacing;
+            let most = MAX_THICKNESS * spacing;
             self.thickness.map_or(most, |thickness| thickness.min(most))
         };
         let all = masses.iter().zip(spacings);
@@ -83,7 +84,7 @@ impl SkinSpec {
     }
 }
 
-/// Skin of the points of a rigid body of that mass (kg).
+/// Creates the skin of the points of a rigid body of this mass (kg).
 pub(super) fn rigid_skin(
     mass: f64,
     thickness: f64,
@@ -98,7 +99,7 @@ pub(super) fn rigid_skin(
     };
     spec.check()?;
     Ok(Skin {
-        damping: RIGID_DAMPING / (WITHSTOOD * thickness).sqrt(),
+        damping: RIGID_DAMPING / (ACCELERATION * thickness).sqrt(),
         // A face rests on several points.
         ..spec.skin(0.25 * mass, thickness)
     })

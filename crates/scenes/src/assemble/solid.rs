@@ -13,14 +13,14 @@ use crate::description::{Pin, Solid, SolidModel, Spot};
 use crate::fault::Fault;
 use crate::mesh::{Mesh, boundary};
 
-/// Solid with the tetrahedra that its file has.
+/// Solid with the tetrahedra of its file.
 pub(super) struct LoadedSolid<'a> {
     pub solid: &'a Solid,
     /// Mesh of the file; `None` for a box.
     pub mesh: Option<Mesh>,
 }
 
-/// Points and tetrahedra of a solid about its origin.
+/// Points and tetrahedra of a solid, relative to its origin.
 struct Shape {
     positions: Vec<Vector3<f64>>,
     tetrahedra: Vec<[u32; 4]>,
@@ -28,7 +28,7 @@ struct Shape {
 }
 
 impl LoadedSolid<'_> {
-    /// Lattice of a box and the lengths of its edges (m); `None` for a file.
+    /// Returns the lattice of a box and the lengths of its edges (m); `None` for a file.
     fn lattice(&self) -> Result<Option<(Lattice, Vector3<f64>)>, Fault> {
         let Solid {
             grid, size, scale, ..
@@ -95,7 +95,8 @@ impl LoadedSolid<'_> {
 }
 
 impl LoadedSolid<'_> {
-    /// An error of a tetrahedron with the numbers that the file gives to it and its corners.
+    /// Rewrites an error of a tetrahedron with the numbers that the file gives to it and its
+    /// corners.
     fn in_file(
         &self,
         why: Error,
@@ -204,7 +205,7 @@ impl Body for LoadedSolid<'_> {
     }
 }
 
-/// Least height of a tetrahedron over one of its faces (m).
+/// Returns the smallest height of a tetrahedron over one of its faces (m).
 fn height([a, b, c, d]: [Vector3<f64>; 4], volume: f64) -> f64 {
     let faces = [
         (b - a, c - a),

@@ -15,10 +15,10 @@ use crate::description::{PartSpec, Pin, RigidBody, Spot};
 use crate::fault::Fault;
 use crate::mesh::Mesh;
 
-/// Thickness of a body if none is given, as a share of its smallest part.
+/// Default thickness of a body, relative to its smallest part.
 const THICKNESS: f64 = 0.02;
 
-/// A rigid body with its parts, as seen from its origin.
+/// Rigid body with its parts, relative to its origin.
 pub(super) struct LoadedBody<'a> {
     body: &'a RigidBody,
     parts: Vec<Part>,
@@ -27,7 +27,7 @@ pub(super) struct LoadedBody<'a> {
 }
 
 impl<'a> LoadedBody<'a> {
-    /// The body with its files read by `mesh`.
+    /// Reads the files of the body by `mesh`.
     pub fn load(
         body: &'a RigidBody,
         budget: &mut Budget,
@@ -54,7 +54,7 @@ impl<'a> LoadedBody<'a> {
         Ok(loaded)
     }
 
-    /// Mass, centre and inertia of all parts together, seen from the origin.
+    /// Returns the mass, the centre and the inertia of all parts together, relative to the origin.
     fn properties(&self) -> Result<MassProperties, Fault> {
         let (by_volume, number) = one_of(("density", self.body.density), ("mass", self.body.mass))?;
         at(
@@ -115,7 +115,7 @@ impl Body for LoadedBody<'_> {
         let origin = Vector3::from(body.at.unwrap_or_default());
         let place = origin + turn * properties.center;
         let count = 1 + made.points().len();
-        // The points follow when the scene is made.
+        // The network moves the points to their places when it is complete.
         assembly.positions.extend(vec![place; count]);
         let velocity = Vector3::from(body.velocity.unwrap_or_default());
         assembly.velocities.extend(vec![velocity; count]);
@@ -140,7 +140,7 @@ impl Body for LoadedBody<'_> {
     }
 }
 
-/// Shape of a part, and its smallest extent (m).
+/// Returns the shape of a part, and its smallest extent (m).
 fn shape(
     spec: &PartSpec,
     budget: &mut Budget,

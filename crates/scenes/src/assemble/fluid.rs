@@ -11,28 +11,28 @@ use crate::check::{at, at_least, positive};
 use crate::description::{Fluid, FluidShape, Pin, Spot};
 use crate::fault::Fault;
 
-/// Layers of particles of a wall: with three, the particles at the inner side of a wall have all
+/// Number of layers of particles in a wall: with three, the fluid particles next to a wall have all
 /// their neighbours.
 pub const LAYERS: u32 = 3;
 
-/// Least distance of two particles of a fluid at the beginning over the spacing: nearer ones would
-/// fly apart.
-const NEAREST: f64 = 0.7;
+/// Smallest initial distance of two particles of a fluid, relative to the spacing. Nearer ones
+/// would repel each other violently.
+const MIN_DISTANCE: f64 = 0.7;
 
-/// Spacing over the speed of sound (s) from which on the methods' default steps, which are made for
-/// cloth, serve a fluid.
-const SLOW: f64 = 0.0125;
+/// Time in which sound crosses the spacing (s), from which on the methods' default steps, which are
+/// chosen for cloth, suit a fluid.
+const MIN_SOUND_TIME: f64 = 0.0125;
 
-/// Factor of the methods' default steps for these fluids, so that sound moves by a part of the
-/// spacing in each.
+/// Returns the factor of the methods' default steps for these fluids, so that sound moves by a
+/// fraction of the spacing in each step.
 pub(super) fn step_scale(fluids: &[Fluid]) -> f64 {
-    let scale = |fluid: &Fluid| fluid.spacing / fluid.sound / SLOW;
+    let scale = |fluid: &Fluid| fluid.spacing / fluid.sound / MIN_SOUND_TIME;
     fluids.iter().map(scale).fold(1.0, f64::min)
 }
 
-/// Particles of a fluid or a tank: those places of a lattice that belong to it.
+/// Lattice of the particles of a fluid or a tank.
 struct Places {
-    /// Number of places along each axis.
+    /// Number of lattice points along each axis.
     counts: [i64; 3],
     /// Corner of the lattice (m).
     corner: Vector3<f64>,
@@ -41,7 +41,7 @@ struct Places {
 }
 
 impl Places {
-    /// Lattice that fills a box.
+    /// Creates the lattice that fills a box.
     fn new(fluid: &Fluid, size: [f64; 3], center: [f64; 3]) -> Result<Self, Fault> {
         let flat = fluid.dimensions == 2;
         let mut counts = [1; 3];
@@ -72,7 +72,7 @@ impl Places {
         })
     }
 
-    /// Number of places of the lattice with so many layers around its sides and its bottom.
+    /// Counts the points of the lattice with `layers` more around its sides and its bottom.
     fn count(&self, layers: i64) -> usize {
         let ends = (0..3).map(|axis| self.range(axis, layers));
         ends.fold(1, |all, range| {
@@ -80,7 +80,7 @@ impl Places {
         })
     }
 
-    /// Places along an axis, with so many layers outside.
+    /// Returns the indices along an axis, with `layers` more outside.
     fn range(&self, axis: usize, layers: i64) -> Range<i64> {
         let n = self.counts[axis];
         match axis {
@@ -90,8 +90,8 @@ impl Places {
         }
     }
 
-    /// Places with so many layers around the sides and the bottom, x fastest, and whether each is
-    /// inside.
+    /// Lists the points of the lattice with `layers` more around its sides and its bottom, x
+    /// fastest, and tells whether each is inside.
     fn all(&self, layers: i64) -> impl Iterator<Item = (Vector3<f64>, bool)> {
         let [x, y, z] = [0, 1, 2].map(|axis| self.range(axis, layers));
         let places = z.flat_map(move |k| {
@@ -120,7 +120,7 @@ impl Fluid {
         }
     }
 
-    /// Lattices of the fluid and of the space in its tank.
+    /// Returns the lattices of the fluid and of the space in its tank.
     fn places(&self) -> Result<(Places, Option<Places>), Fault> {
         for (key, number) in [
             ("spacing", self.spacing),
@@ -142,7 +142,7 @@ impl Fluid {
         Ok((fluid, tank.transpose()?))
     }
 
-    /// `Ok` if the fluid begins within its tank, or above its open top.
+    /// Checks that the fluid begins within its tank, or above its open top.
     fn check_inside(&self) -> Result<(), Fault> {
         let Some(tank) = &self.tank else {
             return Ok(());
@@ -237,7 +237,7 @@ impl Body for Fluid {
     }
 }
 
-/// Adds the fluid of all bodies to a network that begins at x (m), n x 3.
+/// Adds the fluid of all bodies to a network, whose initial positions are `x` (m).
 pub(super) fn add(
     fluid: Option<(FluidLaw, Vec<Range<usize>>)>,
     network: &mut Network,
@@ -249,12 +249,12 @@ pub(super) fn add(
     let particles = particles.into_iter().flatten().map(|i| i as u32);
     let fluid = at("fluid", Liquid::new(law, particles.collect()))?;
     if let Some(([i, j], distance)) = fluid.nearest_pair(x)
-        && distance < NEAREST * law.spacing
+        && distance < MIN_DISTANCE * law.spacing
     {
         let why = format!(
             "particles {i} and {j} would begin {distance} m apart; at least {} is needed, so that \
              they do not fly apart",
-            NEAREST * law.spacing
+            MIN_DISTANCE * law.spacing
         );
         return Err(Fault::new("fluid", why));
     }

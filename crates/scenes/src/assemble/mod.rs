@@ -25,11 +25,10 @@ use std::sync::Arc;
 use a3_core::{Grid, Model, Scene, Swing, Vector3, integrators};
 
 use crate::budget::Budget;
-use crate::check::{at, at_least, positive};
+use crate::check::{at, at_least, key_of, positive};
 use crate::description::Description;
 use crate::fault::Fault;
 use crate::mesh::Mesh;
-use crate::numbers;
 use crate::setup::{Defaults, Presentation, Setup, Viewpoint};
 use crate::surface::Surface;
 use crate::wording::unknown_choice;
@@ -38,8 +37,9 @@ pub use fluid::LAYERS;
 use network::NetworkParts;
 
 impl Description {
-    /// The scene, with this grid of its first cloth instead of its own, if one is given. `mesh`
-    /// reads a file of triangles.
+    /// Builds the scene. A `grid` replaces that of the first cloth. `mesh` reads a file of
+    /// triangles or tetrahedra. Bounds of single numbers are checked where a text is read, and not
+    /// again here for a description that is made in code.
     ///
     /// # Errors
     /// A number makes no sense, or a file cannot be read.
@@ -48,7 +48,6 @@ impl Description {
         grid: Option<Grid>,
         mesh: &mut dyn FnMut(&str) -> Result<Mesh, String>,
     ) -> Result<Setup, Fault> {
-        numbers::check(self)?;
         let Some(grid) = grid else {
             return self.assemble(None, mesh);
         };
@@ -61,13 +60,14 @@ impl Description {
                 ),
             ));
         };
-        let in_cloth = |fault: Fault| fault.within("cloth");
+        let in_cloth = |fault: Fault| fault.within(&key_of("cloth", 0, self.cloth.len()));
         let own_mass = own.checked_mass().map_err(in_cloth)?;
         let mut other = self.clone();
         other.cloth[0].grid = [grid.rows(), grid.cols()];
         let mass = other.cloth[0].checked_mass().map_err(in_cloth)?;
         let mut setup = other.assemble(Some(grid), mesh)?;
-        // Its springs are as stiff, so its fastest motion goes with the root of 1 / m.
+        // Its springs are equally stiff, so its highest frequency is proportional to the root of 1
+        // / m.
         setup.defaults.step_scale = (mass / own_mass).sqrt().min(1.0);
         // A larger cloth is seen from farther away, in proportion.
         if let Ok(own) = self.assemble(None, mesh) {
@@ -82,7 +82,8 @@ impl Description {
         Ok(setup)
     }
 
-    /// The scene; `asked` is a grid that the command line asks for, beyond the budget of a scene.
+    /// Builds the scene. `asked` is a grid from the command line, which adds to the budget of the
+    /// scene.
     fn assemble(
         &self,
         asked: Option<Grid>,
@@ -120,7 +121,7 @@ impl Description {
         let mut scene = Scene::new(self.name.clone().unwrap_or_default(), model, state);
         scene.limits.max_step = self.max_step;
         scene.touch = touch;
-        // A state that is given goes on from a run, which tells its own errors.
+        // A given state comes from a run, which reports the errors of its constraints.
         if self.state.is_none() {
             constraints::check(self, &scene)?;
         }
@@ -153,7 +154,7 @@ impl Description {
         })
     }
 
-    /// The camera of the description, or else one that sees the whole scene.
+    /// Returns the camera of the description, or else one that sees the whole scene.
     fn viewpoint(&self, scene: &Scene) -> Result<Viewpoint, Fault> {
         let Some(camera) = &self.camera else {
             return Ok(Viewpoint::of(scene));
@@ -166,7 +167,7 @@ impl Description {
         Ok(Viewpoint { eye, target })
     }
 
-    /// The solver, its control and the duration.
+    /// Returns the solver, its step or tolerance, and the duration.
     fn defaults(&self) -> Result<Defaults, Fault> {
         let solver = match self.solver.as_deref() {
             None => None,

@@ -18,21 +18,21 @@ use crate::fault::Fault;
 use crate::mesh::Mesh;
 use crate::surface::Surface;
 
-/// Largest number of bodies, as of obstacles of a kind: some work grows with their square.
+/// Largest number of bodies: some work grows with the square of that number.
 const MAX_BODIES: usize = 1000;
 
-/// A network with the state it starts from, and what of it is drawn as a surface.
+/// Network with its initial state, and with its surfaces for drawing and contact.
 pub(super) struct NetworkParts {
     pub network: Network,
     pub state: Vec<f64>,
     pub surface: Surface,
     /// Particles of the walls of each tank.
     pub tanks: Vec<Range<usize>>,
-    /// What can touch, if there is any surface.
+    /// Surfaces that can touch, if there are any.
     pub touch: Option<Arc<Touch>>,
 }
 
-/// Number of bodies, without the circle.
+/// Counts the bodies, without the circle.
 pub(super) fn bodies(description: &Description) -> usize {
     description.cloth.len()
         + description.jelly.len()
@@ -44,7 +44,7 @@ pub(super) fn bodies(description: &Description) -> usize {
         + description.fluid.len()
 }
 
-/// Builds everything but the circle. `mesh` reads a file of triangles.
+/// Builds the network. `mesh` reads a file of triangles or tetrahedra.
 pub(super) fn build(
     description: &Description,
     budget: &mut Budget,
@@ -82,7 +82,7 @@ pub(super) fn build(
         state.resize(first + ROTATION, 0.0);
         rotation.write(&mut state[first..]);
     }
-    // Puts the points of bodies to their places.
+    // Moves the points of rigid bodies to their places.
     network.hold(0.0, &mut state);
     for rod in assembly.rods {
         at("", network.add_constraint(rod))?;
@@ -122,7 +122,7 @@ pub(super) fn build(
     })
 }
 
-/// Whether surfaces touch: rigid bodies always do, and so does all that is elastic itself.
+/// Whether surfaces touch: those of rigid bodies and of bodies with a restitution always do.
 fn touches(description: &Description) -> bool {
     let asked = description.self_collision || obstacles::is_one_thick(description);
     asked || !description.body.is_empty() || is_one_elastic(description)
@@ -140,7 +140,7 @@ fn is_one_elastic(description: &Description) -> bool {
     all.chain(chains).chain(particles).any(|e| e != 0.0)
 }
 
-/// All bodies, in the order in which their particles are numbered.
+/// Adds all bodies, in the order in which their particles are numbered.
 fn assembled(
     description: &Description,
     budget: &mut Budget,

@@ -10,7 +10,7 @@ use crate::fault::Fault;
 /// Density of air (kg/m3), drag coefficient and lift coefficient, where they are not given.
 const AIR: [(&str, f64); 3] = [("density", 1.2), ("drag", 1.2), ("lift", 0.6)];
 
-/// Sets gravity, drag, the stretch at which springs break, and breaks those that are torn.
+/// Sets gravity, drag and the stretch at which springs break, and breaks the springs that are torn.
 pub(super) fn set(description: &Description, network: &mut Network) -> Result<(), Fault> {
     if let Some(g) = description.gravity {
         network.set_gravity(Vector3::from(g));
@@ -19,7 +19,7 @@ pub(super) fn set(description: &Description, network: &mut Network) -> Result<()
         (Some(_), Some(_)) => return Err(Fault::not_both("drag", "drag_per_mass")),
         (Some(drag), None) => Some(("drag", drag)),
         (None, Some(rate)) => {
-            // Points that rigid bodies carry have neither mass nor drag.
+            // Points of rigid bodies have neither mass nor drag.
             let masses = network.masses().iter().copied().filter(|m| *m > 0.0);
             let masses: Vec<_> = masses.collect();
             Some(("drag_per_mass", rate * mean(&masses)))
@@ -33,7 +33,7 @@ pub(super) fn set(description: &Description, network: &mut Network) -> Result<()
     at("torn", network.break_springs(&description.torn))
 }
 
-/// The wind on the particles or the triangles of a network.
+/// Creates the wind on the particles or the triangles of a network.
 pub(super) fn wind(spec: &WindSpec, network: &Network) -> Result<Wind, Fault> {
     let given = [
         ("force", spec.force),
@@ -79,7 +79,7 @@ pub(super) fn wind(spec: &WindSpec, network: &Network) -> Result<Wind, Fault> {
 }
 
 fn mean(masses: &[f64]) -> f64 {
-    // Equal masses have their common value, without rounding.
+    // The mean of equal masses is their common value, without rounding.
     if masses.iter().all(|m| *m == masses[0]) {
         masses[0]
     } else {
