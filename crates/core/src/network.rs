@@ -3,7 +3,9 @@
 mod attraction;
 mod bodies;
 mod build;
+mod contact_layer;
 mod crossings;
+mod element;
 mod elements;
 mod energies;
 mod evaluation;
@@ -22,6 +24,7 @@ mod tearing;
 
 pub(crate) use attraction::{attract, let_go, mass_behind};
 pub use build::Network;
+pub use element::Element;
 pub(crate) use energies::{add_wind, energy_of_errors, is_conservative};
 pub(crate) use holding::{contradiction, is_nearly_singular};
 pub use surfaces::Touch;

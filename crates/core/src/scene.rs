@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use nalgebra::Vector3;
 
-use crate::elements::{Element, Sheet, Wind};
+use crate::elements::{Sheet, Wind};
 use crate::error::Error;
 use crate::geometry::Shape;
 use crate::grid::Grid;
@@ -62,10 +62,9 @@ impl Model {
     #[must_use]
     pub fn work(&self) -> f64 {
         let each = |network: &Network| {
-            let mut elements = network.elements().iter();
             if network.contact_layer().is_some() {
                 TOUCHING
-            } else if elements.any(|element| matches!(element, Element::Fluid(_))) {
+            } else if network.fluid().is_some() {
                 FLUID
             } else {
                 1.0

@@ -31,6 +31,14 @@ impl Force for Airflow {
         "wind"
     }
 
+    fn is_driven(&self) -> bool {
+        true
+    }
+
+    fn wind(&self) -> Option<&Wind> {
+        Some(&self.wind)
+    }
+
     fn add_forces(&self, at: &At, f: &mut [f64]) {
         self.add_in(threads(at.triangles.len()), at, f);
     }

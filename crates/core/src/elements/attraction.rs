@@ -39,6 +39,10 @@ impl Force for Attraction {
         "attraction"
     }
 
+    fn is_driven(&self) -> bool {
+        true
+    }
+
     fn check(&self, particles: usize) -> Result<(), Error> {
         check_particle(self.particle, particles)
     }

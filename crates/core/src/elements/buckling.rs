@@ -12,7 +12,7 @@
 use std::f64::consts::PI;
 
 use super::axial::{self, Elastic};
-use super::force::{At, Cost, Force, check_ends, ends};
+use super::force::{At, Cost, Force, Matter, check_ends, ends};
 use crate::coupling::Coupling;
 use crate::energy::Energy;
 use crate::error::{Error, at_least, positive};
@@ -74,6 +74,10 @@ impl BucklingSprings {
 impl Force for BucklingSprings {
     fn name(&self) -> &'static str {
         "buckling"
+    }
+
+    fn matter(&self) -> Option<Matter> {
+        Some(Matter::Elastic)
     }
 
     fn check(&self, particles: usize) -> Result<(), Error> {

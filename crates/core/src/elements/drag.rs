@@ -20,7 +20,7 @@ impl Force for Drag {
     }
 
     fn reads_velocity(&self) -> bool {
-        true
+        self.0 > 0.0
     }
 
     fn carried(&self) -> Option<Carried> {

@@ -1,7 +1,10 @@
 //! The questions that every element of a network answers.
 
+use std::any::Any;
+
 use nalgebra::Vector3;
 
+use super::wind::Wind;
 use crate::coupling::{Coupling, Diagonal, Matrix};
 use crate::energy::Energy;
 use crate::error::Error;
@@ -40,15 +43,46 @@ pub(crate) struct Cost {
     pub price: f64,
 }
 
+/// Kind of matter that a force holds together.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Matter {
+    /// Springs, each of one stiffness and one damping, which a network lists one by one.
+    Springs,
+    /// An elastic body that such springs do not describe.
+    Elastic,
+    /// A fluid.
+    Fluid,
+}
+
 /// Price of gathering the couplings of springs, in evaluations of them. It was measured on cloth
 /// and on chains.
 pub(crate) const GATHERING: f64 = 4.0;
 
 /// A force of a network. Matrices of positions, velocities and forces are n x 3, column-major;
 /// forces are in N.
-pub(crate) trait Force {
+pub(crate) trait Force: Any {
     /// Name in lists of forces.
     fn name(&self) -> &'static str;
+
+    /// Name of the damping in lists of forces, if the force is elastic.
+    fn damping_name(&self) -> &'static str {
+        "spring damping"
+    }
+
+    /// Kind of matter that the force holds together; none for external forces and for contact.
+    fn matter(&self) -> Option<Matter> {
+        None
+    }
+
+    /// Whether the force depends on time, and so does work on the network from outside.
+    fn is_driven(&self) -> bool {
+        false
+    }
+
+    /// The wind that the force comes from, if it is that of a wind.
+    fn wind(&self) -> Option<&Wind> {
+        None
+    }
 
     /// Checks that every particle index is below the number of `particles`.
     fn check(&self, _particles: usize) -> Result<(), Error> {
@@ -65,8 +99,19 @@ pub(crate) trait Force {
     /// `clamped`, each stiffness is positive semi-definite.
     fn couplings(&self, _t: f64, _x: &[f64], _clamped: bool, _visit: &mut dyn FnMut(Coupling)) {}
 
+    /// Whether [`couplings`](Self::couplings) visits all pairs. If not, implicit methods refuse the
+    /// network.
+    fn lists_all_couplings(&self) -> bool {
+        true
+    }
+
+    /// Whether the couplings are multiplied together, and not one by one.
+    fn multiplies_together(&self) -> bool {
+        false
+    }
+
     /// Adds the blocks on the diagonal of an implicit step's matrix that come from the couplings,
-    /// where these are multiplied together and not one by one; their number.
+    /// if they are [multiplied together](Self::multiplies_together). Returns their number.
     fn add_diagonal(&self, _matrix: &Matrix, _diagonal: &mut Diagonal) -> usize {
         0
     }

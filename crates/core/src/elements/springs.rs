@@ -4,7 +4,7 @@ use std::sync::OnceLock;
 
 use super::axial::{add_all, add_differential, coupling, energy};
 use super::diagonal::add_springs;
-use super::force::{At, Cost, Force, check_ends, ends};
+use super::force::{At, Cost, Force, Matter, check_ends, ends};
 use super::packed::{Packed, SPEED};
 use crate::coupling::{Coupling, Diagonal, Matrix};
 use crate::energy::Energy;
@@ -52,7 +52,7 @@ impl Springs {
     }
 
     /// They in blocks, if there are many.
-    pub(super) fn packed(&self) -> Option<&Packed> {
+    pub(crate) fn packed(&self) -> Option<&Packed> {
         self.packed.get_or_init(|| Packed::new(&self.all)).as_ref()
     }
 }
@@ -72,6 +72,10 @@ impl PartialEq for Springs {
 impl Force for Springs {
     fn name(&self) -> &'static str {
         "springs"
+    }
+
+    fn matter(&self) -> Option<Matter> {
+        Some(Matter::Springs)
     }
 
     fn check(&self, particles: usize) -> Result<(), Error> {
@@ -101,6 +105,10 @@ impl Force for Springs {
         for spring in &self.all {
             visit(coupling(spring, x, clamped));
         }
+    }
+
+    fn multiplies_together(&self) -> bool {
+        self.packed().is_some()
     }
 
     fn add_diagonal(&self, matrix: &Matrix, diagonal: &mut Diagonal) -> usize {

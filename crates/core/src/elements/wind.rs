@@ -213,6 +213,14 @@ impl Force for Wind {
         "wind"
     }
 
+    fn is_driven(&self) -> bool {
+        true
+    }
+
+    fn wind(&self) -> Option<&Wind> {
+        Some(self)
+    }
+
     fn add_forces(&self, at: &At, f: &mut [f64]) {
         let n = at.masses.len();
         fork(threads(n), 0..n, 1, columns_mut(f), &|particles, mut f| {

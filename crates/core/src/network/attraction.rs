@@ -1,26 +1,24 @@
 //! The hand that attracts a particle which constraints hold.
 
 use super::build::Network;
-use crate::elements::{Attraction, Element};
+use crate::elements::Attraction;
 use crate::path::Path;
 
 /// Attracts a particle that constraints hold to a path, by a spring of that natural frequency
 /// (1/s): a pin would tear the constraints.
 pub(crate) fn attract(network: &mut Network, particle: usize, path: Path, frequency: f64) {
-    let_go(network);
     let attraction = Attraction {
         particle,
         mass: mass_behind(network, particle),
         path,
         frequency,
     };
-    network.elements.insert(attraction.into());
+    network.elements.replace_all(Some(attraction));
 }
 
 /// Ends the attraction.
 pub(crate) fn let_go(network: &mut Network) {
-    let is = |element: &Element| matches!(element, Element::Attraction(_));
-    network.elements.replace(is, None);
+    network.elements.replace_all::<Attraction>(None);
 }
 
 /// Mass (kg) that moves with particle i: its own, or that of the body that carries it.

@@ -5,14 +5,15 @@ use std::ops::Range;
 use nalgebra::Vector3;
 
 use super::bodies::Bodies;
+use super::element::Element;
 use super::elements::Elements;
 use super::particles::Particles;
 use super::strain::StrainLimits;
 use super::surfaces::{Surfaces, Touch};
 use super::tearing::Tears;
 use crate::constraints::{Constraint, Constraints};
-use crate::contact::{Obstacle, Shape};
-use crate::elements::{Buckling, Element, Wind};
+use crate::contact::{ContactLayer, Obstacle, Shape};
+use crate::elements::{Buckling, Wind};
 use crate::error::{Error, at_least, positive};
 use crate::path::Path;
 use crate::rigid::Body;
@@ -370,8 +371,7 @@ impl Network {
     /// There is no such obstacle.
     pub fn lead_obstacle(&mut self, k: usize, path: Path) -> Result<(), Error> {
         let obstacle = self.surfaces.lead_obstacle(k, path)?;
-        let mut elements = self.elements.all_mut().iter_mut();
-        if let Some(layer) = elements.find_map(Element::contact_layer_mut) {
+        if let Some(layer) = self.elements.first_mut::<ContactLayer>() {
             layer.set_obstacle(k, obstacle.clone());
         }
         Ok(())
@@ -390,7 +390,6 @@ impl Network {
     /// Creates the contact of surfaces again, of the triangles and obstacles that are there now.
     fn renew_contact(&mut self) {
         let layer = self.surfaces.layer(self.bodies.all(), &self.tears);
-        let is = |element: &Element| matches!(element, Element::ContactLayer(_));
-        self.elements.replace(is, layer.map(Into::into));
+        self.elements.replace_all(layer);
     }
 }

@@ -4,10 +4,11 @@ use std::ops::Range;
 
 use nalgebra::Vector3;
 
+use super::element::Element;
 use crate::contact::ContactLayer;
-use crate::elements::force::{At, ByParticle, Carried, Force, GATHERING};
+use crate::elements::force::{At, ByParticle, Carried, Force, GATHERING, Matter};
 use crate::elements::sheet::{Quantity, set};
-use crate::elements::{Airflow, Drag, Element, Finish, Fluid, Gravity, Sheet, Solid, Wind};
+use crate::elements::{Airflow, Drag, Finish, Fluid, Gravity, Sheet, Solid, Wind};
 use crate::error::Error;
 
 /// Elements in the order of their kinds, and those of one kind as they were added.
@@ -46,7 +47,7 @@ impl Elements {
     /// Adds an element after those of its kind, if its particles exist and are in no other sheet.
     pub fn add(&mut self, element: Element) -> Result<(), Error> {
         element.force().check(self.particles)?;
-        if let Element::Sheet(sheet) = &element {
+        if let Some(sheet) = element.get::<Sheet>() {
             let new = sheet.particles();
             let overlaps = |old: Range<usize>| old.start < new.end && new.start < old.end;
             if self.sheets().any(|sheet| overlaps(sheet.particles())) {
@@ -78,7 +79,7 @@ impl Elements {
         self.single = between.filter(|particles| !particles.is_empty()).collect();
     }
 
-    /// Removes all elements of a kind, and adds one in their place.
+    /// Removes the elements of which `is` is true, and adds one in their place.
     pub fn replace(&mut self, is: impl Fn(&Element) -> bool, by: Option<Element>) {
         self.all.retain(|element| !is(element));
         if let Some(element) = by {
@@ -86,16 +87,20 @@ impl Elements {
         }
     }
 
+    /// Removes all elements of type T, and adds one in their place.
+    pub fn replace_all<T: Force + Into<Element>>(&mut self, by: Option<T>) {
+        let is = |element: &Element| element.get::<T>().is_some();
+        self.replace(is, by.map(Into::into));
+    }
+
     /// Sets gravity g (m/s2); zero means none.
     pub fn set_gravity(&mut self, g: Vector3<f64>) {
-        let gravity = (g != Vector3::zeros()).then_some(Gravity(g).into());
-        self.replace(|element| matches!(element, Element::Gravity(_)), gravity);
+        self.replace_all((g != Vector3::zeros()).then_some(Gravity(g)));
     }
 
     /// Sets the coefficient c (kg/s) of viscous drag; zero means none.
     pub fn set_drag(&mut self, c: f64) {
-        let drag = (c > 0.0).then_some(Drag(c).into());
-        self.replace(|element| matches!(element, Element::Drag(_)), drag);
+        self.replace_all((c > 0.0).then_some(Drag(c)));
     }
 
     /// Sets the wind on particles or on triangles, or none.
@@ -104,8 +109,7 @@ impl Elements {
             Some(air) => Airflow { wind, air }.into(),
             None => wind.into(),
         });
-        let is = |element: &Element| matches!(element, Element::Wind(_) | Element::Airflow(_));
-        self.replace(is, element);
+        self.replace(|element| element.force().wind().is_some(), element);
     }
 
     /// Removes the springs between pairs of particles.
@@ -113,17 +117,27 @@ impl Elements {
         for element in &mut self.all {
             element.force_mut().remove_springs(torn);
         }
-        // What is empty would still keep sweeps away.
-        let is_left = |e: &Element| e.sheet().is_some() || !e.is_elastic() || !e.is_empty();
+        // An empty element would still prevent sweeps.
+        let is_left = |e: &Element| e.get::<Sheet>().is_some() || !e.is_elastic() || !e.is_empty();
         self.all.retain(is_left);
     }
 
+    /// The elements of type T.
+    pub fn of<T: Force>(&self) -> impl Iterator<Item = &T> + Clone {
+        self.all.iter().filter_map(Element::get)
+    }
+
+    /// The first element of type T, to be changed.
+    pub fn first_mut<T: Force>(&mut self) -> Option<&mut T> {
+        self.all.iter_mut().find_map(Element::get_mut)
+    }
+
     pub fn sheets(&self) -> impl Iterator<Item = &Sheet> + Clone {
-        self.all.iter().filter_map(Element::sheet)
+        self.of()
     }
 
     pub fn solids(&self) -> impl Iterator<Item = &Solid> {
-        self.all.iter().filter_map(Element::solid)
+        self.of()
     }
 
     pub fn elastic(&self) -> impl Iterator<Item = &Element> + Clone {
@@ -131,32 +145,23 @@ impl Elements {
     }
 
     pub fn fluid(&self) -> Option<&Fluid> {
-        self.all.iter().find_map(Element::fluid)
+        self.of().next()
     }
 
     pub fn contact_layer(&self) -> Option<&ContactLayer> {
-        self.all.iter().find_map(Element::contact_layer)
+        self.of().next()
     }
 
     pub fn gravity(&self) -> Option<Vector3<f64>> {
-        self.all.iter().find_map(|element| match element {
-            Element::Gravity(Gravity(g)) => Some(*g),
-            _ => None,
-        })
+        self.of().next().map(|Gravity(g)| *g)
     }
 
     pub fn drag(&self) -> Option<f64> {
-        self.all.iter().find_map(|element| match element {
-            Element::Drag(Drag(c)) => Some(*c),
-            _ => None,
-        })
+        self.of().next().map(|Drag(c)| *c)
     }
 
     pub fn wind(&self) -> Option<&Wind> {
-        self.all.iter().find_map(|element| match element {
-            Element::Wind(wind) | Element::Airflow(Airflow { wind, .. }) => Some(wind),
-            _ => None,
-        })
+        self.all.iter().find_map(|element| element.force().wind())
     }
 
     /// Names of the forces: springs and solids, their damping, and then others.
@@ -171,8 +176,8 @@ impl Elements {
             list(!element.is_empty(), element.force().name());
         }
         for element in self.elastic() {
-            let damping = element.solid().map_or("spring damping", |_| "viscosity");
-            list(element.force().reads_velocity(), damping);
+            let force = element.force();
+            list(force.reads_velocity(), force.damping_name());
         }
         for element in self.all.iter().filter(|element| !element.is_elastic()) {
             list(true, element.force().name());
@@ -189,17 +194,21 @@ impl Elements {
     pub fn are_in_rows(&self) -> bool {
         let in_rows = |element: &Element| {
             let force = element.force();
-            element.sheet().is_some() || force.carried().is_some() || force.by_particle().is_some()
+            element.get::<Sheet>().is_some()
+                || force.carried().is_some()
+                || force.by_particle().is_some()
         };
         self.single.is_empty() && self.all.iter().all(in_rows)
     }
 
     /// Whether springs of one stiffness and damping each are all that couples particles.
     pub fn are_springs(&self) -> bool {
-        let is_no_spring = |e: &Element| {
-            matches!(e, Element::BucklingSprings(_) | Element::Solid(_)) && !e.is_empty()
+        let is_spring = |e: &Element| match e.force().matter() {
+            None | Some(Matter::Springs) => true,
+            Some(Matter::Elastic) => e.is_empty(),
+            Some(Matter::Fluid) => false,
         };
-        self.fluid().is_none() && !self.all.iter().any(is_no_spring)
+        self.all.iter().all(is_spring)
     }
 
     /// Gravity and drag together.
@@ -227,7 +236,7 @@ impl Elements {
         f: &mut [f64],
         finish: &Finish,
     ) {
-        let is_other = |element: &&Element| element.sheet().is_none();
+        let is_other = |element: &&Element| element.get::<Sheet>().is_none();
         let mut others = elements.clone().filter(is_other).peekable();
         let added = others.peek().is_some();
         if added {
@@ -236,7 +245,7 @@ impl Elements {
             self.clear_single(f);
         }
         others.for_each(|element| element.force().add_forces(at, f));
-        for sheet in elements.filter_map(Element::sheet) {
+        for sheet in elements.filter_map(Element::get::<Sheet>) {
             set(Quantity::Forces, sheet, &[at.x, at.v], f, added, finish);
         }
         self.finish_single(at.v, f, finish);
@@ -277,7 +286,7 @@ impl Elements {
     pub fn gathering(&self) -> f64 {
         let price = self.sum_of(|force| force.cost().price);
         if price > 0.0 {
-            self.sum_of(|force| force.gathering()) / price
+            self.sum_of(Force::gathering) / price
         } else {
             GATHERING
         }

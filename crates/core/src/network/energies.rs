@@ -1,9 +1,9 @@
 //! The energy in a state of a network, and what may change it.
 
 use super::build::Network;
+use super::element::Element;
 use super::evaluation::at;
 use crate::contact::Obstacle;
-use crate::elements::Element;
 use crate::energy::Energy;
 use crate::path::Path;
 use crate::random::SplitMix;
@@ -56,7 +56,7 @@ pub(crate) fn energy_of_errors(network: &Network, t: f64, y: &[f64], error: f64)
 /// Adds the forces of wind (N) in the state (x, v) at time t (s) to f.
 pub(crate) fn add_wind(network: &Network, t: f64, x: &[f64], v: &[f64], f: &mut [f64]) {
     for element in network.elements() {
-        if matches!(element, Element::Wind(_) | Element::Airflow(_)) {
+        if element.force().wind().is_some() {
             element.force().add_forces(&at(network, t, x, v), f);
         }
     }
@@ -67,9 +67,7 @@ pub(crate) fn add_wind(network: &Network, t: f64, x: &[f64], v: &[f64], f: &mut 
 pub(crate) fn is_conservative(network: &Network) -> bool {
     let loses = |element: &Element| {
         let force = element.force();
-        let carried = force.carried().is_some_and(|carried| carried.drag > 0.0);
-        let blows = matches!(element, Element::Wind(_) | Element::Attraction(_));
-        carried || blows || force.carried().is_none() && force.reads_velocity()
+        force.is_driven() || force.reads_velocity()
     };
     let mut paths = network.pins().map(|(_, path)| path);
     !network.elements().iter().any(loses)

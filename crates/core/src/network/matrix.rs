@@ -1,17 +1,18 @@
 //! The matrix of an implicit step, as far as it is known without its couplings one by one: those of
 //! springs in sheets, and of single ones if there are many.
 
+use super::element::Element;
 use super::elements::Elements;
 use crate::coupling::{Coupling, Diagonal, Matrix};
 use crate::elements::sheet::{Quantity, set};
-use crate::elements::{Element, Finish, Sheet};
+use crate::elements::{Finish, Sheet, Springs};
 use crate::system::divide_by_masses;
 
 /// Writes the product of the known part of the matrix and p to out. Returns the number of springs
 /// in it; 0 if out was left as it is.
 pub(super) fn multiply(elements: &Elements, matrix: &Matrix, p: &[f64], out: &mut [f64]) -> usize {
     let in_sheets: usize = elements.sheets().map(Sheet::len).sum();
-    let packed = elements.all().iter().find_map(Element::packed);
+    let packed = elements.of::<Springs>().find_map(Springs::packed);
     if in_sheets == 0 && packed.is_none() {
         return 0;
     }
@@ -52,8 +53,8 @@ pub(super) fn other_couplings(
     clamped: bool,
     visit: &mut dyn FnMut(Coupling),
 ) {
-    let is_fast = |element: &&Element| element.sheet().is_some() || element.packed().is_some();
-    for element in elements.all().iter().filter(|element| !is_fast(element)) {
-        element.force().couplings(t, x, clamped, visit);
+    let all = elements.all().iter().map(Element::force);
+    for force in all.filter(|force| !force.multiplies_together()) {
+        force.couplings(t, x, clamped, visit);
     }
 }

@@ -1,12 +1,13 @@
 //! A network as integrators see it: forces, accelerations, kicks and drifts, couplings and springs.
 
 use super::build::Network;
+use super::element::Element;
 use super::evaluation::{at, finish, flow, other_forces};
 use super::holding::hold_particles;
 use super::matrix;
 use crate::columns::columns_mut;
 use crate::coupling::{Coupling, Diagonal, Matrix};
-use crate::elements::{Element, Finish};
+use crate::elements::{Drag, Finish};
 use crate::path::Place;
 use crate::rows::{Rows, Terms};
 use crate::spring::SpringLaw;
@@ -132,7 +133,8 @@ impl Linearized for Network {
     }
 
     fn lists_all_couplings(&self) -> bool {
-        self.fluid().is_none()
+        let mut elements = self.elements().iter();
+        elements.all(|element| element.force().lists_all_couplings())
     }
 
     /// Half the largest thickness (m) of surfaces that touch; infinite if none do.
@@ -163,14 +165,12 @@ impl Linearized for Network {
 impl Compliant for Network {
     /// Those of sheets direction by direction, then the single ones.
     fn springs(&self, visit: &mut dyn FnMut([usize; 2], SpringLaw)) {
-        for element in self.elements() {
-            element.springs().for_each(|s| visit([s.i, s.j], s.law));
-        }
+        self.springs().for_each(|s| visit([s.i, s.j], s.law));
     }
 
     fn other_forces(&self, t: f64, x: &[f64], v: &[f64], f: &mut [f64]) {
         f.fill(0.0);
-        let is_other = |e: &&Element| !e.is_elastic() && !matches!(e, Element::Drag(_));
+        let is_other = |e: &&Element| !e.is_elastic() && e.get::<Drag>().is_none();
         for element in self.elements().iter().filter(is_other) {
             element.force().add_forces(&at(self, t, x, v), f);
         }

@@ -5,12 +5,13 @@ use std::ops::Range;
 use nalgebra::Vector3;
 
 use super::build::Network;
+use super::element::Element;
 use super::evaluation::{at, prescribed};
 use super::surfaces::Touch;
 use super::{crossings, energies};
 use crate::constraints::Constraint;
 use crate::contact::{ContactLayer, Crossed, Obstacle, StrainLimit, crossed};
-use crate::elements::{Buckling, Element, Finish, Fluid, Sheet, Wind};
+use crate::elements::{Buckling, Finish, Fluid, Sheet, Wind};
 use crate::energy::Energy;
 use crate::error::{Error, Unmet};
 use crate::path::{Path, Pose};

@@ -17,7 +17,7 @@ mod neighbours;
 
 use std::sync::{Mutex, PoisonError};
 
-use super::force::{At, Cost, Force, check_particle};
+use super::force::{At, Cost, Force, Matter, check_particle};
 use crate::energy::Energy;
 use crate::error::Error;
 use crate::threads::threads;
@@ -249,6 +249,10 @@ impl Force for Fluid {
         "fluid"
     }
 
+    fn matter(&self) -> Option<Matter> {
+        Some(Matter::Fluid)
+    }
+
     fn check(&self, particles: usize) -> Result<(), Error> {
         let mut all = self.particles.iter();
         all.try_for_each(|i| check_particle(*i as usize, particles))
@@ -347,6 +351,11 @@ impl Force for Fluid {
             });
             self.add(out, df);
         });
+    }
+
+    /// Each particle acts on the neighbours of its neighbours, too.
+    fn lists_all_couplings(&self) -> bool {
+        false
     }
 
     fn energy(&self, at: &At) -> Energy {

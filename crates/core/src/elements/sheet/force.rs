@@ -3,7 +3,7 @@
 use super::super::axial;
 use super::super::diagonal::add_runs;
 use super::super::finish::Finish;
-use super::super::force::{At, Cost, Force, check_particle};
+use super::super::force::{At, Cost, Force, Matter, check_particle};
 use super::model::Sheet;
 use super::offsets::OFFSETS;
 use super::strips::{Quantity, set};
@@ -19,6 +19,10 @@ const SPEED: f64 = 3.0;
 impl Force for Sheet {
     fn name(&self) -> &'static str {
         "springs"
+    }
+
+    fn matter(&self) -> Option<Matter> {
+        Some(Matter::Springs)
     }
 
     fn check(&self, particles: usize) -> Result<(), Error> {
@@ -50,6 +54,10 @@ impl Force for Sheet {
                 visit(axial::coupling(&Spring { kind, i, j, law }, x, clamped));
             }
         }
+    }
+
+    fn multiplies_together(&self) -> bool {
+        true
     }
 
     fn add_diagonal(&self, matrix: &Matrix, diagonal: &mut Diagonal) -> usize {

@@ -14,7 +14,7 @@ use super::matrix::{Matrix, dot, scaled, three};
 use super::number::{Dual, Number, Vector};
 use super::tetrahedra::{Block, Corners, Deformed, LANES, deformation};
 use crate::coupling::Coupling;
-use crate::elements::force::{At, Cost, Force, check_particle};
+use crate::elements::force::{At, Cost, Force, Matter, check_particle};
 use crate::energy::Energy;
 use crate::error::Error;
 
@@ -26,6 +26,14 @@ const GATHERING: f64 = 270.0;
 impl Force for Solid {
     fn name(&self) -> &'static str {
         "solid"
+    }
+
+    fn damping_name(&self) -> &'static str {
+        "viscosity"
+    }
+
+    fn matter(&self) -> Option<Matter> {
+        Some(Matter::Elastic)
     }
 
     fn check(&self, particles: usize) -> Result<(), Error> {

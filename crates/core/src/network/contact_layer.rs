@@ -1,8 +1,8 @@
 //! Contact of surfaces as a force: primitives nearer than their thickness repel each other.
 
-use super::force::{At, Force};
 use crate::contact::ContactLayer;
 use crate::coupling::{AxialCoupling, BlockCoupling, Coupling};
+use crate::elements::force::{At, Force};
 use crate::energy::Energy;
 
 impl Force for ContactLayer {
