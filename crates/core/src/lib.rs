@@ -70,6 +70,7 @@ mod random;
 pub mod rigid;
 mod rows;
 mod scene;
+mod scratch;
 mod serial;
 mod sets;
 mod simulation;

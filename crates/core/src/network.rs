@@ -15,7 +15,6 @@ mod mechanics;
 mod particles;
 mod reading;
 mod rigid;
-mod scratch;
 mod springs;
 mod strain;
 mod surfaces;

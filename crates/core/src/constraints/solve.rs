@@ -27,10 +27,11 @@ const NEARLY_SINGULAR: f64 = 1e5;
 /// of two rods of 1 m, straight and level between two pins, sags by about a millimetre.
 const SOFTNESS: f64 = 1e-8;
 
-/// Scratch of an evaluation: for each place of what moves its inverse mass (1/kg) or those of a
-/// rotation (1/kg m2), a vector, and how it turns, if it is a body; and the rows.
+/// System of equations for the multipliers of one evaluation: the inverse mass (1/kg) of each
+/// particle that constraints move, or the inverse inertias of a rotation (1/kg m2), a vector, and
+/// the rotation, if it is a body's; and the rows.
 #[derive(Default)]
-pub(super) struct Scratch {
+pub(super) struct System {
     pub weights: Vec<Vector3<f64>>,
     pub vectors: Vec<Vector3<f64>>,
     pub turnings: Vec<Option<Turning>>,
@@ -38,22 +39,12 @@ pub(super) struct Scratch {
     factor: Option<Factor>,
 }
 
-impl Scratch {
-    /// Forgets what moved in the last evaluation, but keeps its room.
+impl System {
+    /// Clears all except the rows, and keeps the capacity.
     pub fn clear(&mut self) {
         self.weights.clear();
         self.vectors.clear();
         self.turnings.clear();
-    }
-
-    /// Makes room for so many rows, and so many things that they move.
-    pub fn reserve(&mut self, rows: usize, moved: usize) {
-        self.clear();
-        self.rows.clear();
-        self.weights.reserve(moved);
-        self.vectors.reserve(moved);
-        self.turnings.reserve(moved);
-        self.rows.reserve(rows);
     }
 
     /// Finds the multipliers. Returns whether A is nearly singular, and was made softer.

@@ -4,9 +4,9 @@ use std::ops::Range;
 
 use super::elements::Elements;
 use super::particles::Particles;
-use super::scratch::Scratch;
 use crate::error::Error;
 use crate::rigid::{Body, Moving, ROTATION, Rotation};
+use crate::scratch::Scratch;
 
 /// Rigid bodies, and scratch for their evaluations.
 #[derive(Clone, Debug, Default)]
@@ -14,7 +14,8 @@ pub(super) struct Bodies {
     all: Vec<Body>,
     /// Number of particles.
     particles: usize,
-    pub scratch: Scratch,
+    /// Positions (m), velocities (m/s) and forces (N) of an evaluation, n x 3 each.
+    pub scratch: Scratch<[Vec<f64>; 3]>,
 }
 
 impl Bodies {
@@ -72,7 +73,6 @@ impl Bodies {
 
     pub fn add(&mut self, body: Body) {
         self.all.push(body);
-        self.scratch.reserve(self.particles);
     }
 
     pub fn all(&self) -> &[Body] {

@@ -30,28 +30,26 @@ fn with_forces<T>(
     y: &[f64],
     run: impl FnOnce(&[f64], &[f64], &[f64]) -> T,
 ) -> T {
-    network
-        .bodies
-        .scratch
-        .lend(network.particles(), |[x, v, f]| {
-            let (own_x, own_v) = network.halves(y);
-            x.copy_from_slice(own_x);
-            v.copy_from_slice(own_v);
-            network.bodies.place_points(y, x, v);
-            let at = at(network, t, x, v);
-            network.elements.evaluate(&at, f, &Finish::default());
-            if !drifts_carry(network, terms) {
-                let Carried { gravity, drag } = network.elements.carried();
-                let n = network.particles();
-                for (k, (f, v)) in f.iter_mut().zip(&*v).enumerate() {
-                    let mass = network.masses()[k % n];
-                    *f += mass * gravity[k / n] - if mass > 0.0 { drag * v } else { 0.0 };
-                }
-                let bodies = |k: usize, f: &[f64]| turning(network, k, y, terms, x, f);
-                hold(network, t, [x, v], bodies, f);
+    network.bodies.scratch.lend(|[x, v, f]| {
+        let (own_x, own_v) = network.halves(y);
+        own_x.clone_into(x);
+        own_v.clone_into(v);
+        f.resize(x.len(), 0.0);
+        network.bodies.place_points(y, x, v);
+        let at = at(network, t, x, v);
+        network.elements.evaluate(&at, f, &Finish::default());
+        if !drifts_carry(network, terms) {
+            let Carried { gravity, drag } = network.elements.carried();
+            let n = network.particles();
+            for (k, (f, v)) in f.iter_mut().zip(&*v).enumerate() {
+                let mass = network.masses()[k % n];
+                *f += mass * gravity[k / n] - if mass > 0.0 { drag * v } else { 0.0 };
             }
-            run(x, v, f)
-        })
+            let bodies = |k: usize, f: &[f64]| turning(network, k, y, terms, x, f);
+            hold(network, t, [x, v], bodies, f);
+        }
+        run(x, v, f)
+    })
 }
 
 /// Force and torque on a body at x, of the forces f on its particles. Drag acts on a rotation
@@ -227,9 +225,10 @@ impl Rigid for Network {
         let (x, rest) = y.split_at_mut(3 * n);
         let (v, _) = rest.split_at_mut(3 * n);
         place_pins(self, t, x, v);
-        self.bodies.scratch.lend(n, |[px, pv, _]| {
-            px.copy_from_slice(&y[..3 * n]);
-            pv.copy_from_slice(&y[3 * n..6 * n]);
+        self.bodies.scratch.lend(|[px, pv, _]| {
+            let (own_x, own_v) = self.halves(y);
+            own_x.clone_into(px);
+            own_v.clone_into(pv);
             self.bodies.place_points(y, px, pv);
             y[..3 * n].copy_from_slice(px);
             y[3 * n..6 * n].copy_from_slice(pv);

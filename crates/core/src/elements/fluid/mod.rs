@@ -15,11 +15,10 @@ mod kernel;
 mod law;
 mod neighbours;
 
-use std::sync::{Mutex, PoisonError};
-
 use super::force::{At, Cost, Force, Matter, check_particle};
 use crate::energy::Energy;
 use crate::error::Error;
+use crate::scratch::Scratch;
 use crate::threads::threads;
 use kernel::Kernel;
 use neighbours::{Neighbours, Triple};
@@ -32,17 +31,17 @@ const WEIGHT: usize = 16;
 const SOFTENING: f64 = 0.05;
 
 /// Fluid of one law, made of some of the particles of a network, pinned ones among them.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Fluid {
     law: FluidLaw,
     kernel: Kernel,
     particles: Vec<u32>,
-    /// Scratch that is no part of the value: neighbours, and what is summed over them.
-    scratch: Mutex<Scratch>,
+    scratch: Scratch<Buffers>,
 }
 
-#[derive(Debug, Default)]
-struct Scratch {
+/// Neighbours of each particle of the fluid, and quantities of the particles.
+#[derive(Default)]
+struct Buffers {
     neighbours: Neighbours,
     x: Vec<Triple>,
     v: Vec<Triple>,
@@ -53,16 +52,6 @@ struct Scratch {
     pushes: Vec<f64>,
     changes: Vec<f64>,
     out: Vec<Triple>,
-}
-
-impl Clone for Fluid {
-    fn clone(&self) -> Self {
-        Self {
-            particles: self.particles.clone(),
-            scratch: Mutex::default(),
-            ..*self
-        }
-    }
 }
 
 impl Fluid {
@@ -82,7 +71,7 @@ impl Fluid {
             kernel: law.kernel(),
             law,
             particles,
-            scratch: Mutex::default(),
+            scratch: Scratch::default(),
         })
     }
 
@@ -107,9 +96,9 @@ impl Fluid {
     /// Density (kg/m3) at each particle at x (m), n x 3.
     #[must_use]
     pub fn densities(&self, x: &[f64]) -> Vec<f64> {
-        self.with_scratch(|scratch| {
-            self.weigh(x, scratch);
-            scratch.densities.clone()
+        self.scratch.lend(|buffers| {
+            self.weigh(x, buffers);
+            buffers.densities.clone()
         })
     }
 
@@ -127,14 +116,14 @@ impl Fluid {
     /// nearest of all, if two are within the kernel's reach at x (m), n x 3.
     #[must_use]
     pub fn nearest_pair(&self, x: &[f64]) -> Option<([u32; 2], f64)> {
-        self.with_scratch(|scratch| {
-            self.place(x, &mut scratch.x);
-            let x = &scratch.x;
-            scratch
+        self.scratch.lend(|buffers| {
+            self.place(x, &mut buffers.x);
+            let x = &buffers.x;
+            buffers
                 .neighbours
                 .cover(x, self.kernel.reach, self.is_shared());
             let mut nearest = vec![(f64::INFINITY, 0); x.len()];
-            scratch
+            buffers
                 .neighbours
                 .map(&mut nearest, self.is_shared(), |i, near| {
                     let of = |j: &u32| (neighbours::squared_distance(&x[i], &x[*j as usize]), *j);
@@ -148,16 +137,6 @@ impl Fluid {
             let pair = [i, j as usize].map(|i| self.particles[i]);
             square.is_finite().then(|| (pair, square.sqrt()))
         })
-    }
-
-    /// Lends the scratch. The lock is not held during `work`: a concurrent caller gets fresh
-    /// scratch.
-    fn with_scratch<R>(&self, work: impl FnOnce(&mut Scratch) -> R) -> R {
-        let lock = || self.scratch.lock().unwrap_or_else(PoisonError::into_inner);
-        let mut scratch = std::mem::take(&mut *lock());
-        let result = work(&mut scratch);
-        *lock() = scratch;
-        result
     }
 
     /// Whether threads share the work.
@@ -187,13 +166,13 @@ impl Fluid {
     }
 
     /// Finds the neighbours at x (m), n x 3, and the densities.
-    fn weigh(&self, x: &[f64], scratch: &mut Scratch) {
-        let Scratch {
+    fn weigh(&self, x: &[f64], buffers: &mut Buffers) {
+        let Buffers {
             neighbours,
             x: places,
             densities,
             ..
-        } = scratch;
+        } = buffers;
         self.place(x, places);
         let (kernel, mass, shared) = (self.kernel, self.law.mass(), self.is_shared());
         neighbours.cover(places, kernel.reach, shared);
@@ -259,9 +238,9 @@ impl Force for Fluid {
     }
 
     fn add_forces(&self, at: &At, f: &mut [f64]) {
-        self.with_scratch(|scratch| {
-            self.weigh(at.x, scratch);
-            let Scratch {
+        self.scratch.lend(|buffers| {
+            self.weigh(at.x, buffers);
+            let Buffers {
                 neighbours,
                 x,
                 v,
@@ -269,7 +248,7 @@ impl Force for Fluid {
                 pushes,
                 out,
                 ..
-            } = scratch;
+            } = buffers;
             self.place(at.v, v);
             pushes.clear();
             pushes.extend(densities.iter().map(|density| self.law.push(*density)));
@@ -296,9 +275,9 @@ impl Force for Fluid {
 
     /// With s the factor of d = `x_i` - `x_j` in the force of a pair, dF = ds d + s dd.
     fn add_differential(&self, at: &At, [dx, dv]: [&[f64]; 2], df: &mut [f64]) {
-        self.with_scratch(|scratch| {
-            self.weigh(at.x, scratch);
-            let Scratch {
+        self.scratch.lend(|buffers| {
+            self.weigh(at.x, buffers);
+            let Buffers {
                 neighbours,
                 x,
                 v,
@@ -308,7 +287,7 @@ impl Force for Fluid {
                 pushes,
                 changes,
                 out,
-            } = scratch;
+            } = buffers;
             for (from, to) in [(at.v, &mut *v), (dx, &mut *dplaces), (dv, &mut *dspeeds)] {
                 self.place(from, to);
             }

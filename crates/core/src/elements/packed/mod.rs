@@ -15,13 +15,13 @@ mod runs;
 mod window;
 
 use std::ops::Range;
-use std::sync::{Mutex, TryLockError};
 
 use pulp::Arch;
 
 use super::force::At;
 use crate::columns::columns_mut;
 use crate::coupling::Matrix;
+use crate::scratch::Scratch;
 use crate::spring::Spring;
 use crate::threads::{Columns, split_off, threads};
 use laws::Quantity;
@@ -40,8 +40,8 @@ pub(crate) struct Packed {
     len: usize,
     order: Order,
     is_damped: bool,
-    /// Scratch of each band of particles, no part of the value.
-    windows: Mutex<Vec<Window>>,
+    /// A window for each band of particles.
+    windows: Scratch<Vec<Window>>,
 }
 
 /// What is computed, and of which n x 3 matrices: x, v, dx and dv, as far as it needs them.
@@ -58,7 +58,7 @@ impl Packed {
             len: springs.len(),
             order: Order::of(springs),
             is_damped: springs.iter().any(|spring| spring.law.damping > 0.0),
-            windows: Mutex::default(),
+            windows: Scratch::default(),
         })
     }
 
@@ -93,7 +93,7 @@ impl Packed {
 
     /// Adds to f in so many bands.
     fn add_in(&self, count: usize, task: Task, f: &mut [f64]) {
-        self.lend(|windows| {
+        self.windows.lend(|windows| {
             if windows.len() < count {
                 windows.resize_with(count, Window::default);
             }
@@ -197,15 +197,6 @@ impl Packed {
             f: &mut f[offset..],
             is_damped: self.is_damped,
             quantity,
-        }
-    }
-
-    /// Lends the scratch; evaluations that run meanwhile bring their own.
-    fn lend(&self, run: impl FnOnce(&mut Vec<Window>)) {
-        match self.windows.try_lock() {
-            Ok(mut windows) => run(&mut windows),
-            Err(TryLockError::Poisoned(poisoned)) => run(&mut poisoned.into_inner()),
-            Err(TryLockError::WouldBlock) => run(&mut vec![]),
         }
     }
 }

@@ -4,13 +4,13 @@
 //! (twist): Smith, de Goes, Kim, *Analytic Eigensystems for Isotropic Distortion Energies*, 2019.
 
 use std::array::from_fn;
-use std::sync::{Mutex, PoisonError};
 
 use super::material::{Hyperelastic, Material};
 use super::matrix::{Matrix, cofactors, dot};
 use super::principal::{Principal, eigen};
 use super::tetrahedra::Deformed;
 use crate::coupling::{Coupling, GeneralCoupling};
+use crate::scratch::Scratch;
 
 /// Pairs of corners of a tetrahedron.
 const CORNERS: [[usize; 2]; 6] = [[0, 1], [0, 2], [0, 3], [1, 2], [1, 3], [2, 3]];
@@ -19,24 +19,14 @@ const CORNERS: [[usize; 2]; 6] = [[0, 1], [0, 2], [0, 3], [1, 2], [1, 3], [2, 3]
 type Sums = [[f64; 9]; 2];
 
 /// Pairs of particles that are in one tetrahedron.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct Pairs {
     /// Particles of each, the lower number first, in order.
     ends: Vec<[u32; 2]>,
     /// Pair of each two corners of each tetrahedron.
     places: Vec<[u32; 6]>,
-    /// Sums over tetrahedra, which one evaluation at a time borrows; none before the first.
-    sums: Mutex<Vec<Sums>>,
-}
-
-impl Clone for Pairs {
-    fn clone(&self) -> Self {
-        Self {
-            ends: self.ends.clone(),
-            places: self.places.clone(),
-            sums: Mutex::default(),
-        }
-    }
+    /// Sums over tetrahedra.
+    sums: Scratch<Vec<Sums>>,
 }
 
 impl Pairs {
@@ -49,7 +39,7 @@ impl Pairs {
         let place = |pair: [u32; 2]| ends.partition_point(|other| *other < pair) as u32;
         Self {
             places: all.into_iter().map(|pairs| pairs.map(place)).collect(),
-            sums: Mutex::default(),
+            sums: Scratch::default(),
             ends,
         }
     }
@@ -66,27 +56,27 @@ impl Pairs {
         clamped: bool,
         visit: &mut dyn FnMut(Coupling),
     ) {
-        let mut own = self.sums.lock().unwrap_or_else(PoisonError::into_inner);
-        own.clear();
-        own.resize(self.ends.len(), Sums::default());
-        for (tetrahedron, places) in tetrahedra.zip(&self.places) {
-            let hessian = Hessian::new(material, &tetrahedron, clamped);
-            for ([k, l], place) in CORNERS.into_iter().zip(places) {
-                // The pair has the lower number first.
-                let swapped = tetrahedron.corners[k] > tetrahedron.corners[l];
-                let pair = if swapped { [l, k] } else { [k, l] };
-                let sums = &mut own[*place as usize];
-                hessian.add(material, &tetrahedron, pair, sums);
+        self.sums.lend(|all| {
+            all.clear();
+            all.resize(self.ends.len(), Sums::default());
+            for (tetrahedron, places) in tetrahedra.zip(&self.places) {
+                let hessian = Hessian::new(material, &tetrahedron, clamped);
+                for ([k, l], place) in CORNERS.into_iter().zip(places) {
+                    // The pair has the lower number first.
+                    let swapped = tetrahedron.corners[k] > tetrahedron.corners[l];
+                    let pair = if swapped { [l, k] } else { [k, l] };
+                    hessian.add(material, &tetrahedron, pair, &mut all[*place as usize]);
+                }
             }
-        }
-        for ([i, j], [stiffness, damping]) in self.ends.iter().zip(&*own) {
-            visit(Coupling::General(GeneralCoupling {
-                i: *i as usize,
-                j: *j as usize,
-                stiffness: *stiffness,
-                damping: *damping,
-            }));
-        }
+            for ([i, j], [stiffness, damping]) in self.ends.iter().zip(all) {
+                visit(Coupling::General(GeneralCoupling {
+                    i: *i as usize,
+                    j: *j as usize,
+                    stiffness: *stiffness,
+                    damping: *damping,
+                }));
+            }
+        });
     }
 }
 
