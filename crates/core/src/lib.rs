@@ -99,7 +99,10 @@ pub use rows::{Next, Patch, REACH, Registers, Rows, Stage, SweepScratch, Terms};
 pub use scene::{FirstOrder, Model, Scene, StepLimits, Swing};
 pub use simulation::{Balance, Checkpoint, Gain, Grabbed, Progress, RunState, Simulation, Span};
 pub use spring::{Spring, SpringKind, SpringLaw};
-pub use system::{Compliant, Linearized, Measure, Mechanics, ParticleSystem, Rigid, Splitting};
+pub use system::{
+    Compliant, Linearized, Measure, Mechanics, ParticleSystem, Products, Rigid, SolverHints,
+    Splitting,
+};
 
 /// Example of the README, compiled as a documentation test.
 #[cfg(doctest)]

@@ -85,6 +85,12 @@ pub trait Mechanics {
         divide_by_masses(self.inverse_masses(), a);
     }
 
+    /// Coefficient c (kg/s) of the viscous drag -c v on each particle that is among the forces: 0
+    /// by default.
+    fn drag_coefficient(&self) -> f64 {
+        0.0
+    }
+
     /// Visits each pinned particle with its place at time t (s). By default there are none.
     fn pins(&self, _t: f64, _visit: &mut dyn FnMut(usize, Place)) {}
 
@@ -177,8 +183,9 @@ pub trait Linearized: Mechanics {
     );
 
     /// Visits the pairs of particles that act on each other, always in the same order: dF/dx and
-    /// dF/dv by their symmetric parts. With `clamped`, every stiffness is positive semi-definite:
-    /// the matrix of an implicit step is then positive definite.
+    /// dF/dv by their symmetric parts, without [drag](Mechanics::drag_coefficient). With `clamped`,
+    /// every stiffness is positive semi-definite: the matrix of an implicit step is then positive
+    /// definite.
     fn couplings(&self, t: f64, x: &[f64], clamped: bool, visit: &mut dyn FnMut(Coupling));
 
     /// Whether [`couplings`](Self::couplings) are all couplings. If not, implicit methods refuse
@@ -187,62 +194,69 @@ pub trait Linearized: Mechanics {
         true
     }
 
-    /// Writes to `out` the product with p of the diagonal of the matrix and of as many couplings as
-    /// the system multiplies faster than one by one, which are the first [`Coupling::Axial`] ones;
-    /// their number. With 0, the default, nothing is written, and all couplings are multiplied one
-    /// by one.
-    fn multiply(&self, _matrix: &Matrix, _p: &[f64], _out: &mut [f64]) -> usize {
-        0
-    }
-
-    /// Adds the blocks on the diagonal of the matrix that come from the couplings that
-    /// [`multiply`](Self::multiply) multiplies; the number of these.
-    fn add_diagonal(&self, _matrix: &Matrix, _diagonal: &mut Diagonal) -> usize {
-        0
-    }
-
-    /// Visits the [`couplings`](Self::couplings) but for those that [`multiply`](Self::multiply)
-    /// multiplies.
-    fn other_couplings(&self, t: f64, x: &[f64], clamped: bool, visit: &mut dyn FnMut(Coupling)) {
-        self.couplings(t, x, clamped, visit);
-    }
-
-    /// Whether the same particles are coupled at all x, as they are where no force begins and ends
-    /// within its [`reach`](Self::reach). If not, no factorisation is tried, because
-    /// the pattern of each would have to be analysed.
-    fn couples_always_the_same(&self) -> bool {
-        self.reach().is_infinite()
-    }
-
-    /// Length (m) of a motion over which forces may begin and end again, as those of contact do:
-    /// Newton's method moves particles no further at once. Infinite where forces reach as far as
-    /// particles move, the default.
-    fn reach(&self) -> f64 {
-        f64::INFINITY
-    }
-
-    /// Time that the forces would take coupling by coupling over the time that they take: the
-    /// prices of linear algebra are relative to the former.
-    fn speed(&self) -> f64 {
-        1.0
-    }
-
-    /// Price of gathering the couplings, in evaluations of the forces.
-    fn gathering(&self) -> f64 {
-        4.0 * self.speed()
-    }
-
-    /// Coefficient of viscous drag (kg/s), -dF/dv of each particle by itself, which is in no
-    /// coupling.
-    fn drag_coefficient(&self) -> f64 {
-        0.0
-    }
-
-    /// Natural frequency w (1/s) with which forces take errors of constraints back, C'' = -w2 C - 2
-    /// w C' (Baumgarte), if they hold any. The differential and the couplings leave the forces of
-    /// constraints out: implicit methods refuse then.
+    /// Natural frequency w (1/s) of Baumgarte stabilisation, C'' = -w2 C - 2 w C', if the forces
+    /// hold constraints C = 0. The differential and the couplings leave these forces out, so
+    /// implicit methods refuse the system.
     fn baumgarte_frequency(&self) -> Option<f64> {
         None
+    }
+
+    /// View of a system that multiplies by its couplings faster than one by one. Without it,
+    /// methods do so one by one.
+    fn products(&self) -> Option<&dyn Products> {
+        None
+    }
+
+    /// Numbers by which methods choose how to solve.
+    fn hints(&self) -> SolverHints {
+        SolverHints::default()
+    }
+}
+
+/// Products with the matrix of an implicit step, for the first [`Coupling::Axial`] ones of a
+/// system's [couplings](Linearized::couplings). Each method treats as many of these.
+pub trait Products {
+    /// Writes the product of the matrix with p to `out`: that of the masses and of these couplings.
+    /// Returns the number of the couplings.
+    fn multiply(&self, matrix: &Matrix, p: &[f64], out: &mut [f64]) -> usize;
+
+    /// Adds the blocks that these couplings contribute to the diagonal of the matrix. Returns the
+    /// number of the couplings.
+    fn add_diagonal(&self, matrix: &Matrix, diagonal: &mut Diagonal) -> usize;
+
+    /// Visits all other couplings.
+    fn other_couplings(&self, t: f64, x: &[f64], clamped: bool, visit: &mut dyn FnMut(Coupling));
+}
+
+/// Numbers by which methods choose how to solve with the forces of a system.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SolverHints {
+    /// Length (m) of a motion over which forces may begin and end again, as those of contact do:
+    /// Newton's method moves particles no further at once. Infinite by default.
+    pub reach: f64,
+    /// Time that the forces would take coupling by coupling over the time that they take: the
+    /// prices of linear algebra are relative to the former. 1 by default.
+    pub speed: f64,
+    /// Time that the assembly of the couplings takes, in evaluations of the forces. 4 by default.
+    pub assembly: f64,
+}
+
+impl Default for SolverHints {
+    fn default() -> Self {
+        Self {
+            reach: f64::INFINITY,
+            speed: 1.0,
+            assembly: 4.0,
+        }
+    }
+}
+
+impl SolverHints {
+    /// Whether the same particles are coupled at all x, because no force begins and ends within its
+    /// reach. If not, no factorisation is tried, because the pattern of each would have to be
+    /// analysed.
+    pub(crate) fn pattern_is_fixed(&self) -> bool {
+        self.reach.is_infinite()
     }
 }
 
@@ -255,11 +269,6 @@ pub trait Compliant: Mechanics {
 
     /// Writes the forces (N) that are neither of springs nor of drag to `f`.
     fn other_forces(&self, t: f64, x: &[f64], v: &[f64], f: &mut [f64]);
-
-    /// Coefficient c of viscous drag (kg/s), the force -c v on each particle.
-    fn drag_coefficient(&self) -> f64 {
-        0.0
-    }
 }
 
 /// Whether kicks depend on v, or the system does not say.

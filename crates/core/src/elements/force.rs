@@ -54,9 +54,9 @@ pub(crate) enum Matter {
     Fluid,
 }
 
-/// Price of gathering the couplings of springs, in evaluations of them. It was measured on cloth
+/// Price of the assembly of couplings of springs, in evaluations of them. It was measured on cloth
 /// and on chains.
-pub(crate) const GATHERING: f64 = 4.0;
+pub(crate) const ASSEMBLY: f64 = 4.0;
 
 /// A force of a network. Matrices of positions, velocities and forces are n x 3, column-major;
 /// forces are in N.
@@ -131,9 +131,9 @@ pub(crate) trait Force: Any {
         Cost::default()
     }
 
-    /// Price of gathering the couplings, in evaluations of as many single springs.
-    fn gathering(&self) -> f64 {
-        GATHERING * self.cost().couplings
+    /// Price of the assembly of couplings, in evaluations of as many single springs.
+    fn assembly(&self) -> f64 {
+        ASSEMBLY * self.cost().couplings
     }
 
     /// The force as gravity and drag, if it is nothing else.

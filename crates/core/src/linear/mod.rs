@@ -51,9 +51,9 @@ pub(crate) struct Solver {
     multigrid: Option<Multigrid>,
     /// Evaluations of the system's forces in the time of one spring by spring.
     speed: f64,
-    /// Bound of a2 w2 for the matrix that was gathered last.
+    /// Bound of a2 w2 for the matrix that was assembled last.
     stiffness: f64,
-    /// Whether the matrix that was gathered last is factorised.
+    /// Whether the matrix that was assembled last is factorised.
     factorised: bool,
 }
 
@@ -67,14 +67,14 @@ impl Solver {
             direct: None,
             analysed: false,
             multigrid: None,
-            speed: system.speed(),
+            speed: system.hints().speed,
             tangent,
             direct_always: None,
             multigrid_always: None,
             stiffness: 0.0,
             factorised: false,
         };
-        if !system.couples_always_the_same() {
+        if !system.hints().pattern_is_fixed() {
             (solver.direct_always, solver.multigrid_always) = (Some(false), Some(false));
         } else if solver.least_products() == 0.0 {
             solver.analyse(system);
@@ -102,28 +102,29 @@ impl Solver {
 
     /// Takes up what the forces of the system cost now.
     pub fn renew(&mut self, system: &dyn Linearized) {
-        self.speed = system.speed();
-        if !system.couples_always_the_same() {
+        let hints = system.hints();
+        self.speed = hints.speed;
+        if !hints.pattern_is_fixed() {
             (self.direct_always, self.multigrid_always) = (Some(false), Some(false));
         }
     }
 
-    /// Gathers A = M + a (C + D) + a2 K at time t (s) at x, for steps of length a (s).
-    pub fn gather(
+    /// Assembles A = M + a (C + D) + a2 K at time t (s) at x, for steps of length a (s).
+    pub fn assemble(
         &mut self,
         system: &dyn Linearized,
         (t, a): (f64, f64),
         x: &[f64],
         clamped: bool,
     ) -> Work {
-        self.tangent.gather(system, (t, a), x, clamped);
+        self.tangent.assemble(system, (t, a), x, clamped);
         self.stiffness = self.tangent.stiffness();
         self.factorised = false;
         if self.direct.as_ref().is_some_and(|d| !d.fits(&self.tangent)) {
             (self.direct, self.analysed) = (None, false);
         }
         Work {
-            algebra: system.gathering(),
+            algebra: system.hints().assembly,
             ..Work::default()
         }
     }

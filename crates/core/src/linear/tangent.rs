@@ -1,5 +1,5 @@
 //! The matrix of an implicit step, A = M + a (C + D) + a2 K. Couplings between particles that the
-//! system does not multiply itself are gathered once, and multiplied without square roots; all are
+//! system does not multiply itself are assembled once, and multiplied without square roots; all are
 //! listed where a factorisation or multigrid needs them. Pinned particles are filtered: their rows
 //! are those of the identity, and vectors that are solved for are zero there.
 
@@ -25,9 +25,9 @@ pub(crate) struct Tangent {
     clamped: bool,
     /// Number of times that other particles were coupled than before.
     pattern: u64,
-    /// Number of times that couplings were gathered.
+    /// Number of times that couplings were assembled.
     version: u64,
-    /// Time (s), positions (m) and step (s) of the last gathering.
+    /// Time (s), positions (m) and step (s) of the last assembly.
     t: f64,
     x: Vec<f64>,
     a: f64,
@@ -60,13 +60,13 @@ impl Tangent {
             scratch: vec![0.0; 3 * n],
             zeros: vec![0.0; n],
         };
-        if system.couples_always_the_same() {
+        if system.hints().pattern_is_fixed() {
             tangent.list(system);
         }
         tangent
     }
 
-    /// Lists all couplings where they were gathered last, unless they are listed.
+    /// Lists all couplings where they were assembled last, unless they are listed.
     pub fn list(&mut self, system: &dyn Linearized) {
         if !self.listed {
             self.listed = true;
@@ -108,7 +108,7 @@ impl Tangent {
         self.pattern
     }
 
-    /// Changes as soon as couplings are gathered anew.
+    /// Changes as soon as couplings are assembled anew.
     pub fn version(&self) -> u64 {
         self.version
     }
@@ -129,9 +129,9 @@ impl Tangent {
         axial.chain(self.blocks.iter().map(|c| [c.i as u32, c.j as u32]))
     }
 
-    /// Gathers the couplings at time t (s) at x for steps of length a (s). With `clamped`, A is
+    /// Assembles the couplings at time t (s) at x for steps of length a (s). With `clamped`, A is
     /// positive definite.
-    pub fn gather(
+    pub fn assemble(
         &mut self,
         system: &dyn Linearized,
         (t, a): (f64, f64),
@@ -165,11 +165,15 @@ impl Tangent {
         let mut diagonal = Diagonal {
             columns: columns_mut(&mut sums),
         };
-        let fast = system.add_diagonal(&self.matrix(), &mut diagonal);
+        let products = system.products();
+        let fast = products.map_or(0, |products| {
+            products.add_diagonal(&self.matrix(), &mut diagonal)
+        });
         self.listed = false;
         if fast == self.fast && fast <= self.axial.len() {
-            self.collect(fast, |t, x, clamped, visit| {
-                system.other_couplings(t, x, clamped, visit);
+            self.collect(fast, |t, x, clamped, visit| match products {
+                Some(products) => products.other_couplings(t, x, clamped, visit),
+                None => system.couplings(t, x, clamped, visit),
             });
             self.listed = fast == 0;
         } else {
@@ -282,7 +286,9 @@ impl Tangent {
 
     /// Writes A p to `out`, for a p that is zero on pinned particles; so is `out`.
     pub fn product(&self, system: &dyn Linearized, p: &[f64], out: &mut [f64]) {
-        let done = system.multiply(&self.matrix(), p, out);
+        let matrix = self.matrix();
+        let products = system.products();
+        let done = products.map_or(0, |products| products.multiply(&matrix, p, out));
         if done == 0 {
             let n = self.particles();
             for (out, p) in out.chunks_exact_mut(n).zip(p.chunks_exact(n)) {
@@ -319,7 +325,8 @@ impl Tangent {
             masses: &self.zeros,
             ..self.matrix()
         };
-        let done = system.multiply(&matrix, d, &mut product);
+        let products = system.products();
+        let done = products.map_or(0, |products| products.multiply(&matrix, d, &mut product));
         if done > 0 {
             for (out, product) in out.iter_mut().zip(&product) {
                 *out -= a * product;

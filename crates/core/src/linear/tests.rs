@@ -103,7 +103,7 @@ fn iterations_and_factors_agree_and_report_the_true_residual() {
     for (network, x) in [chain(30, 1000.0), cloth(7, 300.0), jelly(5, 100.0)] {
         let b = right_hand_side(&network);
         let mut solver = Solver::new(&network);
-        let _ = solver.gather(&network, (0.0, 1.0 / 60.0), &x, true);
+        let _ = solver.assemble(&network, (0.0, 1.0 / 60.0), &x, true);
         let (mut by_iterations, mut by_factors) = (vec![0.0; b.len()], vec![0.0; b.len()]);
         for tolerance in [1e-3, 1e-6, 1e-12] {
             solver.direct_always = Some(false);
@@ -131,7 +131,7 @@ fn what_is_pinned_stays_however_many_iterations_there_are() {
     let (network, x) = cloth(6, 1e4);
     let b = right_hand_side(&network);
     let mut tangent = Tangent::new(&network);
-    tangent.gather(&network, (0.0, 0.1), &x, true);
+    tangent.assemble(&network, (0.0, 0.1), &x, true);
     let n = network.particles();
     let mut iterative = ConjugateGradients::new(n);
     for most in 0..20 {
@@ -154,7 +154,7 @@ fn compressed_cloth_needs_the_clamp() {
     for clamped in [false, true] {
         let mut solver = Solver::new(&network);
         let mut dv = vec![0.0; b.len()];
-        let _ = solver.gather(&network, (0.0, 1.0 / 60.0), &squeezed, clamped);
+        let _ = solver.assemble(&network, (0.0, 1.0 / 60.0), &squeezed, clamped);
         for direct in [false, true] {
             solver.direct_always = Some(direct);
             let (_, solved) = solver.solve(&network, &b, &mut dv, 1e-8);
@@ -186,7 +186,7 @@ fn time(mut run: impl FnMut()) -> f64 {
 #[ignore = "measures"]
 fn solves_measured() {
     println!(
-        "case                    a w     F us  gather/F | iter/F  iterations (guess)  PCG/F | with multigrid | factor/F  solve/F  factor price  solve price   picked  best"
+        "case                    a w     F us  assembly/F | iter/F  iterations (guess)  PCG/F | with multigrid | factor/F  solve/F  factor price  solve price   picked  best"
     );
     for (name, (network, x)) in [
         ("chain 5", chain(5, 1e2)),
@@ -205,11 +205,11 @@ fn solves_measured() {
         let force = time(|| crate::Mechanics::forces(&network, 0.0, black_box(&x), &zero, &mut f));
         for a_w in [1.0, 3.0, 10.0, 30.0, 100.0, 300.0] {
             let mut solver = Solver::new(&network);
-            let _ = solver.gather(&network, (0.0, 1.0), &x, true);
+            let _ = solver.assemble(&network, (0.0, 1.0), &x, true);
             let a = a_w / solver.stiffness().sqrt();
-            let _ = solver.gather(&network, (0.0, a), &x, true);
-            let gather = time(|| {
-                let _ = solver.gather(&network, (0.0, a), black_box(&x), true);
+            let _ = solver.assemble(&network, (0.0, a), &x, true);
+            let assemble = time(|| {
+                let _ = solver.assemble(&network, (0.0, a), black_box(&x), true);
             });
             let mut dv = vec![0.0; b.len()];
             let tolerance = FORCING;
@@ -254,7 +254,7 @@ fn solves_measured() {
             println!(
                 "{name:<18} {a_w:>8} {:>8.2} {:>9.2} | {} | {} | {:>9.1} {:>8.2} {:>13.1} {:>14.1}  {}  {:.2}",
                 1e6 * force,
-                gather / force,
+                assemble / force,
                 alone.1,
                 with.1,
                 factor / force,

@@ -6,7 +6,7 @@ use nalgebra::Vector3;
 
 use super::element::Element;
 use crate::contact::ContactLayer;
-use crate::elements::force::{At, ByParticle, Carried, Force, GATHERING, Matter};
+use crate::elements::force::{ASSEMBLY, At, ByParticle, Carried, Force, Matter};
 use crate::elements::sheet::{Quantity, set};
 use crate::elements::{Airflow, Drag, Finish, Fluid, Gravity, Sheet, Solid, Wind};
 use crate::error::Error;
@@ -282,13 +282,13 @@ impl Elements {
         }
     }
 
-    /// Price of gathering the couplings, in evaluations of the forces.
-    pub fn gathering(&self) -> f64 {
+    /// Price of the assembly of couplings, in evaluations of the forces.
+    pub fn assembly(&self) -> f64 {
         let price = self.sum_of(|force| force.cost().price);
         if price > 0.0 {
-            self.sum_of(Force::gathering) / price
+            self.sum_of(Force::assembly) / price
         } else {
-            GATHERING
+            ASSEMBLY
         }
     }
 }

@@ -1,5 +1,5 @@
-//! The matrix of an implicit step, as far as it is known without its couplings one by one: those of
-//! springs in sheets, and of single ones if there are many.
+//! The part of an implicit step's matrix whose couplings are multiplied together: that of springs in
+//! sheets, and of single springs if there are many.
 
 use super::element::Element;
 use super::elements::Elements;
@@ -8,14 +8,9 @@ use crate::elements::sheet::{Quantity, set};
 use crate::elements::{Finish, Sheet, Springs};
 use crate::system::divide_by_masses;
 
-/// Writes the product of the known part of the matrix and p to out. Returns the number of springs
-/// in it; 0 if out was left as it is.
+/// Writes the product of the matrix of these springs with p to out. Returns their number.
 pub(super) fn multiply(elements: &Elements, matrix: &Matrix, p: &[f64], out: &mut [f64]) -> usize {
     let in_sheets: usize = elements.sheets().map(Sheet::len).sum();
-    let packed = elements.of::<Springs>().find_map(Springs::packed);
-    if in_sheets == 0 && packed.is_none() {
-        return 0;
-    }
     let clamped = matrix.clamped;
     let finish = Finish {
         inertia: Some(matrix.masses),
@@ -29,7 +24,7 @@ pub(super) fn multiply(elements: &Elements, matrix: &Matrix, p: &[f64], out: &mu
         set(quantity, &sheet, &[matrix.x, p], out, false, &finish);
     }
     elements.finish_single(p, out, &finish);
-    let Some(packed) = packed else {
+    let Some(packed) = elements.of::<Springs>().find_map(Springs::packed) else {
         return in_sheets;
     };
     packed.add_product(matrix, p, out);
@@ -38,14 +33,14 @@ pub(super) fn multiply(elements: &Elements, matrix: &Matrix, p: &[f64], out: &mu
     in_sheets + packed.len()
 }
 
-/// Adds the diagonal of the known part of the matrix. Returns the number of springs in it.
+/// Adds the blocks of these springs to the diagonal of the matrix. Returns their number.
 pub(super) fn add_diagonal(elements: &Elements, matrix: &Matrix, diagonal: &mut Diagonal) -> usize {
     let all = elements.all().iter();
     all.map(|element| element.force().add_diagonal(matrix, diagonal))
         .sum()
 }
 
-/// Visits the couplings of the rest of the matrix.
+/// Visits all other couplings.
 pub(super) fn other_couplings(
     elements: &Elements,
     t: f64,

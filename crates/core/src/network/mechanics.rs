@@ -12,7 +12,8 @@ use crate::path::Place;
 use crate::rows::{Rows, Terms};
 use crate::spring::SpringLaw;
 use crate::system::{
-    Compliant, Linearized, Mechanics, Rigid, Splitting, divide_by_masses, place_pins,
+    Compliant, Linearized, Mechanics, Products, Rigid, SolverHints, Splitting, divide_by_masses,
+    place_pins,
 };
 
 impl Mechanics for Network {
@@ -36,6 +37,10 @@ impl Mechanics for Network {
             ..finish(self, Terms::AllForces)
         };
         self.elements.evaluate(&at(self, t, x, v), a, &finish);
+    }
+
+    fn drag_coefficient(&self) -> f64 {
+        self.elements.carried().drag
     }
 
     fn pins(&self, t: f64, visit: &mut dyn FnMut(usize, Place)) {
@@ -120,6 +125,36 @@ impl Linearized for Network {
         }
     }
 
+    fn lists_all_couplings(&self) -> bool {
+        let mut elements = self.elements().iter();
+        elements.all(|element| element.force().lists_all_couplings())
+    }
+
+    fn baumgarte_frequency(&self) -> Option<f64> {
+        self.is_constrained()
+            .then(|| self.constraints.baumgarte_frequency())
+    }
+
+    fn products(&self) -> Option<&dyn Products> {
+        let mut elements = self.elements().iter();
+        elements
+            .any(|element| element.force().multiplies_together())
+            .then_some(self as &dyn Products)
+    }
+
+    /// Forces reach half the largest thickness of surfaces that touch.
+    fn hints(&self) -> SolverHints {
+        let thickest = self.contact_layer().map(|layer| layer.surface().thickest());
+        let thickest = thickest.filter(|thickness| *thickness > 0.0);
+        SolverHints {
+            reach: thickest.map_or(f64::INFINITY, |thickness| 0.5 * thickness),
+            speed: self.elements.speed(),
+            assembly: self.elements.assembly(),
+        }
+    }
+}
+
+impl Products for Network {
     fn multiply(&self, matrix: &Matrix, p: &[f64], out: &mut [f64]) -> usize {
         matrix::multiply(&self.elements, matrix, p, out)
     }
@@ -130,35 +165,6 @@ impl Linearized for Network {
 
     fn other_couplings(&self, t: f64, x: &[f64], clamped: bool, visit: &mut dyn FnMut(Coupling)) {
         matrix::other_couplings(&self.elements, t, x, clamped, visit);
-    }
-
-    fn lists_all_couplings(&self) -> bool {
-        let mut elements = self.elements().iter();
-        elements.all(|element| element.force().lists_all_couplings())
-    }
-
-    /// Half the largest thickness (m) of surfaces that touch; infinite if none do.
-    fn reach(&self) -> f64 {
-        let thickest = self.contact_layer().map(|layer| layer.surface().thickest());
-        let reach = thickest.filter(|thickness| *thickness > 0.0);
-        reach.map_or(f64::INFINITY, |thickness| 0.5 * thickness)
-    }
-
-    fn speed(&self) -> f64 {
-        self.elements.speed()
-    }
-
-    fn gathering(&self) -> f64 {
-        self.elements.gathering()
-    }
-
-    fn drag_coefficient(&self) -> f64 {
-        self.elements.carried().drag
-    }
-
-    fn baumgarte_frequency(&self) -> Option<f64> {
-        self.is_constrained()
-            .then(|| self.constraints.baumgarte_frequency())
     }
 }
 
@@ -174,9 +180,5 @@ impl Compliant for Network {
         for element in self.elements().iter().filter(is_other) {
             element.force().add_forces(&at(self, t, x, v), f);
         }
-    }
-
-    fn drag_coefficient(&self) -> f64 {
-        Linearized::drag_coefficient(self)
     }
 }

@@ -57,7 +57,7 @@ impl Force for Sheet {
     }
 
     fn multiplies_together(&self) -> bool {
-        true
+        !self.is_empty()
     }
 
     fn add_diagonal(&self, matrix: &Matrix, diagonal: &mut Diagonal) -> usize {

@@ -18,10 +18,10 @@ use crate::elements::force::{At, Cost, Force, Matter, check_particle};
 use crate::energy::Energy;
 use crate::error::Error;
 
-/// Prices of a tetrahedron's forces, without viscosity and with it, and of gathering its couplings,
+/// Prices of a tetrahedron's forces, without viscosity and with it, and of assembling its couplings,
 /// in evaluations of single springs.
 const PRICES: [f64; 2] = [3.7, 5.2];
-const GATHERING: f64 = 270.0;
+const ASSEMBLY: f64 = 270.0;
 
 impl Force for Solid {
     fn name(&self) -> &'static str {
@@ -83,8 +83,8 @@ impl Force for Solid {
         }
     }
 
-    fn gathering(&self) -> f64 {
-        GATHERING * self.count as f64
+    fn assembly(&self) -> f64 {
+        ASSEMBLY * self.count as f64
     }
 
     fn scale(&mut self, stiffness: f64, damping: f64) {

@@ -63,7 +63,7 @@ impl Mechanical {
             dv: zeros(),
             dx: zeros(),
             before: zeros(),
-            secants: Secants::new(if mechanics.reach().is_finite() {
+            secants: Secants::new(if mechanics.hints().reach.is_finite() {
                 3 * n
             } else {
                 0
@@ -85,7 +85,7 @@ impl Mechanical {
         let (x, v) = y.split_at_mut(bx.len());
         place_pins(mechanics, t, x, v);
         let mut work = Work::default();
-        let searches = newton == Newton::Full && mechanics.reach().is_finite();
+        let searches = newton == Newton::Full && mechanics.hints().reach.is_finite();
         let mut changes = Changes::new(!searches);
         let most = if searches { MOST_IN_CONTACT } else { MOST };
         self.evaluated = false;
@@ -99,8 +99,8 @@ impl Mechanical {
         }
         let mut settled = 0;
         for iteration in 0..most {
-            let gathers = searches || !changes.shrink_fast().unwrap_or(false);
-            let how = (newton, gathers, changes.forcing());
+            let assembles = searches || !changes.shrink_fast().unwrap_or(false);
+            let how = (newton, assembles, changes.forcing());
             let (mut change, residual) =
                 self.iterate(mechanics, t, a, [bx, bv], [x, v], how, &mut work)?;
             if searches {
@@ -141,17 +141,17 @@ impl Mechanical {
         a: f64,
         [bx, bv]: [&[f64]; 2],
         [x, v]: [&mut [f64]; 2],
-        (newton, gathers, forcing): (Newton, bool, f64),
+        (newton, assembles, forcing): (Newton, bool, f64),
         work: &mut Work,
     ) -> Result<(f64, f64), Error> {
         if !std::mem::take(&mut self.evaluated) {
             *work += self.evaluate(mechanics, t, a, bx, [x, v]);
         }
         let mut clamped = newton == Newton::Once;
-        let mut gathers = gathers;
+        let mut assembles = assembles;
         let residual = loop {
-            if gathers {
-                *work += self.solver.gather(mechanics, (t, a), x, clamped);
+            if assembles {
+                *work += self.solver.assemble(mechanics, (t, a), x, clamped);
             }
             self.reduce(mechanics, a, bv, v);
             let tolerance = match newton {
@@ -171,7 +171,7 @@ impl Mechanical {
                 Some(residual) => break residual,
                 // Compressed springs can make the matrix indefinite. With these clamped, Newton's
                 // method converges more slowly.
-                None if !clamped => (clamped, gathers) = (true, true),
+                None if !clamped => (clamped, assembles) = (true, true),
                 None => return Err(Error::NoConvergence { residual: 1.0 }),
             }
         };
@@ -199,7 +199,7 @@ impl Mechanical {
         self.dx.copy_from_slice(&self.gap);
         add_scaled(&mut self.dx, a, &self.dv);
         let begin = dot(&self.before, &self.dv);
-        let longest = mechanics.reach() / spread(&self.dx);
+        let longest = mechanics.hints().reach / spread(&self.dx);
         let mut share = longest.min(1.0);
         if share < 1.0 {
             add_scaled(x, share - 1.0, &self.dx);
@@ -254,7 +254,7 @@ impl Mechanical {
     }
 
     /// Writes M (bv - v) + a F - a K g for free particles to the right-hand side, with the K that
-    /// was gathered last.
+    /// was assembled last.
     pub(super) fn reduce(&mut self, mechanics: &dyn Linearized, a: f64, bv: &[f64], v: &[f64]) {
         let Self {
             solver,

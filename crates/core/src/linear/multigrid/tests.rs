@@ -51,7 +51,7 @@ fn solves_the_same_with_it_in_fewer_iterations() {
         let b = right_hand_side(&network);
         let mut solver = Solver::new(&network);
         solver.direct_always = Some(false);
-        let _ = solver.gather(&network, (0.0, 0.05), &x, true);
+        let _ = solver.assemble(&network, (0.0, 0.05), &x, true);
         let [alone, with] = [false, true].map(|multigrid| {
             solver.multigrid_always = Some(multigrid);
             let mut found = vec![0.0; b.len()];
@@ -89,7 +89,7 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
 fn it_is_symmetric_and_positive_and_leaves_pinned_particles() {
     for (number, (network, x)) in cases().into_iter().enumerate() {
         let mut tangent = Tangent::new(&network);
-        tangent.gather(&network, (0.0, 0.05), &x, true);
+        tangent.assemble(&network, (0.0, 0.05), &x, true);
         let mut multigrid = Multigrid::new(&tangent);
         assert!(multigrid.prepare(&tangent) && !multigrid.prepare(&tangent));
         assert_eq!(multigrid.levels.is_empty(), number == 5);
@@ -112,16 +112,16 @@ fn it_is_symmetric_and_positive_and_leaves_pinned_particles() {
 fn it_follows_what_is_torn_and_what_is_pinned() {
     let (mut network, x) = cloth(12, 1e4);
     let mut tangent = Tangent::new(&network);
-    tangent.gather(&network, (0.0, 0.05), &x, true);
+    tangent.assemble(&network, (0.0, 0.05), &x, true);
     let multigrid = Multigrid::new(&tangent);
-    tangent.gather(&network, (0.0, 0.02), &x, false);
+    tangent.assemble(&network, (0.0, 0.02), &x, false);
     assert!(multigrid.fits(&tangent));
     network.pin(40, Path::Still(Vector3::zeros())).unwrap();
-    tangent.gather(&network, (0.0, 0.05), &x, true);
+    tangent.assemble(&network, (0.0, 0.05), &x, true);
     assert!(!multigrid.fits(&tangent));
     let multigrid = Multigrid::new(&tangent);
     network.break_springs(&[[50, 51]]).unwrap();
-    tangent.gather(&network, (0.0, 0.05), &x, true);
+    tangent.assemble(&network, (0.0, 0.05), &x, true);
     assert!(!multigrid.fits(&tangent));
 }
 
@@ -135,7 +135,7 @@ fn any_number_of_threads_finds_the_same_bits() {
         pool.build().unwrap().install(|| {
             let mut solver = Solver::new(&network);
             solver.direct_always = Some(false);
-            let _ = solver.gather(&network, (0.0, 0.05), &x, true);
+            let _ = solver.assemble(&network, (0.0, 0.05), &x, true);
             let mut found = vec![0.0; b.len()];
             let (work, _) = solver.solve(&network, &b, &mut found, 1e-6);
             assert!(solver.multigrid.is_some() && work.iterations > 10);
