@@ -95,13 +95,11 @@ pub use integrators::{Integrator, Method, Work};
 pub use nalgebra::Vector3;
 pub use network::{Element, Network, Touch};
 pub use path::{Orientation, Path, Place, Pose, Turn, rotation};
-pub use rows::{Next, Patch, REACH, Registers, Rows, Stage, SweepScratch, Terms};
 pub use scene::{FirstOrder, Model, Scene, StepLimits, Swing};
 pub use simulation::{Balance, Checkpoint, Gain, Grabbed, Progress, RunState, Simulation, Span};
 pub use spring::{Spring, SpringKind, SpringLaw};
 pub use system::{
-    Compliant, Linearized, Measure, Mechanics, ParticleSystem, Products, Rigid, SolverHints,
-    Splitting,
+    Compliant, Linearized, Measure, Mechanics, ParticleSystem, Products, SolverHints, Splitting,
 };
 
 /// Example of the README, compiled as a documentation test.

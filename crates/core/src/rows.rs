@@ -1,19 +1,18 @@
 //! Particles in rows of which only near ones act on each other. A whole step can then go over them
 //! once, all of its stages a few rows apart: what it needs in between stays in the cache.
 
-use crate::fused::mul_add;
 use std::array;
 use std::ops::Range;
 
 /// Largest distance of rows that act on each other.
-pub const REACH: usize = 2;
+pub(crate) const REACH: usize = 2;
 /// Numbers beside a column on either side: as many as the longest vector has, for particles that
 /// are not there.
 pub(crate) const PAD: usize = 8;
 
 /// The terms that a stage evaluates.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Terms {
+pub(crate) enum Terms {
     /// All of y' = \[v | F / m\].
     Motion,
     /// v' = F / m of the forces that no drift carries (see [`Splitting`](crate::Splitting)), x
@@ -25,7 +24,7 @@ pub enum Terms {
 
 /// A stage of a step: k = f(t, stage), sum + b k, and what the next stage is.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Stage {
+pub(crate) struct Stage {
     /// The terms that it evaluates.
     pub terms: Terms,
     /// Time of its evaluation (s).
@@ -44,7 +43,7 @@ pub struct Stage {
 
 /// What follows a stage.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Next {
+pub(crate) enum Next {
     /// The sum: the new state, or that from which another method begins.
     Sum,
     /// y + c k with this c (s), as in an explicit Runge-Kutta method whose stages read only the one
@@ -62,13 +61,11 @@ pub enum Next {
 
 impl Next {
     /// Whether the next stage is found from the y at which the method began.
-    #[must_use]
     pub fn is_from_y(self) -> bool {
         matches!(self, Self::FromY(_))
     }
 
     /// Whether the next stage is ahead of the sum.
-    #[must_use]
     pub fn is_ahead(self) -> bool {
         matches!(self, Self::Ahead { .. })
     }
@@ -76,7 +73,7 @@ impl Next {
 
 /// Some particles of a system that stand in rows, numbered row by row, and that no others act on.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Patch {
+pub(crate) struct Patch {
     /// Number of its first particle in the system.
     pub first: usize,
     /// Number of rows.
@@ -87,13 +84,11 @@ pub struct Patch {
 
 impl Patch {
     /// Number of particles.
-    #[must_use]
     pub fn particles(&self) -> usize {
         self.rows * self.cols
     }
 
     /// Numbers of the particles in a row.
-    #[must_use]
     pub fn row(&self, row: usize) -> Range<usize> {
         self.first + row * self.cols..self.first + (row + 1) * self.cols
     }
@@ -101,7 +96,7 @@ impl Patch {
 
 /// A system whose particles all stand in rows and feel those at most [`REACH`] rows away, and no
 /// others. Its steps in a sweep must be those by whole arrays to the last bit.
-pub trait Rows: Sync {
+pub(crate) trait Rows: Sync {
     /// Number of patches, which do not act on one another.
     fn patches(&self) -> usize;
 
@@ -112,9 +107,7 @@ pub trait Rows: Sync {
     fn kept_columns(&self) -> usize;
 
     /// Numbers that a sweep shares among all rows and stages.
-    fn shared_numbers(&self) -> usize {
-        0
-    }
+    fn shared_numbers(&self) -> usize;
 
     /// Prepares the scratch of a sweep over some rows of a patch.
     fn begin(&self, patch: usize, scratch: &mut SweepScratch);
@@ -147,7 +140,7 @@ pub trait Rows: Sync {
 /// The numbers of some rows during a step, six columns each, x y z of positions and of velocities:
 /// y as it was, or how far the stage is ahead of the sum; the sum over the stages; and the stage
 /// under way.
-pub struct Registers {
+pub(crate) struct Registers {
     pub(crate) y: Window,
     pub(crate) sum: Window,
     pub(crate) stage: Window,
@@ -184,7 +177,6 @@ impl Registers {
     }
 
     /// Columns of a row of the stage under way.
-    #[must_use]
     pub fn stage(&self, row: usize) -> [&[f64]; 6] {
         array::from_fn(|column| self.stage.column(row, column))
     }
@@ -193,50 +185,11 @@ impl Registers {
     pub fn stage_mut(&mut self, row: usize) -> [&mut [f64]; 6] {
         self.stage.columns_mut(row)
     }
-
-    /// Takes a row to the next stage by its accelerations (m/s2), by axis, without the drift: to
-    /// the sum, if the next stage is ahead of it.
-    pub fn advance(&mut self, stage: &Stage, row: usize, accelerations: [&[f64]; 3]) {
-        let moves = stage.terms == Terms::Motion;
-        for column in if moves { 0 } else { 3 }..6 {
-            for (i, a) in accelerations[column % 3].iter().enumerate() {
-                let k = if column < 3 {
-                    self.stage.column(row, 3 + column)[i]
-                } else {
-                    *a
-                };
-                let now = self.stage.column(row, column)[i];
-                let before = if stage.first {
-                    now
-                } else {
-                    self.sum.column(row, column)[i]
-                };
-                let after = mul_add(stage.b, k, before);
-                let y = &mut self.y.column_mut(row, column)[i];
-                self.stage.column_mut(row, column)[i] = match stage.next {
-                    Next::Sum => after,
-                    Next::FromY(c) => {
-                        self.sum.column_mut(row, column)[i] = after;
-                        mul_add(c, k, *y)
-                    }
-                    Next::Ahead { keep, add } => {
-                        let more = add * k;
-                        *y = if stage.first {
-                            more
-                        } else {
-                            mul_add(keep, *y, more)
-                        };
-                        after
-                    }
-                };
-            }
-        }
-    }
 }
 
 /// Numbers that the rows of a sweep hand on to those below them, stage by stage, and that they all
 /// read.
-pub struct SweepScratch {
+pub(crate) struct SweepScratch {
     pub(crate) shared: Window,
     /// A row for each stage.
     pub(crate) kept: Window,
@@ -255,19 +208,8 @@ impl SweepScratch {
     }
 
     /// Numbers shared by all rows and stages.
-    #[must_use]
-    pub fn shared(&self) -> &[f64] {
-        self.shared.column(0, 0)
-    }
-
-    /// Numbers shared by all rows and stages.
     pub fn shared_mut(&mut self) -> &mut [f64] {
         self.shared.column_mut(0, 0)
-    }
-
-    /// A column of numbers, one for each particle of a row, that a stage keeps from row to row.
-    pub fn kept_mut(&mut self, number: usize, column: usize) -> &mut [f64] {
-        self.kept.column_mut(number, column)
     }
 
     /// Columns of forces on a row that are added to those of its own, by axis.

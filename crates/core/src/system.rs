@@ -1,6 +1,6 @@
-//! What an integrator sees: flat arrays of which only the length changes. Beside the one small
-//! trait that a system must implement there are views that it may offer, each for some methods:
-//! [`Splitting`], [`Linearized`], [`Compliant`], [`Rigid`] and [`Rows`].
+//! The interface of systems for integrators, which know nothing else of them than flat arrays. A
+//! system implements one small trait, and may offer views, each for some methods: [`Splitting`],
+//! [`Linearized`] and [`Compliant`]. [`Rigid`] and [`Rows`] are views of the models of this crate.
 
 use std::ops::Range;
 
@@ -43,7 +43,8 @@ pub trait ParticleSystem {
     fn eval_f(&self, t: f64, y: &[f64], dydt: &mut [f64]);
 
     /// View of a system whose particles stand in rows and act on near rows alone, if it is one.
-    fn rows(&self) -> Option<&dyn Rows> {
+    #[doc(hidden)]
+    fn rows(&self) -> Option<RowsView<'_>> {
         None
     }
 
@@ -54,7 +55,8 @@ pub trait ParticleSystem {
 
     /// View of a system with rigid bodies, which have more in their state than positions and
     /// velocities.
-    fn rigid(&self) -> Option<&dyn Rigid> {
+    #[doc(hidden)]
+    fn rigid(&self) -> Option<RigidView<'_>> {
         None
     }
 
@@ -95,13 +97,15 @@ pub trait Mechanics {
     fn pins(&self, _t: f64, _visit: &mut dyn FnMut(usize, Place)) {}
 
     /// View for methods that step row by row. Without it, they step by whole arrays.
-    fn rows(&self) -> Option<&dyn Rows> {
+    #[doc(hidden)]
+    fn rows(&self) -> Option<RowsView<'_>> {
         None
     }
 
     /// View of rigid bodies, if there are any: the state is then longer than [x | v], and the
     /// system is no longer M x'' = F to a method.
-    fn rigid(&self) -> Option<&dyn Rigid> {
+    #[doc(hidden)]
+    fn rigid(&self) -> Option<RigidView<'_>> {
         None
     }
 
@@ -139,9 +143,17 @@ pub trait Splitting {
     fn drift(&self, t: f64, h: f64, x: &mut [f64], v: &mut [f64]);
 }
 
+/// View of [`Rows`], of which other crates see only whether it is there.
+#[derive(Clone, Copy)]
+pub struct RowsView<'a>(pub(crate) &'a dyn Rows);
+
+/// View of [`Rigid`], of which other crates see only whether it is there.
+#[derive(Clone, Copy)]
+pub struct RigidView<'a>(pub(crate) &'a dyn Rigid);
+
 /// A system whose state y = [x | v | z] holds more than positions and velocities: the rotations and
 /// the angular momenta of rigid bodies.
-pub trait Rigid {
+pub(crate) trait Rigid {
     /// Length of the state.
     fn length(&self) -> usize;
 
@@ -271,6 +283,16 @@ pub trait Compliant: Mechanics {
     fn other_forces(&self, t: f64, x: &[f64], v: &[f64], f: &mut [f64]);
 }
 
+/// View of rigid bodies, if the system has some.
+pub(crate) fn rigid_of(system: &dyn ParticleSystem) -> Option<&dyn Rigid> {
+    system.rigid().map(|RigidView(rigid)| rigid)
+}
+
+/// View of rows, if the particles of the system stand in rows.
+pub(crate) fn rows_of(system: &dyn ParticleSystem) -> Option<&dyn Rows> {
+    system.rows().map(|RowsView(rows)| rows)
+}
+
 /// Whether kicks depend on v, or the system does not say.
 pub(crate) fn kick_reads_velocity<M: Mechanics + ?Sized>(system: &M) -> bool {
     let splitting = system.splitting();
@@ -300,11 +322,11 @@ pub(crate) fn place_pins<M: Mechanics + ?Sized>(system: &M, t: f64, x: &mut [f64
 /// A mechanical system as a first-order one: x' = v, v' = F/m; a pin follows its path.
 impl<M: Mechanics> ParticleSystem for M {
     fn dim(&self) -> usize {
-        Mechanics::rigid(self).map_or(6 * self.inverse_masses().len(), Rigid::length)
+        Mechanics::rigid(self).map_or(6 * self.inverse_masses().len(), |view| view.0.length())
     }
 
     fn eval_f(&self, t: f64, y: &[f64], dydt: &mut [f64]) {
-        if let Some(rigid) = Mechanics::rigid(self) {
+        if let Some(RigidView(rigid)) = Mechanics::rigid(self) {
             return rigid.rates(t, y, dydt);
         }
         let n = self.inverse_masses().len();
@@ -320,7 +342,7 @@ impl<M: Mechanics> ParticleSystem for M {
         });
     }
 
-    fn rows(&self) -> Option<&dyn Rows> {
+    fn rows(&self) -> Option<RowsView<'_>> {
         Mechanics::rows(self)
     }
 
@@ -330,12 +352,12 @@ impl<M: Mechanics> ParticleSystem for M {
             .then_some(self as &dyn Mechanics)
     }
 
-    fn rigid(&self) -> Option<&dyn Rigid> {
+    fn rigid(&self) -> Option<RigidView<'_>> {
         Mechanics::rigid(self)
     }
 
     fn hold(&self, t: f64, y: &mut [f64]) {
-        if let Some(rigid) = Mechanics::rigid(self) {
+        if let Some(RigidView(rigid)) = Mechanics::rigid(self) {
             return rigid.place(t, y);
         }
         let (x, v) = y.split_at_mut(y.len() / 2);
@@ -343,7 +365,7 @@ impl<M: Mechanics> ParticleSystem for M {
     }
 
     fn measures(&self, visit: &mut dyn FnMut(Range<usize>, Measure)) {
-        if let Some(rigid) = Mechanics::rigid(self) {
+        if let Some(RigidView(rigid)) = Mechanics::rigid(self) {
             return rigid.measures(visit);
         }
         let n = 3 * self.inverse_masses().len();

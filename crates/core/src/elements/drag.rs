@@ -1,6 +1,6 @@
 //! Viscous drag, F = -c v.
 
-use super::force::{At, Carried, Force};
+use super::force::{At, DriftForces, Force};
 
 /// Viscous drag on each particle, of coefficient c (kg/s).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -23,10 +23,10 @@ impl Force for Drag {
         self.0 > 0.0
     }
 
-    fn carried(&self) -> Option<Carried> {
-        Some(Carried {
+    fn drift_forces(&self) -> Option<DriftForces> {
+        Some(DriftForces {
             drag: self.0,
-            ..Carried::default()
+            ..DriftForces::default()
         })
     }
 }

@@ -28,7 +28,7 @@ pub(crate) struct At<'a> {
 /// Uniform gravity and viscous drag, which the drift of a splitting method solves exactly, and
 /// which other evaluations add last, while they divide by the masses.
 #[derive(Clone, Copy, Default)]
-pub(crate) struct Carried {
+pub(crate) struct DriftForces {
     /// Acceleration (m/s2).
     pub gravity: Vector3<f64>,
     /// Coefficient of viscous drag (kg/s).
@@ -137,7 +137,7 @@ pub(crate) trait Force: Any {
     }
 
     /// The force as gravity and drag, if it is nothing else.
-    fn carried(&self) -> Option<Carried> {
+    fn drift_forces(&self) -> Option<DriftForces> {
         None
     }
 

@@ -65,7 +65,7 @@ impl Network {
     /// There is no such particle, or a rigid body carries it.
     pub fn pin(&mut self, i: usize, path: Path) -> Result<(), Error> {
         self.particles.check(i)?;
-        self.check_led(i)?;
+        self.check_kinematic(i)?;
         if self.particles.pin(i, path) {
             self.strain_limits.forget();
         }
@@ -79,7 +79,7 @@ impl Network {
     pub fn pin_all(&mut self, pins: Vec<(usize, Path)>) -> Result<(), Error> {
         for (i, _) in &pins {
             self.particles.check(*i)?;
-            self.check_led(*i)?;
+            self.check_kinematic(*i)?;
         }
         self.particles.pin_all(pins);
         self.strain_limits.forget();
@@ -99,7 +99,7 @@ impl Network {
     }
 
     /// Checks that particle i can be led along a path by itself.
-    pub(crate) fn check_led(&self, i: usize) -> Result<(), Error> {
+    pub(crate) fn check_kinematic(&self, i: usize) -> Result<(), Error> {
         self.bodies.check_free(&self.particles, i)
     }
 

@@ -6,7 +6,7 @@ use nalgebra::Vector3;
 
 use super::element::Element;
 use crate::contact::ContactLayer;
-use crate::elements::force::{ASSEMBLY, At, ByParticle, Carried, Force, Matter};
+use crate::elements::force::{ASSEMBLY, At, ByParticle, DriftForces, Force, Matter};
 use crate::elements::sheet::{Quantity, set};
 use crate::elements::{Airflow, Drag, Finish, Fluid, Gravity, Sheet, Solid, Wind};
 use crate::error::Error;
@@ -195,7 +195,7 @@ impl Elements {
         let in_rows = |element: &Element| {
             let force = element.force();
             element.get::<Sheet>().is_some()
-                || force.carried().is_some()
+                || force.drift_forces().is_some()
                 || force.by_particle().is_some()
         };
         self.single.is_empty() && self.all.iter().all(in_rows)
@@ -212,9 +212,9 @@ impl Elements {
     }
 
     /// Gravity and drag together.
-    pub fn carried(&self) -> Carried {
-        let all = self.all.iter().filter_map(|e| e.force().carried());
-        all.fold(Carried::default(), |a, b| Carried {
+    pub fn drift_forces(&self) -> DriftForces {
+        let all = self.all.iter().filter_map(|e| e.force().drift_forces());
+        all.fold(DriftForces::default(), |a, b| DriftForces {
             gravity: a.gravity + b.gravity,
             drag: a.drag + b.drag,
         })
@@ -222,7 +222,7 @@ impl Elements {
 
     /// Sets f to the finished sum of all forces but gravity and drag.
     pub fn evaluate(&self, at: &At, f: &mut [f64], finish: &Finish) {
-        let is_other = |e: &&Element| e.force().carried().is_none();
+        let is_other = |e: &&Element| e.force().drift_forces().is_none();
         self.sum(self.all.iter().filter(is_other), at, f, finish);
     }
 

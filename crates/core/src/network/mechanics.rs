@@ -9,11 +9,11 @@ use crate::columns::columns_mut;
 use crate::coupling::{Coupling, Diagonal, Matrix};
 use crate::elements::{Drag, Finish};
 use crate::path::Place;
-use crate::rows::{Rows, Terms};
+use crate::rows::Terms;
 use crate::spring::SpringLaw;
 use crate::system::{
-    Compliant, Linearized, Mechanics, Products, Rigid, SolverHints, Splitting, divide_by_masses,
-    place_pins,
+    Compliant, Linearized, Mechanics, Products, RigidView, RowsView, SolverHints, Splitting,
+    divide_by_masses, place_pins,
 };
 
 impl Mechanics for Network {
@@ -40,7 +40,7 @@ impl Mechanics for Network {
     }
 
     fn drag_coefficient(&self) -> f64 {
-        self.elements.carried().drag
+        self.elements.drift_forces().drag
     }
 
     fn pins(&self, t: f64, visit: &mut dyn FnMut(usize, Place)) {
@@ -51,13 +51,13 @@ impl Mechanics for Network {
 
     /// Rows of sheets, if nothing else acts on more than one particle: it would reach into rows
     /// that a sweep has left behind.
-    fn rows(&self) -> Option<&dyn Rows> {
+    fn rows(&self) -> Option<RowsView<'_>> {
         let sweeps = self.elements.are_in_rows() && !self.is_constrained();
-        sweeps.then_some(self as &dyn Rows)
+        sweeps.then_some(RowsView(self))
     }
 
-    fn rigid(&self) -> Option<&dyn Rigid> {
-        (!self.bodies().is_empty()).then_some(self as &dyn Rigid)
+    fn rigid(&self) -> Option<RigidView<'_>> {
+        (!self.bodies().is_empty()).then_some(RigidView(self))
     }
 
     fn splitting(&self) -> Option<&dyn Splitting> {
@@ -83,7 +83,7 @@ impl Splitting for Network {
     }
 
     fn kick_reads_velocity(&self) -> bool {
-        let reads = |e: &Element| e.force().carried().is_none() && e.force().reads_velocity();
+        let reads = |e: &Element| e.force().drift_forces().is_none() && e.force().reads_velocity();
         self.is_constrained() || self.elements().iter().any(reads)
     }
 

@@ -5,11 +5,11 @@ use std::ops::Range;
 use nalgebra::Vector3;
 
 use super::build::Network;
-use super::evaluation::{at, drifts_carry};
+use super::evaluation::{at, is_split};
 use super::holding::hold;
 use crate::constraints::Turning;
 use crate::elements::Finish;
-use crate::elements::force::Carried;
+use crate::elements::force::DriftForces;
 use crate::rigid::{Body, ROTATION, Rotation};
 use crate::rows::Terms;
 use crate::system::{Measure, Mechanics, Rigid, Splitting, place_pins};
@@ -38,8 +38,8 @@ fn with_forces<T>(
         network.bodies.place_points(y, x, v);
         let at = at(network, t, x, v);
         network.elements.evaluate(&at, f, &Finish::default());
-        if !drifts_carry(network, terms) {
-            let Carried { gravity, drag } = network.elements.carried();
+        if !is_split(network, terms) {
+            let DriftForces { gravity, drag } = network.elements.drift_forces();
             let n = network.particles();
             for (k, (f, v)) in f.iter_mut().zip(&*v).enumerate() {
                 let mass = network.masses()[k % n];
@@ -72,7 +72,7 @@ fn wrench(
         wrench.force += force;
         wrench.torque += (row(x, i) - center).cross(&force);
     }
-    if !drifts_carry(network, terms) {
+    if !is_split(network, terms) {
         wrench.torque -= rotation.momentum * decay(network, body);
     }
     wrench
@@ -106,7 +106,7 @@ fn turning(
 
 /// Rate (1/s) at which drag takes from the motion of a body.
 fn decay(network: &Network, body: &Body) -> f64 {
-    network.elements.carried().drag / network.masses()[body.center()]
+    network.elements.drift_forces().drag / network.masses()[body.center()]
 }
 
 /// Writes accelerations (m/s2) of particles that no body carries to a, n x 3.
@@ -198,8 +198,8 @@ impl Rigid for Network {
         let n = self.particles();
         let (halves, tail) = y.split_at_mut(6 * n);
         let (x, v) = halves.split_at_mut(3 * n);
-        let carries = drifts_carry(self, terms);
-        if carries {
+        let is_split = is_split(self, terms);
+        if is_split {
             Splitting::drift(self, t, h, x, v);
         } else {
             for (x, v) in x.iter_mut().zip(v) {
@@ -208,7 +208,7 @@ impl Rigid for Network {
         }
         for (body, tail) in self.bodies().iter().zip(tail.chunks_exact_mut(ROTATION)) {
             let mut rotation = Rotation::read(tail);
-            let decay = if carries { decay(self, body) } else { 0.0 };
+            let decay = if is_split { decay(self, body) } else { 0.0 };
             body.fly(&mut rotation, decay, h);
             rotation.write(tail);
         }

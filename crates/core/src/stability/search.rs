@@ -127,7 +127,7 @@ impl Budget {
 fn price(model: &Model) -> f64 {
     let each = model.network().map_or(1.0, |network| {
         let is_light = |element: &Element| {
-            element.get::<Sheet>().is_some() || element.force().carried().is_some()
+            element.get::<Sheet>().is_some() || element.force().drift_forces().is_some()
         };
         if network.contact_layer().is_some() {
             TOUCHING

@@ -7,7 +7,7 @@ use crate::error::Error;
 use crate::integrators::arithmetic::add_scaled;
 use crate::integrators::integrator::check_dim;
 use crate::integrators::method::MAX_DENSE;
-use crate::system::{Measure, ParticleSystem};
+use crate::system::{Measure, ParticleSystem, rigid_of};
 use crate::work::Work;
 
 /// Half the length of a difference, over the unit of what is changed.
@@ -85,7 +85,7 @@ impl Dense {
             }
             work += self.correct(system, t, a, base, y);
             // Where bodies are does not matter.
-            let size = match system.rigid() {
+            let size = match rigid_of(system) {
                 Some(_) => (self.unknowns.len() as f64).sqrt(),
                 None => self.norm(y),
             };
