@@ -1,4 +1,4 @@
-//! Particles, pins, constraints, and only those forces that a scene asks for.
+//! Networks: particles with pins and constraints, and the forces that a scene asks for.
 
 mod attraction;
 mod bodies;

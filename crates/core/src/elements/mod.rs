@@ -1,4 +1,4 @@
-//! The forces of a network, one file each, and all with the same few questions to answer.
+//! The forces of a network, one file each, all implementing one trait.
 
 mod air;
 mod airflow;

@@ -6,7 +6,8 @@ use crate::random::SplitMix;
 use crate::spring::{Spring, SpringKind, SpringLaw};
 use crate::{Grid, Network, Path, Sheet, Vector3};
 
-/// A flat square of springs of one stiffness, a corner pinned and everything a little out of place.
+/// Returns A flat square of springs of one stiffness, a corner pinned and everything a little out
+/// of place.
 pub(super) fn cloth(side: usize, stiffness: f64) -> (Network, Vec<f64>) {
     let grid = Grid::new(side, side).unwrap();
     let spacing = 1.0 / (side - 1) as f64;
@@ -30,7 +31,7 @@ pub(super) fn cloth(side: usize, stiffness: f64) -> (Network, Vec<f64>) {
     (network, x)
 }
 
-/// A line of springs, its first particle pinned.
+/// Returns A line of springs, its first particle pinned.
 pub(super) fn chain(count: usize, stiffness: f64) -> (Network, Vec<f64>) {
     let mut network = Network::new(vec![1.0 / count as f64; count]).unwrap();
     let spacing = 1.0 / count as f64;
@@ -47,7 +48,7 @@ pub(super) fn chain(count: usize, stiffness: f64) -> (Network, Vec<f64>) {
     (network, x)
 }
 
-/// A cube of single springs between neighbours in all directions, a corner pinned.
+/// Returns A cube of single springs between neighbours in all directions, a corner pinned.
 pub(super) fn jelly(side: usize, stiffness: f64) -> (Network, Vec<f64>) {
     let n = side * side * side;
     let mut network = Network::new(vec![1.0 / n as f64; n]).unwrap();
@@ -167,7 +168,7 @@ fn compressed_cloth_needs_the_clamp() {
     }
 }
 
-/// The shortest of some runs.
+/// Returns the shortest of some runs.
 fn time(mut run: impl FnMut()) -> f64 {
     let (mut best, begun) = (Duration::MAX, Instant::now());
     for k in 0..1000 {

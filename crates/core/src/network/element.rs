@@ -19,21 +19,22 @@ macro_rules! elements {
         }
 
         impl Element {
-            /// The force of the element.
+            /// Returns the force of the element.
             pub(crate) fn force(&self) -> &dyn Force {
                 match self {
                     $(Self::$name(element) => element,)*
                 }
             }
 
-            /// The force of the element, to be changed.
+            /// Returns the force of the element, to be changed.
             pub(crate) fn force_mut(&mut self) -> &mut dyn Force {
                 match self {
                     $(Self::$name(element) => element,)*
                 }
             }
 
-            /// Position of the element's type in the table, which is the order of summation.
+            /// Returns the position of the element's type in the table, which is the order of
+            /// summation.
             pub(crate) fn rank(&self) -> u8 {
                 enum Rank {
                     $($name,)*
@@ -74,18 +75,18 @@ elements! {
     Airflow,
     /// A critically damped spring from a moving point to a particle.
     Attraction,
-    /// Repulsion of surfaces that are near.
+    /// Repulsion of surfaces that are nearer than their thickness.
     ContactLayer,
 }
 
 impl Element {
-    /// The force as one of type T, if it is one.
+    /// Returns the force as one of type T, if it is one.
     pub(crate) fn get<T: Force>(&self) -> Option<&T> {
         let force: &dyn Any = self.force();
         force.downcast_ref()
     }
 
-    /// The force as one of type T, to be changed, if it is one.
+    /// Returns the force as one of type T, to be changed, if it is one.
     pub(crate) fn get_mut<T: Force>(&mut self) -> Option<&mut T> {
         let force: &mut dyn Any = self.force_mut();
         force.downcast_mut()
@@ -99,7 +100,7 @@ impl Element {
         )
     }
 
-    /// Whether it couples no particles.
+    /// Whether the element couples no particles.
     pub(crate) fn is_empty(&self) -> bool {
         self.force().cost().couplings == 0.0
     }

@@ -1,4 +1,4 @@
-//! Elements of a network: the forces that a scene asks for, in the order of their kinds.
+//! Elements of a network: the forces that a scene asks for, in the order of the table.
 
 use std::ops::Range;
 
@@ -11,18 +11,19 @@ use crate::elements::sheet::{Quantity, set};
 use crate::elements::{Airflow, Drag, Finish, Fluid, Gravity, Sheet, Solid, Wind};
 use crate::error::Error;
 
-/// Elements in the order of their kinds, and those of one kind as they were added.
+/// Elements in the order of their types, and those of one type in the order in which they were
+/// added.
 #[derive(Clone, Debug)]
 pub(super) struct Elements {
     all: Vec<Element>,
     /// Number of particles.
     particles: usize,
-    /// The particles that are in no sheet.
+    /// Particles that are in no sheet.
     single: Vec<Range<usize>>,
 }
 
 impl Elements {
-    /// Creates no elements, for n particles.
+    /// Creates an empty list of elements, for n particles.
     pub fn new(n: usize) -> Self {
         Self {
             all: vec![],
@@ -31,7 +32,7 @@ impl Elements {
         }
     }
 
-    /// Number of particles.
+    /// Returns the number of particles.
     pub fn particles(&self) -> usize {
         self.particles
     }
@@ -44,7 +45,7 @@ impl Elements {
         &mut self.all
     }
 
-    /// Adds an element after those of its kind, if its particles exist and are in no other sheet.
+    /// Adds an element after those of its type, if its particles exist and are in no other sheet.
     pub fn add(&mut self, element: Element) -> Result<(), Error> {
         element.force().check(self.particles)?;
         if let Some(sheet) = element.get::<Sheet>() {
@@ -62,7 +63,7 @@ impl Elements {
         Ok(())
     }
 
-    /// Adds an element after those of its kind.
+    /// Adds an element after those of its type, without checks.
     pub fn insert(&mut self, element: Element) {
         let rank = element.rank();
         let place = self.all.partition_point(|e| e.rank() <= rank);
@@ -79,7 +80,7 @@ impl Elements {
         self.single = between.filter(|particles| !particles.is_empty()).collect();
     }
 
-    /// Removes the elements of which `is` is true, and adds one in their place.
+    /// Removes the elements for which `is` is true, and adds one in their place.
     pub fn replace(&mut self, is: impl Fn(&Element) -> bool, by: Option<Element>) {
         self.all.retain(|element| !is(element));
         if let Some(element) = by {
@@ -122,12 +123,12 @@ impl Elements {
         self.all.retain(is_left);
     }
 
-    /// The elements of type T.
+    /// Returns the elements of type T.
     pub fn of<T: Force>(&self) -> impl Iterator<Item = &T> + Clone {
         self.all.iter().filter_map(Element::get)
     }
 
-    /// The first element of type T, to be changed.
+    /// Returns the first element of type T, to be changed.
     pub fn first_mut<T: Force>(&mut self) -> Option<&mut T> {
         self.all.iter_mut().find_map(Element::get_mut)
     }
@@ -164,7 +165,7 @@ impl Elements {
         self.all.iter().find_map(|element| element.force().wind())
     }
 
-    /// Names of the forces: springs and solids, their damping, and then others.
+    /// Returns the names of the forces in use: elastic ones, their damping, and then others.
     pub fn names(&self) -> Vec<&'static str> {
         let mut names = vec![];
         let mut list = |used: bool, name| {
@@ -185,12 +186,12 @@ impl Elements {
         names
     }
 
-    /// The forces on each particle by itself.
+    /// Returns the forces that act on each particle by itself.
     pub fn by_particle(&self) -> impl Iterator<Item = &dyn ByParticle> {
         self.all.iter().filter_map(|e| e.force().by_particle())
     }
 
-    /// Whether nothing but sheets acts on more than one particle.
+    /// Whether sheets alone couple particles, and all particles are in sheets.
     pub fn are_in_rows(&self) -> bool {
         let in_rows = |element: &Element| {
             let force = element.force();
@@ -201,7 +202,7 @@ impl Elements {
         self.single.is_empty() && self.all.iter().all(in_rows)
     }
 
-    /// Whether springs of one stiffness and damping each are all that couples particles.
+    /// Whether all matter consists of springs of constant stiffness and damping.
     pub fn are_springs(&self) -> bool {
         let is_spring = |e: &Element| match e.force().matter() {
             None | Some(Matter::Springs) => true,
@@ -211,7 +212,7 @@ impl Elements {
         self.all.iter().all(is_spring)
     }
 
-    /// Gravity and drag together.
+    /// Returns the sum of gravity and drag.
     pub fn drift_forces(&self) -> DriftForces {
         let all = self.all.iter().filter_map(|e| e.force().drift_forces());
         all.fold(DriftForces::default(), |a, b| DriftForces {
@@ -220,15 +221,15 @@ impl Elements {
         })
     }
 
-    /// Sets f to the finished sum of all forces but gravity and drag.
+    /// Sets f to the finished sum of all forces except gravity and drag.
     pub fn evaluate(&self, at: &At, f: &mut [f64], finish: &Finish) {
         let is_other = |e: &&Element| e.force().drift_forces().is_none();
         self.sum(self.all.iter().filter(is_other), at, f, finish);
     }
 
-    /// Sets f to the finished sum of some elements: first those that are no sheets, in their order;
-    /// on top of these each sheet, which finishes its own particles, so that nothing passes through
-    /// memory twice.
+    /// Sets f to the finished sum of some elements. Those that are no sheets come first, in their
+    /// order. Each sheet is added to these, and finishes its own particles, so that their numbers
+    /// pass through memory once.
     pub fn sum<'a>(
         &'a self,
         elements: impl Iterator<Item = &'a Element> + Clone,
@@ -251,7 +252,7 @@ impl Elements {
         self.finish_single(at.v, f, finish);
     }
 
-    /// Sets f to zero on the particles of no sheet.
+    /// Sets f to zero on particles that are in no sheet.
     pub fn clear_single(&self, f: &mut [f64]) {
         for column in f.chunks_exact_mut(self.particles) {
             for particles in &self.single {
@@ -260,19 +261,19 @@ impl Elements {
         }
     }
 
-    /// Finishes f on the particles of no sheet.
+    /// Finishes f on particles that are in no sheet.
     pub fn finish_single(&self, v: &[f64], f: &mut [f64], finish: &Finish) {
         for particles in &self.single {
             finish.apply(particles, v, f);
         }
     }
 
-    /// Sum over the elements of a number of each.
+    /// Returns the sum of a number over all elements.
     fn sum_of(&self, number: impl Fn(&dyn Force) -> f64) -> f64 {
         self.all.iter().map(|element| number(element.force())).sum()
     }
 
-    /// Time that the forces would take coupling by coupling over the time that they take.
+    /// Returns the time of the forces coupling by coupling, over the time that they take.
     pub fn speed(&self) -> f64 {
         let couplings = self.sum_of(|force| force.cost().couplings);
         if couplings > 0.0 {
@@ -282,7 +283,7 @@ impl Elements {
         }
     }
 
-    /// Price of the assembly of couplings, in evaluations of the forces.
+    /// Returns the price of the assembly of the couplings, in evaluations of the forces.
     pub fn assembly(&self) -> f64 {
         let price = self.sum_of(|force| force.cost().price);
         if price > 0.0 {

@@ -1,5 +1,5 @@
-//! What evaluations of a network share: its forces, gravity and drag in them or in drifts, and the
-//! motion that is prescribed.
+//! Parts that evaluations of a network share: its forces, with gravity and drag in them or in
+//! drifts, and prescribed motion.
 
 use std::ops::Range;
 
@@ -11,7 +11,7 @@ use crate::elements::force::{At, DriftForces};
 use crate::elements::{Finish, Flow, flow_each};
 use crate::rows::Terms;
 
-/// The arguments of elements.
+/// Returns the arguments of the elements of a network.
 pub(super) fn at<'a>(network: &'a Network, t: f64, x: &'a [f64], v: &'a [f64]) -> At<'a> {
     At {
         t,
@@ -22,7 +22,7 @@ pub(super) fn at<'a>(network: &'a Network, t: f64, x: &'a [f64], v: &'a [f64]) -
     }
 }
 
-/// Writes all forces but those of constraints to f.
+/// Writes all forces except those of constraints to f.
 pub(super) fn other_forces(network: &Network, t: f64, x: &[f64], v: &[f64], f: &mut [f64]) {
     let finish = finish(network, Terms::AllForces);
     network.elements.evaluate(&at(network, t, x, v), f, &finish);
@@ -34,7 +34,7 @@ pub(super) fn is_split(network: &Network, terms: Terms) -> bool {
     terms == Terms::KickForces && network.constraints.all().is_empty()
 }
 
-/// The gravity and drag that a drift applies.
+/// Returns the gravity and drag that a drift applies.
 pub(super) fn drift_forces(network: &Network, terms: Terms) -> DriftForces {
     if is_split(network, terms) {
         network.elements.drift_forces()
@@ -43,7 +43,7 @@ pub(super) fn drift_forces(network: &Network, terms: Terms) -> DriftForces {
     }
 }
 
-/// The gravity and drag that no drift applies, to be added last.
+/// Returns the gravity and drag that no drift applies, to be added last.
 pub(super) fn finish(network: &Network, terms: Terms) -> Finish<'_> {
     if is_split(network, terms) {
         return Finish::default();
@@ -75,7 +75,7 @@ pub(super) fn flow(
     }
 }
 
-/// Motion that the scene prescribes.
+/// Returns the motion that the scene prescribes.
 pub(super) fn prescribed(network: &Network) -> Prescribed<'_> {
     Prescribed {
         particles: &network.particles,

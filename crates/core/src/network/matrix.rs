@@ -1,5 +1,5 @@
-//! The part of an implicit step's matrix whose couplings are multiplied together: that of springs in
-//! sheets, and of single springs if there are many.
+//! The part of an implicit step's matrix whose couplings are multiplied together: that of springs
+//! in sheets, and of single springs if there are many.
 
 use super::element::Element;
 use super::elements::Elements;
@@ -28,7 +28,7 @@ pub(super) fn multiply(elements: &Elements, matrix: &Matrix, p: &[f64], out: &mu
         return in_sheets;
     };
     packed.add_product(matrix, p, out);
-    // Nothing is left on pinned particles.
+    // The product is 0 on pinned particles.
     divide_by_masses(matrix.free, out);
     in_sheets + packed.len()
 }

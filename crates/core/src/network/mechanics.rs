@@ -49,8 +49,8 @@ impl Mechanics for Network {
         }
     }
 
-    /// Rows of sheets, if nothing else acts on more than one particle: it would reach into rows
-    /// that a sweep has left behind.
+    /// Returns the rows of sheets, if sheets alone couple particles: other couplings would reach
+    /// rows that a sweep has left.
     fn rows(&self) -> Option<RowsView<'_>> {
         let sweeps = self.elements.are_in_rows() && !self.is_constrained();
         sweeps.then_some(RowsView(self))
@@ -75,7 +75,8 @@ impl Mechanics for Network {
 }
 
 impl Splitting for Network {
-    /// All forces but gravity and drag, which are in the drift, unless there are constraints.
+    /// Writes all forces except gravity and drag, which are in the drift, or all forces if there
+    /// are constraints.
     fn kick_forces(&self, t: f64, x: &[f64], v: &[f64], f: &mut [f64]) {
         let finish = finish(self, Terms::KickForces);
         self.elements.evaluate(&at(self, t, x, v), f, &finish);
@@ -87,7 +88,7 @@ impl Splitting for Network {
         self.is_constrained() || self.elements().iter().any(reads)
     }
 
-    /// x' = v, v' = g - (c/m) v, exactly; with constraints v stays.
+    /// Solves x' = v, v' = g - (c/m) v exactly; with constraints, v is constant.
     fn drift(&self, t: f64, h: f64, x: &mut [f64], v: &mut [f64]) {
         let all = 0..self.particles();
         flow(
@@ -142,7 +143,7 @@ impl Linearized for Network {
             .then_some(self as &dyn Products)
     }
 
-    /// Forces reach half the largest thickness of surfaces that touch.
+    /// The reach is half the largest thickness of surfaces that touch.
     fn hints(&self) -> SolverHints {
         let thickest = self.contact_layer().map(|layer| layer.surface().thickest());
         let thickest = thickest.filter(|thickness| *thickness > 0.0);
@@ -169,7 +170,7 @@ impl Products for Network {
 }
 
 impl Compliant for Network {
-    /// Those of sheets direction by direction, then the single ones.
+    /// Visits springs of sheets, direction by direction, and then single ones.
     fn springs(&self, visit: &mut dyn FnMut([usize; 2], SpringLaw)) {
         self.springs().for_each(|s| visit([s.i, s.j], s.law));
     }

@@ -1,4 +1,5 @@
-//! A network with rigid bodies as integrators see it: its state is [x | v | q, L of each body].
+//! A network with rigid bodies as integrators see it, with the state [x | v | q and L of each
+//! body].
 
 use std::ops::Range;
 
@@ -21,8 +22,8 @@ struct Wrench {
     torque: Vector3<f64>,
 }
 
-/// Evaluates forces (N), n x 3, in the state y at time t (s) with all points in their places,
-/// and uses them with these positions and velocities.
+/// Evaluates forces (N), n x 3, in the state y at time t (s) with all points in their places, and
+/// calls `run` with these positions, velocities and forces.
 fn with_forces<T>(
     network: &Network,
     t: f64,
@@ -52,8 +53,8 @@ fn with_forces<T>(
     })
 }
 
-/// Force and torque on a body at x, of the forces f on its particles. Drag acts on a rotation
-/// as it does on the motion of the centre: at the rate c / m.
+/// Returns the force and torque on a body at x, from the forces f on its particles. Drag damps the
+/// rotation at the same rate c / m as the motion of the centre.
 fn wrench(
     network: &Network,
     body: &Body,
@@ -78,8 +79,8 @@ fn wrench(
     wrench
 }
 
-/// How body k turns, and the acceleration of its centre (m/s2), under the forces f, with y and
-/// all points at x.
+/// Returns the rotation of body k and acceleration of its centre (m/s2) under the forces f, in the
+/// state y, with all points at x.
 fn turning(
     network: &Network,
     k: usize,
@@ -104,7 +105,7 @@ fn turning(
     )
 }
 
-/// Rate (1/s) at which drag takes from the motion of a body.
+/// Returns the rate (1/s) at which drag damps the motion of a body.
 fn decay(network: &Network, body: &Body) -> f64 {
     network.elements.drift_forces().drag / network.masses()[body.center()]
 }
@@ -117,7 +118,7 @@ fn accelerate(network: &Network, f: &[f64], a: &mut [f64]) {
     }
 }
 
-/// The row of particle i.
+/// Returns the row of particle i.
 fn row(a: &[f64], i: usize) -> Vector3<f64> {
     let n = a.len() / 3;
     Vector3::new(a[i], a[n + i], a[2 * n + i])

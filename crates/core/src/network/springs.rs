@@ -1,4 +1,4 @@
-//! Springs among the elements of a network, whichever element they are in.
+//! Springs of a network, of all its elements.
 
 use super::element::Element;
 use super::elements::Elements;
@@ -43,7 +43,7 @@ impl Elements {
         self.of::<BucklingSprings>().flat_map(BucklingSprings::all)
     }
 
-    /// The springs of sheets, and then the single ones.
+    /// Returns the springs of sheets, and then the single ones.
     pub fn springs(&self) -> impl Iterator<Item = Spring> {
         let single = self.of::<Springs>().flat_map(Springs::all).copied();
         self.sheets().flat_map(Sheet::springs).chain(single)
@@ -69,7 +69,7 @@ impl Elements {
         Ok(())
     }
 
-    /// Replaces the springs, the solids and the fluid by those of others, of as many particles.
+    /// Replaces the springs, the solids and the fluid by those of others, of the same particles.
     pub fn copy_springs(&mut self, others: &Self) -> Result<(), Error> {
         let [n, of_others] = [self, others].map(Self::particles);
         if n != of_others {
@@ -85,7 +85,7 @@ impl Elements {
         Ok(())
     }
 
-    /// Strain at each particle at x (m).
+    /// Returns the strain at each particle at x (m).
     pub fn strains(&self, x: &[f64]) -> Vec<f64> {
         let mut strains = vec![f64::NAN; self.particles()];
         for s in self.all_springs().filter(|s| s.law.rest_length > 0.0) {
@@ -102,7 +102,8 @@ impl Elements {
         strains
     }
 
-    /// Largest length over rest length of a structural spring, or principal stretch of a solid.
+    /// Returns the largest length over rest length of a structural spring, or principal stretch of
+    /// a solid.
     pub fn largest_stretch(&self, x: &[f64]) -> Option<f64> {
         let structural = |s: &Spring| s.kind == SpringKind::Structural && s.law.rest_length > 0.0;
         let of_springs = self.springs().filter(structural);

@@ -28,7 +28,7 @@ fn place_row(
     }
 }
 
-/// The sheet that is a patch of rows.
+/// Returns the sheet that is a patch of rows.
 fn patch_sheet(network: &Network, patch: usize) -> Option<&Sheet> {
     network.elements.sheets().nth(patch)
 }

@@ -4,8 +4,8 @@ use crate::random::SplitMix;
 use crate::spring::{Spring, SpringKind, SpringLaw};
 use crate::{Network, Path, Vector3};
 
-/// Springs between random particles near one another, of stiffness over four orders, some of them
-/// damped; some particles are heavy, some pinned, and some have no spring.
+/// Returns springs between random particles near one another, of stiffness over four orders, some
+/// of them damped; some particles are heavy, some pinned, and some have no spring.
 fn thicket(seed: u64, particles: usize) -> (Network, Vec<f64>) {
     let mut random = SplitMix(seed);
     let masses = (0..particles).map(|_| libm::exp(random.between(-7.0, 1.0)));
@@ -71,7 +71,7 @@ fn solves_the_same_with_it_in_fewer_iterations() {
     }
 }
 
-/// The motion of aggregates for a residual.
+/// Returns the motion of aggregates for a residual.
 fn motion(multigrid: &mut Multigrid, r: &[f64]) -> Vec<f64> {
     let product = multigrid.solve(r);
     let n = r.len() / 3;
