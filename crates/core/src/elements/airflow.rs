@@ -36,8 +36,8 @@ impl Force for Airflow {
         true
     }
 
-    fn wind(&self) -> Option<&Wind> {
-        Some(&self.wind)
+    fn is_wind(&self) -> bool {
+        true
     }
 
     fn add_forces(&self, at: &At, f: &mut [f64]) {

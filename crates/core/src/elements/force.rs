@@ -4,7 +4,6 @@ use std::any::Any;
 
 use nalgebra::Vector3;
 
-use super::wind::Wind;
 use crate::coupling::{Coupling, Diagonal, Matrix};
 use crate::energy::Energy;
 use crate::error::Error;
@@ -81,9 +80,9 @@ pub(crate) trait Force: Any {
         false
     }
 
-    /// Returns the wind, if the force is that of a wind.
-    fn wind(&self) -> Option<&Wind> {
-        None
+    /// Whether the force is that of the wind.
+    fn is_wind(&self) -> bool {
+        false
     }
 
     /// Checks that every particle index is below `particles`, their number.

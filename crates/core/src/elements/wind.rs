@@ -218,8 +218,8 @@ impl Force for Wind {
         true
     }
 
-    fn wind(&self) -> Option<&Wind> {
-        Some(self)
+    fn is_wind(&self) -> bool {
+        true
     }
 
     fn add_forces(&self, at: &At, f: &mut [f64]) {

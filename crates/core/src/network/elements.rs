@@ -110,7 +110,7 @@ impl Elements {
             Some(air) => Airflow { wind, air }.into(),
             None => wind.into(),
         });
-        self.replace(|element| element.force().wind().is_some(), element);
+        self.replace(|element| element.force().is_wind(), element);
     }
 
     /// Removes the springs between pairs of particles.
@@ -162,7 +162,8 @@ impl Elements {
     }
 
     pub fn wind(&self) -> Option<&Wind> {
-        self.all.iter().find_map(|element| element.force().wind())
+        let on_triangles = self.of::<Airflow>().map(|airflow| &airflow.wind);
+        self.of().chain(on_triangles).next()
     }
 
     /// Returns the names of the forces in use: elastic ones, their damping, and then others.

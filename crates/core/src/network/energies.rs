@@ -56,7 +56,7 @@ pub(crate) fn energy_of_errors(network: &Network, t: f64, y: &[f64], error: f64)
 /// Adds the forces of wind (N) in the state (x, v) at time t (s) to f.
 pub(crate) fn add_wind(network: &Network, t: f64, x: &[f64], v: &[f64], f: &mut [f64]) {
     for element in network.elements() {
-        if element.force().wind().is_some() {
+        if element.force().is_wind() {
             element.force().add_forces(&at(network, t, x, v), f);
         }
     }

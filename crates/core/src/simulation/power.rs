@@ -98,7 +98,7 @@ fn works_together(network: &Network) -> bool {
     let pinned = network.pins().any(|(_, path)| moves(&path));
     let pushed = !network.obstacles().iter().all(Obstacle::is_still);
     !network.constraints().is_empty()
-        || has(|force| force.is_driven() && force.wind().is_none())
+        || has(|force| force.is_driven() && !force.is_wind())
         || network.contact_layer().is_some() && pushed
         || !network.bodies().is_empty() && (pinned || network.wind().is_some())
         || pinned && has(|force| matches!(force.matter(), Some(Matter::Elastic | Matter::Fluid)))
