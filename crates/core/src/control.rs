@@ -18,7 +18,7 @@ pub enum Control {
 }
 
 impl Control {
-    /// The step (s) or the tolerance, as a user types it or a table shows it.
+    /// Returns the step (s) or the tolerance, as a user types it or a table shows it.
     #[must_use]
     pub fn value(self) -> f64 {
         match self {
@@ -26,7 +26,7 @@ impl Control {
         }
     }
 
-    /// Control of the same kind with another value.
+    /// Returns a control of the same kind with another value.
     #[must_use]
     pub fn with_value(self, value: f64) -> Self {
         match self {
@@ -35,7 +35,7 @@ impl Control {
         }
     }
 
-    /// The fixed step (s), if there is one.
+    /// Returns the fixed step (s), if there is one.
     #[must_use]
     pub fn step(self) -> Option<f64> {
         match self {
@@ -44,7 +44,7 @@ impl Control {
         }
     }
 
-    /// The relative tolerance, if there is one.
+    /// Returns the relative tolerance, if there is one.
     #[must_use]
     pub fn tolerance(self) -> Option<f64> {
         match self {

@@ -1,4 +1,5 @@
-//! Couplings of particles, and the matrix of an implicit step that is made of them.
+//! Couplings of particles (their stiffness and damping blocks), and the matrix of an implicit step
+//! that is assembled from them.
 
 /// Coupling of two particles, to first order. With d = xi - xj it adds dFi = -(K dd + C dd'), and
 /// the opposite to dFj.
@@ -6,9 +7,9 @@
 pub enum Coupling {
     /// A coupling along the line between the particles.
     Axial(AxialCoupling),
-    /// A coupling by any symmetric matrices.
+    /// A coupling by symmetric matrices.
     Block(BlockCoupling),
-    /// A coupling by any matrices, which adds (KT dd + CT dd') to dFj.
+    /// A coupling by matrices that need not be symmetric; it adds KT dd + CT dd' to dFj.
     General(GeneralCoupling),
 }
 
@@ -45,8 +46,8 @@ pub struct BlockCoupling {
     pub damping: [f64; 6],
 }
 
-/// Coupling of two particles by 3 x 3 matrices, each given row by row. All couplings together are
-/// symmetric, because with one of its K there is KT for the other end.
+/// Coupling of two particles by 3 x 3 matrices, each given row by row. The assembled matrix is
+/// symmetric, because the other end has the transposes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GeneralCoupling {
     /// Particle at one end.
@@ -96,7 +97,7 @@ pub struct Matrix<'a> {
     pub clamped: bool,
     /// Diagonal of M + a D for each particle (kg).
     pub masses: &'a [f64],
-    /// Factor of each particle's part of the product: 1, or 0 where it is pinned.
+    /// Factor of each particle's rows of the product: 0 for pinned particles, 1 for others.
     pub free: &'a [f64],
 }
 

@@ -1,23 +1,23 @@
-//! Energy by kind.
+//! Energy of a state, by kind.
 
 use std::ops::AddAssign;
 
-/// Energy by kind (J). That of gravity is zero at the origin.
+/// Energy of a state by kind (J). The gravitational energy is zero at the origin.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Energy {
     /// Kinetic energy, m v2 / 2 (J).
     pub kinetic: f64,
-    /// Elastic energy, k (L - r)2 / 2 of a spring, and that of bent arcs and of compressed fluid
-    /// (J).
+    /// Elastic energy (J) of springs, k (L - r)2 / 2, of bent arcs, of solids and of compressed
+    /// fluid.
     pub elastic: f64,
-    /// Energy of surfaces that are nearer than their thickness (J).
+    /// Energy of the repulsion of surfaces that are nearer than their thickness (J).
     pub contact: f64,
     /// Gravitational energy, -m g . x (J).
     pub gravitational: f64,
 }
 
 impl Energy {
-    /// Sum of all kinds (J).
+    /// Returns the sum of all kinds (J).
     #[must_use]
     pub fn total(&self) -> f64 {
         self.kinetic + self.elastic + self.contact + self.gravitational

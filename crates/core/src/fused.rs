@@ -1,6 +1,6 @@
-//! a b + c, rounded once, for numbers and for vectors of the processor. WebAssembly has it as an
-//! instruction only with relaxed SIMD, where every processor of today fuses; without, a page rounds
-//! twice, because the exact function takes ten times as long as a step may.
+//! Fused multiply-add, a b + c rounded once, for numbers and for SIMD vectors. WebAssembly has the
+//! instruction only with relaxed SIMD, which every processor of today fuses. Without it, a page
+//! rounds twice, because the exact function would make a step ten times as long.
 
 #![allow(
     clippy::inline_always,
@@ -9,7 +9,7 @@
 
 use pulp::Simd;
 
-/// a b + c.
+/// Returns a b + c.
 #[inline(always)]
 pub(crate) fn mul_add(a: f64, b: f64, c: f64) -> f64 {
     #[cfg(all(target_arch = "wasm32", target_feature = "relaxed-simd"))]
@@ -28,13 +28,13 @@ pub(crate) fn mul_add(a: f64, b: f64, c: f64) -> f64 {
     }
 }
 
-/// a b + c in each lane.
+/// Returns a b + c in each lane.
 #[inline(always)]
 pub(crate) fn mul_adds<S: Simd>(simd: S, a: S::f64s, b: S::f64s, c: S::f64s) -> S::f64s {
     if !cfg!(target_arch = "wasm32") {
         simd.mul_add_f64s(a, b, c)
     } else if S::F64_LANES == 1 {
-        // The end of a row is rounded like the rest of it.
+        // The last numbers of a row are rounded like the others.
         let [a, b, c] = [a, b, c].map(|lane| simd.reduce_sum_f64s(lane));
         simd.splat_f64s(mul_add(a, b, c))
     } else {
@@ -42,7 +42,7 @@ pub(crate) fn mul_adds<S: Simd>(simd: S, a: S::f64s, b: S::f64s, c: S::f64s) -> 
     }
 }
 
-/// c - a b in each lane.
+/// Returns c - a b in each lane.
 #[inline(always)]
 pub(crate) fn negate_mul_adds<S: Simd>(simd: S, a: S::f64s, b: S::f64s, c: S::f64s) -> S::f64s {
     if cfg!(target_arch = "wasm32") {

@@ -13,7 +13,7 @@ pub struct Grid {
 }
 
 impl Grid {
-    /// Grid of `rows` x `cols` particles.
+    /// Creates a grid of `rows` x `cols` particles.
     ///
     /// # Errors
     /// There are fewer than 2 rows or columns, or more than [`MAX_PARTICLES`] particles in all.
@@ -28,25 +28,25 @@ impl Grid {
         }
     }
 
-    /// Number of rows.
+    /// Returns the number of rows.
     #[must_use]
     pub fn rows(&self) -> usize {
         self.rows
     }
 
-    /// Number of columns.
+    /// Returns the number of columns.
     #[must_use]
     pub fn cols(&self) -> usize {
         self.cols
     }
 
-    /// Number of particles.
+    /// Returns the number of particles.
     #[must_use]
     pub fn particles(&self) -> usize {
         self.rows * self.cols
     }
 
-    /// Index of the particle in row i and column j, both counted from 0.
+    /// Returns the index of the particle in row i and column j, both counted from 0.
     #[must_use]
     #[doc(alias = "indexOf")]
     pub fn index_of(&self, i: usize, j: usize) -> usize {
@@ -54,9 +54,9 @@ impl Grid {
         i * self.cols + j
     }
 
-    /// Triangles of the grid as indices of particles: two for each cell, all in the same winding
-    /// order. Every cell is cut along the same diagonal, because smooth shading makes alternating
-    /// diagonals visible.
+    /// Returns the triangles of the grid as indices of particles: two for each cell, all in the
+    /// same winding order. Every cell is cut along the same diagonal, because smooth shading makes
+    /// alternating diagonals visible.
     pub fn triangles(&self) -> impl Iterator<Item = [usize; 3]> {
         let grid = *self;
         (0..grid.rows - 1).flat_map(move |i| {

@@ -70,6 +70,7 @@ mod random;
 pub mod rigid;
 mod rows;
 mod scene;
+mod scratch;
 mod serial;
 mod sets;
 mod simulation;
@@ -86,19 +87,20 @@ mod work;
 pub use constraints::Constraint;
 pub use control::Control;
 pub use coupling::{AxialCoupling, BlockCoupling, Coupling, Diagonal, GeneralCoupling, Matrix};
-pub use elements::{Element, Sheet};
+pub use elements::Sheet;
 pub use energy::Energy;
 pub use error::{BlowUp, Cause, ConstraintName, Error, Refusal, Unmet, Vertex};
 pub use grid::{Grid, MAX_PARTICLES};
 pub use integrators::{Integrator, Method, Work};
 pub use nalgebra::Vector3;
-pub use network::{Network, Touch};
+pub use network::{Element, Network, Touch};
 pub use path::{Orientation, Path, Place, Pose, Turn, rotation};
-pub use rows::{Next, Patch, REACH, Registers, Rows, Stage, SweepScratch, Terms};
 pub use scene::{FirstOrder, Model, Scene, StepLimits, Swing};
 pub use simulation::{Balance, Checkpoint, Gain, Grabbed, Progress, RunState, Simulation, Span};
 pub use spring::{Spring, SpringKind, SpringLaw};
-pub use system::{Compliant, Linearized, Measure, Mechanics, ParticleSystem, Rigid, Splitting};
+pub use system::{
+    Compliant, Linearized, Measure, Mechanics, ParticleSystem, Products, SolverHints, Splitting,
+};
 
 /// Example of the README, compiled as a documentation test.
 #[cfg(doctest)]

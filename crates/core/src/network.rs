@@ -1,9 +1,11 @@
-//! Particles, pins, constraints, and only those forces that a scene asks for.
+//! Networks: particles with pins and constraints, and the forces that a scene asks for.
 
 mod attraction;
 mod bodies;
 mod build;
+mod contact_layer;
 mod crossings;
+mod element;
 mod elements;
 mod energies;
 mod evaluation;
@@ -13,7 +15,6 @@ mod mechanics;
 mod particles;
 mod reading;
 mod rigid;
-mod scratch;
 mod springs;
 mod strain;
 mod surfaces;
@@ -22,6 +23,7 @@ mod tearing;
 
 pub(crate) use attraction::{attract, let_go, mass_behind};
 pub use build::Network;
+pub use element::Element;
 pub(crate) use energies::{add_wind, energy_of_errors, is_conservative};
 pub(crate) use holding::{contradiction, is_nearly_singular};
 pub use surfaces::Touch;

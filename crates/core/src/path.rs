@@ -15,7 +15,7 @@ pub struct Place {
 }
 
 impl Place {
-    /// Place of a point at rest at `position` (m).
+    /// Returns the place of a point at rest at `position` (m).
     #[must_use]
     pub fn still(position: Vector3<f64>) -> Self {
         Self {
@@ -37,12 +37,12 @@ pub struct Turn {
     pub rate: f64,
     /// Time at which the turn starts (s).
     pub start: f64,
-    /// Time at which the turn ends (s), later than `start`; nothing if it never does.
+    /// Time at which the turn ends (s), later than `start`; `None` if it never ends.
     pub end: Option<f64>,
 }
 
 impl Turn {
-    /// Angle since the start (rad) and angular velocity (rad/s) at time t (s).
+    /// Returns the angle since the start (rad) and the angular velocity (rad/s) at time t (s).
     #[must_use]
     pub fn at(&self, t: f64) -> (f64, f64) {
         let angle = |t: f64| self.rate * (t - self.start);
@@ -53,17 +53,17 @@ impl Turn {
         }
     }
 
-    /// Times at which the turn starts and ends (s).
+    /// Returns the times at which the turn starts and ends (s).
     pub(crate) fn known_times(&self) -> [f64; 2] {
         [self.start, self.end.unwrap_or(f64::INFINITY)]
     }
 
-    /// Whether it turns at some time between two others (s).
+    /// Whether the body turns at any time in an interval (s).
     pub(crate) fn is_on(&self, [from, to]: [f64; 2]) -> bool {
         self.rate != 0.0 && from < self.end.unwrap_or(f64::INFINITY) && to > self.start
     }
 
-    /// Orientation at time t (s) of a body that turns, seen from that before the start.
+    /// Returns the orientation at time t (s), relative to that before the start.
     #[must_use]
     pub fn orientation(&self, t: f64) -> Orientation {
         let (angle, rate) = self.at(t);
@@ -74,7 +74,7 @@ impl Turn {
     }
 }
 
-/// Matrix of a rotation about a vector by its length (rad): Rodrigues' formula.
+/// Returns the matrix of a rotation about a vector by its length (rad), by Rodrigues' formula.
 #[must_use]
 pub fn rotation(about: Vector3<f64>) -> Matrix3<f64> {
     let angle = about.norm();
@@ -92,7 +92,7 @@ pub fn rotation(about: Vector3<f64>) -> Matrix3<f64> {
 /// Orientation of a body that turns uniformly, at one time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Orientation {
-    /// Rotation matrix, from the body's own directions to those of the world.
+    /// Rotation matrix, from the axes of the body to those of the world.
     pub rotation: Matrix3<f64>,
     /// Angular velocity (rad/s), along the axis.
     pub spin: Vector3<f64>,
@@ -103,12 +103,12 @@ pub struct Orientation {
 pub struct Pose {
     /// Place of the body's origin.
     pub place: Place,
-    /// Orientation; nothing for a body that never turns.
+    /// Orientation; `None` for a body that never turns.
     pub orientation: Option<Orientation>,
 }
 
 impl Pose {
-    /// Place of the body's point `point` (m), seen from its origin before it turned.
+    /// Returns the place of a point of the body, given relative to the origin before any turn (m).
     #[must_use]
     pub fn of(&self, point: Vector3<f64>) -> Place {
         let Place {
@@ -133,14 +133,14 @@ impl Pose {
         }
     }
 
-    /// Vector of the body's own directions, from that of the world.
+    /// Converts a vector from the axes of the world to those of the body.
     #[must_use]
     pub fn inwards(&self, vector: Vector3<f64>) -> Vector3<f64> {
         self.orientation
             .map_or(vector, |turned| turned.rotation.tr_mul(&vector))
     }
 
-    /// Vector of the world, from that of the body's own directions.
+    /// Converts a vector from the axes of the body to those of the world.
     #[must_use]
     pub fn outwards(&self, vector: Vector3<f64>) -> Vector3<f64> {
         self.orientation
@@ -186,7 +186,7 @@ pub enum Path {
     Turn {
         /// The turn.
         turn: Turn,
-        /// Position seen from the axis before the turn (m).
+        /// Position relative to the axis before the turn (m).
         #[serde(with = "crate::serial")]
         arm: Vector3<f64>,
         /// First position of a point of the axis (m).
@@ -197,13 +197,13 @@ pub enum Path {
         to: Vector3<f64>,
         /// Time at which the axis starts to move (s).
         start: f64,
-        /// Time at which it ends to move (s), not earlier than `start`.
+        /// Time at which the axis stops (s), not earlier than `start`.
         end: f64,
     },
 }
 
 impl Path {
-    /// Position, velocity and acceleration at time t (s).
+    /// Returns the position, velocity and acceleration at time t (s).
     #[must_use]
     pub fn at(&self, t: f64) -> Place {
         match *self {
@@ -244,7 +244,7 @@ impl Path {
         }
     }
 
-    /// Length (m) of the motion that it leads: an amplitude, or a way between two ends.
+    /// Returns the length (m) of the motion: its amplitude, or the distance of its ends.
     pub(crate) fn length(&self) -> f64 {
         match *self {
             Self::Still(_) => 0.0,
@@ -254,7 +254,8 @@ impl Path {
         }
     }
 
-    /// Times at which the motion begins or ends (s), some of them perhaps twice or infinite.
+    /// Returns the times at which the motion begins or ends (s). Some may be infinite or occur
+    /// twice.
     pub(crate) fn known_times(&self) -> [f64; 4] {
         match self {
             Self::Still(_) | Self::Sine { .. } => [f64::INFINITY; 4],
@@ -268,7 +269,8 @@ impl Path {
         }
     }
 
-    /// Longest step (s) that shows a motion between two times (s): a quarter of its period.
+    /// Returns the longest step (s) that resolves the motion in an interval (s): a quarter of its
+    /// period.
     pub(crate) fn quarter_period(&self, times: [f64; 2]) -> f64 {
         let rate = match self {
             Self::Sine { rate, .. } => *rate,
@@ -278,8 +280,8 @@ impl Path {
         0.5 * std::f64::consts::PI / rate.abs()
     }
 
-    /// Bounds on the speed (m/s) and on the acceleration (m/s2) between two times (s). The latter
-    /// is infinite where the motion begins or ends between them.
+    /// Returns the bounds on the speed (m/s) and on the acceleration (m/s2) in an interval (s). The
+    /// acceleration is infinite where the motion begins or ends within it.
     pub(crate) fn bounds(&self, [from, to]: [f64; 2]) -> [f64; 2] {
         let uniform = |way: Vector3<f64>, start: f64, end: f64| {
             if from < end && to > start && end > start {
@@ -321,8 +323,7 @@ impl Path {
     }
 }
 
-/// Place at time t (s) on a straight line between two positions (m), which are left and reached at
-/// two times (s).
+/// Returns the place at time t (s) of uniform motion between two positions (m) in an interval (s).
 fn line([from, to]: [Vector3<f64>; 2], [start, end]: [f64; 2], t: f64) -> Place {
     if t < start {
         Place::still(from)

@@ -12,7 +12,7 @@ impl SplitMix {
         z ^ (z >> 31)
     }
 
-    /// Next number, uniformly distributed from `low` up to but not including `high`.
+    /// Returns the next number, uniformly distributed from `low` up to but not including `high`.
     pub fn between(&mut self, low: f64, high: f64) -> f64 {
         low + (high - low) * ((self.next() >> 11) as f64 / (1u64 << 53) as f64)
     }

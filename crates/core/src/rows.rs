@@ -1,59 +1,59 @@
-//! Particles in rows of which only near ones act on each other. A whole step can then go over them
-//! once, all of its stages a few rows apart: what it needs in between stays in the cache.
+//! Systems of particles in rows, where only near rows act on each other. A whole step can then
+//! sweep over the rows once, with all of its stages a few rows apart, so that the intermediate
+//! numbers stay in the cache.
 
-use crate::fused::mul_add;
 use std::array;
 use std::ops::Range;
 
 /// Largest distance of rows that act on each other.
-pub const REACH: usize = 2;
-/// Numbers beside a column on either side: as many as the longest vector has, for particles that
-/// are not there.
+pub(crate) const REACH: usize = 2;
+/// Length of the padding on either side of a column, which stands for neighbours beyond the end of
+/// a row: that of the longest SIMD vector.
 pub(crate) const PAD: usize = 8;
 
-/// The terms that a stage evaluates.
+/// Terms of y' = f that a stage evaluates.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Terms {
+pub(crate) enum Terms {
     /// All of y' = \[v | F / m\].
     Motion,
-    /// v' = F / m of the forces that no drift carries (see [`Splitting`](crate::Splitting)), x
-    /// standing still.
+    /// v' = F / m of the forces that drifts leave out (see [`Splitting`](crate::Splitting)), with x
+    /// constant.
     KickForces,
-    /// v' = F / m of all forces, x standing still: drifts carry none.
+    /// v' = F / m of all forces, with x constant: drifts have none.
     AllForces,
 }
 
-/// A stage of a step: k = f(t, stage), sum + b k, and what the next stage is.
+/// A stage of a step: it evaluates k = f(t, stage), adds b k to the sum, and forms the next stage.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Stage {
-    /// The terms that it evaluates.
+pub(crate) struct Stage {
+    /// Terms that it evaluates.
     pub terms: Terms,
     /// Time of its evaluation (s).
     pub t: f64,
     /// Time of the next stage's evaluation, or of the end of the step after the last one (s).
     pub until: f64,
-    /// Whether it is the method's first one: the sum then begins with the stage.
+    /// Whether it is the first stage of the method: the sum then begins with the stage itself.
     pub first: bool,
-    /// Weight b of its k in the sum (s).
+    /// Weight b of k in the sum (s).
     pub b: f64,
-    /// What the next stage is.
+    /// Rule for the next stage.
     pub next: Next,
     /// Length of the drift that follows (s).
     pub drift: f64,
 }
 
-/// What follows a stage.
+/// Rule by which the next stage is formed.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Next {
-    /// The sum: the new state, or that from which another method begins.
+pub(crate) enum Next {
+    /// The sum: the new state, or the first stage of the next substep.
     Sum,
-    /// y + c k with this c (s), as in an explicit Runge-Kutta method whose stages read only the one
-    /// before them.
+    /// y + c k with this c (s), as in an explicit Runge-Kutta method whose stages depend only on
+    /// the one before.
     FromY(f64),
-    /// The sum after the drift, ahead of it by e = `keep` e + `add` k, `add` in s. There is no e
-    /// before the first stage.
+    /// The sum after the drift, plus an extrapolation e of the velocities, which each stage updates
+    /// to `keep` e + `add` k. e is 0 before the first stage.
     Ahead {
-        /// Share of e that is kept.
+        /// Fraction of e that is kept.
         keep: f64,
         /// Weight of k in e (s).
         add: f64,
@@ -61,22 +61,21 @@ pub enum Next {
 }
 
 impl Next {
-    /// Whether the next stage is found from the y at which the method began.
-    #[must_use]
+    /// Whether the next stage is formed from the y at which the step began.
     pub fn is_from_y(self) -> bool {
         matches!(self, Self::FromY(_))
     }
 
-    /// Whether the next stage is ahead of the sum.
-    #[must_use]
+    /// Whether the next stage is extrapolated from the sum.
     pub fn is_ahead(self) -> bool {
         matches!(self, Self::Ahead { .. })
     }
 }
 
-/// Some particles of a system that stand in rows, numbered row by row, and that no others act on.
+/// Particles of a system that stand in rows, are numbered row by row, and do not interact with
+/// others.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Patch {
+pub(crate) struct Patch {
     /// Number of its first particle in the system.
     pub first: usize,
     /// Number of rows.
@@ -86,40 +85,37 @@ pub struct Patch {
 }
 
 impl Patch {
-    /// Number of particles.
-    #[must_use]
+    /// Returns the number of particles.
     pub fn particles(&self) -> usize {
         self.rows * self.cols
     }
 
-    /// Numbers of the particles in a row.
-    #[must_use]
+    /// Returns the numbers of the particles in a row.
     pub fn row(&self, row: usize) -> Range<usize> {
         self.first + row * self.cols..self.first + (row + 1) * self.cols
     }
 }
 
-/// A system whose particles all stand in rows and feel those at most [`REACH`] rows away, and no
-/// others. Its steps in a sweep must be those by whole arrays to the last bit.
-pub trait Rows: Sync {
-    /// Number of patches, which do not act on one another.
+/// A system whose particles all stand in rows, and depend only on those at most [`REACH`] rows
+/// away. Steps in a sweep must give the same bits as steps by whole arrays.
+pub(crate) trait Rows: Sync {
+    /// Returns the number of patches. Patches do not act on one another.
     fn patches(&self) -> usize;
 
-    /// The patch of a number; each particle is in one of them.
+    /// Returns a patch by its number. Each particle is in exactly one patch.
     fn patch(&self, patch: usize) -> Patch;
 
-    /// Columns of numbers that each stage keeps from row to row.
+    /// Returns the number of columns that each stage keeps from row to row.
     fn kept_columns(&self) -> usize;
 
-    /// Numbers that a sweep shares among all rows and stages.
-    fn shared_numbers(&self) -> usize {
-        0
-    }
+    /// Returns the count of numbers that all rows and stages of a sweep share.
+    fn shared_numbers(&self) -> usize;
 
     /// Prepares the scratch of a sweep over some rows of a patch.
     fn begin(&self, patch: usize, scratch: &mut SweepScratch);
 
-    /// Takes the stage's row through a drift of h from time t, to where pins are at t + h.
+    /// Drifts a row of the stage from time t to t + h, with its pins in their places at t + h;
+    /// times are (t, h) in s.
     fn drift(
         &self,
         patch: usize,
@@ -129,10 +125,11 @@ pub trait Rows: Sync {
         registers: &mut Registers,
     );
 
-    /// Takes rows of a patch through stage `number` of the sweep and the drift that follows it, to
-    /// where pins are at the end. Rows come in their order, from some row on: the first [`REACH`]
-    /// of them may come out wrong unless they are the first of the patch. Rows up to [`REACH`]
-    /// below them are still in the stage, those above no more.
+    /// Takes rows of a patch through stage `number` of the sweep and the drift that follows it,
+    /// with pins in their places at the end. A band of rows is visited in order, from its first row
+    /// on; the results of its first [`REACH`] rows are not used, unless they are the first of the
+    /// patch. When a row is visited, the [`REACH`] rows below it are still in the stage, and those
+    /// above have left it.
     fn advance(
         &self,
         patch: usize,
@@ -144,17 +141,17 @@ pub trait Rows: Sync {
     );
 }
 
-/// The numbers of some rows during a step, six columns each, x y z of positions and of velocities:
-/// y as it was, or how far the stage is ahead of the sum; the sum over the stages; and the stage
-/// under way.
-pub struct Registers {
+/// The numbers of some rows during a step, in six columns, x y z of positions and of velocities:
+/// the y at which the step began, or the extrapolation e of [`Next::Ahead`]; the sum over the
+/// stages; and the current stage.
+pub(crate) struct Registers {
     pub(crate) y: Window,
     pub(crate) sum: Window,
     pub(crate) stage: Window,
 }
 
 impl Registers {
-    /// Registers of `depth` rows at a time.
+    /// Creates registers for `depth` rows at a time, of `cols` particles each.
     pub(crate) fn new(depth: usize, cols: usize) -> Self {
         let window = || Window::new(depth, 6, cols);
         Self {
@@ -169,7 +166,7 @@ impl Registers {
         self.y.row_mut(row).copy_from_slice(self.stage.row(row));
     }
 
-    /// Takes the velocities of a row, which are at the sum, ahead of it.
+    /// Extrapolates the velocities of a row, after it stored them as the sum.
     pub(crate) fn look_ahead(&mut self, row: usize) {
         for column in 3..6 {
             let (stage, ahead) = (
@@ -183,69 +180,29 @@ impl Registers {
         }
     }
 
-    /// Columns of a row of the stage under way.
-    #[must_use]
+    /// Returns the columns of a row of the current stage.
     pub fn stage(&self, row: usize) -> [&[f64]; 6] {
         array::from_fn(|column| self.stage.column(row, column))
     }
 
-    /// Columns of a row of the stage under way.
+    /// Returns the columns of a row of the current stage.
     pub fn stage_mut(&mut self, row: usize) -> [&mut [f64]; 6] {
         self.stage.columns_mut(row)
     }
-
-    /// Takes a row to the next stage by its accelerations (m/s2), by axis, without the drift: to
-    /// the sum, if the next stage is ahead of it.
-    pub fn advance(&mut self, stage: &Stage, row: usize, accelerations: [&[f64]; 3]) {
-        let moves = stage.terms == Terms::Motion;
-        for column in if moves { 0 } else { 3 }..6 {
-            for (i, a) in accelerations[column % 3].iter().enumerate() {
-                let k = if column < 3 {
-                    self.stage.column(row, 3 + column)[i]
-                } else {
-                    *a
-                };
-                let now = self.stage.column(row, column)[i];
-                let before = if stage.first {
-                    now
-                } else {
-                    self.sum.column(row, column)[i]
-                };
-                let after = mul_add(stage.b, k, before);
-                let y = &mut self.y.column_mut(row, column)[i];
-                self.stage.column_mut(row, column)[i] = match stage.next {
-                    Next::Sum => after,
-                    Next::FromY(c) => {
-                        self.sum.column_mut(row, column)[i] = after;
-                        mul_add(c, k, *y)
-                    }
-                    Next::Ahead { keep, add } => {
-                        let more = add * k;
-                        *y = if stage.first {
-                            more
-                        } else {
-                            mul_add(keep, *y, more)
-                        };
-                        after
-                    }
-                };
-            }
-        }
-    }
 }
 
-/// Numbers that the rows of a sweep hand on to those below them, stage by stage, and that they all
-/// read.
-pub struct SweepScratch {
+/// Numbers that the rows of a sweep pass on to those below, stage by stage, and numbers that all
+/// rows share.
+pub(crate) struct SweepScratch {
     pub(crate) shared: Window,
-    /// A row for each stage.
+    /// Numbers kept from row to row, a row of the window for each stage.
     pub(crate) kept: Window,
-    /// Addends to the forces on one row, by axis.
+    /// Forces on the current row that are added to those of springs, by axis.
     pub(crate) addends: Window,
 }
 
 impl SweepScratch {
-    /// Scratch for rows of so many particles.
+    /// Creates scratch for rows of `cols` particles.
     pub(crate) fn new(system: &dyn Rows, stages: usize, cols: usize) -> Self {
         Self {
             shared: Window::new(1, 1, system.shared_numbers()),
@@ -254,36 +211,25 @@ impl SweepScratch {
         }
     }
 
-    /// Numbers shared by all rows and stages.
-    #[must_use]
-    pub fn shared(&self) -> &[f64] {
-        self.shared.column(0, 0)
-    }
-
-    /// Numbers shared by all rows and stages.
+    /// Returns the numbers that all rows and stages share.
     pub fn shared_mut(&mut self) -> &mut [f64] {
         self.shared.column_mut(0, 0)
     }
 
-    /// A column of numbers, one for each particle of a row, that a stage keeps from row to row.
-    pub fn kept_mut(&mut self, number: usize, column: usize) -> &mut [f64] {
-        self.kept.column_mut(number, column)
-    }
-
-    /// Columns of forces on a row that are added to those of its own, by axis.
+    /// Returns the forces on the current row that are added to those of springs, by axis.
     pub(crate) fn addends_mut(&mut self) -> [&mut [f64]; 3] {
         let [x, y, z, ..] = self.addends.columns_mut(0);
         [x, y, z]
     }
 
-    /// Sets all that stages keep to zero.
+    /// Sets the numbers that stages keep to zero.
     pub fn clear_kept(&mut self) {
         self.kept.data.fill(0.0);
     }
 }
 
-/// Ring buffer of `depth` matrix rows: rows r and r + depth share a slot. Each row is some columns
-/// of numbers, with zeros before and after, aligned for the processor's vectors.
+/// Ring buffer of `depth` matrix rows: rows r and r + depth share a slot. Each row consists of some
+/// columns of numbers, each between zeros, aligned for SIMD vectors.
 pub(crate) struct Window {
     data: Vec<f64>,
     start: usize,
@@ -297,7 +243,7 @@ impl Window {
     pub fn new(depth: usize, columns: usize, cols: usize) -> Self {
         let stride = stride(cols);
         let data = vec![0.0; depth * columns * stride + PAD];
-        // At a multiple of eight numbers, a cache line.
+        // The start of a cache line, which is eight numbers long.
         let start = data.as_ptr().align_offset(PAD * size_of::<f64>()).min(PAD);
         Self {
             data,
@@ -316,30 +262,30 @@ impl Window {
         start..start + length
     }
 
-    /// All columns of a row, and what is beside them.
+    /// Returns all columns of a row, with their padding.
     #[inline]
     pub fn row(&self, row: usize) -> &[f64] {
         &self.data[self.place(row)]
     }
 
-    /// All columns of a row, and what is beside them.
+    /// Returns all columns of a row, with their padding.
     #[inline]
     pub fn row_mut(&mut self, row: usize) -> &mut [f64] {
         let place = self.place(row);
         &mut self.data[place]
     }
 
-    /// Three rows after one another, in a window that is at least as deep.
+    /// Returns three consecutive rows, of a window that is at least three deep.
     #[inline]
     pub fn three_mut(&mut self, row: usize) -> [&mut [f64]; 3] {
         let places = [self.place(row), self.place(row + 1), self.place(row + 2)];
         self.data
             .get_disjoint_mut(places)
-            .expect("rows of a window that is three deep are three")
+            .expect("a window at least three deep holds three different rows")
     }
 
-    /// Fills a column of a row, and the vector that it ends in with zeros: a state that was lost
-    /// may have left others.
+    /// Fills a column of a row, and the rest of its last SIMD vector with zeros: a state that
+    /// diverged may have left other numbers there.
     pub fn load(&mut self, row: usize, column: usize, from: &[f64]) {
         let (stride, cols) = (self.stride, self.cols);
         let to = &mut self.row_mut(row)[column * stride + PAD..][..cols.next_multiple_of(PAD)];
@@ -347,7 +293,7 @@ impl Window {
         to[cols..].fill(0.0);
     }
 
-    /// The first six columns of a row.
+    /// Returns the first six columns of a row.
     pub fn columns_mut(&mut self, row: usize) -> [&mut [f64]; 6] {
         let (stride, cols) = (self.stride, self.cols);
         let mut columns = self.row_mut(row).chunks_exact_mut(stride);
@@ -357,13 +303,13 @@ impl Window {
         })
     }
 
-    /// A column of a row.
+    /// Returns a column of a row.
     #[inline]
     pub fn column(&self, row: usize, column: usize) -> &[f64] {
         &self.row(row)[column * self.stride + PAD..][..self.cols]
     }
 
-    /// A column of a row.
+    /// Returns a column of a row.
     #[inline]
     pub fn column_mut(&mut self, row: usize, column: usize) -> &mut [f64] {
         let (stride, cols) = (self.stride, self.cols);
@@ -371,8 +317,8 @@ impl Window {
     }
 }
 
-/// Numbers from one column of so many to the next: an odd number of cache lines, because the
-/// processor takes numbers that are a power of two apart for one another.
+/// Returns the distance between columns of `cols` numbers: an odd number of cache lines, because
+/// addresses a power of two apart fall into the same place of the cache.
 pub(crate) const fn stride(cols: usize) -> usize {
     ((cols.div_ceil(PAD) + 2) | 1) * PAD
 }

@@ -1,10 +1,10 @@
-//! Scenes: models, the states they start from, and what their runs can be disturbed by.
+//! Scenes: models, the states they start from, and the disturbances that their runs allow.
 
 use std::sync::Arc;
 
 use nalgebra::Vector3;
 
-use crate::elements::{Element, Sheet, Wind};
+use crate::elements::{Sheet, Wind};
 use crate::error::Error;
 use crate::geometry::Shape;
 use crate::grid::Grid;
@@ -12,12 +12,13 @@ use crate::integrators::Tolerance;
 use crate::network::{Network, Touch};
 use crate::system::ParticleSystem;
 
-/// What an evaluation with its guard costs where surfaces touch, over one of springs alone.
-const TOUCHING: f64 = 100.0;
+/// Cost of an evaluation where surfaces touch, with the collision safeguard after a step, over the
+/// cost with springs alone.
+const CONTACT_COST: f64 = 100.0;
 
-/// What an evaluation of a fluid, each of whose particles has dozens of neighbours, costs over
-/// that.
-const FLUID: f64 = 10.0;
+/// Cost of an evaluation of a fluid, whose particles have dozens of neighbours each, over the cost
+/// with springs alone.
+const FLUID_COST: f64 = 10.0;
 
 /// First-order system, shared among runs.
 pub type FirstOrder = Arc<dyn ParticleSystem + Send + Sync>;
@@ -32,7 +33,7 @@ pub enum Model {
 }
 
 impl Model {
-    /// Model as the system that an integrator steps.
+    /// Returns the model as the system that an integrator steps.
     #[must_use]
     pub fn system(&self) -> &dyn ParticleSystem {
         match self {
@@ -41,7 +42,7 @@ impl Model {
         }
     }
 
-    /// Network of masses and springs; `None` for a first-order system.
+    /// Returns the network of masses and springs; `None` for a first-order system.
     #[must_use]
     pub fn network(&self) -> Option<&Network> {
         match self {
@@ -50,23 +51,23 @@ impl Model {
         }
     }
 
-    /// Number of particles.
+    /// Returns the number of particles.
     #[must_use]
     pub fn particles(&self) -> usize {
         self.network()
             .map_or(self.system().dim() / 3, Network::particles)
     }
 
-    /// Work of an evaluation, with the guard after a step, in evaluations of one particle on
-    /// springs: what searches count to end at the same run on every machine.
+    /// Returns the cost of an evaluation, with the collision safeguard after a step, in evaluations
+    /// of one particle on springs. Searches count it, so that they end at the same run on every
+    /// machine.
     #[must_use]
     pub fn work(&self) -> f64 {
         let each = |network: &Network| {
-            let mut elements = network.elements().iter();
             if network.contact_layer().is_some() {
-                TOUCHING
-            } else if elements.any(|element| matches!(element, Element::Fluid(_))) {
-                FLUID
+                CONTACT_COST
+            } else if network.fluid().is_some() {
+                FLUID_COST
             } else {
                 1.0
             }
@@ -84,7 +85,7 @@ pub struct Swing {
     pub rate: f64,
 }
 
-/// Scene: a model, the state it starts from, and what a run of it can be disturbed by.
+/// Scene: a model, the state it starts from, and the disturbances that a run of it allows.
 #[derive(Clone)]
 pub struct Scene {
     /// Name, for messages and files.
@@ -116,7 +117,7 @@ pub struct StepLimits {
 }
 
 impl StepLimits {
-    /// These limits, and those of a scene where there are none.
+    /// Returns these limits, and the scene's `own` ones in place of those that are `None`.
     #[must_use]
     pub fn or(self, own: Self) -> Self {
         Self {
@@ -127,10 +128,10 @@ impl StepLimits {
 }
 
 impl Scene {
-    /// Scene without swing, wind and surfaces that can touch, in which a hand pulls springs to at
-    /// most ten rest lengths. It starts from `state` with the pins in their places, at rest or with
-    /// the velocity of their paths: whatever else they were given would be felt by the springs in
-    /// the first step alone.
+    /// Creates a scene without swing, wind and surfaces that can touch, in which a hand pulls
+    /// springs to at most ten rest lengths. It starts from `state` with the pins in the places and
+    /// with the velocities of their paths: any others would act on the springs in the first step
+    /// alone.
     #[must_use]
     pub fn new(name: impl Into<String>, model: Model, mut state: Vec<f64>) -> Self {
         if state.len() == model.system().dim() {
@@ -148,17 +149,17 @@ impl Scene {
         }
     }
 
-    /// Grid of the first sheet of cloth, if there is one.
+    /// Returns the grid of the first sheet of cloth, if there is one.
     #[must_use]
     pub fn grid(&self) -> Option<Grid> {
         self.model.network()?.sheets().next().map(Sheet::grid)
     }
 
-    /// Centre of the bounding box of the particles at t = 0 (m), and the radius of the scene (m):
-    /// that of a ball about this centre with all particles and bodies, or half the rest length of
-    /// the longest spring if that is more. Where all is in one place, it is the way that the pins
-    /// lead, the distance of the nearest obstacle, or the way of a second at the first speed or by
-    /// gravity; 1 if there is no length at all.
+    /// Returns the centre of the bounding box of the particles at t = 0 (m), and the radius of the
+    /// scene (m): that of a ball about this centre with all particles and bodies, or half the rest
+    /// length of the longest spring if that is more. If all particles are in one place, it is the
+    /// first of these that is not 0: the length of the pins' motion, the distance of the nearest
+    /// obstacle, the distance moved in a second at the initial speed or by gravity; or else 1.
     #[must_use]
     pub fn extent(&self) -> (Vector3<f64>, f64) {
         let n = self.model.particles();
@@ -187,9 +188,9 @@ impl Scene {
         (middle, length.unwrap_or(1.0))
     }
 
-    /// Length (m) of a scene whose particles are all in one place, or 0.
+    /// Returns the length (m) of a scene whose particles are all in one place, or 0.
     fn reach_of_a_point(&self, network: &Network, place: Vector3<f64>) -> f64 {
-        let led = network.pins().map(|(_, path)| path.length());
+        let motions = network.pins().map(|(_, path)| path.length());
         let obstacles = network.obstacles().iter().map(|obstacle| {
             let away = place - obstacle.path.at(0.0).position;
             match obstacle.shape {
@@ -203,15 +204,15 @@ impl Scene {
             .map(|i| row(v, i).norm())
             .fold(0.0, f64::max);
         let fall = network.gravity().map_or(0.0, |g| 0.5 * g.norm());
-        let led = led.fold(0.0, f64::max);
-        let lengths = [led, nearest.unwrap_or(0.0), speed.max(fall)];
+        let motion = motions.fold(0.0, f64::max);
+        let lengths = [motion, nearest.unwrap_or(0.0), speed.max(fall)];
         lengths
             .into_iter()
             .find(|length| *length > 0.0)
             .unwrap_or(0.0)
     }
 
-    /// The errors that a step to a relative tolerance may make.
+    /// Returns the errors that a step may make under a relative tolerance.
     ///
     /// # Errors
     /// The tolerance, or the scene's absolute one, is not a finite number above 0.
@@ -221,7 +222,7 @@ impl Scene {
     }
 }
 
-/// Centre of the bounding box of positions x (m).
+/// Returns the centre of the bounding box of positions x (m).
 fn middle(x: &[f64]) -> Vector3<f64> {
     let n = x.len() / 3;
     Vector3::from_fn(|axis, _| {
@@ -233,7 +234,7 @@ fn middle(x: &[f64]) -> Vector3<f64> {
     })
 }
 
-/// Row i of an n x 3 matrix.
+/// Returns row i of an n x 3 matrix.
 fn row(a: &[f64], i: usize) -> Vector3<f64> {
     let n = a.len() / 3;
     Vector3::new(a[i], a[n + i], a[2 * n + i])

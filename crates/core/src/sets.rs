@@ -5,12 +5,12 @@
 pub(crate) struct Sets(Vec<u32>);
 
 impl Sets {
-    /// Sets of one number each, from 0 on.
+    /// Creates `count` sets of one number each, 0 to `count` - 1.
     pub fn new(count: usize) -> Self {
         Self((0..count as u32).collect())
     }
 
-    /// The smallest number in the set of k.
+    /// Returns the smallest number in the set of k.
     pub fn find(&mut self, mut k: u32) -> u32 {
         while self.0[k as usize] != k {
             self.0[k as usize] = self.0[self.0[k as usize] as usize];

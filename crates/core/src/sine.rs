@@ -1,8 +1,8 @@
 //! The sine of many numbers at a time, with the same bits on every processor: plain code that the
 //! compiler turns into vectors. With n pi the multiple of pi that is nearest to a, and
 //! r = a - n pi, sin a = (-1)^n sin r. Products with the two parts of pi are fused, and sin r, with
-//! r at most pi / 2, is its Taylor series up to r^21, of which the next term is below 2e-18. The
-//! results are those of `libm` but for the last digit or two.
+//! r at most pi / 2, is its Taylor series up to r^21; the next term is below 2e-18. The results
+//! differ from those of `libm` in the last digit or two at most.
 
 #![expect(
     clippy::inline_always,
@@ -13,13 +13,13 @@ use std::f64::consts::{FRAC_1_PI, PI};
 
 use crate::fused::mul_add;
 
-/// The argument (rad) up to which two parts of pi are enough; beyond it, `libm` is asked.
-const FAR: f64 = 1e6;
+/// Largest argument (rad) for which two parts of pi are enough; beyond it, `libm` is called.
+const MAX_ARGUMENT: f64 = 1e6;
 
 /// pi less the double that is nearest to it.
 const REST_OF_PI: f64 = 1.224_646_799_147_353_2e-16;
 
-/// A number whose last digit is worth 1, so that a sum with it is rounded to a whole number.
+/// Number whose last bit has the value 1, so that a sum with it is rounded to a whole number.
 const WHOLE: f64 = 6_755_399_441_055_744.0;
 
 /// Coefficients of the series divided by r^3, from the last one on: 1 / 21!, - 1 / 19! and so on.
@@ -36,7 +36,7 @@ const SERIES: [f64; 10] = [
     -1.0 / 6.0,
 ];
 
-/// The sine of a (rad).
+/// Returns the sine of a (rad).
 pub(crate) fn sine(a: f64) -> f64 {
     let mut one = [a];
     sines(&mut one);
@@ -46,10 +46,12 @@ pub(crate) fn sine(a: f64) -> f64 {
 /// Replaces numbers (rad) by their sines.
 #[inline(always)]
 pub(crate) fn sines(all: &mut [f64]) {
-    let is_far = all.iter().fold(false, |far, a| far | (a.abs() > FAR));
+    let is_far = all
+        .iter()
+        .fold(false, |far, a| far | (a.abs() > MAX_ARGUMENT));
     if is_far {
         for a in all {
-            *a = if a.abs() > FAR {
+            *a = if a.abs() > MAX_ARGUMENT {
                 libm::sin(*a)
             } else {
                 of_near(*a)
@@ -62,7 +64,7 @@ pub(crate) fn sines(all: &mut [f64]) {
     }
 }
 
-/// The sine of a number that is not far from 0.
+/// Returns the sine of a number of at most [`MAX_ARGUMENT`].
 #[inline(always)]
 fn of_near(a: f64) -> f64 {
     let whole = mul_add(a, FRAC_1_PI, WHOLE);
@@ -74,7 +76,7 @@ fn of_near(a: f64) -> f64 {
         sum = mul_add(sum, square, *c);
     }
     let of_r = mul_add(r * square, sum, r);
-    // Odd n, of which the last bit is 1, change the sign.
+    // An odd n, whose last bit is 1, changes the sign.
     f64::from_bits(of_r.to_bits() ^ (whole.to_bits() << 63))
 }
 
@@ -86,7 +88,7 @@ mod tests {
     #[test]
     fn sines_are_right_to_the_last_digits() {
         let mut random = SplitMix(7);
-        for most in [1e-9, 1.0, 100.0, FAR, 1e12] {
+        for most in [1e-9, 1.0, 100.0, MAX_ARGUMENT, 1e12] {
             for _ in 0..10_000 {
                 let a = random.between(-most, most);
                 let apart = (sine(a) - libm::sin(a)).abs();
@@ -94,7 +96,7 @@ mod tests {
             }
         }
         assert!(sine(f64::INFINITY).is_nan() && sine(f64::NAN).is_nan());
-        // One that is far changes no bit of the others.
+        // A large argument changes no bit of the others.
         let mut all = [0.5, 1e7, -2.0];
         sines(&mut all);
         assert_eq!(all, [0.5, 1e7, -2.0].map(sine));

@@ -27,7 +27,7 @@ pub struct SpringLaw {
 }
 
 impl SpringLaw {
-    /// Law of stiffness k (N/m), rest length r (m) and damping c (N s/m).
+    /// Creates the law of stiffness k (N/m), rest length r (m) and damping c (N s/m).
     ///
     /// # Errors
     /// One of the numbers is negative or not finite.

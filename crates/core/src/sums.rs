@@ -1,5 +1,5 @@
-//! Sums over many numbers, in the processor's vectors and on threads. They are the same to the last
-//! bit for any length of these and any number of those.
+//! Sums over many numbers, in SIMD vectors and on threads. They are the same to the last bit for
+//! any length of the vectors and any number of threads.
 
 #![expect(
     clippy::inline_always,
@@ -13,14 +13,15 @@ use pulp::{Arch, Simd, WithSimd};
 
 use crate::threads::{Columns, split_off};
 
-/// What is done to blocks of rows, with N columns of theirs, and gives M numbers for each.
+/// Task on a block of rows, with N columns of them, that returns M numbers.
 pub(crate) trait OnBlock<const N: usize, const M: usize>: Sync {
-    /// Is compiled for the processor's vectors if it is always inlined, as no closure can be.
+    /// Runs the task. It has to be inlined always, as no closure can be, to be compiled for SIMD
+    /// vectors.
     fn run(&self, rows: Range<usize>, columns: Columns<N>) -> [f64; M];
 }
 
 /// Runs a task on blocks of at most `block` rows, on `bands` threads, each with its part of the
-/// columns, and adds up the numbers that it gives.
+/// columns, and adds up the numbers that the task returns.
 pub(crate) fn add_up<const N: usize, const M: usize>(
     bands: usize,
     rows: Range<usize>,
@@ -66,7 +67,7 @@ impl<const N: usize, const M: usize, T: OnBlock<N, M>> WithSimd for Dispatched<'
     }
 }
 
-/// The scalar product, in sixteen sums that do not wait for one another.
+/// Returns the scalar product, in sixteen independent sums.
 #[inline(always)]
 pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
     let mut sums = [0.0; 16];

@@ -1,6 +1,6 @@
-//! What an integrator sees: flat arrays of which only the length changes. Beside the one small
-//! trait that a system must implement there are views that it may offer, each for some methods:
-//! [`Splitting`], [`Linearized`], [`Compliant`], [`Rigid`] and [`Rows`].
+//! The interface of systems for integrators, which know nothing else of them than flat arrays. A
+//! system implements one small trait, and may offer views, each for some methods: [`Splitting`],
+//! [`Linearized`] and [`Compliant`]. [`Rigid`] and [`Rows`] are views of the models of this crate.
 
 use std::ops::Range;
 
@@ -10,7 +10,7 @@ use crate::rows::{Rows, Terms};
 use crate::spring::SpringLaw;
 use crate::threads::copy;
 
-/// Quantity that numbers of a state measure. Errors of different quantities are not compared.
+/// Quantity that numbers of a state stand for. Errors of different quantities are not compared.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Measure {
     /// Numbers of any unit.
@@ -26,54 +26,58 @@ pub enum Measure {
     },
     /// Angular momentum of a rigid body (kg m2/s).
     Momentum {
-        /// Speed of the body's surface for each unit of it (1/(kg m)).
+        /// Speed of the body's surface over the angular momentum (1/(kg m)).
         speed: f64,
     },
 }
 
 /// A first-order system y' = f(t, y).
 pub trait ParticleSystem {
-    /// Length of the state y.
+    /// Returns the length of the state y.
     fn dim(&self) -> usize;
 
-    /// Writes f(t, y) to `dydt`. Pure: reads the state it is given, not one of its own.
+    /// Writes f(t, y) to `dydt`. The result depends on the arguments alone.
     ///
     /// Both slices have length [`dim`](Self::dim).
     #[doc(alias = "evalF")]
     fn eval_f(&self, t: f64, y: &[f64], dydt: &mut [f64]);
 
-    /// View of a system whose particles stand in rows and act on near rows alone, if it is one.
-    fn rows(&self) -> Option<&dyn Rows> {
+    /// Returns the view of a system whose particles stand in rows and act on near rows alone, if it
+    /// is such a one.
+    #[doc(hidden)]
+    fn rows(&self) -> Option<RowsView<'_>> {
         None
     }
 
-    /// Second-order structure, if the system has one.
+    /// Returns the second-order structure, if the system has one.
     fn mechanics(&self) -> Option<&dyn Mechanics> {
         None
     }
 
-    /// View of a system with rigid bodies, which have more in their state than positions and
-    /// velocities.
-    fn rigid(&self) -> Option<&dyn Rigid> {
+    /// Returns the view of a system with rigid bodies, which have more in their state than
+    /// positions and velocities.
+    #[doc(hidden)]
+    fn rigid(&self) -> Option<RigidView<'_>> {
         None
     }
 
     /// Writes the prescribed positions and velocities of kinematic particles at time t (s) into y.
     fn hold(&self, _t: f64, _y: &mut [f64]) {}
 
-    /// Visits the numbers of the state with what they measure, but for those of what rigid bodies
-    /// carry.
+    /// Visits the numbers of the state with their quantities, except those of the points of rigid
+    /// bodies.
     fn measures(&self, visit: &mut dyn FnMut(Range<usize>, Measure)) {
         visit(0..self.dim(), Measure::Plain);
     }
 }
 
-/// M x'' = F(t, x, v). Its state is y = [x | v], and it is a [`ParticleSystem`] through that.
+/// A second-order system M x'' = F(t, x, v). With the state y = [x | v], it is a
+/// [`ParticleSystem`].
 ///
 /// Each of x, v and F holds n x 3 numbers in column-major order: all x, then all y, then all z.
 /// Units are m, kg, s.
 pub trait Mechanics {
-    /// Inverse mass of each particle (1/kg); 0 pins a particle.
+    /// Returns the inverse mass of each particle (1/kg); 0 pins a particle.
     fn inverse_masses(&self) -> &[f64];
 
     /// Writes F(t, x, v) (N) to `f`, on pinned particles too.
@@ -85,40 +89,50 @@ pub trait Mechanics {
         divide_by_masses(self.inverse_masses(), a);
     }
 
+    /// Returns the coefficient c (kg/s) of viscous drag: the forces contain -c v on each particle.
+    /// 0 by default.
+    fn drag_coefficient(&self) -> f64 {
+        0.0
+    }
+
     /// Visits each pinned particle with its place at time t (s). By default there are none.
     fn pins(&self, _t: f64, _visit: &mut dyn FnMut(usize, Place)) {}
 
-    /// View for methods that step row by row. Without it, they step by whole arrays.
-    fn rows(&self) -> Option<&dyn Rows> {
+    /// Returns the view for methods that step row by row. Without it, they step by whole arrays.
+    #[doc(hidden)]
+    fn rows(&self) -> Option<RowsView<'_>> {
         None
     }
 
-    /// View of rigid bodies, if there are any: the state is then longer than [x | v], and the
-    /// system is no longer M x'' = F to a method.
-    fn rigid(&self) -> Option<&dyn Rigid> {
+    /// Returns the view of rigid bodies, if there are any: the state is then longer than [x | v],
+    /// and methods do not treat the system as M x'' = F.
+    #[doc(hidden)]
+    fn rigid(&self) -> Option<RigidView<'_>> {
         None
     }
 
-    /// View for methods that kick and drift. Without it, they kick with all forces, as if these
-    /// read v, and drift freely.
+    /// Returns the view for methods that kick and drift. Without it, they kick with all forces, as
+    /// if these read v, and drift freely.
     fn splitting(&self) -> Option<&dyn Splitting> {
         None
     }
 
-    /// View for implicit methods and for stability. Without it, they take differences of F.
+    /// Returns the view for implicit methods and for stability. Without it, they take differences
+    /// of F.
     fn linearized(&self) -> Option<&dyn Linearized> {
         None
     }
 
-    /// View for methods that solve spring by spring. Without it, they refuse the system.
+    /// Returns the view for methods that solve spring by spring. Without it, they refuse the
+    /// system.
     fn compliant(&self) -> Option<&dyn Compliant> {
         None
     }
 }
 
-/// The forces of a system in two parts: those that a drift carries exactly, and those that kick.
+/// The forces of a system in two parts: those that a drift solves exactly, and those of a kick.
 pub trait Splitting {
-    /// Writes the forces (N) that [`drift`](Self::drift) does not carry to `f`.
+    /// Writes the forces (N) that [`drift`](Self::drift) leaves out to `f`.
     fn kick_forces(&self, t: f64, x: &[f64], v: &[f64], f: &mut [f64]);
 
     /// Whether [`kick_forces`](Self::kick_forces) depend on v. A step of velocity Verlet takes one
@@ -127,16 +141,23 @@ pub trait Splitting {
         true
     }
 
-    /// Moves x and v from t to t + h by the exact flow of x' = v, v' = the part of F / m that
-    /// [`kick_forces`](Self::kick_forces) leave out. Pinned particles arrive at their places at t +
-    /// h.
+    /// Moves x and v from t to t + h by the exact flow of x' = v, v' = (F - kick forces) / m.
+    /// Pinned particles are put in their places at t + h.
     fn drift(&self, t: f64, h: f64, x: &mut [f64], v: &mut [f64]);
 }
 
+/// View of [`Rows`], of which other crates see only whether it is there.
+#[derive(Clone, Copy)]
+pub struct RowsView<'a>(pub(crate) &'a dyn Rows);
+
+/// View of [`Rigid`], of which other crates see only whether it is there.
+#[derive(Clone, Copy)]
+pub struct RigidView<'a>(pub(crate) &'a dyn Rigid);
+
 /// A system whose state y = [x | v | z] holds more than positions and velocities: the rotations and
 /// the angular momenta of rigid bodies.
-pub trait Rigid {
-    /// Length of the state.
+pub(crate) trait Rigid {
+    /// Returns the length of the state.
     fn length(&self) -> usize;
 
     /// Writes y' = f(t, y) to `dydt`.
@@ -149,17 +170,17 @@ pub trait Rigid {
     /// Whether the forces of a kick depend on velocities.
     fn kick_reads_velocity(&self) -> bool;
 
-    /// Moves y from t (s) on by h (s) as it moves by itself, without the forces of a kick.
+    /// Moves y from t to t + h (s) by its motion without the forces of a kick.
     fn drift(&self, t: f64, h: f64, terms: Terms, y: &mut [f64]);
 
-    /// Whether number k of the state belongs to what bodies carry: no f reads it, and
-    /// [`place`](Self::place) writes it.
+    /// Whether number k of the state is a position or a velocity of a point of a body: no f reads
+    /// it, and [`place`](Self::place) writes it.
     fn is_carried(&self, k: usize) -> bool;
 
-    /// Puts pins and what bodies carry to their places at time t (s).
+    /// Puts pins and the points of bodies in their places at time t (s).
     fn place(&self, t: f64, y: &mut [f64]);
 
-    /// Visits the numbers of the state with what they measure, but for those of what bodies carry.
+    /// Visits the numbers of the state with their quantities, except those of the points of bodies.
     fn measures(&self, visit: &mut dyn FnMut(Range<usize>, Measure));
 }
 
@@ -177,8 +198,9 @@ pub trait Linearized: Mechanics {
     );
 
     /// Visits the pairs of particles that act on each other, always in the same order: dF/dx and
-    /// dF/dv by their symmetric parts. With `clamped`, every stiffness is positive semi-definite:
-    /// the matrix of an implicit step is then positive definite.
+    /// dF/dv by their symmetric parts, without [drag](Mechanics::drag_coefficient). With `clamped`,
+    /// every stiffness is positive semi-definite: the matrix of an implicit step is then positive
+    /// definite.
     fn couplings(&self, t: f64, x: &[f64], clamped: bool, visit: &mut dyn FnMut(Coupling));
 
     /// Whether [`couplings`](Self::couplings) are all couplings. If not, implicit methods refuse
@@ -187,88 +209,101 @@ pub trait Linearized: Mechanics {
         true
     }
 
-    /// Writes to `out` the product with p of the diagonal of the matrix and of as many couplings as
-    /// the system multiplies faster than one by one, which are the first [`Coupling::Axial`] ones;
-    /// their number. With 0, the default, nothing is written, and all couplings are multiplied one
-    /// by one.
-    fn multiply(&self, _matrix: &Matrix, _p: &[f64], _out: &mut [f64]) -> usize {
-        0
-    }
-
-    /// Adds the blocks on the diagonal of the matrix that come from the couplings that
-    /// [`multiply`](Self::multiply) multiplies; the number of these.
-    fn add_diagonal(&self, _matrix: &Matrix, _diagonal: &mut Diagonal) -> usize {
-        0
-    }
-
-    /// Visits the [`couplings`](Self::couplings) but for those that [`multiply`](Self::multiply)
-    /// multiplies.
-    fn other_couplings(&self, t: f64, x: &[f64], clamped: bool, visit: &mut dyn FnMut(Coupling)) {
-        self.couplings(t, x, clamped, visit);
-    }
-
-    /// Whether the same particles are coupled at all x, as they are where no force begins and ends
-    /// within its [`reach`](Self::reach). If not, no factorisation is tried, because
-    /// the pattern of each would have to be analysed.
-    fn couples_always_the_same(&self) -> bool {
-        self.reach().is_infinite()
-    }
-
-    /// Length (m) of a motion over which forces may begin and end again, as those of contact do:
-    /// Newton's method moves particles no further at once. Infinite where forces reach as far as
-    /// particles move, the default.
-    fn reach(&self) -> f64 {
-        f64::INFINITY
-    }
-
-    /// Time that the forces would take coupling by coupling over the time that they take: the
-    /// prices of linear algebra are relative to the former.
-    fn speed(&self) -> f64 {
-        1.0
-    }
-
-    /// Price of gathering the couplings, in evaluations of the forces.
-    fn gathering(&self) -> f64 {
-        4.0 * self.speed()
-    }
-
-    /// Coefficient of viscous drag (kg/s), -dF/dv of each particle by itself, which is in no
-    /// coupling.
-    fn drag_coefficient(&self) -> f64 {
-        0.0
-    }
-
-    /// Natural frequency w (1/s) with which forces take errors of constraints back, C'' = -w2 C - 2
-    /// w C' (Baumgarte), if they hold any. The differential and the couplings leave the forces of
-    /// constraints out: implicit methods refuse then.
+    /// Returns the natural frequency w (1/s) of Baumgarte stabilisation, C'' = -w2 C - 2 w C', if
+    /// the forces hold constraints C = 0. The differential and the couplings leave these forces
+    /// out, so implicit methods refuse the system.
     fn baumgarte_frequency(&self) -> Option<f64> {
         None
+    }
+
+    /// Returns the view of a system that multiplies by its couplings faster than one by one.
+    /// Without it, methods do so one by one.
+    fn products(&self) -> Option<&dyn Products> {
+        None
+    }
+
+    /// Returns the numbers by which methods choose how to solve.
+    fn hints(&self) -> SolverHints {
+        SolverHints::default()
+    }
+}
+
+/// Products with the matrix of an implicit step, for the first [`Coupling::Axial`] ones of a
+/// system's [couplings](Linearized::couplings). Each method treats as many of these.
+pub trait Products {
+    /// Writes the product of the matrix with p to `out`: that of the masses and of these couplings.
+    /// Returns the number of the couplings.
+    fn multiply(&self, matrix: &Matrix, p: &[f64], out: &mut [f64]) -> usize;
+
+    /// Adds the blocks that these couplings contribute to the diagonal of the matrix. Returns the
+    /// number of the couplings.
+    fn add_diagonal(&self, matrix: &Matrix, diagonal: &mut Diagonal) -> usize;
+
+    /// Visits all other couplings.
+    fn other_couplings(&self, t: f64, x: &[f64], clamped: bool, visit: &mut dyn FnMut(Coupling));
+}
+
+/// Numbers by which methods choose how to solve with the forces of a system.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SolverHints {
+    /// Length (m) of a motion in which forces may begin and end again, as those of contact do. An
+    /// iteration of Newton's method moves particles no farther. Infinite by default.
+    pub reach: f64,
+    /// Time of an evaluation of the forces coupling by coupling, over the time of the system's own
+    /// evaluation. Prices of linear algebra are relative to the former. 1 by default.
+    pub speed: f64,
+    /// Cost of the assembly of the matrix, in evaluations of the forces. 4 by default.
+    pub assembly: f64,
+}
+
+impl Default for SolverHints {
+    fn default() -> Self {
+        Self {
+            reach: f64::INFINITY,
+            speed: 1.0,
+            assembly: 4.0,
+        }
+    }
+}
+
+impl SolverHints {
+    /// Whether the same particles are coupled at all x, because no force begins and ends within its
+    /// reach. If not, no factorisation is tried, because the pattern of each would have to be
+    /// analysed.
+    pub(crate) fn pattern_is_fixed(&self) -> bool {
+        self.reach.is_infinite()
     }
 }
 
 /// The springs of a system one by one, each a compliant distance constraint: its compliance (m/N)
-/// is one over its stiffness. Together with drag and the other forces they are all its forces.
+/// is one over its stiffness. The forces of the system are those of the springs, drag, and the
+/// other forces.
 pub trait Compliant: Mechanics {
     /// Visits the two ends and the law of each spring, always in the same order. A spring whose
     /// ends are at the same place has no direction, and no force.
     fn springs(&self, visit: &mut dyn FnMut([usize; 2], SpringLaw));
 
-    /// Writes the forces (N) that are neither of springs nor of drag to `f`.
+    /// Writes all forces (N) except those of springs and drag to `f`.
     fn other_forces(&self, t: f64, x: &[f64], v: &[f64], f: &mut [f64]);
-
-    /// Coefficient c of viscous drag (kg/s), the force -c v on each particle.
-    fn drag_coefficient(&self) -> f64 {
-        0.0
-    }
 }
 
-/// Whether kicks depend on v, or the system does not say.
+/// Returns the view of rigid bodies, if the system has some.
+pub(crate) fn rigid_of(system: &dyn ParticleSystem) -> Option<&dyn Rigid> {
+    system.rigid().map(|RigidView(rigid)| rigid)
+}
+
+/// Returns the view of rows, if the particles of the system stand in rows.
+pub(crate) fn rows_of(system: &dyn ParticleSystem) -> Option<&dyn Rows> {
+    system.rows().map(|RowsView(rows)| rows)
+}
+
+/// Whether kicks depend on v, or the system has no view that says so.
 pub(crate) fn kick_reads_velocity<M: Mechanics + ?Sized>(system: &M) -> bool {
     let splitting = system.splitting();
     splitting.is_none_or(Splitting::kick_reads_velocity)
 }
 
-/// Makes accelerations of forces.
+/// Converts forces (N) to accelerations (m/s2).
 pub(crate) fn divide_by_masses(inverse_masses: &[f64], f: &mut [f64]) {
     for column in f.chunks_exact_mut(inverse_masses.len()) {
         for (f, w) in column.iter_mut().zip(inverse_masses) {
@@ -277,7 +312,7 @@ pub(crate) fn divide_by_masses(inverse_masses: &[f64], f: &mut [f64]) {
     }
 }
 
-/// Writes the place of every pin at time t into x and v.
+/// Writes the place of every pin at time t (s) to x and v.
 pub(crate) fn place_pins<M: Mechanics + ?Sized>(system: &M, t: f64, x: &mut [f64], v: &mut [f64]) {
     let n = x.len() / 3;
     system.pins(t, &mut |i, place| {
@@ -291,11 +326,11 @@ pub(crate) fn place_pins<M: Mechanics + ?Sized>(system: &M, t: f64, x: &mut [f64
 /// A mechanical system as a first-order one: x' = v, v' = F/m; a pin follows its path.
 impl<M: Mechanics> ParticleSystem for M {
     fn dim(&self) -> usize {
-        Mechanics::rigid(self).map_or(6 * self.inverse_masses().len(), Rigid::length)
+        Mechanics::rigid(self).map_or(6 * self.inverse_masses().len(), |view| view.0.length())
     }
 
     fn eval_f(&self, t: f64, y: &[f64], dydt: &mut [f64]) {
-        if let Some(rigid) = Mechanics::rigid(self) {
+        if let Some(RigidView(rigid)) = Mechanics::rigid(self) {
             return rigid.rates(t, y, dydt);
         }
         let n = self.inverse_masses().len();
@@ -311,7 +346,7 @@ impl<M: Mechanics> ParticleSystem for M {
         });
     }
 
-    fn rows(&self) -> Option<&dyn Rows> {
+    fn rows(&self) -> Option<RowsView<'_>> {
         Mechanics::rows(self)
     }
 
@@ -321,12 +356,12 @@ impl<M: Mechanics> ParticleSystem for M {
             .then_some(self as &dyn Mechanics)
     }
 
-    fn rigid(&self) -> Option<&dyn Rigid> {
+    fn rigid(&self) -> Option<RigidView<'_>> {
         Mechanics::rigid(self)
     }
 
     fn hold(&self, t: f64, y: &mut [f64]) {
-        if let Some(rigid) = Mechanics::rigid(self) {
+        if let Some(RigidView(rigid)) = Mechanics::rigid(self) {
             return rigid.place(t, y);
         }
         let (x, v) = y.split_at_mut(y.len() / 2);
@@ -334,7 +369,7 @@ impl<M: Mechanics> ParticleSystem for M {
     }
 
     fn measures(&self, visit: &mut dyn FnMut(Range<usize>, Measure)) {
-        if let Some(rigid) = Mechanics::rigid(self) {
+        if let Some(RigidView(rigid)) = Mechanics::rigid(self) {
             return rigid.measures(visit);
         }
         let n = 3 * self.inverse_masses().len();
@@ -343,7 +378,7 @@ impl<M: Mechanics> ParticleSystem for M {
     }
 }
 
-/// Whether forces depend on positions and time alone, but for viscous drag.
+/// Whether forces depend on positions and time alone, except viscous drag.
 pub(crate) fn depends_on_positions(mechanics: &dyn Mechanics) -> bool {
     let reads_velocity = mechanics
         .splitting()

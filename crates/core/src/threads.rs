@@ -7,11 +7,12 @@ use rayon::iter::{IndexedParallelIterator, IntoParallelRefMutIterator, ParallelI
 
 /// Least number of particles for each thread: with fewer, waking the thread costs more than it
 /// saves (docs/performance.md).
-const GRAIN: usize = 2048;
+const MIN_PARTICLES: usize = 2048;
 
-/// Number of threads for this many particles: 1 where there are too few for two threads.
+/// Returns the number of threads for this many particles: 1 where there are too few for two
+/// threads.
 pub(crate) fn threads(particles: usize) -> usize {
-    match particles / GRAIN {
+    match particles / MIN_PARTICLES {
         0 | 1 => 1,
         most => most.min(rayon::current_num_threads()),
     }
@@ -62,10 +63,13 @@ pub(crate) fn fork<const N: usize>(
     );
 }
 
-/// Calls `run` on each of some things with its number, in parallel where there are many.
+/// Calls `run` on each element with its index, in parallel if there are many.
 pub(crate) fn each<T: Send>(things: &mut [T], run: &(impl Fn(usize, &mut T) + Sync)) {
     if threads(things.len()) > 1 {
-        let all = things.par_iter_mut().enumerate().with_min_len(GRAIN / 2);
+        let all = things
+            .par_iter_mut()
+            .enumerate()
+            .with_min_len(MIN_PARTICLES / 2);
         all.for_each(|(k, thing)| run(k, thing));
     } else {
         let all = things.iter_mut().enumerate();
@@ -73,10 +77,10 @@ pub(crate) fn each<T: Send>(things: &mut [T], run: &(impl Fn(usize, &mut T) + Sy
     }
 }
 
-/// Numbers that are copied together.
+/// Number of numbers in the unit of copying.
 const BLOCK: usize = 2048;
 
-/// Copies the numbers of a state, or of its half, from `from` to `to`.
+/// Copies `from` to `to`, a state or half of one, on several threads if it is large.
 pub(crate) fn copy(from: &[f64], to: &mut [f64]) {
     let (bands, blocks) = (threads(from.len() / 3), from.len().div_ceil(BLOCK));
     fork(bands, 0..blocks, BLOCK, [to], &|blocks, [to]| {

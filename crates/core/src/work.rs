@@ -13,7 +13,7 @@ pub struct Work {
     pub iterations: u64,
     /// Number of matrices factorised.
     pub factorizations: u64,
-    /// Cost of the linear algebra, in evaluations, by prices that are the same on every machine.
+    /// Cost of the linear algebra, in evaluations, at prices that are the same on every machine.
     pub algebra: f64,
     /// Largest relative residual of a solve.
     pub residual: f64,
@@ -22,7 +22,7 @@ pub struct Work {
 }
 
 impl Work {
-    /// Work of so many evaluations, and nothing else.
+    /// Creates the work of a number of evaluations, and nothing else.
     #[must_use]
     pub fn of(evaluations: u64) -> Self {
         Self {
@@ -31,7 +31,7 @@ impl Work {
         }
     }
 
-    /// Cost of everything, in evaluations.
+    /// Returns the total cost, in evaluations.
     #[must_use]
     pub fn total(&self) -> f64 {
         self.evaluations as f64 + self.algebra

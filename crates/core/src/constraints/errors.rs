@@ -7,7 +7,7 @@ use nalgebra::Vector3;
 use super::constraint::Constraint;
 use super::row::Row;
 use super::set::{Constraints, Moved, vector};
-use super::solve::Scratch;
+use super::solve::System;
 use crate::error::{ConstraintName, Unmet};
 use crate::random::SplitMix;
 
@@ -107,14 +107,14 @@ impl Constraints {
     /// displacement, weighted by the masses. Returns the worst constraint if that fails.
     fn approach(&self, inverse_masses: &[f64], x: &mut [f64], radius: f64) -> Option<Unmet> {
         let most = MAX_DISPLACEMENT * self.shortest(radius);
-        let mut scratch = Scratch::default();
+        let mut system = System::default();
         for _ in 0..MAX_ITERATIONS {
             let worst = self.worst(x, radius)?;
             if worst.share <= MET_SHARE || worst.share.is_nan() {
                 return None;
             }
-            self.displace(inverse_masses, x, &mut scratch);
-            let (moves, n) = (&scratch.vectors, inverse_masses.len());
+            self.displace(inverse_masses, x, &mut system);
+            let (moves, n) = (&system.vectors, inverse_masses.len());
             let longest = moves.iter().map(Vector3::norm).fold(0.0, f64::max);
             let scale = (most / longest).min(1.0);
             for (moved, step) in self.moved.iter().zip(moves) {
@@ -129,18 +129,19 @@ impl Constraints {
             .filter(|worst| worst.share > UNMET_SHARE)
     }
 
-    /// Writes the displacements (m) of a Newton step at x to the vectors of the scratch.
-    fn displace(&self, inverse_masses: &[f64], x: &[f64], scratch: &mut Scratch) {
-        scratch.clear();
+    /// Writes the displacements (m) of a step of Newton's method at x to the vectors of the
+    /// system.
+    fn displace(&self, inverse_masses: &[f64], x: &[f64], system: &mut System) {
+        system.clear();
         for moved in &self.moved {
             let weight = match *moved {
                 Moved::Particle(i) => inverse_masses[i],
                 Moved::Nothing | Moved::Body(_) => 0.0,
             };
-            scratch.weights.push(Vector3::repeat(weight));
-            scratch.vectors.push(Vector3::zeros());
+            system.weights.push(Vector3::repeat(weight));
+            system.vectors.push(Vector3::zeros());
         }
-        scratch.rows.clear();
+        system.rows.clear();
         for (number, constraint) in self.all.iter().enumerate() {
             let [first, second] = self.ends[number];
             let relative = self.relative(number, x);
@@ -148,12 +149,12 @@ impl Constraints {
                 let mut row = Row::default();
                 row.add(first.place, equation.gradient);
                 row.add(second.place, -equation.gradient);
-                row.set_target(-equation.value, &scratch.weights);
-                scratch.rows.push(row);
+                row.set_target(-equation.value, &system.weights);
+                system.rows.push(row);
             });
         }
-        scratch.solve(|| self.pattern.get_or_init(|| Arc::new(self.find_pattern())));
-        scratch.spread();
+        system.solve(|| self.pattern.get_or_init(|| Arc::new(self.find_pattern())));
+        system.spread();
     }
 
     /// Position of the first particle of a constraint, relative to the second one if it has one.

@@ -14,7 +14,6 @@
 mod constraint;
 mod direct;
 mod errors;
-mod pool;
 mod row;
 mod set;
 mod solve;

@@ -7,11 +7,11 @@ use nalgebra::Vector3;
 
 use super::constraint::Constraint;
 use super::direct::Pattern;
-use super::pool::Pool;
 use super::row::Row;
-use super::solve::Scratch;
+use super::solve::System;
 use super::turning::{Lever, Turning};
 use crate::error::{Error, positive};
+use crate::scratch::Scratch;
 use crate::threads::each;
 
 /// A particle under a constraint, with the places of what moves it: the particle itself or its
@@ -49,8 +49,7 @@ pub(crate) struct Constraints {
     baumgarte_frequency: f64,
     /// Pattern of equations that move the same things, computed on first use.
     pub(super) pattern: OnceLock<Arc<Pattern>>,
-    /// Scratch of evaluations, not part of the value.
-    pub(super) scratch: Pool,
+    pub(super) scratch: Scratch<System>,
 }
 
 impl Default for Constraints {
@@ -64,7 +63,7 @@ impl Default for Constraints {
             owners: vec![],
             baumgarte_frequency: 10.0,
             pattern: OnceLock::new(),
-            scratch: Pool::default(),
+            scratch: Scratch::default(),
         }
     }
 }
@@ -108,7 +107,6 @@ impl Constraints {
         });
         self.all.push(constraint);
         self.pattern = OnceLock::new();
-        self.scratch.reserve(self.owners.len(), self.moved.len());
         Ok(())
     }
 
@@ -166,8 +164,8 @@ impl Constraints {
         [x, v]: [&[f64]; 2],
         f: &mut [f64],
     ) -> bool {
-        self.scratch.lend(|scratch| {
-            scratch.clear();
+        self.scratch.lend(|system| {
+            system.clear();
             for moved in &self.moved {
                 let (weight, vector, turning) = match *moved {
                     Moved::Nothing => (Vector3::zeros(), Vector3::zeros(), None),
@@ -181,19 +179,19 @@ impl Constraints {
                         (turning.inverse_inertia, own, Some(turning))
                     }
                 };
-                scratch.weights.push(weight);
-                scratch.vectors.push(vector);
-                scratch.turnings.push(turning);
+                system.weights.push(weight);
+                system.vectors.push(vector);
+                system.turnings.push(turning);
             }
             let w = self.baumgarte_frequency;
             let (ks, kd) = (w * w, 2.0 * w);
-            let Scratch {
+            let System {
                 weights,
                 vectors,
                 turnings,
                 rows,
                 ..
-            } = scratch;
+            } = system;
             rows.resize_with(self.owners.len(), Row::default);
             each(rows, &|k, row| {
                 let (owner, number) = self.owners[k];
@@ -227,9 +225,9 @@ impl Constraints {
                 let back = ks * equation.value + kd * gradient.dot(&v_relative);
                 row.set_target(-bend - a - back, weights);
             });
-            let soft = scratch.solve(|| self.pattern.get_or_init(|| Arc::new(self.find_pattern())));
+            let soft = system.solve(|| self.pattern.get_or_init(|| Arc::new(self.find_pattern())));
             let n = f.len() / 3;
-            for (row, (owner, _)) in scratch.rows.iter().zip(&self.owners) {
+            for (row, (owner, _)) in system.rows.iter().zip(&self.owners) {
                 let ([first, second], force) = (self.ends[*owner], row.force());
                 for axis in 0..3 {
                     f[axis * n + first.particle] += force[axis];

@@ -27,10 +27,11 @@ const MAX_AMPLIFICATION: f64 = 1e5;
 /// rods of 1 m, straight and level between two pins, then sags by about a millimetre.
 const MAX_SOFTNESS: f64 = 1e-8;
 
-/// Scratch of an evaluation: for each particle or rotation that moves, its inverse mass (1/kg) or
-/// inverse moments of inertia (1/kg m2), a vector, and the state of the body; and the rows.
+/// System of equations for the multipliers of one evaluation: the inverse mass (1/kg) of each
+/// particle that constraints move, or the inverse inertias of a rotation (1/kg m2), a vector, and
+/// the rotation, if it is a body's; and the rows.
 #[derive(Default)]
-pub(super) struct Scratch {
+pub(super) struct System {
     pub weights: Vec<Vector3<f64>>,
     pub vectors: Vec<Vector3<f64>>,
     pub turnings: Vec<Option<Turning>>,
@@ -38,26 +39,15 @@ pub(super) struct Scratch {
     factor: Option<Factor>,
 }
 
-impl Scratch {
-    /// Clears the data of the last evaluation, but keeps its memory.
+impl System {
+    /// Clears all except the rows, and keeps the capacity.
     pub fn clear(&mut self) {
         self.weights.clear();
         self.vectors.clear();
         self.turnings.clear();
     }
 
-    /// Makes room for a number of rows, and of particles and rotations that they move.
-    pub fn reserve(&mut self, rows: usize, moved: usize) {
-        self.clear();
-        self.rows.clear();
-        self.weights.reserve(moved);
-        self.vectors.reserve(moved);
-        self.turnings.reserve(moved);
-        self.rows.reserve(rows);
-    }
-
-    /// Finds the multipliers. Returns whether A is nearly singular, so that its diagonal was
-    /// increased.
+    /// Finds the multipliers. Returns whether A is nearly singular, and was made softer.
     pub fn solve<'a>(&mut self, pattern: impl Fn() -> &'a Arc<Pattern>) -> bool {
         if self.rows.len() < MIN_DIRECT_ROWS || !self.solve_directly(pattern()) {
             self.iterate(0.0);

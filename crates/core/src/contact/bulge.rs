@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use super::layer::{ContactLayer, Scratch};
+use super::layer::{Buffers, ContactLayer};
 
 /// Largest distance of a cubic course from its chord, over the step times the difference between
 /// the velocity at one end and that of the chord.
@@ -19,7 +19,7 @@ pub(crate) fn bulge(layer: &ContactLayer, (t, h): (f64, f64), [y0, y1]: [&[f64];
         return 0.0;
     }
     let half = 3 * surface.particles();
-    let bulge = layer.with_scratch(|Scratch { motion, .. }| {
+    let bulge = layer.scratch.lend(|Buffers { motion, .. }| {
         let (begins, ends) = (&mut motion.x0, &mut motion.moves.points);
         surface.place(obstacles, t, &y0[..half], begins);
         surface.place(obstacles, t + h, &y1[..half], ends);

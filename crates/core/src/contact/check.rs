@@ -5,7 +5,7 @@ use std::fmt;
 use super::advance::rounding_error;
 use super::candidates::Stretch;
 use super::exact::crossings;
-use super::layer::{ContactLayer, Scratch};
+use super::layer::{Buffers, ContactLayer};
 use super::listing::Candidate;
 use crate::error::Vertex;
 use crate::geometry::bvh::{Aabb, Bvh};
@@ -58,7 +58,9 @@ pub fn crossed(layer: &ContactLayer, t: f64, x: &[f64]) -> Vec<Crossed> {
     let surface = layer.surface();
     let n = surface.particles();
     assert_eq!(x.len(), 3 * n, "x has three numbers for each particle");
-    layer.with_scratch(|scratch| crossed_with(layer, scratch, t, x))
+    layer
+        .scratch
+        .lend(|buffers| crossed_with(layer, buffers, t, x))
 }
 
 /// Whether too many primitives of a thickness (m) are close together at time t (s), with particles
@@ -84,14 +86,14 @@ pub(crate) fn is_crowded(layer: &ContactLayer, t: f64, x: &[f64], thickness: f64
     })
 }
 
-fn crossed_with(layer: &ContactLayer, scratch: &mut Scratch, t: f64, x: &[f64]) -> Vec<Crossed> {
+fn crossed_with(layer: &ContactLayer, buffers: &mut Buffers, t: f64, x: &[f64]) -> Vec<Crossed> {
     let surface = layer.surface();
     let n = surface.particles();
-    let Scratch {
+    let Buffers {
         candidates,
         x: places,
         ..
-    } = scratch;
+    } = buffers;
     surface.place(layer.obstacles(), t, x, places);
     let (edges, triangles): (Vec<_>, Vec<_>) =
         (surface.edges().collect(), surface.triangles().collect());

@@ -12,7 +12,7 @@ use super::cut::Pinched;
 use super::friction::{ContactPair, Masses, apply_friction};
 use super::hits::find;
 use super::impulses::Impulses;
-use super::layer::{ContactLayer, Scratch};
+use super::layer::{Buffers, ContactLayer};
 use super::listing::Candidate;
 use super::motion::{Guarded, Motion};
 use super::strike::strike;
@@ -42,17 +42,17 @@ pub(crate) fn guard(
     impulses: &mut Impulses,
 ) -> Result<Guarded, Pinched> {
     impulses.clear();
-    layer.with_scratch(|scratch| {
-        std::mem::swap(impulses, &mut scratch.motion.impulses);
-        let guarded = guard_with(layer, scratch, inverse_masses, (t, h), y0, y1);
-        std::mem::swap(impulses, &mut scratch.motion.impulses);
+    layer.scratch.lend(|buffers| {
+        std::mem::swap(impulses, &mut buffers.motion.impulses);
+        let guarded = guard_with(layer, buffers, inverse_masses, (t, h), y0, y1);
+        std::mem::swap(impulses, &mut buffers.motion.impulses);
         guarded
     })
 }
 
 fn guard_with(
     layer: &ContactLayer,
-    scratch: &mut Scratch,
+    buffers: &mut Buffers,
     inverse_masses: &[f64],
     (t, h): (f64, f64),
     y0: &[f64],
@@ -60,12 +60,12 @@ fn guard_with(
 ) -> Result<Guarded, Pinched> {
     let surface = layer.surface();
     let half = 3 * surface.particles();
-    let Scratch {
+    let Buffers {
         candidates,
         motion,
         cuts,
         ..
-    } = scratch;
+    } = buffers;
     motion.times = [t, t + h];
     surface.place(layer.obstacles(), t, &y0[..half], &mut motion.x0);
     surface.place(

@@ -1,7 +1,5 @@
 //! Contact of surfaces in a network: their primitives, and the list of pairs that may touch.
 
-use std::sync::{Mutex, PoisonError};
-
 use nalgebra::Vector3;
 
 use super::candidates::{Candidates, Stretch};
@@ -11,30 +9,24 @@ use super::motion::Motion;
 use super::obstacle::Obstacle;
 use super::repulsion::{Pair, Stiffness};
 use super::surface::Surface;
+use crate::scratch::Scratch;
 
 /// Contact of the surfaces of a network with themselves, one another and obstacles.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct ContactLayer {
     surface: Surface,
     obstacles: Vec<Obstacle>,
-    /// Scratch, which is not part of the value: the list of pairs, and positions and velocities of
-    /// all vertices.
-    scratch: Mutex<Scratch>,
+    pub(super) scratch: Scratch<Buffers>,
 }
 
-#[derive(Debug, Default)]
-pub(super) struct Scratch {
+/// The list of pairs of primitives, and positions (m) and velocities (m/s) of all vertices.
+#[derive(Default)]
+pub(super) struct Buffers {
     pub candidates: Candidates,
     pub motion: Motion,
     pub cuts: Cuts,
     pub x: Vec<Vector3<f64>>,
     v: Vec<Vector3<f64>>,
-}
-
-impl Clone for ContactLayer {
-    fn clone(&self) -> Self {
-        Self::new(self.surface.clone(), self.obstacles.clone())
-    }
 }
 
 impl ContactLayer {
@@ -44,7 +36,7 @@ impl ContactLayer {
         Self {
             surface,
             obstacles,
-            scratch: Mutex::default(),
+            scratch: Scratch::default(),
         }
     }
 
@@ -64,19 +56,9 @@ impl ContactLayer {
         self.obstacles[k] = obstacle;
     }
 
-    /// Lends the scratch. The lock is not held during `work`: a concurrent caller gets fresh
-    /// scratch.
-    pub(super) fn with_scratch<R>(&self, work: impl FnOnce(&mut Scratch) -> R) -> R {
-        let lock = || self.scratch.lock().unwrap_or_else(PoisonError::into_inner);
-        let mut scratch = std::mem::take(&mut *lock());
-        let result = work(&mut scratch);
-        *lock() = scratch;
-        result
-    }
-
-    /// Calls `find` for the pairs that may be within their thickness at time t (s) in the state (x,
-    /// v), or at rest without v, and `visit` for its results in canonical order. Several threads
-    /// may call `find`.
+    /// Visits what `find` has found for the pairs that may be within their thickness at time t (s)
+    /// in the state (x, v), or at rest without v, in canonical order. Several threads may call
+    /// `find`.
     fn visit<R: Send>(
         &self,
         t: f64,
@@ -85,22 +67,23 @@ impl ContactLayer {
         find: impl Fn(&Candidate, &Pair) -> Option<R> + Sync,
         visit: impl FnMut(R),
     ) {
-        self.with_scratch(|scratch| self.visit_with(scratch, (t, x, v), find, visit));
+        self.scratch
+            .lend(|buffers| self.visit_with(buffers, (t, x, v), find, visit));
     }
 
     fn visit_with<R: Send>(
         &self,
-        scratch: &mut Scratch,
+        buffers: &mut Buffers,
         (t, x, v): (f64, &[f64], Option<&[f64]>),
         find: impl Fn(&Candidate, &Pair) -> Option<R> + Sync,
         visit: impl FnMut(R),
     ) {
-        let Scratch {
+        let Buffers {
             candidates,
             x: places,
             v: speeds,
             ..
-        } = scratch;
+        } = buffers;
         self.surface.place(&self.obstacles, t, x, places);
         speeds.clear();
         match v {

@@ -174,9 +174,9 @@ fn no_bit_depends_on_the_list() {
     let v: Vec<f64> = (0..180).map(|_| random.between(-2.0, 2.0)).collect();
     let forces = SHARES.map(|shares| {
         let layer = ContactLayer::new(surface.clone(), obstacles());
-        layer.with_scratch(|scratch| {
+        layer.scratch.lend(|buffers| {
             if let Some(shares) = shares {
-                scratch.candidates.set_shares(shares);
+                buffers.candidates.set_shares(shares);
             }
         });
         let mut all = vec![];

@@ -1,8 +1,8 @@
 //! Force of air that streams past a triangle. With its velocity u relative to the triangle and the
 //! area vector N, half the cross product of two edges, n = N / |N|, the force is rho/2 \[`C_d` |u .
-//! N| u + `C_l` (u . n) (|u| N - (u . N) u / |u|)\], drag along u and lift across it, the same
-//! whichever side is the front. After Keckeisen, Kimmerle, Thomaszewski, Wacker, *Modelling effects
-//! of wind fields in cloth animations*, 2004.
+//! N| u + `C_l` (u . n) (|u| N - (u . N) u / |u|)\]: drag along u and lift across it. It is the
+//! same for either side in front. After Keckeisen, Kimmerle, Thomaszewski, Wacker, *Modelling
+//! effects of wind fields in cloth animations*, 2004.
 
 #![expect(
     clippy::inline_always,
@@ -16,19 +16,19 @@ use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, at_least};
 
-/// Air, as it pushes at what is in its way.
+/// Air that exerts drag and lift.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Air {
     /// Density rho (kg/m3).
     pub density: f64,
-    /// Coefficient of drag `C_d`: about 1.2 of a plate.
+    /// Coefficient of drag `C_d`: about 1.2 for a plate.
     pub drag: f64,
     /// Coefficient of lift `C_l`.
     pub lift: f64,
 }
 
 impl Air {
-    /// Air of that density (kg/m3) and those coefficients.
+    /// Creates air of a density (kg/m3) and coefficients of drag and lift.
     ///
     /// # Errors
     /// A number is negative or not finite.
@@ -43,7 +43,7 @@ impl Air {
         })
     }
 
-    /// The force (N) by u and N.
+    /// Returns the force (N) at a relative velocity u (m/s) on an area vector N (m2).
     #[inline(always)]
     pub(super) fn force(self, u: [f64; 3], area: [f64; 3]) -> [f64; 3] {
         let (speed, size) = (dot(u, u).sqrt(), dot(area, area).sqrt());
@@ -60,7 +60,7 @@ impl Air {
         })
     }
 
-    /// The differential of the force, by those of u and N.
+    /// Returns the differential of the force, from those of u and N.
     pub(super) fn differential(
         self,
         [u, area]: [Vector3<f64>; 2],

@@ -1,5 +1,6 @@
-//! Wind that blows on triangles: at each, the [force of the air](Air) that streams past its middle
-//! less the mean velocity of its corners, a third of it on each corner.
+//! Wind that blows on triangles. The relative velocity of a triangle is that of the air at its
+//! middle less the mean velocity of its corners, and a third of the [force of the air](Air) acts on
+//! each corner.
 
 #![expect(
     clippy::inline_always,
@@ -31,6 +32,14 @@ impl Force for Airflow {
         "wind"
     }
 
+    fn is_driven(&self) -> bool {
+        true
+    }
+
+    fn is_wind(&self) -> bool {
+        true
+    }
+
     fn add_forces(&self, at: &At, f: &mut [f64]) {
         self.add_in(threads(at.triangles.len()), at, f);
     }
@@ -55,8 +64,8 @@ impl Force for Airflow {
 }
 
 impl Airflow {
-    /// Adds the forces in so many bands of particles. Each finds those on all triangles that reach
-    /// it, and adds them in the order of the triangles.
+    /// Adds the forces in a number of bands of particles. Each band computes the forces on all
+    /// triangles with a corner in it, and adds them in the order of the triangles.
     fn add_in(&self, bands: usize, at: &At, f: &mut [f64]) {
         let n = f.len() / 3;
         fork(bands, 0..n, 1, columns_mut(f), &|particles, f| {
@@ -70,7 +79,7 @@ impl Airflow {
     }
 }
 
-/// The forces on some particles, added to f.
+/// Task that adds the forces on some particles to f.
 struct Push<'a> {
     airflow: &'a Airflow,
     at: &'a At<'a>,
@@ -186,7 +195,7 @@ mod tests {
         let mut triangles: Vec<_> = (0..9001)
             .map(|k| [0, 1, 2].map(|c| corner(3 * k + c)))
             .collect();
-        // One without an area.
+        // A triangle without an area.
         triangles[17] = [4, 4, 9];
         let at = At {
             t: 0.3,

@@ -1,5 +1,5 @@
-//! A hand that leads a particle which constraints hold: F = -m (w2 (x - p) + 2 w (v - p')), a
-//! critically damped spring from the place p of the hand.
+//! The pull of a hand on a particle that constraints hold: F = -m (w2 (x - p) + 2 w (v - p')), a
+//! critically damped spring from the position p of the hand.
 
 use super::force::{At, Force, check_particle};
 use crate::error::Error;
@@ -37,6 +37,10 @@ impl Attraction {
 impl Force for Attraction {
     fn name(&self) -> &'static str {
         "attraction"
+    }
+
+    fn is_driven(&self) -> bool {
+        true
     }
 
     fn check(&self, particles: usize) -> Result<(), Error> {

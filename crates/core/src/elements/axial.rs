@@ -1,27 +1,27 @@
-//! Springs one by one: with d = xi - xj, L = |d|, u = d/L and w = vi - vj, the force on i is
-//! -(p(L) + c (w . u)) u, and its opposite on j; p is its pull, k (L - r) of most. A spring of
-//! length zero has no direction, and no force.
+//! Springs one by one. With d = xi - xj, L = |d|, u = d/L and w = vi - vj, a spring exerts the
+//! force -(p(L) + c (w . u)) u on i, and the opposite force on j. p is the pull, for most springs k
+//! (L - r). A spring of length zero has no direction, and no force.
 
 use super::force::At;
 use crate::coupling::{AxialCoupling, Coupling};
 use crate::energy::Energy;
 use crate::spring::Spring;
 
-/// A force between two particles along the line between them, by their distance (m).
+/// A force between two particles along the line between them, as a function of their distance (m).
 pub(super) trait Elastic {
-    /// Particles at its ends.
+    /// Returns the particles at the ends.
     fn ends(&self) -> [usize; 2];
 
-    /// Pull p (N), negative where it pushes.
+    /// Returns the pull p (N); negative if the spring pushes.
     fn pull(&self, length: f64) -> f64;
 
-    /// Stiffness dp/dL (N/m).
+    /// Returns the stiffness dp/dL (N/m).
     fn stiffness(&self, length: f64) -> f64;
 
-    /// Energy above that at the rest length (J).
+    /// Returns the energy above that at the rest length (J).
     fn energy(&self, length: f64) -> f64;
 
-    /// Damping c along it (N s/m).
+    /// Returns the damping c along it (N s/m).
     fn damping(&self) -> f64;
 }
 
@@ -81,7 +81,7 @@ pub(super) fn add_all(springs: &[impl Elastic], x: &[f64], v: &[f64], f: &mut [f
     }
 }
 
-/// Adds dF of a spring. With dd = dxi - dxj, dw = dvi - dvj and p = (dd - u (u . dd)) / L, that is
+/// Adds dF of a spring. With dd = dxi - dxj, dw = dvi - dvj and p = (dd - u (u . dd)) / L, it is
 /// -(across dd + (along - across) u (u . dd)) - c ((dw . u + w . p) u + (w . u) p).
 pub(super) fn add_differential(
     spring: &impl Elastic,
@@ -119,8 +119,8 @@ pub(super) fn add_differential(
     }
 }
 
-/// The symmetric part of a spring's differential: dp/dL along it, p/L across. A spring of length
-/// zero has no direction.
+/// Returns the symmetric part of a spring's differential: dp/dL along it, p/L across. A spring of
+/// length zero has no direction.
 #[inline]
 fn axial(spring: &impl Elastic, x: &[f64]) -> AxialCoupling {
     let [i, j] = spring.ends();
@@ -143,8 +143,8 @@ fn axial(spring: &impl Elastic, x: &[f64]) -> AxialCoupling {
     }
 }
 
-/// The coupling of a spring. With `clamped`, stiffness across a compressed spring, which is
-/// negative, counts as none (Choi, Ko, *Stable but responsive cloth*, 2002).
+/// Returns the coupling of a spring. With `clamped`, the negative stiffness across a compressed
+/// spring is taken as 0 (Choi, Ko, *Stable but responsive cloth*, 2002).
 #[inline]
 pub(super) fn coupling(spring: &impl Elastic, x: &[f64], clamped: bool) -> Coupling {
     let mut axial = axial(spring, x);
@@ -154,7 +154,7 @@ pub(super) fn coupling(spring: &impl Elastic, x: &[f64], clamped: bool) -> Coupl
     Coupling::Axial(axial)
 }
 
-/// The energy of springs.
+/// Returns the energy of springs.
 pub(super) fn energy<E: Elastic>(springs: impl IntoIterator<Item = E>, x: &[f64]) -> Energy {
     let of_one = |spring: E| {
         let [i, j] = spring.ends();

@@ -1,28 +1,28 @@
 //! Bend springs that buckle. A strip of rest length r whose ends are closer together than that is
 //! an arc of this length: its curvature kappa has L / r = sinc(kappa r / 2), sinc x = sin x / x,
-//! its energy is `k_b` kappa2 r / 2, and so it pulls with `k_b` kappa2 / (cos(kappa r / 2) -
-//! sinc(kappa r / 2)) < 0: it pushes, by 12 `k_b` / r2 when it has just buckled, and three times
-//! that when its ends meet. It is straight, and pulls with `c_b` (L - r), while that is the weaker
-//! push. Choi, Ko, *Stable but Responsive Cloth*, 2002.
+//! its energy is `k_b` kappa2 r / 2, and so its pull is `k_b` kappa2 / (cos(kappa r / 2) -
+//! sinc(kappa r / 2)) < 0: a push of 12 `k_b` / r2 when it has just buckled, and of three times
+//! that when its ends meet. The strip stays straight, with the pull `c_b` (L - r), while that is
+//! the weaker push. Choi, Ko, *Stable but Responsive Cloth*, 2002.
 //!
-//! All is a function of y = (kappa r / 2)2, by series that hold for every arc up to a full circle,
-//! y = pi2: 1 - sinc = y/6 (1 - y/20 (1 - y/42 ...)), and sinc - cos = y/3 P with P = 1 - y/10 (1 -
-//! y/28 ...).
+//! All these are functions of y = (kappa r / 2)2, by series that hold for every arc up to a full
+//! circle, y = pi2: 1 - sinc = y/6 (1 - y/20 (1 - y/42 ...)), and sinc - cos = y/3 P with P = 1 -
+//! y/10 (1 - y/28 ...).
 
 use std::f64::consts::PI;
 
 use super::axial::{self, Elastic};
-use super::force::{At, Cost, Force, check_ends, ends};
+use super::force::{At, Cost, Force, Matter, check_ends, ends};
 use crate::coupling::Coupling;
 use crate::energy::Energy;
 use crate::error::{Error, at_least, positive};
 use crate::spring::{Spring, SpringKind, SpringLaw};
 
-/// Terms of the series: the next is lost in rounding.
+/// Number of terms of the series: the next is below rounding.
 const TERMS: usize = 13;
-/// Iterations of Newton's method: the third is the last that changes anything but rounding.
+/// Number of iterations of Newton's method: after the third, only rounding is left.
 const ITERATIONS: u32 = 3;
-/// Price of one, in ordinary springs.
+/// Price of a buckling spring, in evaluations of an ordinary spring.
 const PRICE: f64 = 30.0;
 
 /// A strip between particles i and j, straight at its rest length, that buckles when it is
@@ -50,12 +50,12 @@ pub struct Buckling {
 pub struct BucklingSprings(Vec<Strip>);
 
 impl BucklingSprings {
-    /// All of them, in the order in which they were added.
+    /// Returns all springs, in the order in which they were added.
     pub fn all(&self) -> impl Iterator<Item = Buckling> {
         self.0.iter().map(|strip| strip.parameters)
     }
 
-    /// Adds one.
+    /// Adds a spring.
     ///
     /// # Errors
     /// A number is negative or not finite; the rest length or the stiffness against bending is 0,
@@ -65,7 +65,7 @@ impl BucklingSprings {
         Ok(())
     }
 
-    /// The springs that they are before they buckle.
+    /// Returns the springs as they are before they buckle.
     pub(crate) fn straight(&self) -> impl Iterator<Item = Spring> {
         self.0.iter().map(Strip::straight)
     }
@@ -74,6 +74,10 @@ impl BucklingSprings {
 impl Force for BucklingSprings {
     fn name(&self) -> &'static str {
         "buckling"
+    }
+
+    fn matter(&self) -> Option<Matter> {
+        Some(Matter::Elastic)
     }
 
     fn check(&self, particles: usize) -> Result<(), Error> {
@@ -133,14 +137,14 @@ impl Force for BucklingSprings {
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Strip {
     parameters: Buckling,
-    /// The length below which it is an arc (m).
+    /// Length below which the strip is an arc (m).
     buckles: f64,
 }
 
 impl Strip {
-    /// # Errors
-    /// A number makes no sense, or the straight strip is weaker than the arc that it would be when
-    /// its ends meet.
+    /// Returns # Errors
+    /// A number is out of its range, or the straight strip pushes less than the arc whose ends
+    /// meet.
     fn new(parameters: Buckling) -> Result<Self, Error> {
         let r = parameters.rest_length;
         positive("a buckling spring's rest length", r)?;
@@ -160,8 +164,8 @@ impl Strip {
             "a buckling spring's compression stiffness, so that it buckles only once,",
             parameters.compression,
         )?;
-        // Where both push alike: c_b r s = 12 k_b / (r2 P). The difference is convex, so that s
-        // grows up to there.
+        // The two pushes are equal where c_b r s = 12 k_b / (r2 P). The difference is convex, so
+        // that Newton's method approaches this s from below.
         let c = parameters.compression * r * r * r / parameters.bending;
         let newton = |s| {
             let [push, slope] = arc(s).push();
@@ -177,7 +181,7 @@ impl Strip {
         })
     }
 
-    /// The spring that it is before it buckles.
+    /// Returns the spring as it is before it buckles.
     fn straight(&self) -> Spring {
         Spring {
             kind: SpringKind::Bend,
@@ -243,15 +247,15 @@ impl Elastic for Strip {
     }
 }
 
-/// An arc, with P and dP/dy.
+/// Curvature of an arc, as y, with P and dP/dy.
 struct Arc {
     y: f64,
     p: f64,
     slope: f64,
 }
 
-/// The one whose ends are closer by this share of its length, 0 to 1: 1 - sinc = s, by Newton's
-/// method in y.
+/// Returns the arc whose ends are closer than its length by the fraction s of that, from 0 to 1. It
+/// solves 1 - sinc = s by Newton's method in y.
 fn arc(s: f64) -> Arc {
     // Exact to the third order in small s, and where s is 1.
     let mut y = s * (6.0 + s * (1.8 + s * (0.822_857_142_857 + s * 1.246_747_258_232)));
@@ -264,7 +268,7 @@ fn arc(s: f64) -> Arc {
 }
 
 impl Arc {
-    /// Push in `k_b` / r2, and its derivative by s.
+    /// Returns the push in units of `k_b` / r2, and its derivative with respect to s.
     fn push(&self) -> [f64; 2] {
         // dy/ds = 6 / P.
         let push = 12.0 / self.p;
@@ -275,7 +279,7 @@ impl Arc {
 const SHORTENING: [f64; TERMS] = ratios(4);
 const P: [f64; TERMS] = ratios(2);
 
-/// 1 / (m 5), 1 / ((m + 2) 7), 1 / ((m + 4) 9) ...
+/// Returns 1 / (m 5), 1 / ((m + 2) 7), 1 / ((m + 4) 9) ...
 const fn ratios(m: usize) -> [f64; TERMS] {
     let mut ratios = [0.0; TERMS];
     let mut k = 0;
@@ -286,7 +290,7 @@ const fn ratios(m: usize) -> [f64; TERMS] {
     ratios
 }
 
-/// 1 - a y (1 - b y (1 - c y ...)), and its derivative.
+/// Returns 1 - a y (1 - b y (1 - c y ...)), and its derivative.
 fn sum(ratios: &[f64; TERMS], y: f64) -> [f64; 2] {
     ratios.iter().rev().fold([1.0, 0.0], |[sum, slope], ratio| {
         [1.0 - ratio * y * sum, -ratio * (sum + y * slope)]
@@ -312,7 +316,7 @@ mod tests {
                 }
             }
             let found = arc(s).y.sqrt();
-            // What bisection loses where 1 - sinc is flat.
+            // Error of the bisection, where 1 - sinc is flat.
             let rounding = 1e-15 / found;
             assert!(
                 (found - high).abs() < 1e-14 + rounding,

@@ -1,7 +1,6 @@
-//! The blocks of springs on the diagonal of an implicit step's matrix: what preconditions conjugate
-//! gradients, so that no coupling of springs that are multiplied in vectors has to be listed. The
-//! springs of a chunk are computed in the processor's vectors, whether their ends are consecutive
-//! particles or not.
+//! The blocks of springs on the diagonal of an implicit step's matrix, by which conjugate gradients
+//! are preconditioned. They are summed without a list of couplings. The springs of a chunk are
+//! computed in SIMD vectors, whether their ends are consecutive particles or not.
 
 #![expect(
     clippy::inline_always,
@@ -17,11 +16,11 @@ use crate::coupling::{Diagonal, Matrix};
 use crate::fused::{mul_adds, negate_mul_adds};
 use crate::spring::{Spring, SpringLaw};
 
-/// Number of springs in a chunk: what is kept of them stays in the nearest cache.
+/// Number of springs in a chunk, whose numbers fit into the first-level cache.
 const CHUNK: usize = 64;
 
 /// Adds the blocks of springs between consecutive particles, given in runs: the law of a run, the
-/// first ends of its springs, and by how much their second ends are further on.
+/// first ends of its springs, and the offset of their second ends.
 pub(super) fn add_runs(
     runs: impl Iterator<Item = (SpringLaw, Range<usize>, usize)>,
     matrix: &Matrix,
@@ -116,20 +115,20 @@ impl WithSimd for OfSprings<'_, '_> {
     }
 }
 
-/// Numbers k, k r and c of a law, by their factors in the matrix.
+/// Returns k, k r and c of a law, times their factors in the matrix.
 #[inline(always)]
 fn numbers(law: &SpringLaw, matrix: &Matrix) -> [f64; 3] {
     let k = matrix.stiffness * law.stiffness;
     [k, k * law.rest_length, matrix.damping * law.damping]
 }
 
-/// Springs of a chunk.
+/// Numbers of the springs of a chunk.
 #[repr(C, align(64))]
 struct Chunk {
-    /// From the second end of each to its first (m).
+    /// Vector from the second end of each spring to its first (m).
     apart: [[f64; CHUNK]; 3],
     laws: [[f64; CHUNK]; 3],
-    /// Their blocks, and the largest eigenvalues of these.
+    /// Blocks of the springs, and the largest eigenvalues of the blocks.
     parts: [[f64; CHUNK]; 7],
 }
 
@@ -151,7 +150,8 @@ impl Chunk {
         }
     }
 
-    /// Finds the blocks of so many springs: q 1 + (k - q + c) d dT / L2, with q = k - k r / L.
+    /// Computes the blocks of the first `count` springs: q 1 + (k - q + c) d dT / L2, with q = k -
+    /// k r / L.
     #[inline(always)]
     fn find<S: Simd>(&mut self, simd: S, len: usize, clamped: bool) {
         let [x, y, z] = self.apart.each_ref().map(|a| S::as_simd_f64s(a).0);
@@ -161,7 +161,7 @@ impl Chunk {
         for i in 0..len.div_ceil(S::F64_LANES) {
             let (x, y, z) = (x[i], y[i], z[i]);
             let square = mul_adds(simd, z, z, mul_adds(simd, y, y, simd.mul_f64s(x, x)));
-            // Without a length there is no direction.
+            // A spring of length 0 has no direction.
             let has_length = simd.less_than_f64s(zero, square);
             let inverse = simd.select_f64s(has_length, inverse_root(simd, square), zero);
             let mut q = negate_mul_adds(simd, k_r[i], inverse, k[i]);

@@ -1,6 +1,6 @@
 //! Viscous drag, F = -c v.
 
-use super::force::{At, Carried, Force};
+use super::force::{At, DriftForces, Force};
 
 /// Viscous drag on each particle, of coefficient c (kg/s).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -20,13 +20,13 @@ impl Force for Drag {
     }
 
     fn reads_velocity(&self) -> bool {
-        true
+        self.0 > 0.0
     }
 
-    fn carried(&self) -> Option<Carried> {
-        Some(Carried {
+    fn drift_forces(&self) -> Option<DriftForces> {
+        Some(DriftForces {
             drag: self.0,
-            ..Carried::default()
+            ..DriftForces::default()
         })
     }
 }

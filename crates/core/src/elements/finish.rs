@@ -1,4 +1,4 @@
-//! Gravity, drag and the division by mass, once all other forces on a particle are summed up.
+//! The last operations on the sum of forces: gravity, drag and the division by mass.
 
 use std::ops::Range;
 
@@ -6,17 +6,17 @@ use nalgebra::Vector3;
 
 use super::{drag, gravity};
 
-/// Gravity and drag, which are added last, and the masses to divide by.
+/// Operations that finish a sum of forces.
 #[derive(Clone, Copy, Default)]
 pub(crate) struct Finish<'a> {
-    /// Acceleration (m/s2), with the mass of each particle (kg).
+    /// Gravity (m/s2) that is added, with the mass of each particle (kg).
     pub gravity: Option<(Vector3<f64>, &'a [f64])>,
-    /// Coefficient of viscous drag (kg/s).
+    /// Coefficient of the viscous drag that is added (kg/s).
     pub drag: Option<f64>,
     /// Masses (kg). If set, the result is m v - f, the product of the implicit matrix with v,
     /// instead of f.
     pub inertia: Option<&'a [f64]>,
-    /// Factors at the end: one over each mass (1/kg).
+    /// Factors of the result: one over each mass (1/kg).
     pub inverse_masses: Option<&'a [f64]>,
 }
 

@@ -9,9 +9,9 @@ use crate::fused::mul_adds;
 use nalgebra::Vector3;
 use pulp::{Arch, Simd, WithSimd};
 
-/// The flow over a time h. With a = c h / m, v -> v + h phi (g - (c/m) v), x -> x + h phi v + h2
-/// psi g, phi = (1 - e^-a) / a, psi = (1 - phi) / a: x += `v_to_x` v + `to_x`, v += `v_to_v` v +
-/// `to_v`.
+/// The flow over a time h, as a linear map. With a = c h / m, phi = (1 - e^-a) / a and psi = (1 -
+/// phi) / a it is v -> v + h phi (g - (c/m) v) and x -> x + h phi v + h2 psi g. The coefficients
+/// are those of x += `v_to_x` v + `to_x` and v += `v_to_v` v + `to_v`.
 #[derive(Clone, Copy)]
 pub(crate) struct Flow {
     v_to_x: f64,
@@ -21,8 +21,8 @@ pub(crate) struct Flow {
 }
 
 impl Flow {
-    /// The flow for a time h (s) of particles under drag c (kg/s) and gravity g (m/s2), whose
-    /// inverse mass is `w` (1/kg).
+    /// Creates the flow over a time h (s) of particles under drag c (kg/s) and gravity g (m/s2),
+    /// whose inverse mass is `w` (1/kg).
     pub fn new(c: f64, g: Vector3<f64>, w: f64, h: f64) -> Self {
         let (phi, psi) = phi_psi(c * w * h);
         Self {
@@ -33,7 +33,7 @@ impl Flow {
         }
     }
 
-    /// Positions and velocities along one axis after the flow.
+    /// Returns the positions and velocities along one axis after the flow.
     #[inline(always)]
     pub fn of<S: Simd>(self, simd: S, axis: usize, x: S::f64s, v: S::f64s) -> (S::f64s, S::f64s) {
         let add = |a, from, k, more| {
@@ -54,7 +54,7 @@ impl Flow {
     }
 }
 
-/// Moves particles of several masses, as [`Flow`] does those of one.
+/// Moves particles of different masses by the flow.
 pub(crate) fn flow_each(
     c: f64,
     g: Vector3<f64>,
@@ -63,7 +63,7 @@ pub(crate) fn flow_each(
     mut x: [&mut [f64]; 3],
     mut v: [&mut [f64]; 3],
 ) {
-    // Equal masses come in runs: the exponential is taken once for each run.
+    // Equal masses come in runs: the exponential is computed once for each run.
     let mut start = 0;
     for run in inverse_masses.chunk_by(|a, b| a == b) {
         let part = start..start + run.len();
@@ -100,7 +100,8 @@ impl WithSimd for Apply<'_> {
     }
 }
 
-/// phi = (1 - e^-a) / a and psi = (1 - phi) / a, by their series where the quotients would cancel.
+/// Returns the phi = (1 - e^-a) / a and psi = (1 - phi) / a, by their series where the differences
+/// would cancel.
 fn phi_psi(a: f64) -> (f64, f64) {
     if a.abs() < 1e-2 {
         let phi =

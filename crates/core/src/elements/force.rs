@@ -1,4 +1,6 @@
-//! The questions that every element of a network answers.
+//! The interface of the forces of a network.
+
+use std::any::Any;
 
 use nalgebra::Vector3;
 
@@ -7,7 +9,7 @@ use crate::energy::Energy;
 use crate::error::Error;
 use crate::spring::Spring;
 
-/// The time, the state and the particles for which an element is evaluated.
+/// The time, the state and the particles for which a force is evaluated.
 #[derive(Clone, Copy)]
 pub(crate) struct At<'a> {
     /// Time (s).
@@ -22,56 +24,100 @@ pub(crate) struct At<'a> {
     pub triangles: &'a [[u32; 3]],
 }
 
-/// Uniform gravity and viscous drag, which the drift of a splitting method solves exactly, and
-/// which other evaluations add last, while they divide by the masses.
+/// Uniform gravity and viscous drag, which the drift of a splitting method solves exactly. Other
+/// evaluations add them last, while they divide by the masses.
 #[derive(Clone, Copy, Default)]
-pub(crate) struct Carried {
+pub(crate) struct DriftForces {
     /// Acceleration (m/s2).
     pub gravity: Vector3<f64>,
     /// Coefficient of viscous drag (kg/s).
     pub drag: f64,
 }
 
-/// Number of couplings of an element, and the price of its forces in evaluations of as many single
-/// springs.
+/// Cost of a force.
 #[derive(Clone, Copy, Default)]
 pub(crate) struct Cost {
+    /// Number of couplings.
     pub couplings: f64,
+    /// Price of an evaluation, in evaluations of one single spring.
     pub price: f64,
 }
 
-/// Price of gathering the couplings of springs, in evaluations of them. It was measured on cloth
-/// and on chains.
-pub(crate) const GATHERING: f64 = 4.0;
+/// Kind of matter whose internal forces a force is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Matter {
+    /// Springs of constant stiffness and damping, which a network lists one by one.
+    Springs,
+    /// Another elastic body, which such springs do not describe.
+    Elastic,
+    /// A fluid.
+    Fluid,
+}
 
-/// A force of a network. Matrices of positions, velocities and forces are n x 3, column-major;
-/// forces are in N.
-pub(crate) trait Force {
-    /// Name in lists of forces.
+/// Price of the assembly of the couplings of springs, in evaluations of these springs. It was
+/// measured on cloth and on chains.
+pub(crate) const ASSEMBLY: f64 = 4.0;
+
+/// A force of a network: its values, its differential, and its properties. Matrices of positions,
+/// velocities and forces are n x 3, column-major; forces are in N.
+pub(crate) trait Force: Any {
+    /// Returns the name in lists of forces.
     fn name(&self) -> &'static str;
 
-    /// Checks that every particle index is below the number of `particles`.
+    /// Returns the name of the damping in lists of forces, if the force is elastic.
+    fn damping_name(&self) -> &'static str {
+        "spring damping"
+    }
+
+    /// Returns the kind of matter whose internal forces these are; `None` for external forces and
+    /// for contact.
+    fn matter(&self) -> Option<Matter> {
+        None
+    }
+
+    /// Whether the force depends on time, and so does work on the network from outside.
+    fn is_driven(&self) -> bool {
+        false
+    }
+
+    /// Whether the force is that of the wind.
+    fn is_wind(&self) -> bool {
+        false
+    }
+
+    /// Checks that every particle index is below `particles`, their number.
     fn check(&self, _particles: usize) -> Result<(), Error> {
         Ok(())
     }
 
-    /// Adds the forces to f.
+    /// Adds the forces F to f.
     fn add_forces(&self, at: &At, f: &mut [f64]);
 
     /// Adds dF = dF/dx dx + dF/dv dv to df.
     fn add_differential(&self, at: &At, d: [&[f64]; 2], df: &mut [f64]);
 
-    /// Visits the pairs of particles that the element couples, always in the same order. With
+    /// Visits the pairs of particles that the force couples, always in the same order. With
     /// `clamped`, each stiffness is positive semi-definite.
     fn couplings(&self, _t: f64, _x: &[f64], _clamped: bool, _visit: &mut dyn FnMut(Coupling)) {}
 
+    /// Whether [`couplings`](Self::couplings) visits all pairs. If not, implicit methods refuse the
+    /// network.
+    fn lists_all_couplings(&self) -> bool {
+        true
+    }
+
+    /// Whether products with the couplings are computed together, and not one by one.
+    fn multiplies_together(&self) -> bool {
+        false
+    }
+
     /// Adds the blocks on the diagonal of an implicit step's matrix that come from the couplings,
-    /// where these are multiplied together and not one by one; their number.
+    /// if they are [multiplied together](Self::multiplies_together). Returns their number.
     fn add_diagonal(&self, _matrix: &Matrix, _diagonal: &mut Diagonal) -> usize {
         0
     }
 
-    /// Potential energy; none for forces without a potential.
+    /// Returns the potential energy; 0 for forces without a potential.
     fn energy(&self, _at: &At) -> Energy {
         Energy::default()
     }
@@ -81,59 +127,59 @@ pub(crate) trait Force {
         false
     }
 
-    /// Cost of the couplings; none for elements that couple nothing.
+    /// Returns the cost of the force; 0 for forces that couple no particles.
     fn cost(&self) -> Cost {
         Cost::default()
     }
 
-    /// Price of gathering the couplings, in evaluations of as many single springs.
-    fn gathering(&self) -> f64 {
-        GATHERING * self.cost().couplings
+    /// Returns the price of the assembly of the couplings, in evaluations of one single spring.
+    fn assembly(&self) -> f64 {
+        ASSEMBLY * self.cost().couplings
     }
 
-    /// The force as gravity and drag, if it is nothing else.
-    fn carried(&self) -> Option<Carried> {
+    /// Returns gravity and drag, if the force consists of these.
+    fn drift_forces(&self) -> Option<DriftForces> {
         None
     }
 
-    /// The force as one on each particle by itself, if it is that.
+    /// Returns the view of a force that acts on each particle by itself, if it is such a one.
     fn by_particle(&self) -> Option<&dyn ByParticle> {
         None
     }
 
-    /// Multiplies stiffness and damping of springs.
+    /// Multiplies the stiffness and the damping by factors, if the force is that of matter.
     fn scale(&mut self, _stiffness: f64, _damping: f64) {}
 
-    /// Removes the springs between the pairs of particles in `torn`, each with the lower number
-    /// first, in order.
+    /// Removes the springs between the pairs of particles in `torn`, which is sorted and has the
+    /// lower number of each pair first.
     fn remove_springs(&mut self, _torn: &[[usize; 2]]) {}
 }
 
 /// A force on each particle that depends on the time and on its own position alone.
 pub(crate) trait ByParticle {
-    /// Adds the forces on some particles.
+    /// Adds the forces at time t (s) on particles at x (m) to f, by axis.
     fn add(&self, t: f64, x: [&[f64]; 3], f: &mut [&mut [f64]; 3]);
 }
 
-/// The particles at the ends of a spring, the lower number first.
+/// Returns the particles at the ends of a spring, the lower number first.
 pub(crate) fn ends(spring: &Spring) -> [usize; 2] {
     let Spring { i, j, .. } = *spring;
     [i.min(j), i.max(j)]
 }
 
-/// The square of the distance (m2) of particles i and j at x.
+/// Returns the square of the distance (m2) of particles i and j at x.
 pub(crate) fn distance_squared(x: &[f64], i: usize, j: usize) -> f64 {
     let n = x.len() / 3;
     let d = |axis: usize| x[axis * n + i] - x[axis * n + j];
     d(0) * d(0) + d(1) * d(1) + d(2) * d(2)
 }
 
-/// The distance (m) of particles i and j at x.
+/// Returns the distance (m) of particles i and j at x.
 pub(crate) fn distance(x: &[f64], i: usize, j: usize) -> f64 {
     distance_squared(x, i, j).sqrt()
 }
 
-/// `Ok` if particle i exists among so many.
+/// Checks that particle i is one of `particles`.
 pub(crate) fn check_particle(i: usize, particles: usize) -> Result<(), Error> {
     if i < particles {
         return Ok(());
@@ -144,7 +190,7 @@ pub(crate) fn check_particle(i: usize, particles: usize) -> Result<(), Error> {
     )))
 }
 
-/// `Ok` if i and j are two particles among so many.
+/// Checks that i and j are two different particles of `particles`.
 pub(crate) fn check_ends([i, j]: [usize; 2], particles: usize) -> Result<(), Error> {
     check_particle(i, particles)?;
     check_particle(j, particles)?;

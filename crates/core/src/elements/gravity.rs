@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use super::force::{At, Carried, Force};
+use super::force::{At, DriftForces, Force};
 use crate::energy::Energy;
 
 /// Uniform gravity, an acceleration g (m/s2).
@@ -32,10 +32,10 @@ impl Force for Gravity {
         }
     }
 
-    fn carried(&self) -> Option<Carried> {
-        Some(Carried {
+    fn drift_forces(&self) -> Option<DriftForces> {
+        Some(DriftForces {
             gravity: self.0,
-            ..Carried::default()
+            ..DriftForces::default()
         })
     }
 }

@@ -1,4 +1,4 @@
-//! 1 / sqrt(a), on which springs spend most of their time.
+//! 1 / sqrt(a), which takes most of the time of springs.
 
 #![expect(
     clippy::inline_always,
@@ -8,9 +8,9 @@
 use crate::fused::negate_mul_adds;
 use pulp::Simd;
 
-/// 1 / sqrt(a) to the last digit or two: from the guess that half the exponent is, four steps of
-/// Newton's method. Finite at 0. Takes half the time of the processor's own square root and
-/// division, which do not overlap.
+/// Returns 1 / sqrt(a) to the last digit or two: halving the exponent gives a guess, which four
+/// steps of Newton's method improve. Finite at 0. Takes half the time of the processor's square
+/// root and division, which do not overlap.
 #[inline(always)]
 pub(super) fn inverse_root<S: Simd>(simd: S, a: S::f64s) -> S::f64s {
     let mut y = [a];

@@ -1,14 +1,12 @@
-//! The forces of a network, one file each, and all with the same few questions to answer.
+//! The forces of a network, one file each, all implementing one trait.
 
 mod air;
 mod airflow;
 mod attraction;
 mod axial;
 mod buckling;
-mod contact_layer;
 mod diagonal;
 mod drag;
-mod element;
 mod finish;
 mod flow;
 mod fluid;
@@ -26,7 +24,6 @@ pub use airflow::Airflow;
 pub use attraction::Attraction;
 pub use buckling::{Buckling, BucklingSprings};
 pub use drag::Drag;
-pub use element::Element;
 pub use fluid::{Fluid, FluidLaw};
 pub use gravity::Gravity;
 pub use sheet::Sheet;

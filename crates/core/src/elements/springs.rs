@@ -1,17 +1,17 @@
-//! Single springs, of which few are evaluated one by one and many in blocks.
+//! Single springs. Few are evaluated one by one, and many in vectors (see `packed`).
 
 use std::sync::OnceLock;
 
 use super::axial::{add_all, add_differential, coupling, energy};
 use super::diagonal::add_springs;
-use super::force::{At, Cost, Force, check_ends, ends};
+use super::force::{At, Cost, Force, Matter, check_ends, ends};
 use super::packed::{Packed, SPEED};
 use crate::coupling::{Coupling, Diagonal, Matrix};
 use crate::energy::Energy;
 use crate::error::Error;
 use crate::spring::Spring;
 
-/// Single springs. Few are evaluated in their order, and many in blocks.
+/// Single springs, in any order.
 #[derive(Debug, Default)]
 pub struct Springs {
     all: Vec<Spring>,
@@ -20,7 +20,7 @@ pub struct Springs {
 }
 
 impl Springs {
-    /// Springs in the order given.
+    /// Creates springs in the order given.
     #[must_use]
     pub fn new(all: Vec<Spring>) -> Self {
         Self {
@@ -29,30 +29,30 @@ impl Springs {
         }
     }
 
-    /// All of them, in their order.
+    /// Returns all springs, in their order.
     #[must_use]
     pub fn all(&self) -> &[Spring] {
         &self.all
     }
 
-    /// Adds one at the end.
+    /// Adds a spring at the end.
     pub(crate) fn push(&mut self, spring: Spring) {
         self.change().push(spring);
     }
 
-    /// Puts them in the order of their ends: neighbours in memory are then used one after another.
+    /// Sorts the springs by their ends, so that neighbours in memory are used one after another.
     pub(crate) fn sort(&mut self) {
         self.change().sort_by_key(ends);
     }
 
-    /// The springs, to be changed.
+    /// Returns the springs, to be changed.
     fn change(&mut self) -> &mut Vec<Spring> {
         self.packed = OnceLock::new();
         &mut self.all
     }
 
-    /// They in blocks, if there are many.
-    pub(super) fn packed(&self) -> Option<&Packed> {
+    /// Returns the packed copy, if there are many springs.
+    pub(crate) fn packed(&self) -> Option<&Packed> {
         self.packed.get_or_init(|| Packed::new(&self.all)).as_ref()
     }
 }
@@ -72,6 +72,10 @@ impl PartialEq for Springs {
 impl Force for Springs {
     fn name(&self) -> &'static str {
         "springs"
+    }
+
+    fn matter(&self) -> Option<Matter> {
+        Some(Matter::Springs)
     }
 
     fn check(&self, particles: usize) -> Result<(), Error> {
@@ -101,6 +105,10 @@ impl Force for Springs {
         for spring in &self.all {
             visit(coupling(spring, x, clamped));
         }
+    }
+
+    fn multiplies_together(&self) -> bool {
+        self.packed().is_some()
     }
 
     fn add_diagonal(&self, matrix: &Matrix, diagonal: &mut Diagonal) -> usize {

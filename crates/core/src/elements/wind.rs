@@ -1,7 +1,7 @@
 //! A gentle wind in gusts: a steady breeze and a few plane waves whose directions, lengths and
-//! periods come from a seed. A pure function of seed, time and position, so that every stage of a
-//! step feels the same wind and a run can be repeated. It pushes each particle alike, or it is the
-//! velocity of air that streams past triangles.
+//! periods come from a seed. It is a pure function of seed, time and position, so that every stage
+//! of a step has the same wind and a run can be repeated. Its value is a force on each particle, or
+//! the velocity of air that streams past triangles.
 
 #![expect(
     clippy::inline_always,
@@ -22,10 +22,10 @@ use crate::threads::{fork, threads};
 
 const WAVES: usize = 4;
 
-/// Number of places at which the wind is found at a time.
+/// Number of positions at which the wind is computed at a time.
 pub(super) const BLOCK: usize = 32;
 
-/// A number of each place of a block.
+/// A number for each position of a block.
 pub(super) type Each = [f64; BLOCK];
 
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -57,13 +57,13 @@ pub struct Wind {
     #[serde(with = "crate::serial")]
     breeze: Vector3<f64>,
     waves: [Wave; WAVES],
-    /// The air, if it blows on triangles.
+    /// Air, if the wind blows on triangles.
     air: Option<Air>,
 }
 
 impl Wind {
-    /// A wind that pushes each particle by `force` (N) on average, and never by more than 2.2 times
-    /// that.
+    /// Creates a wind that exerts `force` (N) on each particle on average, and at most 2.2 times as
+    /// much.
     #[must_use]
     pub fn new(seed: u64, force: Vector3<f64>) -> Self {
         let mut random = SplitMix(seed);
@@ -84,8 +84,8 @@ impl Wind {
         }
     }
 
-    /// A wind that pushes at the [triangles](crate::Network::set_triangles) of a network, with air
-    /// that moves at `velocity` (m/s) on average, and never faster than 2.2 times that.
+    /// Creates a wind that blows on the [triangles](crate::Network::set_triangles) of a network,
+    /// with air that moves at `velocity` (m/s) on average, and at most 2.2 times as fast.
     #[must_use]
     pub fn on_triangles(seed: u64, velocity: Vector3<f64>, air: Air) -> Self {
         Self {
@@ -94,7 +94,7 @@ impl Wind {
         }
     }
 
-    /// The same gusts, `factor` times as strong.
+    /// Returns the same gusts, `factor` times as strong.
     #[must_use]
     pub fn scaled(&self, factor: f64) -> Self {
         Self {
@@ -107,7 +107,7 @@ impl Wind {
         }
     }
 
-    /// This wind, shifted so that its time t (s) becomes 0.
+    /// Returns this wind, shifted so that its time t (s) becomes 0.
     #[must_use]
     pub fn ahead(&self, t: f64) -> Self {
         Self {
@@ -119,19 +119,20 @@ impl Wind {
         }
     }
 
-    /// Quarter of the shortest period of its gusts at one place (s).
+    /// Returns a quarter of the shortest period of the gusts at a fixed position (s).
     pub(crate) fn quarter_period(&self) -> f64 {
         let rates = self.waves.iter().map(|wave| wave.rate.abs());
         0.5 * std::f64::consts::PI / rates.fold(0.0, f64::max)
     }
 
-    /// The air, if the wind blows on triangles.
+    /// Returns the air, if the wind blows on triangles.
     #[must_use]
     pub fn air(&self) -> Option<Air> {
         self.air
     }
 
-    /// The force (N) on a particle at x (m) at time t (s), or the velocity (m/s) of the air there.
+    /// Returns the force (N) on a particle at x (m) at time t (s), or the velocity (m/s) of the air
+    /// there.
     #[must_use]
     pub fn at(&self, t: f64, x: [f64; 3]) -> Vector3<f64> {
         self.waves.iter().fold(self.breeze, |f, wave| {
@@ -140,7 +141,7 @@ impl Wind {
         })
     }
 
-    /// The same at the places of a block, to the same bits.
+    /// Returns the same for the positions of a block, with the same bits.
     #[inline(always)]
     pub(super) fn over(&self, t: f64, [x, y, z]: &[Each; 3]) -> [Each; 3] {
         let mut f = [self.breeze.x, self.breeze.y, self.breeze.z].map(|f| [f; BLOCK]);
@@ -159,7 +160,7 @@ impl Wind {
         f
     }
 
-    /// The differential of [`at`](Self::at), as x moves by `towards`.
+    /// Returns the differential of [`at`](Self::at) for a change `towards` of x.
     pub(super) fn differential(&self, t: f64, x: [f64; 3], towards: Vector3<f64>) -> Vector3<f64> {
         self.waves.iter().fold(Vector3::zeros(), |df, wave| {
             df + wave.amplitude * (libm::cos(wave.argument(t, x)) * wave.number.dot(&towards))
@@ -178,7 +179,7 @@ impl ByParticle for Wind {
     }
 }
 
-/// Forces on particles at x, added to f.
+/// Task that adds the forces on particles at x to f.
 struct Blow<'a, 'b> {
     wind: &'a Wind,
     t: f64,
@@ -211,6 +212,14 @@ impl WithSimd for Blow<'_, '_> {
 impl Force for Wind {
     fn name(&self) -> &'static str {
         "wind"
+    }
+
+    fn is_driven(&self) -> bool {
+        true
+    }
+
+    fn is_wind(&self) -> bool {
+        true
     }
 
     fn add_forces(&self, at: &At, f: &mut [f64]) {

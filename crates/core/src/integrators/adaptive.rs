@@ -11,7 +11,7 @@ use super::integrator::check_dim;
 use super::trial::{LastStep, Trial};
 use crate::error::{Error, at_least};
 use crate::sums::{OnBlock, add_up};
-use crate::system::ParticleSystem;
+use crate::system::{ParticleSystem, rigid_of};
 use crate::threads::{Columns, copy, threads};
 use crate::work::Work;
 
@@ -78,7 +78,7 @@ pub struct Adaptive {
 
 /// Whether two states are equal, except for particles on rigid bodies, which follow from the rest.
 fn is_same(system: &dyn ParticleSystem, a: &[f64], b: &[f64]) -> bool {
-    match system.rigid() {
+    match rigid_of(system) {
         None => {
             let bands = threads(a.len() / 6);
             add_up(bands, 0..a.len(), BLOCK, [], &Different(a, b)) == [0.0]

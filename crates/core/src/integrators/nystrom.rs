@@ -60,7 +60,7 @@ pub(super) struct NystromPair {
 fn drag(system: &dyn ParticleSystem) -> Option<(&dyn Mechanics, Drag<'_>)> {
     let mechanics = system.mechanics()?;
     let drag = Drag {
-        coefficient: mechanics.linearized()?.drag_coefficient(),
+        coefficient: mechanics.drag_coefficient(),
         inverse_masses: mechanics.inverse_masses(),
     };
     depends_on_positions(mechanics).then_some((mechanics, drag))

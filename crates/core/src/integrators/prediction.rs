@@ -4,7 +4,7 @@
 //! solution of springs. Pinned particles move to their places at t + h.
 
 use crate::error::{Error, Refusal};
-use crate::system::{Compliant, Linearized, Mechanics, ParticleSystem, place_pins};
+use crate::system::{Compliant, Mechanics, ParticleSystem, place_pins};
 use crate::work::Work;
 
 /// Scratch of a prediction.
@@ -65,7 +65,9 @@ pub(super) fn springs_of<'a>(
 /// Work of iterations over all springs: each counts as an evaluation and, for the rest of its cost
 /// (in evaluations of forces spring by spring), as linear algebra.
 pub(super) fn work(system: &dyn Compliant, iterations: u32, price: f64) -> Work {
-    let speed = system.linearized().map_or(1.0, Linearized::speed);
+    let speed = system
+        .linearized()
+        .map_or(1.0, |system| system.hints().speed);
     Work {
         evaluations: iterations.into(),
         algebra: f64::from(iterations) * (speed * price - 1.0),

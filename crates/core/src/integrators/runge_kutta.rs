@@ -9,7 +9,7 @@ use super::sweep::Sweeper;
 use crate::error::Error;
 use crate::fused::mul_adds;
 use crate::rows::{Next, Stage, Terms};
-use crate::system::ParticleSystem;
+use crate::system::{ParticleSystem, rows_of};
 use crate::work::Work;
 
 /// Coefficients (c, b) of each stage.
@@ -84,7 +84,7 @@ impl Integrator for RungeKutta {
         check_dim(self.dim, y)?;
         self.stages.clear();
         self.stages.extend(stages(self.table, Terms::Motion, t, h));
-        match (&mut self.sweeper, system.rows()) {
+        match (&mut self.sweeper, rows_of(system)) {
             (Some(sweeper), Some(system)) if sweeper.fits(system, self.stages.len()) => {
                 sweeper.step(system, None, &self.stages, y);
             }

@@ -11,7 +11,8 @@ use super::sweep::Sweeper;
 use crate::error::{Error, Refusal};
 use crate::rows::{Next, Stage, Terms};
 use crate::system::{
-    Mechanics, ParticleSystem, Rigid, divide_by_masses, kick_reads_velocity, place_pins,
+    Mechanics, ParticleSystem, Rigid, divide_by_masses, kick_reads_velocity, place_pins, rigid_of,
+    rows_of,
 };
 use crate::work::Work;
 
@@ -76,7 +77,7 @@ impl Plan {
         sweeper: Option<Sweeper>,
     ) -> Box<dyn Integrator> {
         let (dim, kicks) = (system.dim(), self.kicks(system));
-        let length = match system.rigid() {
+        let length = match rigid_of(system) {
             Some(_) => dim,
             None if sweeper.is_some() => 0,
             None => dim / 2,
@@ -165,14 +166,14 @@ impl Integrator for SplittingMethod {
         self.stages.clear();
         self.stages.extend(kicks.stages(plan.terms, t, h));
         let per_sweep = plan.stages_of_sweep(system);
-        match (&mut self.sweeper, system.rows()) {
+        match (&mut self.sweeper, rows_of(system)) {
             (Some(sweeper), Some(system)) if sweeper.fits(system, per_sweep) => {
                 let mut lead = Some((plan.terms, lead)).filter(|_| lead.1 != 0.0);
                 for stages in self.stages.chunks(per_sweep) {
                     sweeper.step(system, lead.take(), stages, y);
                 }
             }
-            _ => match (system.rigid(), system.mechanics()) {
+            _ => match (rigid_of(system), system.mechanics()) {
                 (Some(rigid), _) => self.rigid(rigid, lead, y),
                 (None, Some(mechanics)) => self.plain(mechanics, lead, y),
                 (None, None) => {
@@ -257,7 +258,7 @@ impl SplittingMethod {
 
 /// Whether kicks depend on v; true if unknown.
 fn reads_velocity(system: &dyn ParticleSystem) -> bool {
-    if let Some(rigid) = system.rigid() {
+    if let Some(rigid) = rigid_of(system) {
         return rigid.kick_reads_velocity();
     }
     system.mechanics().is_none_or(kick_reads_velocity)

@@ -6,7 +6,7 @@ use std::array;
 use std::ops::Range;
 
 use crate::rows::{Next, Patch, REACH, Registers, Rows, Stage, SweepScratch, Terms, Window};
-use crate::system::ParticleSystem;
+use crate::system::{ParticleSystem, rows_of};
 use crate::threads::{Columns, split_off, threads};
 
 /// Number of particles that a stage processes at a time.
@@ -30,7 +30,7 @@ pub(super) struct Sweeper {
 impl Sweeper {
     /// A sweeper for a system of rows, if it is faster than whole arrays.
     pub fn new(system: &dyn ParticleSystem, stages: usize) -> Option<Self> {
-        let rows = system.rows()?;
+        let rows = rows_of(system)?;
         let patches: Vec<_> = (0..rows.patches()).map(|k| rows.patch(k)).collect();
         let particles = patches.iter().map(Patch::particles).sum();
         let widest = patches.iter().map(|patch| patch.cols).max()?;
@@ -260,7 +260,7 @@ mod tests {
     fn after(scene: &Scene, method: &Kind, bands: Option<usize>) -> Vec<f64> {
         let system = scene.model.system();
         let sweeper = |stages| {
-            bands.map(|bands| Sweeper::with_bands(system.rows().unwrap(), stages, |_| bands))
+            bands.map(|bands| Sweeper::with_bands(rows_of(system).unwrap(), stages, |_| bands))
         };
         let mut method: Box<dyn Integrator> = match method {
             Kind::Table(table) => {
@@ -319,7 +319,7 @@ mod tests {
         let system = scene.model.system();
         let sweeper = || {
             Some(Sweeper::with_bands(
-                system.rows().unwrap(),
+                rows_of(system).unwrap(),
                 RK4.len(),
                 |_| 2,
             ))

@@ -3,8 +3,8 @@
 /// A block: xx, yy, zz, xy, xz, yz.
 pub(super) type Block = [f64; 6];
 
-/// The inverse of a symmetric block; if that is not positive definite, of the absolute values on
-/// its diagonal.
+/// Returns the inverse of a symmetric block; if the block is not positive definite, the inverse of
+/// the absolute values on its diagonal.
 pub(super) fn inverse([xx, yy, zz, xy, xz, yz]: Block) -> Block {
     let minor = xx * yy - xy * xy;
     let (a, b, c) = (yy * zz - yz * yz, xz * yz - xy * zz, xy * yz - xz * yy);

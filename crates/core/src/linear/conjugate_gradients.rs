@@ -1,8 +1,8 @@
 //! Conjugate gradients, preconditioned by the inverse of each particle's own 3 x 3 block and by
-//! multigrid where that pays, filtered as in Baraff and Witkin, *Large Steps in Cloth Simulation*,
-//! 1998: pinned particles stay, however many iterations there are. The sum of both preconditioners
-//! is one (Bramble, Pasciak, Xu, *Parallel multilevel preconditioners*, 1990), and takes no further
-//! product with the matrix.
+//! multigrid where that pays. They are filtered as in Baraff and Witkin, *Large Steps in Cloth
+//! Simulation*, 1998, so that pinned particles stay exactly. The sum of both preconditioners is a
+//! preconditioner, too (Bramble, Pasciak, Xu, *Parallel multilevel preconditioners*, 1990), and
+//! takes no further product with the matrix.
 
 #![expect(
     clippy::inline_always,
@@ -20,7 +20,7 @@ use crate::sums::{self, OnBlock, dot};
 use crate::system::Linearized;
 use crate::threads::{Columns, threads};
 
-/// Number of particles in a block, which stays in the nearest cache.
+/// Number of particles in a block, whose numbers fit into the first-level cache.
 const BLOCK: usize = 256;
 
 /// Scratch for a system of one size.
@@ -29,20 +29,20 @@ pub(crate) struct ConjugateGradients {
     z: Vec<f64>,
     p: Vec<f64>,
     q: Vec<f64>,
-    /// The inverse block of each particle, in columns.
+    /// Inverse block of each particle, in columns.
     inverses: [Vec<f64>; 6],
-    /// Version of the tangent that they are of.
+    /// Version of the tangent of these blocks.
     version: u64,
 }
 
-/// The end of an iteration.
+/// Result of a solve.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Solution {
     /// Number of iterations.
     pub iterations: u64,
     /// Relative residual |b - A x| / |b|.
     pub residual: f64,
-    /// Whether the matrix is not positive definite: x is of no use then.
+    /// Whether the matrix is not positive definite. x is then meaningless.
     pub indefinite: bool,
 }
 
@@ -59,7 +59,7 @@ impl ConjugateGradients {
         }
     }
 
-    /// Solves A x = b from x = 0 to a relative residual. b has nothing where particles are pinned.
+    /// Solves A x = b from x = 0 to a relative residual. b is 0 on pinned particles.
     pub fn solve(
         &mut self,
         system: &dyn Linearized,
@@ -98,7 +98,7 @@ impl ConjugateGradients {
         solution
     }
 
-    /// Inverts the blocks on the diagonal, if they are not those of before.
+    /// Inverts the blocks on the diagonal, if they have changed.
     fn prepare(&mut self, tangent: &Tangent) {
         if self.version == tangent.version() {
             return;
@@ -114,15 +114,15 @@ impl ConjugateGradients {
         }
     }
 
-    /// p . q
+    /// Returns p . q, with q = A p.
     fn curvature(&mut self) -> f64 {
         let Self { p, q, .. } = self;
         let [sum] = add_up(p.len() / 3, [], &Product { p, q });
         sum
     }
 
-    /// Takes a step along p from the residual, r -= step q. Returns r . r and r . z, with the z
-    /// that the preconditioners make of r.
+    /// Updates the residual after a step along p, r -= step q. Returns r . r and r . z, where z is
+    /// the preconditioned residual.
     fn descend(&mut self, step: f64, multigrid: Option<&mut Multigrid>) -> [f64; 2] {
         let Self {
             r, z, q, inverses, ..
@@ -136,7 +136,7 @@ impl ConjugateGradients {
         ]
     }
 
-    /// Takes a step, x += step p, and turns to a new direction, p = z + turn p.
+    /// Takes a step, x += step p, and forms the next direction, p = z + turn p.
     fn turn(&mut self, [step, turn]: [f64; 2], x: &mut [f64], multigrid: Option<&Multigrid>) {
         let Self { z, p, .. } = self;
         let ([a, b, c], [d, e, f]) = (columns_mut(x), columns_mut(p));
@@ -150,8 +150,7 @@ impl ConjugateGradients {
     }
 }
 
-/// Runs a task on blocks of particles, each with its part of the columns, and adds up what it
-/// gives.
+/// Runs a task on blocks of particles, each with its part of the columns, and adds up its results.
 fn add_up<const N: usize, const M: usize>(
     particles: usize,
     columns: Columns<N>,
@@ -197,7 +196,7 @@ impl OnBlock<6, 2> for Descent<'_> {
 
 struct Turn<'a> {
     step: f64,
-    /// Share of the old direction in the new one.
+    /// Factor of the old direction in the new one.
     share: f64,
     z: &'a [f64],
     multigrid: Option<&'a Multigrid>,

@@ -4,21 +4,19 @@
 use super::tangent::Tangent;
 use crate::cholesky::{Block, Factor, Pattern, Place};
 
-/// Prices of a factorisation, in evaluations of forces spring by spring over the number of
-/// couplings: of each column, and of each product of two blocks. Measured on chains and cloths, see
-/// the tests.
+/// Prices of a column and of a product of two blocks in a factorisation, in evaluations of forces
+/// spring by spring over the number of couplings. Measured on chains and cloths (see the tests).
 const FACTORISATION: [f64; 2] = [10.0, 0.9];
-/// Prices of a solve, in the same measure: of each column, and of each block below the diagonal.
+/// Prices of a column and of a block below the diagonal in a solve, in the same unit.
 const SOLUTION: [f64; 2] = [3.0, 2.0];
-/// Largest number of blocks in a factor (48 MB), and for each particle, which is enough for any
-/// tree: nets with larger ones are solved faster by iterations.
-const MOST: [usize; 2] = [500_000, 2];
-/// Fixed overhead of an evaluation, in couplings: in relation to it, the algebra of a few couplings
-/// costs less than that of many.
+/// Largest number of blocks in a factor (48 MB), and largest number for each particle in a larger
+/// factor, which any tree meets. Nets with larger factors are solved faster by iterations.
+const MAX_BLOCKS: [usize; 2] = [500_000, 2];
+/// Fixed overhead of an evaluation, in evaluations of a coupling.
 const OVERHEAD: f64 = 10.0;
 
-/// Price of so many products of blocks for each coupling, in evaluations of forces spring by
-/// spring.
+/// Returns the price of a factorisation with a number of products of blocks for each coupling, in
+/// evaluations of forces spring by spring.
 pub(super) fn price_of_products(products: f64) -> f64 {
     FACTORISATION[1] * products
 }
@@ -27,9 +25,9 @@ pub(super) fn price_of_products(products: f64) -> f64 {
 pub(super) struct Direct {
     pattern: Pattern,
     factor: Factor<3, 4>,
-    /// Place of the block of each coupling.
+    /// Place of the block of each coupling in the matrix.
     places: Vec<Place>,
-    /// What tells the pattern of the couplings from others.
+    /// Identifier of the pattern of the couplings.
     couplings: u64,
     /// Price of a factorisation, in evaluations of forces spring by spring.
     pub factorisation: f64,
@@ -38,10 +36,10 @@ pub(super) struct Direct {
 }
 
 impl Direct {
-    /// The pattern of a tangent; `None` if the factor would be too large.
+    /// Analyses the pattern of a tangent; `None` if the factor would be too large.
     pub fn new(tangent: &Tangent) -> Option<Self> {
         let n = tangent.particles();
-        let pattern = Pattern::new(n, tangent.pairs(), MOST[0].max(MOST[1] * n))?;
+        let pattern = Pattern::new(n, tangent.pairs(), MAX_BLOCKS[0].max(MAX_BLOCKS[1] * n))?;
         let couplings = tangent.couplings() as f64 + OVERHEAD;
         let columns = pattern.len() as f64 / couplings;
         Some(Self {
@@ -105,7 +103,7 @@ impl Direct {
             let at = |row: usize, column: usize| block[3 * row + column];
             for end in [i, j] {
                 if masses[end] != 0.0 {
-                    // The blocks of a particle have a symmetric sum.
+                    // The sum of the blocks of a particle is symmetric.
                     let half = |r, c| 0.5 * (at(r, c) + at(c, r));
                     add(factor.diagonal_mut(pattern, end), half);
                 }

@@ -1,4 +1,4 @@
-//! What couplings add at both of their ends.
+//! Contributions of couplings at both of their ends.
 
 use super::block::Block;
 use crate::coupling::{AxialCoupling, Diagonal, GeneralCoupling};
@@ -24,8 +24,8 @@ pub fn add_axial(c: &AxialCoupling, iso: f64, along: f64, p: &[f64], out: &mut [
     add(c.i, c.j, |axis| iso * d[axis] + share * u[axis], out);
 }
 
-/// Adds a block times d at one end of a coupling, and subtracts it at the other; at its only end,
-/// if the other is a place.
+/// Adds a block times d at one end of a coupling, and subtracts it at the other, unless the other
+/// is a place.
 pub fn add_block(c: &GeneralCoupling, block: [f64; 9], p: &[f64], out: &mut [f64]) {
     let n = p.len() / 3;
     let anchored = c.i == c.j;

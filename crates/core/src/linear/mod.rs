@@ -20,19 +20,19 @@ use crate::work::Work;
 /// prices below were measured on cloth of 20 x 20 to 128 x 128 particles and on chains (see the
 /// tests).
 const ITERATION: f64 = 2.4;
-/// Iterations that conjugate gradients take, over sqrt(1 + a2 w2) ln(2/tolerance).
+/// Number of iterations of conjugate gradients, over sqrt(1 + a2 w2) ln(2/tolerance).
 const SPREAD: f64 = 0.3;
-/// Price of an iteration with multigrid, and of taking up a matrix for it, in evaluations of the
-/// system's forces.
+/// Prices of an iteration with multigrid and of the preparation of a matrix for it, in evaluations
+/// of the system's forces.
 const MULTIGRID: [f64; 2] = [5.0, 10.0];
-/// Iterations with multigrid, over (1 + a2 w2)^(1/4) ln(2/tolerance).
+/// Number of iterations with multigrid, over (1 + a2 w2)^(1/4) ln(2/tolerance).
 const MULTIGRID_SPREAD: f64 = 0.45;
 /// Least number of products of blocks in a factorisation for each coupling of particles in two
-/// dimensions, over the root of their number: no need to analyse the pattern where that is too
-/// dear.
+/// dimensions, over the root of the number of particles. If even that is too expensive, the pattern
+/// is not analysed.
 const PLANAR: f64 = 3.0;
 /// Largest number of iterations.
-const MOST: u64 = 10_000;
+const MAX_ITERATIONS: u64 = 10_000;
 
 /// Solver of linear systems with the tangent of one system.
 pub(crate) struct Solver {
@@ -42,23 +42,22 @@ pub(crate) struct Solver {
     /// Forces or forbids multigrid; `None` chooses by cost.
     multigrid_always: Option<bool>,
     iterative: ConjugateGradients,
-    /// The factorisation, once it is worth an analysis of the pattern; `None` also if it would be
-    /// too large.
+    /// Factorisation, once the pattern is analysed; `None` if it would be too large.
     direct: Option<Direct>,
     /// Whether the pattern was analysed.
     analysed: bool,
-    /// Coarser levels, once they are worth an analysis of the pattern.
+    /// Coarser levels, once the pattern is analysed for them.
     multigrid: Option<Multigrid>,
-    /// Evaluations of the system's forces in the time of one spring by spring.
+    /// Time of an evaluation of the forces spring by spring, over that of the system's own.
     speed: f64,
-    /// Bound of a2 w2 for the matrix that was gathered last.
+    /// Bound of a2 w2 for the matrix that was assembled last.
     stiffness: f64,
-    /// Whether the matrix that was gathered last is factorised.
+    /// Whether the matrix that was assembled last is factorised.
     factorised: bool,
 }
 
 impl Solver {
-    /// A solver with room for the couplings of the system.
+    /// Creates a solver with room for the couplings of the system.
     pub fn new(system: &dyn Linearized) -> Self {
         let tangent = Tangent::new(system);
         let n = tangent.particles();
@@ -67,14 +66,14 @@ impl Solver {
             direct: None,
             analysed: false,
             multigrid: None,
-            speed: system.speed(),
+            speed: system.hints().speed,
             tangent,
             direct_always: None,
             multigrid_always: None,
             stiffness: 0.0,
             factorised: false,
         };
-        if !system.couples_always_the_same() {
+        if !system.hints().pattern_is_fixed() {
             (solver.direct_always, solver.multigrid_always) = (Some(false), Some(false));
         } else if solver.least_products() == 0.0 {
             solver.analyse(system);
@@ -89,8 +88,8 @@ impl Solver {
         self.analysed = true;
     }
 
-    /// Least number of products in a factorisation for each coupling, as far as it is known
-    /// beforehand.
+    /// Returns the lower bound on the number of products in a factorisation for each coupling,
+    /// known without an analysis.
     fn least_products(&self) -> f64 {
         let particles = self.tangent.particles() as f64;
         if self.tangent.couplings() as f64 > 1.5 * particles {
@@ -100,41 +99,42 @@ impl Solver {
         }
     }
 
-    /// Takes up what the forces of the system cost now.
+    /// Updates the costs of the system's forces, after the system has changed.
     pub fn renew(&mut self, system: &dyn Linearized) {
-        self.speed = system.speed();
-        if !system.couples_always_the_same() {
+        let hints = system.hints();
+        self.speed = hints.speed;
+        if !hints.pattern_is_fixed() {
             (self.direct_always, self.multigrid_always) = (Some(false), Some(false));
         }
     }
 
-    /// Gathers A = M + a (C + D) + a2 K at time t (s) at x, for steps of length a (s).
-    pub fn gather(
+    /// Assembles A = M + a (C + D) + a2 K at time t (s) at x, for steps of length a (s).
+    pub fn assemble(
         &mut self,
         system: &dyn Linearized,
         (t, a): (f64, f64),
         x: &[f64],
         clamped: bool,
     ) -> Work {
-        self.tangent.gather(system, (t, a), x, clamped);
+        self.tangent.assemble(system, (t, a), x, clamped);
         self.stiffness = self.tangent.stiffness();
         self.factorised = false;
         if self.direct.as_ref().is_some_and(|d| !d.fits(&self.tangent)) {
             (self.direct, self.analysed) = (None, false);
         }
         Work {
-            algebra: system.gathering(),
+            algebra: system.hints().assembly,
             ..Work::default()
         }
     }
 
-    /// Bound of a2 w2 for the fastest motion: the stiffness of the step.
+    /// Returns the bound of a2 w2 for the fastest motion: the stiffness of the step.
     pub fn stiffness(&self) -> f64 {
         self.stiffness
     }
 
-    /// Prices of a solve by conjugate gradients to a relative residual, without multigrid and with
-    /// it, in evaluations of the forces.
+    /// Returns the prices of a solve by conjugate gradients to a relative residual, without and
+    /// with multigrid, in evaluations of the forces.
     fn prices(&self, tolerance: f64) -> [f64; 2] {
         let spread = (1.0 + self.stiffness).sqrt();
         let digits = libm::log(2.0 / tolerance);
@@ -149,7 +149,7 @@ impl Solver {
     }
 
     /// Whether a solve to a relative residual is cheaper by a factorisation than by conjugate
-    /// gradients. Analyses the pattern where that may be so.
+    /// gradients. Analyses the pattern if it may be.
     fn goes_direct(&mut self, system: &dyn Linearized, tolerance: f64) -> bool {
         let [alone, with] = self.prices(tolerance);
         let iterative = alone.min(with);
@@ -170,8 +170,8 @@ impl Solver {
             .unwrap_or(worth_analysing && price * self.speed < iterative)
     }
 
-    /// Factorises A, or takes it up for multigrid, if solves to a relative residual are cheaper so.
-    /// Returns the work, and whether A may be positive definite.
+    /// Factorises A, or prepares it for multigrid, if that makes a solve to a relative residual
+    /// cheaper. Returns the work, and whether A may be positive definite.
     pub fn prepare(&mut self, system: &dyn Linearized, tolerance: f64) -> (Work, bool) {
         let mut work = Work::default();
         if self.goes_direct(system, tolerance) {
@@ -226,7 +226,7 @@ impl Solver {
             _ => {
                 let pays = self.goes_multigrid(tolerance);
                 let mut solve = |multigrid: Option<&mut Multigrid>, price: f64| {
-                    let (matrix, ends) = ((&self.tangent, multigrid), (tolerance, MOST));
+                    let (matrix, ends) = ((&self.tangent, multigrid), (tolerance, MAX_ITERATIONS));
                     let solution = self.iterative.solve(system, matrix, b, x, ends);
                     work.iterations += solution.iterations;
                     work.algebra += price * solution.iterations as f64;
@@ -234,7 +234,8 @@ impl Solver {
                 };
                 let with = self.multigrid.as_mut().filter(|_| pays);
                 let with = with.map(|multigrid| solve(Some(multigrid), MULTIGRID[0]));
-                // What multigrid makes of a matrix need not be positive definite where that is.
+                // The preconditioner of multigrid need not be positive definite where the matrix
+                // is.
                 let solution = match with {
                     Some(solution) if !solution.indefinite => solution,
                     _ => solve(None, ITERATION),

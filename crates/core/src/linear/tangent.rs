@@ -1,7 +1,7 @@
-//! The matrix of an implicit step, A = M + a (C + D) + a2 K. Couplings between particles that the
-//! system does not multiply itself are gathered once, and multiplied without square roots; all are
-//! listed where a factorisation or multigrid needs them. Pinned particles are filtered: their rows
-//! are those of the identity, and vectors that are solved for are zero there.
+//! The matrix of an implicit step, A = M + a (C + D) + a2 K. Couplings that the system does not
+//! multiply itself are listed at each assembly, and all couplings if a factorisation or multigrid
+//! needs them. Pinned particles are filtered: their rows
+//! are those of the identity, and solutions are zero there.
 
 use super::block::{Block, symmetric};
 use super::ends::{add_axial, add_block, add_own};
@@ -9,25 +9,25 @@ use crate::columns::columns_mut;
 use crate::coupling::{AxialCoupling, Coupling, Diagonal, GeneralCoupling, Matrix, full};
 use crate::system::Linearized;
 
-/// A and K.
+/// The matrix A, and K.
 pub(crate) struct Tangent {
-    /// Axial couplings, of which the first are those that the system multiplies.
+    /// Axial couplings. Those that the system multiplies come first.
     axial: Vec<AxialCoupling>,
     blocks: Vec<GeneralCoupling>,
     /// Number of couplings that the system multiplies, and whether they are listed too.
     fast: usize,
     listed: bool,
-    /// Mass of each particle in A (kg); 0 where it is pinned.
+    /// Mass of each particle in A (kg); 0 for pinned ones.
     masses: Vec<f64>,
-    /// 0 where it is pinned, 1 elsewhere.
+    /// 0 for each pinned particle, 1 for others.
     free: Vec<f64>,
     /// Whether couplings are clamped.
     clamped: bool,
-    /// Number of times that other particles were coupled than before.
+    /// Number of changes of the pattern, the pairs of coupled particles.
     pattern: u64,
-    /// Number of times that couplings were gathered.
+    /// Number of assemblies.
     version: u64,
-    /// Time (s), positions (m) and step (s) of the last gathering.
+    /// Time (s), positions (m) and step (s) of the last assembly.
     t: f64,
     x: Vec<f64>,
     a: f64,
@@ -40,7 +40,7 @@ pub(crate) struct Tangent {
 }
 
 impl Tangent {
-    /// With room for all couplings of the system, if it has always the same.
+    /// Creates a matrix with room for all couplings of the system, if their pattern is fixed.
     pub fn new(system: &dyn Linearized) -> Self {
         let n = system.inverse_masses().len();
         let mut tangent = Self {
@@ -60,13 +60,13 @@ impl Tangent {
             scratch: vec![0.0; 3 * n],
             zeros: vec![0.0; n],
         };
-        if system.couples_always_the_same() {
+        if system.hints().pattern_is_fixed() {
             tangent.list(system);
         }
         tangent
     }
 
-    /// Lists all couplings where they were gathered last, unless they are listed.
+    /// Lists all couplings in the state of the last assembly, unless they are listed.
     pub fn list(&mut self, system: &dyn Linearized) {
         if !self.listed {
             self.listed = true;
@@ -76,7 +76,7 @@ impl Tangent {
         }
     }
 
-    /// Puts couplings in the lists, axial ones after so many that are left as they are.
+    /// Puts couplings in the lists, axial ones after the first `left`, which stay.
     fn collect(
         &mut self,
         left: usize,
@@ -103,22 +103,22 @@ impl Tangent {
         self.pattern += u64::from(!same || counts != [axial_count, block_count]);
     }
 
-    /// Changes as soon as other particles are coupled.
+    /// Returns the number of the pattern, which changes whenever other particles are coupled.
     pub fn pattern(&self) -> u64 {
         self.pattern
     }
 
-    /// Changes as soon as couplings are gathered anew.
+    /// Returns the number of the assembly, which changes whenever couplings are assembled again.
     pub fn version(&self) -> u64 {
         self.version
     }
 
-    /// Number of particles.
+    /// Returns the number of particles.
     pub fn particles(&self) -> usize {
         self.masses.len()
     }
 
-    /// Number of couplings.
+    /// Returns the number of couplings.
     pub fn couplings(&self) -> usize {
         self.axial.len() + self.blocks.len()
     }
@@ -129,9 +129,9 @@ impl Tangent {
         axial.chain(self.blocks.iter().map(|c| [c.i as u32, c.j as u32]))
     }
 
-    /// Gathers the couplings at time t (s) at x for steps of length a (s). With `clamped`, A is
+    /// Assembles the couplings at time t (s) at x for steps of length a (s). With `clamped`, A is
     /// positive definite.
-    pub fn gather(
+    pub fn assemble(
         &mut self,
         system: &dyn Linearized,
         (t, a): (f64, f64),
@@ -153,8 +153,7 @@ impl Tangent {
         self.add_up_diagonal(system);
     }
 
-    /// Adds up the blocks on the diagonal, and lists the couplings that the system does not
-    /// multiply.
+    /// Sums the blocks on the diagonal, and lists the couplings that the system does not multiply.
     fn add_up_diagonal(&mut self, system: &dyn Linearized) {
         let n = self.particles();
         let mut sums = std::mem::take(&mut self.diagonal);
@@ -165,11 +164,15 @@ impl Tangent {
         let mut diagonal = Diagonal {
             columns: columns_mut(&mut sums),
         };
-        let fast = system.add_diagonal(&self.matrix(), &mut diagonal);
+        let products = system.products();
+        let fast = products.map_or(0, |products| {
+            products.add_diagonal(&self.matrix(), &mut diagonal)
+        });
         self.listed = false;
         if fast == self.fast && fast <= self.axial.len() {
-            self.collect(fast, |t, x, clamped, visit| {
-                system.other_couplings(t, x, clamped, visit);
+            self.collect(fast, |t, x, clamped, visit| match products {
+                Some(products) => products.other_couplings(t, x, clamped, visit),
+                None => system.couplings(t, x, clamped, visit),
             });
             self.listed = fast == 0;
         } else {
@@ -187,13 +190,13 @@ impl Tangent {
             // The largest sum of a row bounds the largest eigenvalue.
             let rows = (xx + xy + xz).max(yx + yy + yz).max(zx + zy + zz);
             let k = rows.max(xx + yx + zx).max(xy + yy + zy).max(xz + yz + zz);
-            // The blocks of a particle have a symmetric sum.
+            // The sum of the blocks of a particle is symmetric.
             add_own(&mut diagonal, [c.i, c.j], symmetric(block), k);
         }
         self.diagonal = sums;
     }
 
-    /// The matrix as the system sees it.
+    /// Returns the matrix as the system sees it.
     fn matrix(&self) -> Matrix<'_> {
         Matrix {
             x: &self.x,
@@ -205,23 +208,23 @@ impl Tangent {
         }
     }
 
-    /// Columns xx, yy, zz, xy, xz and yz of the blocks on the diagonal of A (kg).
+    /// Returns the columns xx, yy, zz, xy, xz and yz of the blocks on the diagonal of A (kg).
     pub fn diagonal(&self) -> [&[f64]; 6] {
         let n = self.particles();
         std::array::from_fn(|k| &self.diagonal[k * n..(k + 1) * n])
     }
 
-    /// The mass of each particle in A (kg); 0 where it is pinned.
+    /// Returns the mass of each particle in A (kg); 0 where it is pinned.
     pub fn masses(&self) -> &[f64] {
         &self.masses
     }
 
-    /// 0 for each particle that is pinned, 1 for others.
+    /// Returns 0 for each particle that is pinned, 1 for others.
     pub fn free(&self) -> &[f64] {
         &self.free
     }
 
-    /// Factors of an axial coupling in A: over all directions, and along it in addition.
+    /// Returns the factors of an axial coupling in A: for all directions, and in addition along it.
     #[inline]
     fn factors(&self, c: &AxialCoupling) -> [f64; 2] {
         let a = self.a;
@@ -229,7 +232,7 @@ impl Tangent {
         [across, along + a * c.damping]
     }
 
-    /// The block of an axial coupling in A.
+    /// Returns the block of an axial coupling in A.
     #[inline]
     fn axial_block(&self, c: &AxialCoupling) -> Block {
         let ([iso, along], [x, y, z]) = (self.factors(c), c.direction);
@@ -243,7 +246,7 @@ impl Tangent {
         ]
     }
 
-    /// The block of a coupling in A.
+    /// Returns the block of a coupling in A.
     fn block(&self, coupling: &GeneralCoupling) -> [f64; 9] {
         let (a, [k, c]) = (self.a, [coupling.stiffness, coupling.damping]);
         std::array::from_fn(|part| a * a * k[part] + a * c[part])
@@ -270,7 +273,7 @@ impl Tangent {
         }
     }
 
-    /// A bound of the largest a2 w2 of the particles: the square of the step's length in the
+    /// Returns the upper bound of a2 w2, the square of the step's length over the time scale of the
     /// fastest motion.
     pub fn stiffness(&self) -> f64 {
         let sums = &self.diagonal[6 * self.particles()..];
@@ -282,7 +285,9 @@ impl Tangent {
 
     /// Writes A p to `out`, for a p that is zero on pinned particles; so is `out`.
     pub fn product(&self, system: &dyn Linearized, p: &[f64], out: &mut [f64]) {
-        let done = system.multiply(&self.matrix(), p, out);
+        let matrix = self.matrix();
+        let products = system.products();
+        let done = products.map_or(0, |products| products.multiply(&matrix, p, out));
         if done == 0 {
             let n = self.particles();
             for (out, p) in out.chunks_exact_mut(n).zip(p.chunks_exact(n)) {
@@ -303,8 +308,8 @@ impl Tangent {
         self.filter(out);
     }
 
-    /// Subtracts a K d from out on free particles, for a d that may move pinned ones: adds what
-    /// moving by d changes the forces, times a.
+    /// Subtracts a K d from out, which is a times the change of the forces by a displacement d, in
+    /// which pinned particles may move.
     pub fn subtract_stiffness(
         &mut self,
         system: &dyn Linearized,
@@ -319,7 +324,8 @@ impl Tangent {
             masses: &self.zeros,
             ..self.matrix()
         };
-        let done = system.multiply(&matrix, d, &mut product);
+        let products = system.products();
+        let done = products.map_or(0, |products| products.multiply(&matrix, d, &mut product));
         if done > 0 {
             for (out, product) in out.iter_mut().zip(&product) {
                 *out -= a * product;

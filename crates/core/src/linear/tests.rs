@@ -8,7 +8,8 @@ use crate::random::SplitMix;
 use crate::spring::{Spring, SpringKind, SpringLaw};
 use crate::{Grid, Network, Path, Sheet, Vector3};
 
-/// A flat square of springs of one stiffness, a corner pinned and everything a little out of place.
+/// Returns A flat square of springs of one stiffness, a corner pinned and everything a little out
+/// of place.
 pub(super) fn cloth(side: usize, stiffness: f64) -> (Network, Vec<f64>) {
     let grid = Grid::new(side, side).unwrap();
     let spacing = 1.0 / (side - 1) as f64;
@@ -32,7 +33,7 @@ pub(super) fn cloth(side: usize, stiffness: f64) -> (Network, Vec<f64>) {
     (network, x)
 }
 
-/// A line of springs, its first particle pinned.
+/// Returns A line of springs, its first particle pinned.
 pub(super) fn chain(count: usize, stiffness: f64) -> (Network, Vec<f64>) {
     let mut network = Network::new(vec![1.0 / count as f64; count]).unwrap();
     let spacing = 1.0 / count as f64;
@@ -49,7 +50,7 @@ pub(super) fn chain(count: usize, stiffness: f64) -> (Network, Vec<f64>) {
     (network, x)
 }
 
-/// A cube of single springs between neighbours in all directions, a corner pinned.
+/// Returns A cube of single springs between neighbours in all directions, a corner pinned.
 pub(super) fn jelly(side: usize, stiffness: f64) -> (Network, Vec<f64>) {
     let n = side * side * side;
     let mut network = Network::new(vec![1.0 / n as f64; n]).unwrap();
@@ -105,7 +106,7 @@ fn iterations_and_factors_agree_and_report_the_true_residual() {
     for (network, x) in [chain(30, 1000.0), cloth(7, 300.0), jelly(5, 100.0)] {
         let b = right_hand_side(&network);
         let mut solver = Solver::new(&network);
-        let _ = solver.gather(&network, (0.0, 1.0 / 60.0), &x, true);
+        let _ = solver.assemble(&network, (0.0, 1.0 / 60.0), &x, true);
         let (mut by_iterations, mut by_factors) = (vec![0.0; b.len()], vec![0.0; b.len()]);
         for tolerance in [1e-3, 1e-6, 1e-12] {
             solver.direct_always = Some(false);
@@ -133,7 +134,7 @@ fn what_is_pinned_stays_however_many_iterations_there_are() {
     let (network, x) = cloth(6, 1e4);
     let b = right_hand_side(&network);
     let mut tangent = Tangent::new(&network);
-    tangent.gather(&network, (0.0, 0.1), &x, true);
+    tangent.assemble(&network, (0.0, 0.1), &x, true);
     let n = network.particles();
     let mut iterative = ConjugateGradients::new(n);
     for most in 0..20 {
@@ -156,7 +157,7 @@ fn compressed_cloth_needs_the_clamp() {
     for clamped in [false, true] {
         let mut solver = Solver::new(&network);
         let mut dv = vec![0.0; b.len()];
-        let _ = solver.gather(&network, (0.0, 1.0 / 60.0), &squeezed, clamped);
+        let _ = solver.assemble(&network, (0.0, 1.0 / 60.0), &squeezed, clamped);
         for direct in [false, true] {
             solver.direct_always = Some(direct);
             let (_, solved) = solver.solve(&network, &b, &mut dv, 1e-8);
@@ -169,7 +170,7 @@ fn compressed_cloth_needs_the_clamp() {
     }
 }
 
-/// The shortest of some runs.
+/// Returns the shortest of some runs.
 fn time(mut run: impl FnMut()) -> f64 {
     let (mut best, begun) = (Duration::MAX, Instant::now());
     for k in 0..1000 {
@@ -188,7 +189,7 @@ fn time(mut run: impl FnMut()) -> f64 {
 #[ignore = "measures"]
 fn solves_measured() {
     println!(
-        "case                    a w     F us  gather/F | iter/F  iterations (guess)  PCG/F | with multigrid | factor/F  solve/F  factor price  solve price   picked  best"
+        "case                    a w     F us  assembly/F | iter/F  iterations (guess)  PCG/F | with multigrid | factor/F  solve/F  factor price  solve price   picked  best"
     );
     for (name, (network, x)) in [
         ("chain 5", chain(5, 1e2)),
@@ -207,11 +208,11 @@ fn solves_measured() {
         let force = time(|| crate::Mechanics::forces(&network, 0.0, black_box(&x), &zero, &mut f));
         for a_w in [1.0, 3.0, 10.0, 30.0, 100.0, 300.0] {
             let mut solver = Solver::new(&network);
-            let _ = solver.gather(&network, (0.0, 1.0), &x, true);
+            let _ = solver.assemble(&network, (0.0, 1.0), &x, true);
             let a = a_w / solver.stiffness().sqrt();
-            let _ = solver.gather(&network, (0.0, a), &x, true);
-            let gather = time(|| {
-                let _ = solver.gather(&network, (0.0, a), black_box(&x), true);
+            let _ = solver.assemble(&network, (0.0, a), &x, true);
+            let assemble = time(|| {
+                let _ = solver.assemble(&network, (0.0, a), black_box(&x), true);
             });
             let mut dv = vec![0.0; b.len()];
             let tolerance = FORCING;
@@ -256,7 +257,7 @@ fn solves_measured() {
             println!(
                 "{name:<18} {a_w:>8} {:>8.2} {:>9.2} | {} | {} | {:>9.1} {:>8.2} {:>13.1} {:>14.1}  {}  {:.2}",
                 1e6 * force,
-                gather / force,
+                assemble / force,
                 alone.1,
                 with.1,
                 factor / force,

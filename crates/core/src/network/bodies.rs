@@ -1,24 +1,26 @@
-//! Rigid bodies among the particles of a network, whose state is then [x | v | q, L of each body].
+//! Rigid bodies among the particles of a network. With them, the state is [x | v | q and L of each
+//! body].
 
 use std::ops::Range;
 
 use super::elements::Elements;
 use super::particles::Particles;
-use super::scratch::Scratch;
 use crate::error::Error;
 use crate::rigid::{Body, Moving, ROTATION, Rotation};
+use crate::scratch::Scratch;
 
-/// Rigid bodies, and scratch for their evaluations.
+/// Rigid bodies of a network.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Bodies {
     all: Vec<Body>,
     /// Number of particles.
     particles: usize,
-    pub scratch: Scratch,
+    /// Positions (m), velocities (m/s) and forces (N) of an evaluation, n x 3 each.
+    pub scratch: Scratch<[Vec<f64>; 3]>,
 }
 
 impl Bodies {
-    /// Creates no bodies, among n particles.
+    /// Creates an empty list of bodies, among n particles.
     pub fn new(n: usize) -> Self {
         Self {
             particles: n,
@@ -26,8 +28,8 @@ impl Bodies {
         }
     }
 
-    /// Checks that a body can be added: its particles exist, belong to no other, are free, and its
-    /// points are in no sheet.
+    /// Checks that a body can be added: its particles exist, belong to no other body and are free,
+    /// and its points are in no sheet.
     pub fn check(
         &self,
         body: &Body,
@@ -72,37 +74,36 @@ impl Bodies {
 
     pub fn add(&mut self, body: Body) {
         self.all.push(body);
-        self.scratch.reserve(self.particles);
     }
 
     pub fn all(&self) -> &[Body] {
         &self.all
     }
 
-    /// The body to which particle i belongs, as its centre or as a point.
+    /// Returns the body to which particle i belongs, as its centre or as a point.
     pub fn body_of(&self, i: usize) -> Option<usize> {
         let mut bodies = self.all.iter();
         bodies.position(|body| body.center() == i || body.points().contains(&i))
     }
 
-    /// Centre and number of the body that carries particle i.
+    /// Returns the centre and number of the body that carries particle i.
     pub fn carrier(&self, particles: &Particles, i: usize) -> Option<(usize, usize)> {
         let k = particles.is_carried(i).then(|| self.body_of(i))??;
         Some((self.all[k].center(), k))
     }
 
-    /// Numbers of the rotation of body k in a state.
+    /// Returns the numbers of the rotation of body k in a state.
     pub fn numbers(&self, k: usize) -> Range<usize> {
         let first = 6 * self.particles + ROTATION * k;
         first..first + ROTATION
     }
 
-    /// Rotation of body k in the state y.
+    /// Returns the rotation of body k in the state y.
     pub fn rotation(&self, k: usize, y: &[f64]) -> Rotation {
         Rotation::read(&y[self.numbers(k)])
     }
 
-    /// Each body with its rotation and how it moves in the state y.
+    /// Returns each body with its number, its rotation, and its motion in the state y.
     pub fn each<'a>(
         &'a self,
         y: &'a [f64],

@@ -5,21 +5,22 @@ use std::ops::Range;
 use nalgebra::Vector3;
 
 use super::bodies::Bodies;
+use super::element::Element;
 use super::elements::Elements;
 use super::particles::Particles;
 use super::strain::StrainLimits;
 use super::surfaces::{Surfaces, Touch};
 use super::tearing::Tears;
 use crate::constraints::{Constraint, Constraints};
-use crate::contact::{Obstacle, Shape};
-use crate::elements::{Buckling, Element, Wind};
+use crate::contact::{ContactLayer, Obstacle, Shape};
+use crate::elements::{Buckling, Wind};
 use crate::error::{Error, at_least, positive};
 use crate::path::Path;
 use crate::rigid::Body;
 use crate::spring::Spring;
 
-/// Particles, and the elements and constraints that act on them. What is not asked for costs
-/// nothing.
+/// Particles, and the elements and constraints that act on them. Elements that a scene does not use
+/// cost nothing.
 #[derive(Clone, Debug)]
 pub struct Network {
     pub(super) particles: Particles,
@@ -32,7 +33,7 @@ pub struct Network {
 }
 
 impl Network {
-    /// Free particles of these masses (kg), without any force.
+    /// Creates a network of free particles of these masses (kg), without any force.
     ///
     /// # Errors
     /// There is no particle, or a mass is not a finite number above 0.
@@ -49,7 +50,7 @@ impl Network {
         })
     }
 
-    /// Adds an element, after those of its kind.
+    /// Adds an element, after those of its type.
     ///
     /// # Errors
     /// A particle that it names does not exist, or a particle would be in two sheets.
@@ -58,47 +59,48 @@ impl Network {
         self.elements.add(element.into())
     }
 
-    /// Leads particle i along `path` from now on, whether it was pinned before or not.
+    /// Pins particle i to `path` from now on, whether it was pinned before or not.
     ///
     /// # Errors
     /// There is no such particle, or a rigid body carries it.
     pub fn pin(&mut self, i: usize, path: Path) -> Result<(), Error> {
         self.particles.check(i)?;
-        self.check_led(i)?;
+        self.check_kinematic(i)?;
         if self.particles.pin(i, path) {
             self.strain_limits.forget();
         }
         Ok(())
     }
 
-    /// Leads particles along paths, as [`pin`](Self::pin) does one: the last path of each counts.
+    /// Pins particles to paths, like [`pin`](Self::pin). If one is named several times, its last
+    /// path counts.
     ///
     /// # Errors
     /// There is no such particle, or a rigid body carries it; none is pinned then.
     pub fn pin_all(&mut self, pins: Vec<(usize, Path)>) -> Result<(), Error> {
         for (i, _) in &pins {
             self.particles.check(*i)?;
-            self.check_led(*i)?;
+            self.check_kinematic(*i)?;
         }
         self.particles.pin_all(pins);
         self.strain_limits.forget();
         Ok(())
     }
 
-    /// Lets particle i go. Does nothing if it is free.
+    /// Frees particle i. Does nothing if it is free already.
     pub fn unpin(&mut self, i: usize) {
         if self.particles.unpin(i) {
             self.strain_limits.forget();
         }
     }
 
-    /// Gives every pin the path that `path` makes of its own.
+    /// Replaces the path of every pin by the result of `path` for it.
     pub fn lead_pins(&mut self, path: impl FnMut(usize, Path) -> Path) {
         self.particles.lead_pins(path);
     }
 
-    /// Checks that particle i can be led along a path by itself.
-    pub(crate) fn check_led(&self, i: usize) -> Result<(), Error> {
+    /// Checks that particle i can be pinned, because no rigid body carries it.
+    pub(crate) fn check_kinematic(&self, i: usize) -> Result<(), Error> {
         self.bodies.check_free(&self.particles, i)
     }
 
@@ -117,7 +119,7 @@ impl Network {
         Ok(())
     }
 
-    /// Lets wind blow on particles or on triangles, or calms it.
+    /// Sets or removes the wind, on particles or on triangles.
     pub fn set_wind(&mut self, wind: Option<Wind>) {
         self.elements.set_wind(wind.as_ref());
     }
@@ -131,8 +133,8 @@ impl Network {
         self.elements.add_spring(spring)
     }
 
-    /// Adds springs in any order, and keeps all in the order of their ends: neighbours in memory
-    /// are then used one after another.
+    /// Adds springs, and sorts all single ones by their ends, so that neighbours in memory are used
+    /// one after another.
     ///
     /// # Errors
     /// As [`add_spring`](Self::add_spring), for the first that cannot be: none after it is added.
@@ -143,7 +145,7 @@ impl Network {
         added
     }
 
-    /// Adds a bend spring that buckles, in place of one that does not.
+    /// Adds a bend spring that buckles.
     ///
     /// # Errors
     /// An end does not exist, or both are the same; a number is negative or not finite; the rest
@@ -154,7 +156,7 @@ impl Network {
     }
 
     /// Multiplies the stiffness and the damping of every spring and solid by these factors, and
-    /// likewise those of the fluid: the square of its speed of sound, and its viscosity.
+    /// those of the fluid, the square of its speed of sound and its viscosity.
     ///
     /// # Errors
     /// The factor of the stiffness is not a finite number above 0, or that of the damping not one
@@ -168,8 +170,8 @@ impl Network {
         Ok(())
     }
 
-    /// Takes over the springs, the solids and the fluid of another network of the same particles.
-    /// Those that have broken here stay broken.
+    /// Copies the springs, the solids and the fluid of another network of the same particles.
+    /// Springs that have broken here stay broken.
     ///
     /// # Errors
     /// The other has not as many particles.
@@ -180,8 +182,8 @@ impl Network {
         Ok(())
     }
 
-    /// Lets springs break at so many times their rest length, or never, as in a new network.
-    /// Springs of rest length 0 never break.
+    /// Sets the length over rest length at which springs break. With `None`, as in a new network,
+    /// they never break, and springs of rest length 0 never do.
     ///
     /// # Errors
     /// The limit is not a finite number above 1, or a limit of strain keeps springs below it.
@@ -204,8 +206,8 @@ impl Network {
         Ok(())
     }
 
-    /// Takes over the springs and triangles of the same network as it began, except those between
-    /// these pairs of particles.
+    /// Copies the springs and triangles of the same network in its initial state, except those
+    /// between these pairs of particles.
     ///
     /// # Errors
     /// The other has not as many particles, or no such springs.
@@ -220,9 +222,9 @@ impl Network {
         self.break_springs(&more.copied().collect::<Vec<_>>())
     }
 
-    /// Breaks the springs that are too long at x (m), or lack no more than that share of their
-    /// length, and those that go with them. Returns the number of pairs between which it broke
-    /// some.
+    /// Breaks the springs that at x (m) exceed the length at which they break, or fall short of it
+    /// by at most the fraction `share`, and the bend springs along them. Returns the number of
+    /// pairs of particles between which springs broke.
     pub fn tear(&mut self, x: &[f64], share: f64) -> usize {
         if !self.is_overstretched(x, share) {
             return 0;
@@ -231,8 +233,8 @@ impl Network {
         self.break_between(pairs)
     }
 
-    /// Breaks the springs between pairs of particles, the lower number of each first. Returns the
-    /// number of new pairs.
+    /// Breaks the springs between pairs of particles, given with the lower number first. Returns
+    /// the number of new pairs.
     fn break_between(&mut self, pairs: impl IntoIterator<Item = [usize; 2]>) -> usize {
         let new = self.tears.add(pairs);
         self.remove_torn();
@@ -249,10 +251,10 @@ impl Network {
         }
     }
 
-    /// Limits the length over rest length of structural and shear springs among some particles, in
-    /// place of limits of any of these; or lets them be as long as they may. Springs of rest length
-    /// 0 are not limited. Integrators know nothing of it: a [`Simulation`](crate::Simulation)
-    /// shortens what is too long after each step.
+    /// Sets or removes the limit of the length over rest length of structural and shear springs
+    /// among some particles, in place of earlier limits of any of these. Springs of rest length 0
+    /// are not limited. Integrators do not know the limits: a [`Simulation`](crate::Simulation)
+    /// shortens the springs that are too long after each step.
     ///
     /// # Errors
     /// The limit is not a finite number above 1, or there are no such particles; or springs that
@@ -266,16 +268,16 @@ impl Network {
         self.strain_limits.set(particles, limit, n, tear)
     }
 
-    /// Lists the springs that are limited, if any are and if they are not listed yet.
+    /// Lists the limited springs, if there are any and they are not listed yet.
     pub(crate) fn list_strained(&mut self) {
         let inverse_masses = self.particles.inverse_masses();
         self.strain_limits.list(&self.elements, inverse_masses);
     }
 
-    /// Adds a constraint, which is held by forces: a state that breaks it is drawn back to it.
+    /// Adds a constraint, which is held by forces. A state that violates it is drawn back to it.
     ///
     /// # Errors
-    /// There is no such particle; both ends of a rod are the same; or a number makes no sense.
+    /// There is no such particle; both ends of a rod are the same; or a number is out of its range.
     pub fn add_constraint(&mut self, constraint: Constraint) -> Result<(), Error> {
         let (first, second) = constraint.ends();
         self.particles.check(first)?;
@@ -284,9 +286,9 @@ impl Network {
         self.constraints.add(constraint, carrier)
     }
 
-    /// Sets the natural frequency w (1/s) with which errors of the constraints are taken back, like
-    /// a critically damped spring, C'' = -w2 C - 2 w C' (Baumgarte). It is 10 unless set: errors
-    /// are gone within a second, slowly for any step that shows motion at all. Explicit methods
+    /// Sets the natural frequency w (1/s) with which errors of the constraints decay, like a
+    /// critically damped spring, C'' = -w2 C - 2 w C' (Baumgarte). The default is 10: errors decay
+    /// within a second, which is slow compared with any step that resolves motion. Explicit methods
     /// need steps well below 1 / w.
     ///
     /// # Errors
@@ -295,8 +297,8 @@ impl Network {
         self.constraints.set_baumgarte_frequency(w)
     }
 
-    /// Makes a rigid body of a particle, its centre of mass, and of particles that it carries from
-    /// now on: their masses become 0. The state gets seven numbers more, which
+    /// Adds a rigid body, of a particle that is its centre of mass and of particles that it carries
+    /// from now on, whose masses become 0. The state gets seven more numbers, which
     /// [`Rotation`](crate::rigid::Rotation) writes.
     ///
     /// # Errors
@@ -306,15 +308,15 @@ impl Network {
         self.bodies.check(&body, &self.particles, &self.elements)?;
         self.particles.carry(body.points());
         self.bodies.add(body);
-        // The body may carry what constraints hold.
+        // The body may carry particles that constraints hold.
         let carrier = |i| self.bodies.carrier(&self.particles, i);
         self.constraints = self.constraints.with_carriers(carrier)?;
         self.renew_contact();
         Ok(())
     }
 
-    /// Spans triangles between particles, for [wind](Wind::on_triangles) to blow on, in place of
-    /// earlier ones.
+    /// Sets the triangles between particles, on which [wind](Wind::on_triangles) blows and which
+    /// can touch, in place of earlier ones.
     ///
     /// # Errors
     /// A corner does not exist.
@@ -332,8 +334,8 @@ impl Network {
         Ok(())
     }
 
-    /// Lets surfaces touch, or, as in a new network, pass through one another: then only obstacles
-    /// are solid, and only to particles.
+    /// Sets the contact properties of surfaces. With `None`, as in a new network, surfaces pass
+    /// through one another, and only obstacles stop particles.
     ///
     /// # Errors
     /// There is not one skin for each particle, or a number of one is negative or not finite; or an
@@ -344,7 +346,8 @@ impl Network {
         Ok(())
     }
 
-    /// Adds an obstacle after those that are there: particles are put out of one after another.
+    /// Adds an obstacle. Particles are moved out of obstacles in the order in which these were
+    /// added.
     ///
     /// # Errors
     /// Its shape has no size, or its friction is negative; or a number is not finite.
@@ -364,20 +367,19 @@ impl Network {
         Ok(removed)
     }
 
-    /// Leads obstacle k along `path` from now on.
+    /// Sets the path of obstacle k from now on.
     ///
     /// # Errors
     /// There is no such obstacle.
     pub fn lead_obstacle(&mut self, k: usize, path: Path) -> Result<(), Error> {
         let obstacle = self.surfaces.lead_obstacle(k, path)?;
-        let mut elements = self.elements.all_mut().iter_mut();
-        if let Some(layer) = elements.find_map(Element::contact_layer_mut) {
+        if let Some(layer) = self.elements.first_mut::<ContactLayer>() {
             layer.set_obstacle(k, obstacle.clone());
         }
         Ok(())
     }
 
-    /// Gives obstacle k another shape.
+    /// Replaces the shape of obstacle k.
     ///
     /// # Errors
     /// There is no such obstacle, or the shape has no size.
@@ -387,10 +389,9 @@ impl Network {
         Ok(())
     }
 
-    /// Creates the contact of surfaces again, of the triangles and obstacles that are there now.
+    /// Creates the contact of surfaces again, with the present triangles and obstacles.
     fn renew_contact(&mut self) {
         let layer = self.surfaces.layer(self.bodies.all(), &self.tears);
-        let is = |element: &Element| matches!(element, Element::ContactLayer(_));
-        self.elements.replace(is, layer.map(Into::into));
+        self.elements.replace_all(layer);
     }
 }

@@ -9,8 +9,8 @@ use crate::contact::{Crossed, is_crowded};
 use crate::error::{Error, Vertex};
 use crate::sets::Sets;
 
-/// Most pairs of parts that a message names.
-const NAMED: usize = 3;
+/// Largest number of pairs of parts that a message names.
+const MAX_NAMED: usize = 3;
 
 /// Checks that no surfaces pass through one another at time t (s) at x (m), n x 3.
 pub(super) fn check_apart(network: &Network, t: f64, x: &[f64]) -> Result<(), Error> {
@@ -42,7 +42,7 @@ pub(super) fn check_apart(network: &Network, t: f64, x: &[f64]) -> Result<(), Er
 /// Connected part, body or obstacle that a surface belongs to.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Whole {
-    /// A connected part, by its smallest particle.
+    /// Connected part, by its smallest particle.
     Part(u32),
     Body(usize),
     Obstacle(usize),
@@ -51,7 +51,7 @@ enum Whole {
 /// Connected parts of the surfaces of a network.
 struct Parts {
     sets: Sets,
-    /// Number of each part, from 1 on, and of its particles, by its smallest particle.
+    /// Number of each part, counted from 1, and number of its particles, by its smallest particle.
     sizes: BTreeMap<u32, (usize, usize)>,
 }
 
@@ -86,7 +86,7 @@ impl Parts {
         }
     }
 
-    /// Name of a part, with its particles unless it was `told` before.
+    /// Returns the name of a part, with the number of its particles unless it was `told` before.
     fn name(&self, whole: Whole, told: &mut BTreeSet<Whole>) -> String {
         match whole {
             Whole::Part(first) => {
@@ -103,7 +103,7 @@ impl Parts {
     }
 }
 
-/// Surfaces of a network that pass through one another at positions x (m), n x 3, in words.
+/// Description in words of surfaces that pass through one another at positions x (m), n x 3.
 struct Description<'a> {
     network: &'a Network,
     x: &'a [f64],
@@ -111,7 +111,7 @@ struct Description<'a> {
 }
 
 impl Description<'_> {
-    /// Middle of the particles of a primitive (m), if it has any.
+    /// Returns the middle of the particles of a primitive (m), if it has any.
     fn place(&self, vertices: &[Vertex]) -> Option<[f64; 3]> {
         let n = self.network.particles();
         let particles = vertices.iter().filter_map(|vertex| match vertex {
@@ -160,7 +160,7 @@ impl fmt::Display for Description<'_> {
         }
         write!(f, "; of {count} connected parts")?;
         let mut told = BTreeSet::new();
-        for (k, ((a, b), times)) in pairs.iter().take(NAMED).enumerate() {
+        for (k, ((a, b), times)) in pairs.iter().take(MAX_NAMED).enumerate() {
             let before = if k == 0 { "," } else { ";" };
             let a_name = parts.name(*a, &mut told);
             let b_name = if a == b {
@@ -170,7 +170,7 @@ impl fmt::Display for Description<'_> {
             };
             write!(f, "{before} {a_name} crosses {b_name} ({times}x)")?;
         }
-        match pairs.len() - NAMED.min(pairs.len()) {
+        match pairs.len() - MAX_NAMED.min(pairs.len()) {
             0 => Ok(()),
             others => write!(f, "; and so do {others} other pairs of parts"),
         }

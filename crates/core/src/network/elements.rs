@@ -1,27 +1,29 @@
-//! Elements of a network: the forces that a scene asks for, in the order of their kinds.
+//! Elements of a network: the forces that a scene asks for, in the order of the table.
 
 use std::ops::Range;
 
 use nalgebra::Vector3;
 
+use super::element::Element;
 use crate::contact::ContactLayer;
-use crate::elements::force::{At, ByParticle, Carried, Force, GATHERING};
+use crate::elements::force::{ASSEMBLY, At, ByParticle, DriftForces, Force, Matter};
 use crate::elements::sheet::{Quantity, set};
-use crate::elements::{Airflow, Drag, Element, Finish, Fluid, Gravity, Sheet, Solid, Wind};
+use crate::elements::{Airflow, Drag, Finish, Fluid, Gravity, Sheet, Solid, Wind};
 use crate::error::Error;
 
-/// Elements in the order of their kinds, and those of one kind as they were added.
+/// Elements in the order of their types, and those of one type in the order in which they were
+/// added.
 #[derive(Clone, Debug)]
 pub(super) struct Elements {
     all: Vec<Element>,
     /// Number of particles.
     particles: usize,
-    /// The particles that are in no sheet.
+    /// Particles that are in no sheet.
     single: Vec<Range<usize>>,
 }
 
 impl Elements {
-    /// Creates no elements, for n particles.
+    /// Creates an empty list of elements, for n particles.
     pub fn new(n: usize) -> Self {
         Self {
             all: vec![],
@@ -30,7 +32,7 @@ impl Elements {
         }
     }
 
-    /// Number of particles.
+    /// Returns the number of particles.
     pub fn particles(&self) -> usize {
         self.particles
     }
@@ -43,10 +45,10 @@ impl Elements {
         &mut self.all
     }
 
-    /// Adds an element after those of its kind, if its particles exist and are in no other sheet.
+    /// Adds an element after those of its type, if its particles exist and are in no other sheet.
     pub fn add(&mut self, element: Element) -> Result<(), Error> {
         element.force().check(self.particles)?;
-        if let Element::Sheet(sheet) = &element {
+        if let Some(sheet) = element.get::<Sheet>() {
             let new = sheet.particles();
             let overlaps = |old: Range<usize>| old.start < new.end && new.start < old.end;
             if self.sheets().any(|sheet| overlaps(sheet.particles())) {
@@ -61,7 +63,7 @@ impl Elements {
         Ok(())
     }
 
-    /// Adds an element after those of its kind.
+    /// Adds an element after those of its type, without checks.
     pub fn insert(&mut self, element: Element) {
         let rank = element.rank();
         let place = self.all.partition_point(|e| e.rank() <= rank);
@@ -78,7 +80,7 @@ impl Elements {
         self.single = between.filter(|particles| !particles.is_empty()).collect();
     }
 
-    /// Removes all elements of a kind, and adds one in their place.
+    /// Removes the elements for which `is` is true, and adds one in their place.
     pub fn replace(&mut self, is: impl Fn(&Element) -> bool, by: Option<Element>) {
         self.all.retain(|element| !is(element));
         if let Some(element) = by {
@@ -86,16 +88,20 @@ impl Elements {
         }
     }
 
+    /// Removes all elements of type T, and adds one in their place.
+    pub fn replace_all<T: Force + Into<Element>>(&mut self, by: Option<T>) {
+        let is = |element: &Element| element.get::<T>().is_some();
+        self.replace(is, by.map(Into::into));
+    }
+
     /// Sets gravity g (m/s2); zero means none.
     pub fn set_gravity(&mut self, g: Vector3<f64>) {
-        let gravity = (g != Vector3::zeros()).then_some(Gravity(g).into());
-        self.replace(|element| matches!(element, Element::Gravity(_)), gravity);
+        self.replace_all((g != Vector3::zeros()).then_some(Gravity(g)));
     }
 
     /// Sets the coefficient c (kg/s) of viscous drag; zero means none.
     pub fn set_drag(&mut self, c: f64) {
-        let drag = (c > 0.0).then_some(Drag(c).into());
-        self.replace(|element| matches!(element, Element::Drag(_)), drag);
+        self.replace_all((c > 0.0).then_some(Drag(c)));
     }
 
     /// Sets the wind on particles or on triangles, or none.
@@ -104,8 +110,7 @@ impl Elements {
             Some(air) => Airflow { wind, air }.into(),
             None => wind.into(),
         });
-        let is = |element: &Element| matches!(element, Element::Wind(_) | Element::Airflow(_));
-        self.replace(is, element);
+        self.replace(|element| element.force().is_wind(), element);
     }
 
     /// Removes the springs between pairs of particles.
@@ -113,17 +118,27 @@ impl Elements {
         for element in &mut self.all {
             element.force_mut().remove_springs(torn);
         }
-        // What is empty would still keep sweeps away.
-        let is_left = |e: &Element| e.sheet().is_some() || !e.is_elastic() || !e.is_empty();
+        // An empty element would still prevent sweeps.
+        let is_left = |e: &Element| e.get::<Sheet>().is_some() || !e.is_elastic() || !e.is_empty();
         self.all.retain(is_left);
     }
 
+    /// Returns the elements of type T.
+    pub fn of<T: Force>(&self) -> impl Iterator<Item = &T> + Clone {
+        self.all.iter().filter_map(Element::get)
+    }
+
+    /// Returns the first element of type T, to be changed.
+    pub fn first_mut<T: Force>(&mut self) -> Option<&mut T> {
+        self.all.iter_mut().find_map(Element::get_mut)
+    }
+
     pub fn sheets(&self) -> impl Iterator<Item = &Sheet> + Clone {
-        self.all.iter().filter_map(Element::sheet)
+        self.of()
     }
 
     pub fn solids(&self) -> impl Iterator<Item = &Solid> {
-        self.all.iter().filter_map(Element::solid)
+        self.of()
     }
 
     pub fn elastic(&self) -> impl Iterator<Item = &Element> + Clone {
@@ -131,35 +146,27 @@ impl Elements {
     }
 
     pub fn fluid(&self) -> Option<&Fluid> {
-        self.all.iter().find_map(Element::fluid)
+        self.of().next()
     }
 
     pub fn contact_layer(&self) -> Option<&ContactLayer> {
-        self.all.iter().find_map(Element::contact_layer)
+        self.of().next()
     }
 
     pub fn gravity(&self) -> Option<Vector3<f64>> {
-        self.all.iter().find_map(|element| match element {
-            Element::Gravity(Gravity(g)) => Some(*g),
-            _ => None,
-        })
+        self.of().next().map(|Gravity(g)| *g)
     }
 
     pub fn drag(&self) -> Option<f64> {
-        self.all.iter().find_map(|element| match element {
-            Element::Drag(Drag(c)) => Some(*c),
-            _ => None,
-        })
+        self.of().next().map(|Drag(c)| *c)
     }
 
     pub fn wind(&self) -> Option<&Wind> {
-        self.all.iter().find_map(|element| match element {
-            Element::Wind(wind) | Element::Airflow(Airflow { wind, .. }) => Some(wind),
-            _ => None,
-        })
+        let on_triangles = self.of::<Airflow>().map(|airflow| &airflow.wind);
+        self.of().chain(on_triangles).next()
     }
 
-    /// Names of the forces: springs and solids, their damping, and then others.
+    /// Returns the names of the forces in use: elastic ones, their damping, and then others.
     pub fn names(&self) -> Vec<&'static str> {
         let mut names = vec![];
         let mut list = |used: bool, name| {
@@ -171,8 +178,8 @@ impl Elements {
             list(!element.is_empty(), element.force().name());
         }
         for element in self.elastic() {
-            let damping = element.solid().map_or("spring damping", |_| "viscosity");
-            list(element.force().reads_velocity(), damping);
+            let force = element.force();
+            list(force.reads_velocity(), force.damping_name());
         }
         for element in self.all.iter().filter(|element| !element.is_elastic()) {
             list(true, element.force().name());
@@ -180,46 +187,50 @@ impl Elements {
         names
     }
 
-    /// The forces on each particle by itself.
+    /// Returns the forces that act on each particle by itself.
     pub fn by_particle(&self) -> impl Iterator<Item = &dyn ByParticle> {
         self.all.iter().filter_map(|e| e.force().by_particle())
     }
 
-    /// Whether nothing but sheets acts on more than one particle.
+    /// Whether sheets alone couple particles, and all particles are in sheets.
     pub fn are_in_rows(&self) -> bool {
         let in_rows = |element: &Element| {
             let force = element.force();
-            element.sheet().is_some() || force.carried().is_some() || force.by_particle().is_some()
+            element.get::<Sheet>().is_some()
+                || force.drift_forces().is_some()
+                || force.by_particle().is_some()
         };
         self.single.is_empty() && self.all.iter().all(in_rows)
     }
 
-    /// Whether springs of one stiffness and damping each are all that couples particles.
+    /// Whether all matter consists of springs of constant stiffness and damping.
     pub fn are_springs(&self) -> bool {
-        let is_no_spring = |e: &Element| {
-            matches!(e, Element::BucklingSprings(_) | Element::Solid(_)) && !e.is_empty()
+        let is_spring = |e: &Element| match e.force().matter() {
+            None | Some(Matter::Springs) => true,
+            Some(Matter::Elastic) => e.is_empty(),
+            Some(Matter::Fluid) => false,
         };
-        self.fluid().is_none() && !self.all.iter().any(is_no_spring)
+        self.all.iter().all(is_spring)
     }
 
-    /// Gravity and drag together.
-    pub fn carried(&self) -> Carried {
-        let all = self.all.iter().filter_map(|e| e.force().carried());
-        all.fold(Carried::default(), |a, b| Carried {
+    /// Returns the sum of gravity and drag.
+    pub fn drift_forces(&self) -> DriftForces {
+        let all = self.all.iter().filter_map(|e| e.force().drift_forces());
+        all.fold(DriftForces::default(), |a, b| DriftForces {
             gravity: a.gravity + b.gravity,
             drag: a.drag + b.drag,
         })
     }
 
-    /// Sets f to the finished sum of all forces but gravity and drag.
+    /// Sets f to the finished sum of all forces except gravity and drag.
     pub fn evaluate(&self, at: &At, f: &mut [f64], finish: &Finish) {
-        let is_other = |e: &&Element| e.force().carried().is_none();
+        let is_other = |e: &&Element| e.force().drift_forces().is_none();
         self.sum(self.all.iter().filter(is_other), at, f, finish);
     }
 
-    /// Sets f to the finished sum of some elements: first those that are no sheets, in their order;
-    /// on top of these each sheet, which finishes its own particles, so that nothing passes through
-    /// memory twice.
+    /// Sets f to the finished sum of some elements. Those that are no sheets come first, in their
+    /// order. Each sheet is added to these, and finishes its own particles, so that their numbers
+    /// pass through memory once.
     pub fn sum<'a>(
         &'a self,
         elements: impl Iterator<Item = &'a Element> + Clone,
@@ -227,7 +238,7 @@ impl Elements {
         f: &mut [f64],
         finish: &Finish,
     ) {
-        let is_other = |element: &&Element| element.sheet().is_none();
+        let is_other = |element: &&Element| element.get::<Sheet>().is_none();
         let mut others = elements.clone().filter(is_other).peekable();
         let added = others.peek().is_some();
         if added {
@@ -236,13 +247,13 @@ impl Elements {
             self.clear_single(f);
         }
         others.for_each(|element| element.force().add_forces(at, f));
-        for sheet in elements.filter_map(Element::sheet) {
+        for sheet in elements.filter_map(Element::get::<Sheet>) {
             set(Quantity::Forces, sheet, &[at.x, at.v], f, added, finish);
         }
         self.finish_single(at.v, f, finish);
     }
 
-    /// Sets f to zero on the particles of no sheet.
+    /// Sets f to zero on particles that are in no sheet.
     pub fn clear_single(&self, f: &mut [f64]) {
         for column in f.chunks_exact_mut(self.particles) {
             for particles in &self.single {
@@ -251,19 +262,19 @@ impl Elements {
         }
     }
 
-    /// Finishes f on the particles of no sheet.
+    /// Finishes f on particles that are in no sheet.
     pub fn finish_single(&self, v: &[f64], f: &mut [f64], finish: &Finish) {
         for particles in &self.single {
             finish.apply(particles, v, f);
         }
     }
 
-    /// Sum over the elements of a number of each.
+    /// Returns the sum of a number over all elements.
     fn sum_of(&self, number: impl Fn(&dyn Force) -> f64) -> f64 {
         self.all.iter().map(|element| number(element.force())).sum()
     }
 
-    /// Time that the forces would take coupling by coupling over the time that they take.
+    /// Returns the time of the forces coupling by coupling, over the time that they take.
     pub fn speed(&self) -> f64 {
         let couplings = self.sum_of(|force| force.cost().couplings);
         if couplings > 0.0 {
@@ -273,13 +284,13 @@ impl Elements {
         }
     }
 
-    /// Price of gathering the couplings, in evaluations of the forces.
-    pub fn gathering(&self) -> f64 {
+    /// Returns the price of the assembly of the couplings, in evaluations of the forces.
+    pub fn assembly(&self) -> f64 {
         let price = self.sum_of(|force| force.cost().price);
         if price > 0.0 {
-            self.sum_of(|force| force.gathering()) / price
+            self.sum_of(Force::assembly) / price
         } else {
-            GATHERING
+            ASSEMBLY
         }
     }
 }

@@ -1,14 +1,14 @@
-//! The energy in a state of a network, and what may change it.
+//! The energy in a state of a network, and the forces that change it.
 
 use super::build::Network;
+use super::element::Element;
 use super::evaluation::at;
 use crate::contact::Obstacle;
-use crate::elements::Element;
 use crate::energy::Energy;
 use crate::path::Path;
 use crate::random::SplitMix;
 
-/// Energy in the state (x, v) at time t (s).
+/// Returns the energy in the state (x, v) at time t (s).
 pub(super) fn energy_at(network: &Network, t: f64, x: &[f64], v: &[f64]) -> Energy {
     let of_axis = |v: &[f64]| -> f64 {
         let of_one = |(v, m): (&f64, &f64)| 0.5 * m * v * v;
@@ -24,7 +24,7 @@ pub(super) fn energy_at(network: &Network, t: f64, x: &[f64], v: &[f64]) -> Ener
     energy
 }
 
-/// Energy of the state y at time t (s), that of rotations included.
+/// Returns the energy of the state y at time t (s), that of rotations included.
 pub(super) fn energy_of(network: &Network, t: f64, y: &[f64]) -> Energy {
     let (x, v) = network.halves(y);
     let mut energy = energy_at(network, t, x, v);
@@ -34,8 +34,8 @@ pub(super) fn energy_of(network: &Network, t: f64, y: &[f64]) -> Energy {
     energy
 }
 
-/// Energy (J) of errors of all positions, of up to so much (m), at y at time t (s): elastic, and of
-/// the motion that corrects a drift off constraints.
+/// Returns the energy (J) that errors of all positions, of up to `error` (m), add in the state y at
+/// time t (s): elastic energy, and that of the motion that corrects errors of constraints.
 pub(crate) fn energy_of_errors(network: &Network, t: f64, y: &[f64], error: f64) -> f64 {
     let (mut off, mut random) = (y.to_vec(), SplitMix(1));
     for x in &mut off[..3 * network.particles()] {
@@ -56,20 +56,18 @@ pub(crate) fn energy_of_errors(network: &Network, t: f64, y: &[f64], error: f64)
 /// Adds the forces of wind (N) in the state (x, v) at time t (s) to f.
 pub(crate) fn add_wind(network: &Network, t: f64, x: &[f64], v: &[f64], f: &mut [f64]) {
     for element in network.elements() {
-        if matches!(element, Element::Wind(_) | Element::Airflow(_)) {
+        if element.force().is_wind() {
             element.force().add_forces(&at(network, t, x, v), f);
         }
     }
 }
 
-/// Whether the forces leave the energy as it is: nothing is damped, blows or moves by itself, and
-/// no spring is kept short or breaks. What obstacles do is left out.
+/// Whether the forces conserve energy: there is no damping, no wind and no prescribed motion, and
+/// no spring is shortened or breaks. Contact with obstacles is left out.
 pub(crate) fn is_conservative(network: &Network) -> bool {
     let loses = |element: &Element| {
         let force = element.force();
-        let carried = force.carried().is_some_and(|carried| carried.drag > 0.0);
-        let blows = matches!(element, Element::Wind(_) | Element::Attraction(_));
-        carried || blows || force.carried().is_none() && force.reads_velocity()
+        force.is_driven() || force.reads_velocity()
     };
     let mut paths = network.pins().map(|(_, path)| path);
     !network.elements().iter().any(loses)

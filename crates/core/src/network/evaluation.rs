@@ -1,5 +1,5 @@
-//! What evaluations of a network share: its forces, gravity and drag in them or in drifts, and the
-//! motion that is prescribed.
+//! Parts that evaluations of a network share: its forces, with gravity and drag in them or in
+//! drifts, and prescribed motion.
 
 use std::ops::Range;
 
@@ -7,11 +7,11 @@ use nalgebra::Vector3;
 
 use super::build::Network;
 use super::surfaces::Prescribed;
-use crate::elements::force::{At, Carried};
+use crate::elements::force::{At, DriftForces};
 use crate::elements::{Finish, Flow, flow_each};
 use crate::rows::Terms;
 
-/// The arguments of elements.
+/// Returns the arguments of the elements of a network.
 pub(super) fn at<'a>(network: &'a Network, t: f64, x: &'a [f64], v: &'a [f64]) -> At<'a> {
     At {
         t,
@@ -22,33 +22,33 @@ pub(super) fn at<'a>(network: &'a Network, t: f64, x: &'a [f64], v: &'a [f64]) -
     }
 }
 
-/// Writes all forces but those of constraints to f.
+/// Writes all forces except those of constraints to f.
 pub(super) fn other_forces(network: &Network, t: f64, x: &[f64], v: &[f64], f: &mut [f64]) {
     let finish = finish(network, Terms::AllForces);
     network.elements.evaluate(&at(network, t, x, v), f, &finish);
 }
 
-/// Whether drifts carry gravity and drag: not with constraints, which hold against all forces
-/// together.
-pub(super) fn drifts_carry(network: &Network, terms: Terms) -> bool {
+/// Whether drifts apply gravity and drag, and kicks the other forces: not with constraints, which
+/// hold against all forces together.
+pub(super) fn is_split(network: &Network, terms: Terms) -> bool {
     terms == Terms::KickForces && network.constraints.all().is_empty()
 }
 
-/// The gravity and drag that a drift carries.
-pub(super) fn drifting(network: &Network, terms: Terms) -> Carried {
-    if drifts_carry(network, terms) {
-        network.elements.carried()
+/// Returns the gravity and drag that a drift applies.
+pub(super) fn drift_forces(network: &Network, terms: Terms) -> DriftForces {
+    if is_split(network, terms) {
+        network.elements.drift_forces()
     } else {
-        Carried::default()
+        DriftForces::default()
     }
 }
 
-/// The gravity and drag that no drift carries.
+/// Returns the gravity and drag that no drift applies, to be added last.
 pub(super) fn finish(network: &Network, terms: Terms) -> Finish<'_> {
-    if drifts_carry(network, terms) {
+    if is_split(network, terms) {
         return Finish::default();
     }
-    let Carried { gravity, drag } = network.elements.carried();
+    let DriftForces { gravity, drag } = network.elements.drift_forces();
     let masses = network.particles.masses();
     Finish {
         gravity: (gravity != Vector3::zeros()).then_some((gravity, masses)),
@@ -57,7 +57,7 @@ pub(super) fn finish(network: &Network, terms: Terms) -> Finish<'_> {
     }
 }
 
-/// Moves particles by what a drift carries. Pins are put in their places afterwards.
+/// Moves particles by a drift. Pins are put in their places afterwards.
 pub(super) fn flow(
     network: &Network,
     terms: Terms,
@@ -66,7 +66,7 @@ pub(super) fn flow(
     x: [&mut [f64]; 3],
     v: [&mut [f64]; 3],
 ) {
-    let Carried { drag, gravity } = drifting(network, terms);
+    let DriftForces { drag, gravity } = drift_forces(network, terms);
     if let Some(w) = network.particles.uniform_inverse_mass() {
         Flow::new(drag, gravity, w, h).apply(x, v);
     } else {
@@ -75,7 +75,7 @@ pub(super) fn flow(
     }
 }
 
-/// Motion that the scene prescribes.
+/// Returns the motion that the scene prescribes.
 pub(super) fn prescribed(network: &Network) -> Prescribed<'_> {
     Prescribed {
         particles: &network.particles,

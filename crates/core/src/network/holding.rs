@@ -7,16 +7,16 @@ use super::evaluation::other_forces;
 use crate::constraints::Turning;
 use crate::error::Unmet;
 
-/// Time in which a contradiction counts as one that is already there, over that in which errors are
-/// taken back.
-const SOON: f64 = 0.1;
+/// Time ahead in which a contradiction is looked for, over the time in which errors decay.
+const LOOK_AHEAD: f64 = 0.1;
 
-/// A constraint that cannot be met near x (m) at time t (s), when pins are in their places, or soon
-/// after, because it contradicts others or the pins. Not known for those of rigid bodies.
+/// Returns A constraint that cannot be met near x (m) at time t (s), or soon after, because it
+/// contradicts others or the pins. `None` for networks with rigid bodies, for which it is not
+/// known.
 pub(crate) fn contradiction(network: &Network, t: f64, x: &[f64], radius: f64) -> Option<Unmet> {
     let n = network.particles();
     let constraints = &network.constraints;
-    let soon = SOON / constraints.baumgarte_frequency();
+    let soon = LOOK_AHEAD / constraints.baumgarte_frequency();
     [t, t + soon].into_iter().find_map(|t| {
         let mut x = x.to_vec();
         for (i, path) in network.pins() {
@@ -30,9 +30,9 @@ pub(crate) fn contradiction(network: &Network, t: f64, x: &[f64], radius: f64) -
     })
 }
 
-/// Whether the constraints at the state (x, v) at time t (s) are nearly singular, as those of a
-/// chain that is stretched straight between two pins: no force holds it there. Not known for those
-/// of rigid bodies. Writes the forces to f.
+/// Whether the constraints in the state (x, v) at time t (s) are nearly singular, as those of a
+/// chain that is stretched straight between two pins, where no force can hold it. False for
+/// networks with rigid bodies, for which it is not known. Writes the forces to f.
 pub(crate) fn is_nearly_singular(
     network: &Network,
     t: f64,
@@ -48,17 +48,17 @@ pub(crate) fn is_nearly_singular(
     hold_particles(network, t, [x, v], f)
 }
 
-/// Adds the forces of the constraints, if there are any, to all others, where there are no rigid
-/// bodies: positions and velocities alone do not say how these turn. Returns whether the
-/// constraints are nearly singular.
+/// Adds the forces of the constraints, if there are any, to the sum of all others, in a network
+/// without rigid bodies, whose rotations are not in x and v. Returns whether the constraints are
+/// nearly singular.
 pub(super) fn hold_particles(network: &Network, t: f64, state: [&[f64]; 2], f: &mut [f64]) -> bool {
     let none = |_, _: &[f64]| unreachable!("there are no bodies");
     network.bodies().is_empty() && hold(network, t, state, none, f)
 }
 
-/// Adds the forces of the constraints, if there are any, to all others. `bodies` gives how a body
-/// turns and the acceleration of its centre, under given forces. Returns whether the constraints
-/// are nearly singular.
+/// Adds the forces of the constraints, if there are any, to the sum of all others. `bodies` returns
+/// the rotation of a body and the acceleration of its centre under given forces. Returns whether
+/// the constraints are nearly singular.
 pub(super) fn hold(
     network: &Network,
     t: f64,

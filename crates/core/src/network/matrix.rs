@@ -1,20 +1,16 @@
-//! The matrix of an implicit step, as far as it is known without its couplings one by one: those of
-//! springs in sheets, and of single ones if there are many.
+//! The part of an implicit step's matrix whose couplings are multiplied together: that of springs
+//! in sheets, and of single springs if there are many.
 
+use super::element::Element;
 use super::elements::Elements;
 use crate::coupling::{Coupling, Diagonal, Matrix};
 use crate::elements::sheet::{Quantity, set};
-use crate::elements::{Element, Finish, Sheet};
+use crate::elements::{Finish, Sheet, Springs};
 use crate::system::divide_by_masses;
 
-/// Writes the product of the known part of the matrix and p to out. Returns the number of springs
-/// in it; 0 if out was left as it is.
+/// Writes the product of the matrix of these springs with p to out. Returns their number.
 pub(super) fn multiply(elements: &Elements, matrix: &Matrix, p: &[f64], out: &mut [f64]) -> usize {
     let in_sheets: usize = elements.sheets().map(Sheet::len).sum();
-    let packed = elements.all().iter().find_map(Element::packed);
-    if in_sheets == 0 && packed.is_none() {
-        return 0;
-    }
     let clamped = matrix.clamped;
     let finish = Finish {
         inertia: Some(matrix.masses),
@@ -28,23 +24,23 @@ pub(super) fn multiply(elements: &Elements, matrix: &Matrix, p: &[f64], out: &mu
         set(quantity, &sheet, &[matrix.x, p], out, false, &finish);
     }
     elements.finish_single(p, out, &finish);
-    let Some(packed) = packed else {
+    let Some(packed) = elements.of::<Springs>().find_map(Springs::packed) else {
         return in_sheets;
     };
     packed.add_product(matrix, p, out);
-    // Nothing is left on pinned particles.
+    // The product is 0 on pinned particles.
     divide_by_masses(matrix.free, out);
     in_sheets + packed.len()
 }
 
-/// Adds the diagonal of the known part of the matrix. Returns the number of springs in it.
+/// Adds the blocks of these springs to the diagonal of the matrix. Returns their number.
 pub(super) fn add_diagonal(elements: &Elements, matrix: &Matrix, diagonal: &mut Diagonal) -> usize {
     let all = elements.all().iter();
     all.map(|element| element.force().add_diagonal(matrix, diagonal))
         .sum()
 }
 
-/// Visits the couplings of the rest of the matrix.
+/// Visits all other couplings.
 pub(super) fn other_couplings(
     elements: &Elements,
     t: f64,
@@ -52,8 +48,8 @@ pub(super) fn other_couplings(
     clamped: bool,
     visit: &mut dyn FnMut(Coupling),
 ) {
-    let is_fast = |element: &&Element| element.sheet().is_some() || element.packed().is_some();
-    for element in elements.all().iter().filter(|element| !is_fast(element)) {
-        element.force().couplings(t, x, clamped, visit);
+    let all = elements.all().iter().map(Element::force);
+    for force in all.filter(|force| !force.multiplies_together()) {
+        force.couplings(t, x, clamped, visit);
     }
 }

@@ -1,17 +1,19 @@
 //! A network as integrators see it: forces, accelerations, kicks and drifts, couplings and springs.
 
 use super::build::Network;
+use super::element::Element;
 use super::evaluation::{at, finish, flow, other_forces};
 use super::holding::hold_particles;
 use super::matrix;
 use crate::columns::columns_mut;
 use crate::coupling::{Coupling, Diagonal, Matrix};
-use crate::elements::{Element, Finish};
+use crate::elements::{Drag, Finish};
 use crate::path::Place;
-use crate::rows::{Rows, Terms};
+use crate::rows::Terms;
 use crate::spring::SpringLaw;
 use crate::system::{
-    Compliant, Linearized, Mechanics, Rigid, Splitting, divide_by_masses, place_pins,
+    Compliant, Linearized, Mechanics, Products, RigidView, RowsView, SolverHints, Splitting,
+    divide_by_masses, place_pins,
 };
 
 impl Mechanics for Network {
@@ -37,21 +39,25 @@ impl Mechanics for Network {
         self.elements.evaluate(&at(self, t, x, v), a, &finish);
     }
 
+    fn drag_coefficient(&self) -> f64 {
+        self.elements.drift_forces().drag
+    }
+
     fn pins(&self, t: f64, visit: &mut dyn FnMut(usize, Place)) {
         for pin in self.particles.pins() {
             visit(pin.particle, pin.path.at(t));
         }
     }
 
-    /// Rows of sheets, if nothing else acts on more than one particle: it would reach into rows
-    /// that a sweep has left behind.
-    fn rows(&self) -> Option<&dyn Rows> {
+    /// Returns the rows of sheets, if sheets alone couple particles: other couplings would reach
+    /// rows that a sweep has left.
+    fn rows(&self) -> Option<RowsView<'_>> {
         let sweeps = self.elements.are_in_rows() && !self.is_constrained();
-        sweeps.then_some(self as &dyn Rows)
+        sweeps.then_some(RowsView(self))
     }
 
-    fn rigid(&self) -> Option<&dyn Rigid> {
-        (!self.bodies().is_empty()).then_some(self as &dyn Rigid)
+    fn rigid(&self) -> Option<RigidView<'_>> {
+        (!self.bodies().is_empty()).then_some(RigidView(self))
     }
 
     fn splitting(&self) -> Option<&dyn Splitting> {
@@ -69,7 +75,8 @@ impl Mechanics for Network {
 }
 
 impl Splitting for Network {
-    /// All forces but gravity and drag, which are in the drift, unless there are constraints.
+    /// Writes all forces except gravity and drag, which are in the drift, or all forces if there
+    /// are constraints.
     fn kick_forces(&self, t: f64, x: &[f64], v: &[f64], f: &mut [f64]) {
         let finish = finish(self, Terms::KickForces);
         self.elements.evaluate(&at(self, t, x, v), f, &finish);
@@ -77,11 +84,11 @@ impl Splitting for Network {
     }
 
     fn kick_reads_velocity(&self) -> bool {
-        let reads = |e: &Element| e.force().carried().is_none() && e.force().reads_velocity();
+        let reads = |e: &Element| e.force().drift_forces().is_none() && e.force().reads_velocity();
         self.is_constrained() || self.elements().iter().any(reads)
     }
 
-    /// x' = v, v' = g - (c/m) v, exactly; with constraints v stays.
+    /// Solves x' = v, v' = g - (c/m) v exactly; with constraints, v is constant.
     fn drift(&self, t: f64, h: f64, x: &mut [f64], v: &mut [f64]) {
         let all = 0..self.particles();
         flow(
@@ -119,6 +126,36 @@ impl Linearized for Network {
         }
     }
 
+    fn lists_all_couplings(&self) -> bool {
+        let mut elements = self.elements().iter();
+        elements.all(|element| element.force().lists_all_couplings())
+    }
+
+    fn baumgarte_frequency(&self) -> Option<f64> {
+        self.is_constrained()
+            .then(|| self.constraints.baumgarte_frequency())
+    }
+
+    fn products(&self) -> Option<&dyn Products> {
+        let mut elements = self.elements().iter();
+        elements
+            .any(|element| element.force().multiplies_together())
+            .then_some(self as &dyn Products)
+    }
+
+    /// The reach is half the largest thickness of surfaces that touch.
+    fn hints(&self) -> SolverHints {
+        let thickest = self.contact_layer().map(|layer| layer.surface().thickest());
+        let thickest = thickest.filter(|thickness| *thickness > 0.0);
+        SolverHints {
+            reach: thickest.map_or(f64::INFINITY, |thickness| 0.5 * thickness),
+            speed: self.elements.speed(),
+            assembly: self.elements.assembly(),
+        }
+    }
+}
+
+impl Products for Network {
     fn multiply(&self, matrix: &Matrix, p: &[f64], out: &mut [f64]) -> usize {
         matrix::multiply(&self.elements, matrix, p, out)
     }
@@ -130,53 +167,19 @@ impl Linearized for Network {
     fn other_couplings(&self, t: f64, x: &[f64], clamped: bool, visit: &mut dyn FnMut(Coupling)) {
         matrix::other_couplings(&self.elements, t, x, clamped, visit);
     }
-
-    fn lists_all_couplings(&self) -> bool {
-        self.fluid().is_none()
-    }
-
-    /// Half the largest thickness (m) of surfaces that touch; infinite if none do.
-    fn reach(&self) -> f64 {
-        let thickest = self.contact_layer().map(|layer| layer.surface().thickest());
-        let reach = thickest.filter(|thickness| *thickness > 0.0);
-        reach.map_or(f64::INFINITY, |thickness| 0.5 * thickness)
-    }
-
-    fn speed(&self) -> f64 {
-        self.elements.speed()
-    }
-
-    fn gathering(&self) -> f64 {
-        self.elements.gathering()
-    }
-
-    fn drag_coefficient(&self) -> f64 {
-        self.elements.carried().drag
-    }
-
-    fn baumgarte_frequency(&self) -> Option<f64> {
-        self.is_constrained()
-            .then(|| self.constraints.baumgarte_frequency())
-    }
 }
 
 impl Compliant for Network {
-    /// Those of sheets direction by direction, then the single ones.
+    /// Visits springs of sheets, direction by direction, and then single ones.
     fn springs(&self, visit: &mut dyn FnMut([usize; 2], SpringLaw)) {
-        for element in self.elements() {
-            element.springs().for_each(|s| visit([s.i, s.j], s.law));
-        }
+        self.springs().for_each(|s| visit([s.i, s.j], s.law));
     }
 
     fn other_forces(&self, t: f64, x: &[f64], v: &[f64], f: &mut [f64]) {
         f.fill(0.0);
-        let is_other = |e: &&Element| !e.is_elastic() && !matches!(e, Element::Drag(_));
+        let is_other = |e: &&Element| !e.is_elastic() && e.get::<Drag>().is_none();
         for element in self.elements().iter().filter(is_other) {
             element.force().add_forces(&at(self, t, x, v), f);
         }
-    }
-
-    fn drag_coefficient(&self) -> f64 {
-        Linearized::drag_coefficient(self)
     }
 }

@@ -71,7 +71,7 @@ impl Particles {
         self.masses[i] == 0.0
     }
 
-    /// Takes the masses of particles that a rigid body carries from now on.
+    /// Sets the masses of particles that a rigid body carries from now on to 0.
     pub fn carry(&mut self, particles: Range<usize>) {
         for i in particles {
             (self.masses[i], self.inverse_masses[i]) = (0.0, 0.0);
@@ -94,7 +94,7 @@ impl Particles {
         }
     }
 
-    /// Pins particles to paths: the last path of each counts.
+    /// Pins particles to paths. If one is named several times, its last path counts.
     pub fn pin_all(&mut self, pins: Vec<(usize, Path)>) {
         for &(i, _) in &pins {
             self.inverse_masses[i] = 0.0;
@@ -123,7 +123,7 @@ impl Particles {
         found.is_ok()
     }
 
-    /// Gives each pin the path that `path` makes of its own.
+    /// Replaces the path of each pin by the result of `path` for it.
     pub fn lead_pins(&mut self, mut path: impl FnMut(usize, Path) -> Path) {
         for pin in &mut self.pins {
             pin.path = path(pin.particle, pin.path);
@@ -134,7 +134,7 @@ impl Particles {
         &self.pins
     }
 
-    /// The pins among some particles.
+    /// Returns the pins among some particles.
     pub fn pins_of(&self, particles: Range<usize>) -> &[Pin] {
         let before = |i: usize| self.pins.partition_point(|pin| pin.particle < i);
         &self.pins[before(particles.start)..before(particles.end)]

@@ -1,16 +1,17 @@
-//! What a network says of itself and of its states.
+//! Properties of a network and of its states.
 
 use std::ops::Range;
 
 use nalgebra::Vector3;
 
 use super::build::Network;
+use super::element::Element;
 use super::evaluation::{at, prescribed};
 use super::surfaces::Touch;
 use super::{crossings, energies};
 use crate::constraints::Constraint;
 use crate::contact::{ContactLayer, Crossed, Obstacle, StrainLimit, crossed};
-use crate::elements::{Buckling, Element, Finish, Fluid, Sheet, Wind};
+use crate::elements::{Buckling, Finish, Fluid, Sheet, Wind};
 use crate::energy::Energy;
 use crate::error::{Error, Unmet};
 use crate::path::{Path, Pose};
@@ -18,13 +19,13 @@ use crate::rigid::{Body, Rotation};
 use crate::spring::Spring;
 
 impl Network {
-    /// Number of particles.
+    /// Returns the number of particles.
     #[must_use]
     pub fn particles(&self) -> usize {
         self.particles.len()
     }
 
-    /// Mass of each particle (kg), of pinned ones too; 0 for a point of a rigid body.
+    /// Returns the mass of each particle (kg), of pinned ones too; 0 for a point of a rigid body.
     #[must_use]
     pub fn masses(&self) -> &[f64] {
         self.particles.masses()
@@ -38,7 +39,7 @@ impl Network {
         self.particles.check(i)
     }
 
-    /// The pinned particles and their paths.
+    /// Returns the pinned particles and their paths.
     pub fn pins(&self) -> impl Iterator<Item = (usize, Path)> {
         let pins = self.particles.pins().iter();
         pins.map(|pin| (pin.particle, pin.path))
@@ -50,19 +51,19 @@ impl Network {
         self.particles.is_pinned(i)
     }
 
-    /// Whether particle i is a point that a body carries.
+    /// Whether particle i is a point of a rigid body.
     #[must_use]
     pub fn is_carried(&self, i: usize) -> bool {
         self.particles.is_carried(i)
     }
 
-    /// The elements, in the order of their kinds.
+    /// Returns the elements, in the order of their types.
     #[must_use]
     pub fn elements(&self) -> &[Element] {
         self.elements.all()
     }
 
-    /// Names of the forces and obstacles in use.
+    /// Returns the names of the forces and obstacles in use.
     #[must_use]
     pub fn forces_in_use(&self) -> Vec<&'static str> {
         let shapes = self
@@ -82,30 +83,30 @@ impl Network {
         self.elements.names().into_iter().chain(others).collect()
     }
 
-    /// The sheets.
+    /// Returns the sheets.
     pub fn sheets(&self) -> impl Iterator<Item = &Sheet> {
         self.elements.sheets()
     }
 
-    /// Gravity g (m/s2), if there is any.
+    /// Returns gravity g (m/s2), if there is any.
     #[must_use]
     pub fn gravity(&self) -> Option<Vector3<f64>> {
         self.elements.gravity()
     }
 
-    /// Coefficient c (kg/s) of viscous drag, if there is any.
+    /// Returns the coefficient c (kg/s) of viscous drag, if there is any.
     #[must_use]
     pub fn drag(&self) -> Option<f64> {
         self.elements.drag()
     }
 
-    /// The wind, if it blows.
+    /// Returns the wind, if it blows.
     #[must_use]
     pub fn wind(&self) -> Option<&Wind> {
         self.elements.wind()
     }
 
-    /// The fluid, if there is one.
+    /// Returns the fluid, if there is one.
     #[must_use]
     pub fn fluid(&self) -> Option<&Fluid> {
         self.elements.fluid()
@@ -117,27 +118,27 @@ impl Network {
         self.is_pinned(i) && self.fluid().is_some_and(|fluid| fluid.contains(i))
     }
 
-    /// The bend springs that buckle.
+    /// Returns the bend springs that buckle.
     pub fn buckling(&self) -> impl Iterator<Item = Buckling> {
         self.elements.buckling()
     }
 
-    /// Every spring by itself, those of sheets first; none that buckles.
+    /// Returns all springs except those that buckle, those of sheets first.
     pub fn springs(&self) -> impl Iterator<Item = Spring> {
         self.elements.springs()
     }
 
-    /// Every spring by itself, those that buckle as they are while straight.
+    /// Returns all springs, those that buckle as they are while straight.
     pub fn all_springs(&self) -> impl Iterator<Item = Spring> {
         self.elements.all_springs()
     }
 
-    /// The springs attached to particle i, those that buckle as they are while straight.
+    /// Returns the springs attached to particle i, those that buckle as they are while straight.
     pub fn springs_of(&self, i: usize) -> impl Iterator<Item = Spring> {
         self.all_springs().filter(move |s| s.i == i || s.j == i)
     }
 
-    /// Each neighbour of particle i in a solid, with its distance at rest (m).
+    /// Returns each neighbour of particle i in a solid, with its distance at rest (m).
     pub(crate) fn neighbours_in_solids(&self, i: usize) -> impl Iterator<Item = (usize, f64)> {
         let solids = self.elements.solids();
         solids.flat_map(move |solid| solid.neighbours(i))
@@ -163,35 +164,35 @@ impl Network {
             .sum(springs, &at(self, 0.0, x, v), f, &Finish::default());
     }
 
-    /// The strain at each particle at x (m), n x 3: the most by which the length of one of its
-    /// springs over that at rest, or a principal stretch of one of its tetrahedra, differs from 1;
-    /// NaN where there are neither. Springs of rest length 0 have none.
+    /// Returns the strain at each particle at x (m), n x 3: the largest difference from 1 of the
+    /// length over rest length of its springs, or of the principal stretches of its tetrahedra; NaN
+    /// for a particle without either. Springs of rest length 0 are left out.
     #[must_use]
     pub fn strains(&self, x: &[f64]) -> Vec<f64> {
         self.elements.strains(x)
     }
 
-    /// Length over rest length of the structural spring that is stretched most, or the largest
-    /// principal stretch of a solid, if there is any.
+    /// Returns the length over rest length of the structural spring that is stretched most, or the
+    /// largest principal stretch of a solid, if there is any.
     #[must_use]
     pub fn largest_stretch(&self, x: &[f64]) -> Option<f64> {
         self.elements.largest_stretch(x)
     }
 
-    /// The length over rest length at which springs break, if they do.
+    /// Returns the length over rest length at which springs break, if they can.
     #[must_use]
     pub fn tear_limit(&self) -> Option<f64> {
         self.tears.limit()
     }
 
-    /// Number of pairs of particles between which springs have broken.
+    /// Returns the number of pairs of particles between which springs have broken.
     #[must_use]
     pub fn tears(&self) -> usize {
         self.tears.torn().len()
     }
 
-    /// Pairs of particles between which springs have broken, the lower number of each first, in
-    /// order.
+    /// Returns the pairs of particles between which springs have broken, the lower number of each
+    /// first, in order.
     #[must_use]
     pub fn torn(&self) -> &[[usize; 2]] {
         self.tears.torn()
@@ -203,14 +204,14 @@ impl Network {
         self.tears.is_torn(i, j)
     }
 
-    /// Whether a triangle has all its sides: whoever draws leaves out the others.
+    /// Whether a triangle has all its sides. Others are not drawn.
     #[must_use]
     pub fn is_whole(&self, corners: [usize; 3]) -> bool {
         self.tears.is_whole(corners)
     }
 
-    /// Whether springs at x (m) are so long that they break, or lack no more than that share of
-    /// their length.
+    /// Whether springs at x (m) exceed the length at which they break, or fall short of it by at
+    /// most the fraction `share`.
     pub(crate) fn is_overstretched(&self, x: &[f64], share: f64) -> bool {
         self.tears.is_overstretched(&self.elements, x, share)
     }
@@ -222,12 +223,12 @@ impl Network {
         self.strain_limits.all()
     }
 
-    /// The springs that are limited, as they were last listed.
+    /// Returns the limited springs, as last listed.
     pub(crate) fn strained(&self) -> Option<&StrainLimit> {
         self.strain_limits.listed()
     }
 
-    /// The constraints, their directions of length 1.
+    /// Returns the constraints, their directions of length 1.
     #[must_use]
     pub fn constraints(&self) -> &[Constraint] {
         self.constraints.all()
@@ -244,7 +245,7 @@ impl Network {
         ends.any(|(a, b)| a == i || b == Some(i))
     }
 
-    /// The other end and the length (m) of each rod attached to particle i.
+    /// Returns the other end and the length (m) of each rod attached to particle i.
     pub fn rods_of(&self, i: usize) -> impl Iterator<Item = (usize, f64)> {
         self.constraints().iter().filter_map(move |c| match *c {
             Constraint::Rod { i: a, j: b, length } if a == i || b == i => Some((a + b - i, length)),
@@ -252,31 +253,31 @@ impl Network {
         })
     }
 
-    /// The largest error |C| (m) of the constraints at x. `None` without constraints.
+    /// Returns the largest error |C| (m) of the constraints at x. `None` without constraints.
     #[must_use]
     pub fn constraint_error(&self, x: &[f64]) -> Option<f64> {
         self.constraints.error(x)
     }
 
-    /// The constraint that is farthest from being met at x, in a scene of that radius (m).
+    /// Returns the constraint with the largest relative error at x, in a scene of a radius (m).
     #[must_use]
     pub fn worst_constraint(&self, x: &[f64], radius: f64) -> Option<Unmet> {
         self.constraints.worst(x, radius)
     }
 
-    /// The rigid bodies, in the order in which they were added.
+    /// Returns the rigid bodies, in the order in which they were added.
     #[must_use]
     pub fn bodies(&self) -> &[Body] {
         self.bodies.all()
     }
 
-    /// The body to which particle i belongs, as its centre or as a point.
+    /// Returns the body to which particle i belongs, as its centre or as a point.
     #[must_use]
     pub fn body_of(&self, i: usize) -> Option<usize> {
         self.bodies.body_of(i)
     }
 
-    /// Rotation of body k in the state y.
+    /// Returns the rotation of body k in the state y.
     #[must_use]
     pub fn rotation(&self, k: usize, y: &[f64]) -> Rotation {
         self.bodies.rotation(k, y)
@@ -287,27 +288,27 @@ impl Network {
         rotation.write(&mut y[self.bodies.numbers(k)]);
     }
 
-    /// Place and orientation of body k in the state y.
+    /// Returns the place and orientation of body k in the state y.
     #[must_use]
     pub fn pose(&self, k: usize, y: &[f64]) -> Pose {
         let (x, v) = self.halves(y);
         self.bodies()[k].pose(&self.rotation(k, y), x, v)
     }
 
-    /// Positions and velocities, n x 3 each, of a state.
+    /// Returns the positions and velocities, n x 3 each, of a state.
     #[must_use]
     pub fn halves<'a>(&self, y: &'a [f64]) -> (&'a [f64], &'a [f64]) {
         let n = 3 * self.particles();
         (&y[..n], &y[n..2 * n])
     }
 
-    /// The triangles.
+    /// Returns the triangles.
     #[must_use]
     pub fn triangles(&self) -> &[[u32; 3]] {
         &self.surfaces.triangles
     }
 
-    /// Obstacles in the order in which they were added.
+    /// Returns the obstacles in the order in which they were added.
     #[must_use]
     pub fn obstacles(&self) -> &[Obstacle] {
         self.surfaces.obstacles()
@@ -321,43 +322,44 @@ impl Network {
         self.surfaces.check_obstacle(k)
     }
 
-    /// Whether pins or obstacles are on their way, now or at some time.
+    /// Whether pins or obstacles move at any time.
     #[must_use]
     pub fn moves_by_itself(&self) -> bool {
         prescribed(self).moves()
     }
 
-    /// First time after t (s) at which a path or a turn begins or ends; infinite if there is none.
+    /// Returns the first time after t (s) at which a path or a turn begins or ends; infinite if
+    /// there is none.
     pub(crate) fn next_known_time(&self, t: f64) -> f64 {
         prescribed(self).next_known_time(t)
     }
 
-    /// Longest step (s) from time t (s) to `end` (s) that shows the prescribed motion and the wind:
-    /// a quarter of the shortest period.
+    /// Returns the longest step (s) that resolves the prescribed motion and the wind from time t
+    /// (s) to `end` (s): a quarter of the shortest period.
     pub(crate) fn quarter_period(&self, t: f64, end: f64) -> f64 {
         prescribed(self).quarter_period(t, end)
     }
 
-    /// What can touch, if surfaces do.
+    /// Returns the contact properties of surfaces, if they can touch.
     #[must_use]
     pub fn touch(&self) -> Option<&Touch> {
         self.surfaces.touch()
     }
 
-    /// Whether anything can touch: particles obstacles, or surfaces one another.
+    /// Whether particles can touch obstacles, or surfaces one another.
     #[must_use]
     pub fn can_touch(&self) -> bool {
         !self.obstacles().is_empty() || self.touch().is_some_and(|touch| touch.bodies)
     }
 
-    /// The contact of surfaces, if they touch.
+    /// Returns the contact of surfaces, if they can touch.
     #[must_use]
     pub fn contact_layer(&self) -> Option<&ContactLayer> {
         self.elements.contact_layer()
     }
 
-    /// The surfaces that pass through one another at time t (s) at x (m), n x 3, also where nothing
-    /// keeps them from it, because surfaces do not touch.
+    /// Returns the surfaces that pass through one another at time t (s) at x (m), n x 3, also if
+    /// contact is off.
     #[must_use]
     pub fn crossed(&self, t: f64, x: &[f64]) -> Vec<Crossed> {
         if let Some(layer) = self.contact_layer() {
@@ -376,20 +378,20 @@ impl Network {
         crossings::check_apart(self, t, x)
     }
 
-    /// The energy in the state (x, v) at time 0, and at all times if no obstacle moves. Drag,
-    /// damping and wind have none.
+    /// Returns the energy in the state (x, v) at time 0, and at all times if no obstacle moves.
+    /// Drag, damping and wind have no energy.
     #[must_use]
     pub fn energy(&self, x: &[f64], v: &[f64]) -> Energy {
         self.energy_at(0.0, x, v)
     }
 
-    /// The energy in the state (x, v) at time t (s), where obstacles are then.
+    /// Returns the energy in the state (x, v) at time t (s), where obstacles are then.
     #[must_use]
     pub fn energy_at(&self, t: f64, x: &[f64], v: &[f64]) -> Energy {
         energies::energy_at(self, t, x, v)
     }
 
-    /// Energy of the state y at time t (s), that of rotations included.
+    /// Returns the energy of the state y at time t (s), that of rotations included.
     #[must_use]
     pub fn energy_of(&self, t: f64, y: &[f64]) -> Energy {
         energies::energy_of(self, t, y)

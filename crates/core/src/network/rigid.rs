@@ -1,15 +1,16 @@
-//! A network with rigid bodies as integrators see it: its state is [x | v | q, L of each body].
+//! A network with rigid bodies as integrators see it, with the state [x | v | q and L of each
+//! body].
 
 use std::ops::Range;
 
 use nalgebra::Vector3;
 
 use super::build::Network;
-use super::evaluation::{at, drifts_carry};
+use super::evaluation::{at, is_split};
 use super::holding::hold;
 use crate::constraints::Turning;
 use crate::elements::Finish;
-use crate::elements::force::Carried;
+use crate::elements::force::DriftForces;
 use crate::rigid::{Body, ROTATION, Rotation};
 use crate::rows::Terms;
 use crate::system::{Measure, Mechanics, Rigid, Splitting, place_pins};
@@ -21,8 +22,8 @@ struct Wrench {
     torque: Vector3<f64>,
 }
 
-/// Evaluates forces (N), n x 3, in the state y at time t (s) with all points in their places,
-/// and uses them with these positions and velocities.
+/// Evaluates forces (N), n x 3, in the state y at time t (s) with all points in their places, and
+/// calls `run` with these positions, velocities and forces.
 fn with_forces<T>(
     network: &Network,
     t: f64,
@@ -30,32 +31,30 @@ fn with_forces<T>(
     y: &[f64],
     run: impl FnOnce(&[f64], &[f64], &[f64]) -> T,
 ) -> T {
-    network
-        .bodies
-        .scratch
-        .lend(network.particles(), |[x, v, f]| {
-            let (own_x, own_v) = network.halves(y);
-            x.copy_from_slice(own_x);
-            v.copy_from_slice(own_v);
-            network.bodies.place_points(y, x, v);
-            let at = at(network, t, x, v);
-            network.elements.evaluate(&at, f, &Finish::default());
-            if !drifts_carry(network, terms) {
-                let Carried { gravity, drag } = network.elements.carried();
-                let n = network.particles();
-                for (k, (f, v)) in f.iter_mut().zip(&*v).enumerate() {
-                    let mass = network.masses()[k % n];
-                    *f += mass * gravity[k / n] - if mass > 0.0 { drag * v } else { 0.0 };
-                }
-                let bodies = |k: usize, f: &[f64]| turning(network, k, y, terms, x, f);
-                hold(network, t, [x, v], bodies, f);
+    network.bodies.scratch.lend(|[x, v, f]| {
+        let (own_x, own_v) = network.halves(y);
+        own_x.clone_into(x);
+        own_v.clone_into(v);
+        f.resize(x.len(), 0.0);
+        network.bodies.place_points(y, x, v);
+        let at = at(network, t, x, v);
+        network.elements.evaluate(&at, f, &Finish::default());
+        if !is_split(network, terms) {
+            let DriftForces { gravity, drag } = network.elements.drift_forces();
+            let n = network.particles();
+            for (k, (f, v)) in f.iter_mut().zip(&*v).enumerate() {
+                let mass = network.masses()[k % n];
+                *f += mass * gravity[k / n] - if mass > 0.0 { drag * v } else { 0.0 };
             }
-            run(x, v, f)
-        })
+            let bodies = |k: usize, f: &[f64]| turning(network, k, y, terms, x, f);
+            hold(network, t, [x, v], bodies, f);
+        }
+        run(x, v, f)
+    })
 }
 
-/// Force and torque on a body at x, of the forces f on its particles. Drag acts on a rotation
-/// as it does on the motion of the centre: at the rate c / m.
+/// Returns the force and torque on a body at x, from the forces f on its particles. Drag damps the
+/// rotation at the same rate c / m as the motion of the centre.
 fn wrench(
     network: &Network,
     body: &Body,
@@ -74,14 +73,14 @@ fn wrench(
         wrench.force += force;
         wrench.torque += (row(x, i) - center).cross(&force);
     }
-    if !drifts_carry(network, terms) {
+    if !is_split(network, terms) {
         wrench.torque -= rotation.momentum * decay(network, body);
     }
     wrench
 }
 
-/// How body k turns, and the acceleration of its centre (m/s2), under the forces f, with y and
-/// all points at x.
+/// Returns the rotation of body k and acceleration of its centre (m/s2) under the forces f, in the
+/// state y, with all points at x.
 fn turning(
     network: &Network,
     k: usize,
@@ -106,9 +105,9 @@ fn turning(
     )
 }
 
-/// Rate (1/s) at which drag takes from the motion of a body.
+/// Returns the rate (1/s) at which drag damps the motion of a body.
 fn decay(network: &Network, body: &Body) -> f64 {
-    network.elements.carried().drag / network.masses()[body.center()]
+    network.elements.drift_forces().drag / network.masses()[body.center()]
 }
 
 /// Writes accelerations (m/s2) of particles that no body carries to a, n x 3.
@@ -119,7 +118,7 @@ fn accelerate(network: &Network, f: &[f64], a: &mut [f64]) {
     }
 }
 
-/// The row of particle i.
+/// Returns the row of particle i.
 fn row(a: &[f64], i: usize) -> Vector3<f64> {
     let n = a.len() / 3;
     Vector3::new(a[i], a[n + i], a[2 * n + i])
@@ -200,8 +199,8 @@ impl Rigid for Network {
         let n = self.particles();
         let (halves, tail) = y.split_at_mut(6 * n);
         let (x, v) = halves.split_at_mut(3 * n);
-        let carries = drifts_carry(self, terms);
-        if carries {
+        let is_split = is_split(self, terms);
+        if is_split {
             Splitting::drift(self, t, h, x, v);
         } else {
             for (x, v) in x.iter_mut().zip(v) {
@@ -210,7 +209,7 @@ impl Rigid for Network {
         }
         for (body, tail) in self.bodies().iter().zip(tail.chunks_exact_mut(ROTATION)) {
             let mut rotation = Rotation::read(tail);
-            let decay = if carries { decay(self, body) } else { 0.0 };
+            let decay = if is_split { decay(self, body) } else { 0.0 };
             body.fly(&mut rotation, decay, h);
             rotation.write(tail);
         }
@@ -227,9 +226,10 @@ impl Rigid for Network {
         let (x, rest) = y.split_at_mut(3 * n);
         let (v, _) = rest.split_at_mut(3 * n);
         place_pins(self, t, x, v);
-        self.bodies.scratch.lend(n, |[px, pv, _]| {
-            px.copy_from_slice(&y[..3 * n]);
-            pv.copy_from_slice(&y[3 * n..6 * n]);
+        self.bodies.scratch.lend(|[px, pv, _]| {
+            let (own_x, own_v) = self.halves(y);
+            own_x.clone_into(px);
+            own_v.clone_into(pv);
             self.bodies.place_points(y, px, pv);
             y[..3 * n].copy_from_slice(px);
             y[3 * n..6 * n].copy_from_slice(pv);

@@ -1,8 +1,9 @@
-//! Springs among the elements of a network, whichever element they are in.
+//! Springs of a network, of all its elements.
 
+use super::element::Element;
 use super::elements::Elements;
 use crate::elements::force::{check_ends, distance, ends};
-use crate::elements::{Buckling, BucklingSprings, Element, Springs};
+use crate::elements::{Buckling, BucklingSprings, Sheet, Springs};
 use crate::error::Error;
 use crate::spring::{Spring, SpringKind};
 
@@ -10,7 +11,7 @@ impl Elements {
     /// Adds one spring between particles that exist.
     pub fn add_spring(&mut self, spring: Spring) -> Result<(), Error> {
         check_ends([spring.i, spring.j], self.particles())?;
-        if let Some(springs) = self.single_springs() {
+        if let Some(springs) = self.first_mut::<Springs>() {
             springs.push(spring);
             return Ok(());
         }
@@ -22,49 +23,35 @@ impl Elements {
 
     /// Sorts the single springs by their ends.
     pub fn sort_springs(&mut self) {
-        if let Some(springs) = self.single_springs() {
+        if let Some(springs) = self.first_mut::<Springs>() {
             springs.sort();
         }
-    }
-
-    fn single_springs(&mut self) -> Option<&mut Springs> {
-        let mut all = self.all_mut().iter_mut();
-        all.find_map(|element| match element {
-            Element::Springs(springs) => Some(springs),
-            _ => None,
-        })
     }
 
     /// Adds a bend spring that buckles, between particles that exist.
     pub fn add_buckling(&mut self, buckling: Buckling) -> Result<(), Error> {
         check_ends([buckling.i, buckling.j], self.particles())?;
-        for element in self.all_mut() {
-            if let Element::BucklingSprings(springs) = element {
-                return springs.push(buckling);
-            }
+        if let Some(springs) = self.first_mut::<BucklingSprings>() {
+            return springs.push(buckling);
         }
         let mut springs = BucklingSprings::default();
         springs.push(buckling)?;
         self.add(springs.into())
     }
 
-    fn buckling_springs(&self) -> impl Iterator<Item = &BucklingSprings> {
-        self.all().iter().filter_map(|element| match element {
-            Element::BucklingSprings(springs) => Some(springs),
-            _ => None,
-        })
-    }
-
     pub fn buckling(&self) -> impl Iterator<Item = Buckling> {
-        self.buckling_springs().flat_map(BucklingSprings::all)
+        self.of::<BucklingSprings>().flat_map(BucklingSprings::all)
     }
 
+    /// Returns the springs of sheets, and then the single ones.
     pub fn springs(&self) -> impl Iterator<Item = Spring> {
-        self.all().iter().flat_map(Element::springs)
+        let single = self.of::<Springs>().flat_map(Springs::all).copied();
+        self.sheets().flat_map(Sheet::springs).chain(single)
     }
 
     pub fn all_springs(&self) -> impl Iterator<Item = Spring> {
-        let straight = self.buckling_springs().flat_map(BucklingSprings::straight);
+        let buckling = self.of::<BucklingSprings>();
+        let straight = buckling.flat_map(BucklingSprings::straight);
         self.springs().chain(straight)
     }
 
@@ -82,7 +69,7 @@ impl Elements {
         Ok(())
     }
 
-    /// Replaces the springs, the solids and the fluid by those of others, of as many particles.
+    /// Replaces the springs, the solids and the fluid by those of others, of the same particles.
     pub fn copy_springs(&mut self, others: &Self) -> Result<(), Error> {
         let [n, of_others] = [self, others].map(Self::particles);
         if n != of_others {
@@ -90,15 +77,15 @@ impl Elements {
                 "the springs of a network of {of_others} particles do not fit one of {n}"
             )));
         }
-        let is_tuned = |e: &Element| e.is_elastic() || e.fluid().is_some();
-        self.replace(is_tuned, None);
-        for element in others.all().iter().filter(|e| is_tuned(e)) {
+        let is_matter = |element: &Element| element.force().matter().is_some();
+        self.replace(is_matter, None);
+        for element in others.all().iter().filter(|element| is_matter(element)) {
             self.insert(element.clone());
         }
         Ok(())
     }
 
-    /// Strain at each particle at x (m).
+    /// Returns the strain at each particle at x (m).
     pub fn strains(&self, x: &[f64]) -> Vec<f64> {
         let mut strains = vec![f64::NAN; self.particles()];
         for s in self.all_springs().filter(|s| s.law.rest_length > 0.0) {
@@ -115,7 +102,8 @@ impl Elements {
         strains
     }
 
-    /// Largest length over rest length of a structural spring, or principal stretch of a solid.
+    /// Returns the largest length over rest length of a structural spring, or principal stretch of
+    /// a solid.
     pub fn largest_stretch(&self, x: &[f64]) -> Option<f64> {
         let structural = |s: &Spring| s.kind == SpringKind::Structural && s.law.rest_length > 0.0;
         let of_springs = self.springs().filter(structural);

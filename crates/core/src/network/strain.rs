@@ -12,7 +12,7 @@ use crate::spring::SpringKind;
 pub(super) struct StrainLimits {
     /// Particles among which springs are limited, and the limits of length over rest length.
     all: Vec<(Range<usize>, f64)>,
-    /// The springs that are limited, unless springs or pins have changed since they were listed.
+    /// Limited springs, unless springs or pins have changed since they were listed.
     listed: Option<StrainLimit>,
 }
 
@@ -21,8 +21,7 @@ impl StrainLimits {
         &self.all
     }
 
-    /// Sets or removes the limit among some of n particles, where springs break at `tear` rest
-    /// lengths.
+    /// Sets or removes the limit among some of n particles. Springs break at `tear` rest lengths.
     pub fn set(
         &mut self,
         particles: Range<usize>,
@@ -56,18 +55,18 @@ impl StrainLimits {
         Ok(())
     }
 
-    /// Checks that springs can be stretched so far that they break at `tear` rest lengths.
+    /// Checks that the limits let springs reach the `tear` rest lengths at which they break.
     pub fn check_tear(&self, tear: Option<f64>) -> Result<(), Error> {
         let mut limits = self.all.iter();
         limits.try_for_each(|(_, limit)| check_tear(*limit, tear))
     }
 
-    /// Forgets the list of springs: springs or pins have changed.
+    /// Drops the list of springs, because springs or pins have changed.
     pub fn forget(&mut self) {
         self.listed = None;
     }
 
-    /// Lists the springs that are limited, if any are and if they are not listed yet.
+    /// Lists the limited springs, if there are any and they are not listed yet.
     pub fn list(&mut self, elements: &Elements, inverse_masses: &[f64]) {
         if self.listed.is_some() || self.all.is_empty() {
             return;
@@ -85,13 +84,13 @@ impl StrainLimits {
         self.listed = Some(StrainLimit::new(springs, inverse_masses));
     }
 
-    /// The springs that are limited, as they were last listed.
+    /// Returns the limited springs, as last listed.
     pub fn listed(&self) -> Option<&StrainLimit> {
         self.listed.as_ref()
     }
 }
 
-/// Checks that springs limited to that stretch can reach the one at which they break.
+/// Checks that springs limited to a stretch can reach the one at which they break.
 fn check_tear(limit: f64, tear: Option<f64>) -> Result<(), Error> {
     match tear.filter(|tear| limit <= *tear) {
         Some(tear) => Err(Error::Invalid(format!(

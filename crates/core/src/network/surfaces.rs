@@ -1,4 +1,4 @@
-//! Surfaces of a network: triangles, obstacles, and what of them touches.
+//! Surfaces of a network: triangles, obstacles, and their contact properties.
 
 use std::sync::Arc;
 
@@ -17,11 +17,11 @@ pub struct Touch {
     pub skins: Vec<Skin>,
     /// Edges that are in no triangle, such as those of a rope. An edge with equal ends is a point.
     pub edges: Vec<[u32; 2]>,
-    /// Whether bodies touch one another and themselves, or obstacles alone.
+    /// Whether surfaces touch one another and themselves, or only obstacles.
     pub bodies: bool,
 }
 
-/// Triangles, obstacles, and what can touch, if surfaces do.
+/// Triangles, obstacles, and contact properties, if surfaces can touch.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Surfaces {
     pub triangles: Arc<[[u32; 3]]>,
@@ -91,13 +91,13 @@ impl Surfaces {
         }
     }
 
-    /// Leaves out triangles that have lost a side.
+    /// Removes triangles of which a side has broken.
     pub fn leave_out_holes(&mut self, tears: &Tears) {
         let whole = |corners: &&[u32; 3]| tears.is_whole(corners.map(|i| i as usize));
         self.triangles = self.triangles.iter().filter(whole).copied().collect();
     }
 
-    /// Creates the contact of these surfaces and bodies, if they touch.
+    /// Creates the contact of these surfaces and bodies, if they can touch.
     pub fn layer(&self, bodies: &[Body], tears: &Tears) -> Option<ContactLayer> {
         self.touch.as_ref().map(|touch| {
             let is_whole = |[a, b]: &[u32; 2]| !tears.is_torn(*a as usize, *b as usize);
@@ -106,7 +106,7 @@ impl Surfaces {
         })
     }
 
-    /// Creates the contact of all surfaces of n particles and of bodies, whether they touch or not.
+    /// Creates the contact of all surfaces of n particles and of bodies, also if contact is off.
     pub fn layer_of_all(&self, bodies: &[Body], n: usize) -> ContactLayer {
         self.contact(&vec![Skin::default(); n], &[], bodies, true)
     }
@@ -149,20 +149,21 @@ impl Prescribed<'_> {
         self.obstacles.iter().filter_map(|obstacle| obstacle.turn)
     }
 
-    /// Whether pins or obstacles move, now or at some time.
+    /// Whether pins or obstacles move at any time.
     pub fn moves(&self) -> bool {
         let moves = |path: &Path| !matches!(path, Path::Still(_));
         self.paths().any(moves) || self.turns().next().is_some()
     }
 
-    /// First time after t (s) at which a path or a turn begins or ends; infinite if there is none.
+    /// Returns the first time after t (s) at which a path or a turn begins or ends; infinite if
+    /// there is none.
     pub fn next_known_time(&self, t: f64) -> f64 {
         let of_paths = self.paths().flat_map(Path::known_times);
         let all = of_paths.chain(self.turns().flat_map(|turn| turn.known_times()));
         all.filter(|time| *time > t).fold(f64::INFINITY, f64::min)
     }
 
-    /// A quarter of the shortest period from time t (s) to `end` (s).
+    /// Returns A quarter of the shortest period from time t (s) to `end` (s).
     pub fn quarter_period(&self, t: f64, end: f64) -> f64 {
         let times = [t, end];
         let of_paths = self.paths().map(|path| path.quarter_period(times));

@@ -3,8 +3,8 @@
 use std::ops::Range;
 
 use super::build::Network;
-use super::evaluation::{drifting, finish, flow};
-use crate::elements::force::Carried;
+use super::evaluation::{drift_forces, finish, flow};
+use crate::elements::force::DriftForces;
 use crate::elements::sheet::{Advance, LAWS, SPRING_FORCES, begin};
 use crate::elements::{Finish, Flow, Sheet};
 use crate::rows::{Patch, Registers, Rows, Stage, SweepScratch, Terms};
@@ -28,7 +28,7 @@ fn place_row(
     }
 }
 
-/// The sheet that is a patch of rows.
+/// Returns the sheet that is a patch of rows.
 fn patch_sheet(network: &Network, patch: usize) -> Option<&Sheet> {
     network.elements.sheets().nth(patch)
 }
@@ -97,7 +97,7 @@ impl Rows for Network {
             .uniform_inverse_mass()
             .filter(|_| stage.drift != 0.0);
         let flow = flow.map(|w| {
-            let Carried { drag, gravity } = drifting(self, stage.terms);
+            let DriftForces { drag, gravity } = drift_forces(self, stage.terms);
             Flow::new(drag, gravity, w, stage.drift)
         });
         let added = self.elements.by_particle().next().is_some();

@@ -1,17 +1,17 @@
-//! Tearing. A spring longer than the limit times its rest length breaks, and with it all between
-//! the same two particles. A bend spring breaks also where a structural spring that it runs along
-//! has: when no particle is left between its ends that structural springs join to both. Triangles
-//! that have lost a side are holes.
+//! Tearing. A spring longer than the limit times its rest length breaks, together with all springs
+//! between the same two particles. A bend spring also breaks with a structural spring along it:
+//! when no particle between its ends is left that structural springs join to both. Triangles with a
+//! broken side are holes.
 
 use super::elements::Elements;
 use crate::elements::force::{distance_squared, ends};
 use crate::error::Error;
 use crate::spring::{Spring, SpringKind};
 
-/// Springs that have broken, and when others do.
+/// Springs that have broken, and the limit at which others break.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Tears {
-    /// The length over rest length at which springs break.
+    /// Length over rest length at which springs break.
     limit: Option<f64>,
     /// Pairs of particles between which springs have broken, in order.
     torn: Vec<[usize; 2]>,
@@ -40,7 +40,7 @@ impl Tears {
         &self.torn
     }
 
-    /// Takes over the pairs of others.
+    /// Copies the pairs of others.
     pub fn copy_torn(&mut self, others: &Self) {
         self.torn.clone_from(&others.torn);
     }
@@ -55,7 +55,7 @@ impl Tears {
         !(self.is_torn(a, b) || self.is_torn(b, c) || self.is_torn(c, a))
     }
 
-    /// Adds pairs of particles, the lower number of each first. Returns the number of new pairs.
+    /// Adds pairs of particles, given with the lower number first. Returns the number of new pairs.
     pub fn add(&mut self, pairs: impl IntoIterator<Item = [usize; 2]>) -> usize {
         let already = self.torn.len();
         self.torn.extend(pairs);
@@ -64,22 +64,22 @@ impl Tears {
         self.torn.len() - already
     }
 
-    /// Whether springs at x (m) are so long that they break, or lack no more than that share of
-    /// their length.
+    /// Whether springs at x (m) exceed the length at which they break, or fall short of it by at
+    /// most the fraction `share`.
     pub fn is_overstretched(&self, elements: &Elements, x: &[f64], share: f64) -> bool {
         let is_too_long = |s: Spring| self.is_too_long(x, &s, share);
         self.limit.is_some() && elements.all_springs().any(is_too_long)
     }
 
-    /// Whether a spring at x (m) is so long that it breaks, or lacks no more than that share of its
-    /// length.
+    /// Whether a spring at x (m) exceeds the length at which it breaks, or falls short of it by at
+    /// most the fraction `share`.
     fn is_too_long(&self, x: &[f64], s: &Spring, share: f64) -> bool {
         let most = self.limit.unwrap_or(f64::INFINITY) * s.law.rest_length * (1.0 - share);
         most > 0.0 && distance_squared(x, s.i, s.j) > most * most
     }
 
-    /// Pairs of particles between which springs break at x (m): those that are too long, or lack no
-    /// more than that share of their length, and those that go with them.
+    /// Returns the pairs of particles between which springs break at x (m), with a `share` as
+    /// above, and those of the bend springs along them.
     pub fn breaking(&self, elements: &Elements, x: &[f64], share: f64) -> Vec<[usize; 2]> {
         let is_too_long = |s: &Spring| self.is_too_long(x, s, share);
         let springs: Vec<Spring> = elements.all_springs().collect();
@@ -101,7 +101,7 @@ impl Tears {
     }
 }
 
-/// The pairs of particles that structural springs join, both ways, in order.
+/// Sorted pairs of particles that structural springs join, each in both orders.
 struct Neighbours(Vec<[usize; 2]>);
 
 impl Neighbours {

@@ -256,7 +256,7 @@ impl Simulation {
             return Ok(false);
         };
         network.check_particle(i)?;
-        network.check_led(i)?;
+        network.check_kinematic(i)?;
         let pinned = network.is_pinned(i);
         let grabbed = self.state.grabbed.as_mut();
         if let Some(grabbed) = grabbed.filter(|held| held.particle == i) {

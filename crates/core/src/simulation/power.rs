@@ -11,7 +11,7 @@
 use nalgebra::Vector3;
 
 use crate::contact::Obstacle;
-use crate::elements::Element;
+use crate::elements::force::{Force, Matter};
 use crate::energy::Energy;
 use crate::network::{Network, add_wind};
 use crate::path::Path;
@@ -93,20 +93,17 @@ fn moves(path: &Path) -> bool {
 
 /// Whether something other than pins on springs, and wind, works on a scene.
 fn works_together(network: &Network) -> bool {
-    let has = |is: fn(&Element) -> bool| network.elements().iter().any(is);
+    let has = |is: fn(&dyn Force) -> bool| {
+        let mut elements = network.elements().iter();
+        elements.any(|element| is(element.force()))
+    };
     let pinned = network.pins().any(|(_, path)| moves(&path));
     let pushed = !network.obstacles().iter().all(Obstacle::is_still);
     !network.constraints().is_empty()
-        || has(|e| matches!(e, Element::Attraction(_)))
+        || has(|force| force.is_driven() && !force.is_wind())
         || network.contact_layer().is_some() && pushed
         || !network.bodies().is_empty() && (pinned || network.wind().is_some())
-        || pinned
-            && has(|e| {
-                matches!(
-                    e,
-                    Element::Solid(_) | Element::BucklingSprings(_) | Element::Fluid(_)
-                )
-            })
+        || pinned && has(|force| matches!(force.matter(), Some(Matter::Elastic | Matter::Fluid)))
 }
 
 /// Work of moving pins on springs.

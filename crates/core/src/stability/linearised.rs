@@ -190,6 +190,10 @@ impl Mechanics for AtRest<'_> {
         self.force_differential(t, self.x, &self.zero, x, v, f);
     }
 
+    fn drag_coefficient(&self) -> f64 {
+        self.mechanics.drag_coefficient()
+    }
+
     fn pins(&self, _t: f64, visit: &mut dyn FnMut(usize, Place)) {
         for (k, w) in self.inverse_masses().iter().enumerate() {
             if *w == 0.0 {
@@ -209,7 +213,7 @@ impl Mechanics for AtRest<'_> {
 
 impl Splitting for AtRest<'_> {
     fn kick_forces(&self, t: f64, x: &[f64], v: &[f64], f: &mut [f64]) {
-        let drag = Linearized::drag_coefficient(self);
+        let drag = self.drag_coefficient();
         self.forces(t, x, v, f);
         for (f, v) in f.iter_mut().zip(v) {
             *f += drag * v;
@@ -221,7 +225,7 @@ impl Splitting for AtRest<'_> {
     }
 
     fn drift(&self, t: f64, h: f64, x: &mut [f64], v: &mut [f64]) {
-        let (drag, w) = (Linearized::drag_coefficient(self), self.inverse_masses());
+        let (drag, w) = (self.drag_coefficient(), self.inverse_masses());
         flow_each(drag, Vector3::zeros(), w, h, columns_mut(x), columns_mut(v));
         place_pins(self, t + h, x, v);
     }
@@ -243,9 +247,5 @@ impl Linearized for AtRest<'_> {
 
     fn couplings(&self, t: f64, _x: &[f64], clamped: bool, visit: &mut dyn FnMut(Coupling)) {
         self.mechanics.couplings(t, self.x, clamped, visit);
-    }
-
-    fn drag_coefficient(&self) -> f64 {
-        self.mechanics.drag_coefficient()
     }
 }

@@ -4,9 +4,10 @@ use std::cell::Cell;
 
 use super::limit::{HORIZON, STEPS};
 use super::observation::Observation;
-use crate::elements::Element;
+use crate::elements::Sheet;
 use crate::error::Error;
 use crate::integrators::Method;
+use crate::network::Element;
 use crate::scene::Model;
 use crate::simulation::Simulation;
 
@@ -124,18 +125,14 @@ impl Budget {
 /// Cost of an evaluation of a model.
 fn price(model: &Model) -> f64 {
     let each = model.network().map_or(1.0, |network| {
-        let any = |is: fn(&Element) -> bool| network.elements().iter().any(is);
+        let is_light = |element: &Element| {
+            element.get::<Sheet>().is_some() || element.force().drift_forces().is_some()
+        };
         if network.contact_layer().is_some() {
             CONTACT_PRICE
-        } else if any(|element| matches!(element, Element::Fluid(_))) {
+        } else if network.fluid().is_some() {
             FLUID_PRICE
-        } else if any(|element| {
-            let light = matches!(
-                element,
-                Element::Sheet(_) | Element::Gravity(_) | Element::Drag(_)
-            );
-            !light
-        }) {
+        } else if !network.elements().iter().all(is_light) {
             OTHER_PRICE
         } else {
             1.0

@@ -7,7 +7,7 @@ use super::eigenvalues::{MAX_ITERATIONS, PRECISIONS, eigenvalues};
 use super::mode::Mode;
 use super::normalised::{MIN_MIXING, Mixing, Normalised, dot, normalise};
 use super::pencil::Pencil;
-use crate::system::{Linearized, Mechanics, ParticleSystem, kick_reads_velocity};
+use crate::system::{Linearized, Mechanics, ParticleSystem, kick_reads_velocity, rigid_of};
 
 /// Largest number of products with the stiffness for a spectrum: enough for three exact digits of
 /// its ends on any cloth, and for a sample of its middle.
@@ -168,7 +168,7 @@ fn of_constraints(mechanics: &dyn Linearized) -> Option<Mode> {
 /// Jacobian, which is computed by central differences. It does not distinguish drag from other
 /// damping: all damping counts as that of springs if kicks depend on v, else as drag.
 fn of_jacobian(system: &dyn ParticleSystem, t: f64, y: &[f64]) -> Vec<Mode> {
-    let carried = |k: &usize| system.rigid().is_some_and(|rigid| rigid.is_carried(*k));
+    let carried = |k: &usize| rigid_of(system).is_some_and(|rigid| rigid.is_carried(*k));
     let unknowns: Vec<usize> = (0..y.len()).filter(|k| !carried(k)).collect();
     if unknowns.len() > MAX_DENSE_LENGTH {
         return vec![];
@@ -191,7 +191,7 @@ fn of_jacobian(system: &dyn ParticleSystem, t: f64, y: &[f64]) -> Vec<Mode> {
     }
     let scale = jacobian.amax();
     let eigenvalues = eigenvalues(&jacobian).into_iter();
-    let reads_velocity = match (system.rigid(), system.mechanics()) {
+    let reads_velocity = match (rigid_of(system), system.mechanics()) {
         (Some(rigid), _) => rigid.kick_reads_velocity(),
         (None, mechanics) => mechanics.is_some_and(kick_reads_velocity),
     };

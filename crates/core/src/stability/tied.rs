@@ -26,6 +26,10 @@ impl Mechanics for Tied {
         }
     }
 
+    fn drag_coefficient(&self) -> f64 {
+        self.0.drag
+    }
+
     fn pins(&self, _t: f64, visit: &mut dyn FnMut(usize, Place)) {
         visit(2, Place::still(Vector3::zeros()));
     }
@@ -56,10 +60,6 @@ impl Compliant for Tied {
 
     fn other_forces(&self, _t: f64, _x: &[f64], _v: &[f64], f: &mut [f64]) {
         f.fill(0.0);
-    }
-
-    fn drag_coefficient(&self) -> f64 {
-        self.0.drag
     }
 }
 
@@ -105,9 +105,5 @@ impl Linearized for Tied {
                 damping: self.0.damping,
             }));
         }
-    }
-
-    fn drag_coefficient(&self) -> f64 {
-        self.0.drag
     }
 }

@@ -227,6 +227,10 @@ impl Mechanics for Pair {
         }
     }
 
+    fn drag_coefficient(&self) -> f64 {
+        0.3
+    }
+
     fn pins(&self, _t: f64, visit: &mut dyn FnMut(usize, Place)) {
         visit(0, Place::still(Vector3::zeros()));
     }
@@ -243,10 +247,6 @@ impl Compliant for Pair {
 
     fn other_forces(&self, _t: f64, _x: &[f64], _v: &[f64], f: &mut [f64]) {
         f.fill(0.0);
-    }
-
-    fn drag_coefficient(&self) -> f64 {
-        0.3
     }
 }
 

@@ -4,7 +4,9 @@
 use std::time::Instant;
 
 use crate::common::{integrate, method, oscillator, scene, simulation};
-use a3_core::{Control, Coupling, Grid, Linearized, Network, Path, Sheet, Simulation, Vector3};
+use a3_core::{
+    Control, Coupling, Grid, Linearized, Mechanics, Network, Path, Sheet, Simulation, Vector3,
+};
 use a3_core::{Model, Scene};
 use approx::assert_relative_eq;
 

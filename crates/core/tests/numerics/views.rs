@@ -1,12 +1,10 @@
-//! Optional views, implemented by a system outside the core: a line of particles with kicks and
-//! drifts, products with its tangent, and steps row by row.
-
-use std::ops::Range;
+//! Optional views, implemented by a system outside the core: a line of particles that implements
+//! kicks and drifts, and its forces to first order.
 
 use crate::common::{distance, integrate, method, size};
 use a3_core::{
-    BlockCoupling, Coupling, Error, Linearized, Mechanics, Patch, Place, Refusal, Registers, Rows,
-    Splitting, Stage, SweepScratch, Terms, Vector3, integrators,
+    BlockCoupling, Coupling, Error, Linearized, Mechanics, Place, Refusal, Splitting, Vector3,
+    integrators,
 };
 
 /// Stiffness between neighbours (N/m): xx, yy, zz, xy, xz, yz.
@@ -19,8 +17,6 @@ const G: [f64; 3] = [0.5, -9.81, 0.0];
 struct Line {
     inverse_masses: Vec<f64>,
     has_views: bool,
-    /// Damping over stiffness (s).
-    damping_time: f64,
 }
 
 impl Line {
@@ -30,14 +26,6 @@ impl Line {
         Self {
             inverse_masses,
             has_views,
-            damping_time: 0.0,
-        }
-    }
-
-    fn damped(self) -> Self {
-        Self {
-            damping_time: 0.02,
-            ..self
         }
     }
 
@@ -74,9 +62,9 @@ fn force(above: [f64; 3], below: [f64; 3], g: bool) -> [f64; 3] {
 }
 
 impl Line {
-    fn add_up(&self, x: &[f64], v: &[f64], g: bool, f: &mut [f64]) {
+    fn add_up(&self, x: &[f64], g: bool, f: &mut [f64]) {
         let n = self.particles();
-        let at = |i| self.moved(row(x, i), row(v, i));
+        let at = |i| row(x, i);
         let mut above = [0.0; 3];
         for i in 0..n {
             let below = if i + 1 < n {
@@ -89,11 +77,6 @@ impl Line {
             above = below;
         }
     }
-
-    /// Position at which an undamped spring would pull as this one does at x with velocity v.
-    fn moved(&self, x: [f64; 3], v: [f64; 3]) -> [f64; 3] {
-        [0, 1, 2].map(|axis| x[axis] + self.damping_time * v[axis])
-    }
 }
 
 impl Mechanics for Line {
@@ -101,16 +84,12 @@ impl Mechanics for Line {
         &self.inverse_masses
     }
 
-    fn forces(&self, _t: f64, x: &[f64], v: &[f64], f: &mut [f64]) {
-        self.add_up(x, v, true, f);
+    fn forces(&self, _t: f64, x: &[f64], _v: &[f64], f: &mut [f64]) {
+        self.add_up(x, true, f);
     }
 
     fn pins(&self, _t: f64, visit: &mut dyn FnMut(usize, Place)) {
         visit(0, Place::still(Vector3::zeros()));
-    }
-
-    fn rows(&self) -> Option<&dyn Rows> {
-        self.has_views.then_some(self as &dyn Rows)
     }
 
     fn splitting(&self) -> Option<&dyn Splitting> {
@@ -131,12 +110,12 @@ fn fall(h: f64, x: &mut [f64], v: &mut [f64], g: f64) {
 }
 
 impl Splitting for Line {
-    fn kick_forces(&self, _t: f64, x: &[f64], v: &[f64], f: &mut [f64]) {
-        self.add_up(x, v, false, f);
+    fn kick_forces(&self, _t: f64, x: &[f64], _v: &[f64], f: &mut [f64]) {
+        self.add_up(x, false, f);
     }
 
     fn kick_reads_velocity(&self) -> bool {
-        self.damping_time > 0.0
+        false
     }
 
     fn drift(&self, _t: f64, h: f64, x: &mut [f64], v: &mut [f64]) {
@@ -156,10 +135,10 @@ impl Linearized for Line {
         _x: &[f64],
         _v: &[f64],
         dx: &[f64],
-        dv: &[f64],
+        _dv: &[f64],
         df: &mut [f64],
     ) {
-        self.add_up(dx, dv, false, df);
+        self.add_up(dx, false, df);
     }
 
     fn couplings(&self, _t: f64, _x: &[f64], _clamped: bool, visit: &mut dyn FnMut(Coupling)) {
@@ -170,131 +149,6 @@ impl Linearized for Line {
                 stiffness: K,
                 damping: [0.0; 6],
             }));
-        }
-    }
-}
-
-/// Rows of one particle each.
-impl Rows for Line {
-    fn patches(&self) -> usize {
-        1
-    }
-
-    fn patch(&self, _patch: usize) -> Patch {
-        Patch {
-            first: 0,
-            rows: self.particles(),
-            cols: 1,
-        }
-    }
-
-    /// Columns for the pull of the particle above, one for each axis.
-    fn kept_columns(&self) -> usize {
-        3
-    }
-
-    fn begin(&self, _patch: usize, scratch: &mut SweepScratch) {
-        scratch.clear_kept();
-    }
-
-    fn drift(
-        &self,
-        _patch: usize,
-        terms: Terms,
-        (_, h): (f64, f64),
-        row: usize,
-        registers: &mut Registers,
-    ) {
-        let [x, y, z, u, v, w] = registers.stage_mut(row);
-        for (axis, (x, v)) in [(x, u), (y, v), (z, w)].into_iter().enumerate() {
-            if terms == Terms::KickForces {
-                fall(h, x, v, G[axis]);
-            } else {
-                x[0] += h * v[0];
-            }
-            if row == 0 {
-                (x[0], v[0]) = (0.0, 0.0);
-            }
-        }
-    }
-
-    fn advance(
-        &self,
-        patch: usize,
-        number: usize,
-        stage: &Stage,
-        rows: Range<usize>,
-        registers: &mut Registers,
-        scratch: &mut SweepScratch,
-    ) {
-        for row in rows {
-            let at = |row| {
-                let [x, y, z, u, v, w] = registers.stage(row);
-                self.moved([x[0], y[0], z[0]], [u[0], v[0], w[0]])
-            };
-            let below = if row + 1 < self.particles() {
-                product(difference(at(row), at(row + 1)))
-            } else {
-                [0.0; 3]
-            };
-            let above = [0, 1, 2]
-                .map(|axis| std::mem::replace(&mut scratch.kept_mut(number, axis)[0], below[axis]));
-            let w = self.inverse_masses[row];
-            let a = force(above, below, stage.terms != Terms::KickForces).map(|f| [f * w]);
-            registers.advance(stage, row, [&a[0], &a[1], &a[2]]);
-            if stage.drift != 0.0 {
-                let times = (stage.t, stage.drift);
-                Rows::drift(self, patch, stage.terms, times, row, registers);
-            }
-            if row == 0 {
-                for column in registers.stage_mut(row) {
-                    column[0] = 0.0;
-                }
-            }
-        }
-    }
-}
-
-#[test]
-fn rows_step_to_the_bits_of_whole_arrays() {
-    struct WholeArrays(Line);
-    impl Mechanics for WholeArrays {
-        fn inverse_masses(&self) -> &[f64] {
-            self.0.inverse_masses()
-        }
-        fn forces(&self, t: f64, x: &[f64], v: &[f64], f: &mut [f64]) {
-            self.0.forces(t, x, v, f);
-        }
-        fn pins(&self, t: f64, visit: &mut dyn FnMut(usize, Place)) {
-            Mechanics::pins(&self.0, t, visit);
-        }
-        fn splitting(&self) -> Option<&dyn Splitting> {
-            Some(&self.0)
-        }
-    }
-    // The longest line is stepped in bands, one for each thread.
-    for particles in [1, 2, 9, 5000] {
-        let y = Line::new(particles, true).state();
-        for name in [
-            "euler",
-            "heun",
-            "rk4",
-            "symplectic-euler",
-            "verlet",
-            "pefrl",
-        ] {
-            for damped in [false, true] {
-                let line = || {
-                    let line = Line::new(particles, true);
-                    if damped { line.damped() } else { line }
-                };
-                let found = integrate(&line(), method(name), &y, 1e-2, 7);
-                let expected = integrate(&WholeArrays(line()), method(name), &y, 1e-2, 7);
-                assert!(
-                    found == expected,
-                    "{name}, {particles} particles, damped {damped}"
-                );
-            }
         }
     }
 }

@@ -130,23 +130,24 @@ fn rows_are_offered_where_nothing_joins_them() {
     let has_rows = |change: &dyn Fn(&mut Network)| {
         let mut changed = network.clone();
         change(&mut changed);
-        Mechanics::rows(&changed).map(a3_core::Rows::patches)
+        Mechanics::rows(&changed).is_some()
     };
-    assert_eq!(has_rows(&|_| ()), Some(3));
-    assert_eq!(has_rows(&|n| n.set_wind(None)), Some(3));
-    assert_eq!(has_rows(&|n| n.add_springs([]).unwrap()), Some(3));
+    assert_eq!(network.sheets().count(), 3);
+    assert!(has_rows(&|_| ()));
+    assert!(has_rows(&|n| n.set_wind(None)));
+    assert!(has_rows(&|n| n.add_springs([]).unwrap()));
     let law = SpringLaw::new(1.0, 1.0, 0.0).unwrap();
     let (i, j, kind) = (0, 1, SpringKind::Bend);
     let spring = Spring { kind, i, j, law };
-    assert_eq!(has_rows(&|n| n.add_spring(spring).unwrap()), None);
+    assert!(!has_rows(&|n| n.add_spring(spring).unwrap()));
     let broken = |n: &mut Network| {
         n.add_spring(spring).unwrap();
         n.break_springs(&[[0, 1]]).unwrap();
     };
-    assert_eq!(has_rows(&broken), Some(3));
+    assert!(has_rows(&broken));
     let air = Air::new(1.2, 1.0, 0.0).unwrap();
     let wind = Wind::on_triangles(1, Vector3::z(), air);
-    assert_eq!(has_rows(&|n| n.set_wind(Some(wind))), None);
+    assert!(!has_rows(&|n| n.set_wind(Some(wind))));
     let mut more = Network::new(vec![1.0; 5]).unwrap();
     let sheet = Sheet::new(Grid::new(2, 2).unwrap(), 1.0, [1.0; 3], 0.0).unwrap();
     more.add(sheet.clone().starting_at(1)).unwrap();

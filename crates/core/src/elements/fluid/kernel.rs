@@ -4,20 +4,20 @@
 //! pairing instability*, 2012).
 
 /// Reach of the kernel over the spacing of the particles.
-const REACH: f64 = 2.6;
+const RELATIVE_REACH: f64 = 2.6;
 
-/// Wendland's kernel, with the factor s by which a lattice of the spacing has a density of exactly
-/// one particle in each of its cells.
+/// Wendland's kernel. The factor s makes the density of a lattice of particles at the spacing
+/// exactly one particle a cell.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Kernel {
-    /// Distance from which on it is 0 (m).
+    /// Distance (m) from which on the kernel is 0.
     pub reach: f64,
     /// Factor s (1/m^2 or 1/m^3).
     factor: f64,
 }
 
 impl Kernel {
-    /// Kernel in two or three dimensions for particles at that spacing (m).
+    /// Creates the kernel in two or three dimensions for particles at a spacing (m).
     pub fn new(dimensions: u8, spacing: f64) -> Self {
         let places = || -2..=2_i32;
         let mut sum = 0.0;
@@ -25,32 +25,32 @@ impl Kernel {
             for y in places() {
                 for z in places().filter(|z| dimensions == 3 || *z == 0) {
                     let square = f64::from(x * x + y * y + z * z);
-                    sum += shape(square.sqrt() / REACH);
+                    sum += shape(square.sqrt() / RELATIVE_REACH);
                 }
             }
         }
         let cell = spacing.powi(i32::from(dimensions));
         Self {
-            reach: REACH * spacing,
+            reach: RELATIVE_REACH * spacing,
             factor: 1.0 / (sum * cell),
         }
     }
 
-    /// W at a distance r (m) less than the reach.
+    /// Returns W at a distance r (m) less than the reach.
     #[inline]
     pub fn value(&self, r: f64) -> f64 {
         self.factor * shape(r / self.reach)
     }
 
-    /// W' / r at a distance r (m) less than the reach: the gradient of W is this times the vector
-    /// of length r.
+    /// Returns W' / r at a distance r (m) less than the reach. The gradient of W is this times the
+    /// vector of length r.
     #[inline]
     pub fn slope(&self, r: f64) -> f64 {
         let rest = 1.0 - r / self.reach;
         -20.0 * self.factor / (self.reach * self.reach) * (rest * rest * rest)
     }
 
-    /// The derivative of [`slope`](Self::slope) with respect to r.
+    /// Returns the derivative of [`slope`](Self::slope) with respect to r.
     #[inline]
     pub fn bend(&self, r: f64) -> f64 {
         let rest = 1.0 - r / self.reach;
@@ -58,7 +58,7 @@ impl Kernel {
     }
 }
 
-/// (1 - q)^4 (1 + 4 q), and 0 from q = 1 on.
+/// Returns (1 - q)^4 (1 + 4 q), and 0 from q = 1 on.
 #[inline]
 fn shape(q: f64) -> f64 {
     let rest = (1.0 - q).max(0.0);
@@ -72,7 +72,7 @@ mod tests {
     use approx::assert_relative_eq;
     use std::f64::consts::PI;
 
-    /// The factor that a lattice gives is near that of the integral of W over all space.
+    /// The factor from the lattice is near the one that makes the integral of W 1.
     #[test]
     fn the_kernel_has_an_integral_near_one() {
         for (dimensions, integral) in [(2, PI / 7.0), (3, 2.0 * PI / 21.0)] {

@@ -1,11 +1,11 @@
-//! The law of a fluid: Tait's equation of state, by which its pressure grows steeply with its
-//! density, and its viscosity.
+//! The law of a fluid: its viscosity, and Tait's equation of state, by which the pressure grows
+//! steeply with the density.
 
 use super::kernel::Kernel;
 use crate::error::{Error, at_least, positive};
 
 /// Law of a weakly compressible fluid. With s = rho / rho0, its pressure is
-/// p = rho0 c^2 / 7 (s^7 - 1), and none where it is less dense than at rest, as at its surface.
+/// p = rho0 c^2 / 7 (s^7 - 1), and 0 where it is less dense than at rest, as at its surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FluidLaw {
     /// Number of dimensions, 2 or 3. In two, the fluid is a sheet across z, 1 m deep.
@@ -21,7 +21,7 @@ pub struct FluidLaw {
 }
 
 impl FluidLaw {
-    /// `Ok` if a fluid can have this law.
+    /// Checks the numbers of the law.
     ///
     /// # Errors
     /// The dimensions are not 2 or 3; the spacing, the density or the speed of sound is not a
@@ -35,7 +35,7 @@ impl FluidLaw {
         positive("the density of a fluid", self.density)?;
         positive("the speed of sound of a fluid", self.sound)?;
         at_least(0.0, "the viscosity of a fluid", self.viscosity)?;
-        // The largest numbers of the forces on a particle, and its mass.
+        // The largest numbers in the forces on a particle, and its mass.
         let pushes = self.sound * self.sound / self.density + self.viscous_factor();
         let largest = pushes * self.kernel().bend(0.0) * self.mass();
         if largest.is_finite() && self.mass().recip().is_finite() {
@@ -48,42 +48,43 @@ impl FluidLaw {
         )))
     }
 
-    /// Mass of each particle (kg): that of a cell of the lattice at rest.
+    /// Returns the mass of each particle (kg): that of a cell of the lattice at rest.
     #[must_use]
     pub fn mass(&self) -> f64 {
         self.density * self.spacing.powi(i32::from(self.dimensions))
     }
 
-    /// Kernel of the fluid.
+    /// Returns the kernel of the fluid.
     pub(super) fn kernel(&self) -> Kernel {
         Kernel::new(self.dimensions, self.spacing)
     }
 
-    /// Factor of the viscous force (m^5/(kg s)): 2 (dimensions + 2) nu / rho0, so that the force
-    /// tends to that of the viscosity (Monaghan, *Smoothed particle hydrodynamics*, 2005).
+    /// Returns the factor of the viscous force (m^5/(kg s)): 2 (dimensions + 2) nu / rho0, with
+    /// which the sum converges to the viscous force of a continuum (Monaghan, *Smoothed particle
+    /// hydrodynamics*, 2005).
     pub(super) fn viscous_factor(&self) -> f64 {
         2.0 * f64::from(self.dimensions + 2) * self.viscosity / self.density
     }
 
-    /// rho0 c^2 / 7 (Pa).
+    /// Returns rho0 c^2 / 7 (Pa).
     fn modulus(&self) -> f64 {
         self.density * self.sound * self.sound / 7.0
     }
 
-    /// Pressure (Pa) at a density (kg/m3).
+    /// Returns the pressure (Pa) at a density (kg/m3).
     pub(super) fn pressure(&self, density: f64) -> f64 {
         let s = density / self.density;
         let more = (s - 1.0).max(0.0);
         self.modulus() * more * horner(s, [1.0; 7])
     }
 
-    /// p / rho^2 (m^5/(kg s^2)) at a density (kg/m3).
+    /// Returns p / rho^2 (m^5/(kg s^2)) at a density (kg/m3).
     #[inline]
     pub(super) fn push(&self, density: f64) -> f64 {
         self.pressure(density) / (density * density)
     }
 
-    /// The derivative of [`push`](Self::push) with respect to the density.
+    /// Returns the derivative of [`push`](Self::push) with respect to the density.
     #[inline]
     pub(super) fn push_slope(&self, density: f64) -> f64 {
         if density <= self.density {
@@ -95,7 +96,7 @@ impl FluidLaw {
         (slope - 2.0 * self.pressure(density) / density) / (density * density)
     }
 
-    /// Energy of each kilogram (J/kg) at a density (kg/m3), the integral of p / rho^2: with
+    /// Returns the energy per mass (J/kg) at a density (kg/m3), the integral of p / rho^2: with
     /// d = s - 1, c^2 / 42 d^2 / s (6 + 5 s + 4 s^2 + 3 s^3 + 2 s^4 + s^5).
     pub(super) fn energy(&self, density: f64) -> f64 {
         let s = density / self.density;
@@ -105,7 +106,7 @@ impl FluidLaw {
     }
 }
 
-/// The polynomial with these coefficients, that of the highest power first.
+/// Returns the polynomial with these coefficients, that of the highest power first.
 #[inline]
 fn horner<const N: usize>(s: f64, coefficients: [f64; N]) -> f64 {
     coefficients.iter().fold(0.0, |sum, c| sum * s + c)
@@ -127,7 +128,7 @@ mod tests {
     #[test]
     fn the_pressure_is_that_of_tait() {
         for s in [0.5_f64, 1.0, 1.001, 1.1] {
-            // Powers may be rounded in any way.
+            // The rounding of powers is not specified.
             let expected = 1000.0 * 900.0 / 7.0 * (s.powi(7) - 1.0).max(0.0);
             let pressure = WATER.pressure(1000.0 * s);
             assert_relative_eq!(pressure, expected, max_relative = 1e-12, epsilon = 1e-9);

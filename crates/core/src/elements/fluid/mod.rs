@@ -1,75 +1,66 @@
 //! Fluid as smoothed particles. The density at a particle is the sum of the kernel over it and its
 //! neighbours, and the energy is that of Tait's equation at these densities. The pressure forces
-//! are its exact gradient, so that a symplectic method keeps the energy. Viscosity acts along the
-//! line between two particles, in proportion to the rate at which they approach, and keeps momentum
-//! and angular momentum. With `d = x_i - x_j`, `r = |d|` and `v = v_i - v_j`:
+//! are its exact gradient, so that a symplectic method conserves the energy. Viscosity acts along
+//! the line between two particles, in proportion to the rate at which they approach, and conserves
+//! momentum and angular momentum. With `d = x_i - x_j`, `r = |d|` and `v = v_i - v_j`:
 //!
 //! ```text
 //! rho_i = m sum W(r)         U = m sum e(rho_i)         e'(rho) = p / rho^2
 //! F_i = -m^2 sum (p_i / rho_i^2 + p_j / rho_j^2 - k (v . d) / (r^2 + s^2)) grad W
 //! ```
 //!
-//! After Monaghan, *Smoothed particle hydrodynamics*, 2005. Walls are particles that are pinned.
+//! After Monaghan, *Smoothed particle hydrodynamics*, 2005. Walls are pinned particles.
 
 mod kernel;
 mod law;
 mod neighbours;
 
-use std::sync::{Mutex, PoisonError};
-
-use super::force::{At, Cost, Force, check_particle};
+use super::force::{At, Cost, Force, Matter, check_particle};
 use crate::energy::Energy;
 use crate::error::Error;
+use crate::scratch::Scratch;
 use crate::threads::threads;
 use kernel::Kernel;
 use neighbours::{Neighbours, Triple};
 
 pub use law::FluidLaw;
 
-/// Work on a particle of fluid over that on one of a sheet: threads pay sooner.
-const WEIGHT: usize = 16;
-/// Softening of the viscous force over the reach of the kernel: a tenth of its half (Monaghan).
+/// Work on a particle of fluid, over that on a particle of a sheet. Threads pay for fewer
+/// particles.
+const RELATIVE_WORK: usize = 16;
+/// Length s that softens the viscous force, over the reach of the kernel: a tenth of half of it
+/// (Monaghan).
 const SOFTENING: f64 = 0.05;
 
-/// Fluid of one law, made of some of the particles of a network, pinned ones among them.
-#[derive(Debug)]
+/// Fluid of one law, in some particles of a network. Pinned ones among them are walls.
+#[derive(Clone, Debug)]
 pub struct Fluid {
     law: FluidLaw,
     kernel: Kernel,
     particles: Vec<u32>,
-    /// Scratch that is no part of the value: neighbours, and what is summed over them.
-    scratch: Mutex<Scratch>,
+    scratch: Scratch<Buffers>,
 }
 
-#[derive(Debug, Default)]
-struct Scratch {
+/// Neighbours of each particle of the fluid, and quantities of the particles.
+#[derive(Default)]
+struct Buffers {
     neighbours: Neighbours,
     x: Vec<Triple>,
     v: Vec<Triple>,
     dx: Vec<Triple>,
     dv: Vec<Triple>,
     densities: Vec<f64>,
-    /// p / rho^2 of each particle, or its change.
+    /// p / rho^2 of each particle (m^5/(kg s^2)), or its differential.
     pushes: Vec<f64>,
     changes: Vec<f64>,
     out: Vec<Triple>,
 }
 
-impl Clone for Fluid {
-    fn clone(&self) -> Self {
-        Self {
-            particles: self.particles.clone(),
-            scratch: Mutex::default(),
-            ..*self
-        }
-    }
-}
-
 impl Fluid {
-    /// Fluid of a law in particles of these numbers, each of [its mass](FluidLaw::mass).
+    /// Creates a fluid of a law in particles of these numbers, each of [its mass](FluidLaw::mass).
     ///
     /// # Errors
-    /// The law makes no sense, or a particle is named twice.
+    /// A number of the law is out of its range, or a particle is named twice.
     pub fn new(law: FluidLaw, mut particles: Vec<u32>) -> Result<Self, Error> {
         law.check()?;
         particles.sort_unstable();
@@ -82,38 +73,38 @@ impl Fluid {
             kernel: law.kernel(),
             law,
             particles,
-            scratch: Mutex::default(),
+            scratch: Scratch::default(),
         })
     }
 
-    /// Law of the fluid.
+    /// Returns the law of the fluid.
     #[must_use]
     pub fn law(&self) -> &FluidLaw {
         &self.law
     }
 
-    /// Numbers of its particles, in order.
+    /// Returns the numbers of the fluid's particles, in order.
     #[must_use]
     pub fn particles(&self) -> &[u32] {
         &self.particles
     }
 
-    /// Whether particle i is in it.
+    /// Whether particle i is of the fluid.
     #[must_use]
     pub fn contains(&self, i: usize) -> bool {
         self.particles.binary_search(&(i as u32)).is_ok()
     }
 
-    /// Density (kg/m3) at each particle at x (m), n x 3.
+    /// Returns the density (kg/m3) at each particle at x (m), n x 3.
     #[must_use]
     pub fn densities(&self, x: &[f64]) -> Vec<f64> {
-        self.with_scratch(|scratch| {
-            self.weigh(x, scratch);
-            scratch.densities.clone()
+        self.scratch.lend(|buffers| {
+            self.weigh(x, buffers);
+            buffers.densities.clone()
         })
     }
 
-    /// Pressure (Pa) at each particle at x (m), n x 3.
+    /// Returns the pressure (Pa) at each particle at x (m), n x 3.
     #[must_use]
     pub fn pressures(&self, x: &[f64]) -> Vec<f64> {
         let densities = self.densities(x);
@@ -123,18 +114,18 @@ impl Fluid {
             .collect()
     }
 
-    /// The particle nearest to another one and their distance (m), for the pair that is the
-    /// nearest of all, if two are within the kernel's reach at x (m), n x 3.
+    /// Returns the two particles that are nearest to each other at x (m), n x 3, and their distance
+    /// (m); `None` if no two are within the kernel's reach.
     #[must_use]
     pub fn nearest_pair(&self, x: &[f64]) -> Option<([u32; 2], f64)> {
-        self.with_scratch(|scratch| {
-            self.place(x, &mut scratch.x);
-            let x = &scratch.x;
-            scratch
+        self.scratch.lend(|buffers| {
+            self.place(x, &mut buffers.x);
+            let x = &buffers.x;
+            buffers
                 .neighbours
                 .cover(x, self.kernel.reach, self.is_shared());
             let mut nearest = vec![(f64::INFINITY, 0); x.len()];
-            scratch
+            buffers
                 .neighbours
                 .map(&mut nearest, self.is_shared(), |i, near| {
                     let of = |j: &u32| (neighbours::squared_distance(&x[i], &x[*j as usize]), *j);
@@ -150,19 +141,9 @@ impl Fluid {
         })
     }
 
-    /// Lends the scratch. The lock is not held during `work`: a concurrent caller gets fresh
-    /// scratch.
-    fn with_scratch<R>(&self, work: impl FnOnce(&mut Scratch) -> R) -> R {
-        let lock = || self.scratch.lock().unwrap_or_else(PoisonError::into_inner);
-        let mut scratch = std::mem::take(&mut *lock());
-        let result = work(&mut scratch);
-        *lock() = scratch;
-        result
-    }
-
     /// Whether threads share the work.
     fn is_shared(&self) -> bool {
-        threads(WEIGHT * self.particles.len()) > 1
+        threads(RELATIVE_WORK * self.particles.len()) > 1
     }
 
     /// Copies the rows of the fluid's particles from an n x 3 matrix. In two dimensions z is 0.
@@ -186,14 +167,14 @@ impl Fluid {
         }
     }
 
-    /// Finds the neighbours at x (m), n x 3, and the densities.
-    fn weigh(&self, x: &[f64], scratch: &mut Scratch) {
-        let Scratch {
+    /// Finds the neighbours and the densities at x (m), n x 3.
+    fn weigh(&self, x: &[f64], buffers: &mut Buffers) {
+        let Buffers {
             neighbours,
             x: places,
             densities,
             ..
-        } = scratch;
+        } = buffers;
         self.place(x, places);
         let (kernel, mass, shared) = (self.kernel, self.law.mass(), self.is_shared());
         neighbours.cover(places, kernel.reach, shared);
@@ -206,8 +187,8 @@ impl Fluid {
     }
 }
 
-/// Visits the particles within the reach of particle i: the number of each, the vector from it, and
-/// the distance (m).
+/// Visits the particles within the kernel's reach of particle i: the number of each, the vector
+/// from it to i, and the distance (m).
 #[inline]
 fn each(
     kernel: Kernel,
@@ -249,15 +230,19 @@ impl Force for Fluid {
         "fluid"
     }
 
+    fn matter(&self) -> Option<Matter> {
+        Some(Matter::Fluid)
+    }
+
     fn check(&self, particles: usize) -> Result<(), Error> {
         let mut all = self.particles.iter();
         all.try_for_each(|i| check_particle(*i as usize, particles))
     }
 
     fn add_forces(&self, at: &At, f: &mut [f64]) {
-        self.with_scratch(|scratch| {
-            self.weigh(at.x, scratch);
-            let Scratch {
+        self.scratch.lend(|buffers| {
+            self.weigh(at.x, buffers);
+            let Buffers {
                 neighbours,
                 x,
                 v,
@@ -265,7 +250,7 @@ impl Force for Fluid {
                 pushes,
                 out,
                 ..
-            } = scratch;
+            } = buffers;
             self.place(at.v, v);
             pushes.clear();
             pushes.extend(densities.iter().map(|density| self.law.push(*density)));
@@ -292,9 +277,9 @@ impl Force for Fluid {
 
     /// With s the factor of d = `x_i` - `x_j` in the force of a pair, dF = ds d + s dd.
     fn add_differential(&self, at: &At, [dx, dv]: [&[f64]; 2], df: &mut [f64]) {
-        self.with_scratch(|scratch| {
-            self.weigh(at.x, scratch);
-            let Scratch {
+        self.scratch.lend(|buffers| {
+            self.weigh(at.x, buffers);
+            let Buffers {
                 neighbours,
                 x,
                 v,
@@ -304,7 +289,7 @@ impl Force for Fluid {
                 pushes,
                 changes,
                 out,
-            } = scratch;
+            } = buffers;
             for (from, to) in [(at.v, &mut *v), (dx, &mut *dplaces), (dv, &mut *dspeeds)] {
                 self.place(from, to);
             }
@@ -327,7 +312,7 @@ impl Force for Fluid {
                 let mut sum = [0.0; 3];
                 each(kernel, x, i, near, |j, d, r| {
                     let dd = minus(dplaces[i], dplaces[j]);
-                    // The change of r, which is none where two particles are at the same place.
+                    // The differential of r, taken as 0 for two particles at the same place.
                     let dr = if r > 0.0 { dot(d, dd) / r } else { 0.0 };
                     let (mut push, mut dpush) = (pushes[i] + pushes[j], changes[i] + changes[j]);
                     if viscous > 0.0 {
@@ -347,6 +332,11 @@ impl Force for Fluid {
             });
             self.add(out, df);
         });
+    }
+
+    /// Returns each particle acts on the neighbours of its neighbours, too.
+    fn lists_all_couplings(&self) -> bool {
+        false
     }
 
     fn energy(&self, at: &At) -> Energy {

@@ -1,21 +1,21 @@
-//! Neighbours of the particles of a fluid: from a grid of cells, kept in lists while nothing has
-//! moved far. A list is in the order of the particles' numbers and holds every particle that is
-//! near enough, so that no sum depends on when it was made or who made it.
+//! Neighbours of the particles of a fluid. They are found by a grid of cells, and listed until a
+//! particle has moved too far. A list is in the order of the particles' numbers and holds every
+//! particle that is near enough, so that no sum depends on when or by which thread it was made.
 
 use rayon::prelude::*;
 
-/// Distance (in reaches) by which lists reach farther than is asked for: they hold until a particle
+/// Distance by which lists go beyond the reach, over the reach. They stay valid until a particle
 /// has moved by half of it.
 const SKIN: f64 = 0.12;
-/// Share of that distance that a particle may move: a little less than half, for rounding.
-const MOVED: f64 = 0.499;
+/// Fraction of that distance that a particle may move: a little less than half, for rounding.
+const MAX_MOTION: f64 = 0.499;
 /// Number of particles whose lists are made together.
 const CHUNK: usize = 256;
-/// Largest mean number of neighbours of a chunk that are listed: where particles are crowded
-/// together more, they are looked up in the grid each time.
-const MOST: usize = 400;
-/// Cells beyond this number from the origin hold no particles: one so far away has no neighbours.
-const FAR: f64 = 1e12;
+/// Largest mean number of neighbours in a chunk that is listed. Neighbours of more crowded
+/// particles are looked up in the grid each time.
+const MAX_LISTED: usize = 400;
+/// Largest distance from the origin, in cells, at which neighbours are found.
+const MAX_CELL: f64 = 1e12;
 
 /// A position or a velocity.
 pub(super) type Triple = [f64; 3];
@@ -37,14 +37,15 @@ struct List {
     /// End of the neighbours of each particle.
     ends: Vec<u32>,
     all: Vec<u32>,
-    /// Whether there are too many to be listed.
+    /// Whether there are too many neighbours to be listed.
     crowded: bool,
 }
 
 impl Neighbours {
-    /// Makes sure that all pairs of particles at x less than `reach` (m) apart are found.
+    /// Renews the lists where necessary, so that they hold all pairs of particles at x less than
+    /// `reach` (m) apart.
     pub fn cover(&mut self, x: &[Triple], reach: f64, parallel: bool) {
-        let most = (MOVED * SKIN * reach).powi(2);
+        let most = (MAX_MOTION * SKIN * reach).powi(2);
         let listed = (1.0 + SKIN) * reach;
         let still = |(x, at): (&Triple, &Triple)| squared_distance(x, at) <= most;
         if self.reach == listed && self.at.len() == x.len() && x.iter().zip(&self.at).all(still) {
@@ -65,8 +66,8 @@ impl Neighbours {
         }
     }
 
-    /// Writes what `find` makes of each particle and those near it, which are in the order of their
-    /// numbers and may be a little farther away than was asked for.
+    /// Writes the results of `find` for each particle and those near it, which are in the order of
+    /// their numbers, and of which some are a little farther away than the reach.
     pub fn map<R: Send>(
         &self,
         out: &mut [R],
@@ -104,7 +105,7 @@ impl List {
         for i in first..at.len().min(first + CHUNK) {
             let start = self.all.len();
             cells.add(i, at, &mut self.all);
-            if self.all.len() > MOST * CHUNK {
+            if self.all.len() > MAX_LISTED * CHUNK {
                 self.crowded = true;
                 self.all.truncate(start);
                 return;
@@ -114,13 +115,13 @@ impl List {
     }
 }
 
-/// Grid of cells as wide as neighbours are apart, wound around a torus where it would be too large.
+/// Grid of cells as wide as the reach, wound around a torus where it would be too large.
 #[derive(Debug, Default)]
 struct Cells {
     size: f64,
     /// Number of cells along each axis: 1, or at least 3.
     counts: [usize; 3],
-    /// Begin of each cell's particles in `order`.
+    /// Start of each cell's particles in `order`.
     starts: Vec<u32>,
     /// Particles cell by cell, in each cell in the order of their numbers.
     order: Vec<u32>,
@@ -132,7 +133,7 @@ struct Cells {
 const NOWHERE: u32 = u32::MAX;
 
 impl Cells {
-    /// Sorts particles at x into cells of that size (m).
+    /// Sorts particles at x into cells of a size (m).
     fn fill(&mut self, x: &[Triple], size: f64) {
         self.size = size;
         let mut bounds = [(f64::INFINITY, f64::NEG_INFINITY); 3];
@@ -165,7 +166,7 @@ impl Cells {
         for cell in of.iter().filter(|cell| **cell != NOWHERE) {
             self.starts[*cell as usize] += 1;
         }
-        // The begins are counted down from the ends, from the last particle to the first.
+        // The starts are counted down from the ends, from the last particle to the first.
         let mut end = 0;
         for start in &mut self.starts {
             end += *start;
@@ -183,13 +184,13 @@ impl Cells {
         self.of = of;
     }
 
-    /// Cell of a position along each axis; `None` if it is too far away.
+    /// Returns the cell of a position along each axis; `None` if it is too far away.
     fn place(&self, x: &Triple) -> Option<Triple> {
         let place = x.map(|x| (x / self.size).floor());
-        place.iter().all(|at| at.abs() < FAR).then_some(place)
+        place.iter().all(|at| at.abs() < MAX_CELL).then_some(place)
     }
 
-    /// Number of a cell.
+    /// Returns the number of a cell.
     fn cell(&self, place: Triple) -> usize {
         let along =
             |axis: usize| (place[axis] as i64).rem_euclid(self.counts[axis] as i64) as usize;
@@ -222,14 +223,14 @@ impl Cells {
         found[start..].sort_unstable();
     }
 
-    /// The particles less than a cell's size from particle i, in the order of their numbers.
+    /// Finds the particles less than a cell's size from particle i, in the order of their numbers.
     fn find(&self, i: usize, x: &[Triple], found: &mut Vec<u32>) {
         found.clear();
         self.add(i, x, found);
     }
 }
 
-/// Square of the distance (m2) of two points.
+/// Returns the square of the distance (m2) of two points.
 #[inline]
 pub(super) fn squared_distance(a: &Triple, b: &Triple) -> f64 {
     let [x, y, z] = [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
@@ -241,7 +242,7 @@ mod tests {
     use super::*;
     use crate::random::SplitMix;
 
-    /// All pairs less than `reach` apart, found one by one.
+    /// Finds all pairs less than `reach` apart, one by one.
     fn oracle(x: &[Triple], reach: f64) -> Vec<Vec<u32>> {
         let of = |i: usize| {
             let near = |j: &usize| *j != i && squared_distance(&x[i], &x[*j]) < reach * reach;

@@ -1,5 +1,5 @@
-//! Blocks of springs, and what is summed over them. What is plain code here is compiled for the
-//! processor's vectors, because it is inlined into `pulp`'s dispatch.
+//! Blocks of springs, and the sums over them. The plain code here is compiled for SIMD vectors,
+//! because it is inlined into `pulp`'s dispatch.
 
 #![expect(
     clippy::inline_always,
@@ -14,12 +14,12 @@ use super::laws::{self, BLOCK, Each, Factors, Kernels, Laws, Products, Quantity}
 use crate::fused::mul_add;
 use crate::spring::Spring;
 
-/// Three numbers of a particle and a zero, in one line of the cache.
+/// Three numbers of a particle and a zero, within one cache line.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[repr(align(32))]
 pub(super) struct Numbers(pub [f64; 4]);
 
-/// Springs one after another. Blocks that are not full end with springs from a particle to itself.
+/// Springs in blocks. The last ones of a block that is not full join a particle to itself.
 #[derive(Debug, Default)]
 pub(super) struct Blocks {
     ends: Vec<Each<[u32; 2]>>,
@@ -27,12 +27,12 @@ pub(super) struct Blocks {
 }
 
 impl Blocks {
-    /// Number of blocks.
+    /// Returns the number of blocks.
     pub fn len(&self) -> usize {
         self.ends.len()
     }
 
-    /// Adds a block of springs with their ends, which are counted from a particle on.
+    /// Adds a block of springs with their ends, which are numbered from the particle `start` on.
     pub fn push(&mut self, springs: &[([u32; 2], &Spring)], start: u32) {
         let own = |m: usize| {
             let ends = springs.get(m).map(|(ends, _)| *ends);
@@ -44,7 +44,8 @@ impl Blocks {
     }
 }
 
-/// The forces of blocks of springs, added to f: of x and v, or their change by dx and dv.
+/// Task that adds the forces of blocks of springs at x and v to f, or their differential for dx and
+/// dv.
 pub(super) struct Sum<'a> {
     pub blocks: &'a Blocks,
     pub which: Range<usize>,
@@ -163,7 +164,7 @@ fn dot(Numbers(a): Numbers, Numbers(b): Numbers) -> f64 {
     mul_add(a[2], b[2], mul_add(a[1], b[1], a[0] * b[0]))
 }
 
-/// a + s b.
+/// Returns a + s b.
 #[inline(always)]
 fn plus(Numbers(a): Numbers, s: f64, Numbers(b): Numbers) -> Numbers {
     Numbers([

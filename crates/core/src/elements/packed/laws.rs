@@ -1,4 +1,4 @@
-//! The laws of springs in blocks, and what follows from them and a few scalar products.
+//! The laws of springs in blocks, and the forces that follow from them and a few scalar products.
 
 #![expect(
     clippy::inline_always,
@@ -14,21 +14,22 @@ use crate::elements::inverse_root::inverse_root;
 use crate::fused::mul_add;
 use crate::spring::Spring;
 
-/// Springs of a block: what is kept of them between the passes over it stays in the nearest cache.
+/// Number of springs of a block, whose numbers stay in the first-level cache between the passes
+/// over it.
 pub(super) const BLOCK: usize = 64;
 
-/// What is summed over springs.
+/// Quantity that is summed over springs.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Quantity {
     /// Forces.
     Forces,
-    /// Change of the forces.
+    /// Differential of the forces.
     Differential,
     /// Product with the matrix of an implicit step, without its masses.
     Product(Factors),
 }
 
-/// Factors of stiffness and of damping in a product, and the least stiffness across a spring.
+/// Factors of stiffness and of damping in a product, and the least stiffness across a spring (N/m).
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Factors {
     stiffness: f64,
@@ -37,9 +38,9 @@ pub(super) struct Factors {
 }
 
 impl Quantity {
-    /// The product with A.
+    /// Creates the product with a matrix.
     pub fn product(matrix: &Matrix) -> Self {
-        // Changes of forces have the opposite sign.
+        // The differential of forces has the opposite sign.
         Self::Product(Factors {
             stiffness: -matrix.stiffness,
             damping: -matrix.damping,
@@ -52,13 +53,13 @@ impl Quantity {
     }
 }
 
-/// What is computed for springs in some order: forces, or changes as those of forces are.
+/// Kernels for the springs of a block: forces, and quantities like their differential.
 pub(super) trait Kernels: Sized {
     fn forces<const DAMPED: bool>(self);
 
     fn changes<const DAMPED: bool, const PRODUCT: bool>(self, factors: Factors);
 
-    /// Calls the one that computes a quantity.
+    /// Calls the kernel of a quantity.
     #[inline(always)]
     fn run(self, quantity: Quantity, is_damped: bool) {
         let none = Factors::default();
@@ -73,10 +74,10 @@ pub(super) trait Kernels: Sized {
     }
 }
 
-/// A number of each spring of a block.
+/// A number for each spring of a block.
 pub(super) type Each<T> = [T; BLOCK];
 
-/// Numbers that begin with a line of the cache, so that no vector of them lies in two.
+/// Numbers aligned to a cache line, so that no vector of them straddles two.
 #[derive(Clone, Copy, Debug)]
 #[repr(align(64))]
 pub(super) struct Aligned(pub Each<f64>);
@@ -85,7 +86,8 @@ impl Aligned {
     pub const ZERO: Self = Self([0.0; BLOCK]);
 }
 
-/// Laws of springs, each of their numbers in a list of its own, which the processor reads ahead.
+/// Laws of springs. Each of the three numbers has a list of its own, which the processor
+/// prefetches.
 #[derive(Debug, Default)]
 pub(super) struct Laws {
     /// k (N/m).
@@ -96,14 +98,14 @@ pub(super) struct Laws {
     damping: Shared,
 }
 
-/// A number of each spring, block by block. Blocks of the same numbers share them, so that what is
-/// alike for many springs stays in the cache.
+/// A number for each spring, block by block. Blocks with equal numbers share them, so that these
+/// stay in the cache.
 #[derive(Debug, Default)]
 struct Shared {
     different: Vec<Aligned>,
-    /// The place of each block's numbers among those.
+    /// Index of each block's numbers among these.
     of_blocks: Vec<u32>,
-    /// These places by the bits of the numbers, until all blocks are there.
+    /// Index by the bits of the numbers, until all blocks are added.
     places: HashMap<Each<u64>, u32>,
 }
 
@@ -142,8 +144,7 @@ pub(super) struct Products {
 }
 
 impl Laws {
-    /// Adds a block with springs at these places. At the others there are springs without
-    /// stiffness.
+    /// Adds a block with springs at the places given. Springs at other places have no stiffness.
     pub fn push<'a>(&mut self, springs: impl Iterator<Item = (usize, &'a Spring)>) {
         let [mut stiffness, mut push, mut damping] = [[0.0; BLOCK]; 3];
         for (m, Spring { law, .. }) in springs {
@@ -156,7 +157,7 @@ impl Laws {
         self.damping.push(&damping);
     }
 
-    /// Forgets what only further blocks would need.
+    /// Drops the data that only further blocks would need.
     pub fn end(&mut self) {
         for numbers in [&mut self.stiffness, &mut self.push, &mut self.damping] {
             numbers.places = HashMap::new();
@@ -173,10 +174,10 @@ impl Laws {
     }
 }
 
-/// The force on i of spring m is -s d: s = k - k r / L + c (w . d) / L^2.
+/// Returns the factor s of the force -s d on end i of spring m: s = k - k r / L + c (w . d) / L^2.
 #[inline(always)]
 pub(super) fn force<const DAMPED: bool>(law: Law, m: usize, of: Products) -> f64 {
-    // Finite for a spring without a length, whose force is a multiple of d.
+    // Finite for a spring of length 0, whose force is a multiple of d.
     let inverse = inverse_root(Scalar::new(), of.dd);
     let s = mul_add(-law.push[m], inverse, law.stiffness[m]);
     if DAMPED {
@@ -186,7 +187,8 @@ pub(super) fn force<const DAMPED: bool>(law: Law, m: usize, of: Products) -> f64
     }
 }
 
-/// The change of the force on i of spring m, or its part in a product, is -(a e + b d): a and b.
+/// Returns the factors a and b of -(a e + b d): the differential of the force on end i of spring m,
+/// or its part in a product.
 #[inline(always)]
 pub(super) fn change<const DAMPED: bool, const PRODUCT: bool>(
     law: Law,
@@ -195,7 +197,7 @@ pub(super) fn change<const DAMPED: bool, const PRODUCT: bool>(
     factors: Factors,
 ) -> [f64; 2] {
     let root = inverse_root(Scalar::new(), of.dd);
-    // A spring without a length has no direction.
+    // A spring of length 0 has no direction.
     let inverse = if of.dd == 0.0 { 0.0 } else { root };
     let k = law.stiffness[m];
     let across = mul_add(-law.push[m], inverse, k);

@@ -1,9 +1,9 @@
 //! Many single springs, evaluated 64 at a time, which the compiler turns into vectors.
 //!
-//! Springs between consecutive particles make runs, for which positions are kept in columns. The
-//! others make blocks, for which a particle's three numbers lie side by side, so that each end of
-//! a spring is one load, and one store of its force. Springs are sorted by tiles of particles, and
-//! a window moves over these, so that what they need stays in the cache. The forces on each
+//! Springs between consecutive particles form runs, for which positions are stored in columns. The
+//! others form blocks, for which a particle's three numbers lie side by side, so that each end of a
+//! spring is one load, and its force one store. Springs are sorted by tiles of particles, and a
+//! window moves over the tiles, so that its numbers stay in the cache. The forces on each
 //! particle are summed in that order, whatever the number of threads: a thread has a band of
 //! particles, and evaluates all springs that reach it.
 
@@ -15,36 +15,36 @@ mod runs;
 mod window;
 
 use std::ops::Range;
-use std::sync::{Mutex, TryLockError};
 
 use pulp::Arch;
 
 use super::force::At;
 use crate::columns::columns_mut;
 use crate::coupling::Matrix;
+use crate::scratch::Scratch;
 use crate::spring::Spring;
 use crate::threads::{Columns, split_off, threads};
 use laws::Quantity;
 use order::{Order, TILE};
 use window::Window;
 
-/// Number of springs from which on it pays to pack them.
-const LEAST: usize = 1024;
+/// Least number of springs for which packing pays.
+const MIN_SPRINGS: usize = 1024;
 
-/// Time that springs take one by one over that which they take in blocks (docs/performance.md).
+/// Time of springs one by one, over the time of the same springs packed (docs/performance.md).
 pub(super) const SPEED: f64 = 2.0;
 
-/// Springs in runs and in blocks.
+/// Many single springs, in runs and in blocks.
 #[derive(Debug)]
 pub(crate) struct Packed {
     len: usize,
     order: Order,
     is_damped: bool,
-    /// Scratch of each band of particles, no part of the value.
-    windows: Mutex<Vec<Window>>,
+    /// A window for each band of particles.
+    windows: Scratch<Vec<Window>>,
 }
 
-/// What is computed, and of which n x 3 matrices: x, v, dx and dv, as far as it needs them.
+/// A quantity, and the n x 3 matrices that it depends on: x, v, dx and dv, or some of these.
 #[derive(Clone, Copy)]
 struct Task<'a> {
     quantity: Quantity,
@@ -52,17 +52,17 @@ struct Task<'a> {
 }
 
 impl Packed {
-    /// Springs in blocks, unless there are too few.
+    /// Packs springs; `None` if there are too few.
     pub fn new(springs: &[Spring]) -> Option<Self> {
-        (springs.len() >= LEAST).then(|| Self {
+        (springs.len() >= MIN_SPRINGS).then(|| Self {
             len: springs.len(),
             order: Order::of(springs),
             is_damped: springs.iter().any(|spring| spring.law.damping > 0.0),
-            windows: Mutex::default(),
+            windows: Scratch::default(),
         })
     }
 
-    /// Number of springs.
+    /// Returns the number of springs.
     pub fn len(&self) -> usize {
         self.len
     }
@@ -73,14 +73,14 @@ impl Packed {
         self.add(Quantity::Forces, [Some(at.x), v, None, None], f);
     }
 
-    /// Adds the change of the forces by dx and dv to df.
+    /// Adds the differential of the forces for dx and dv to df.
     pub fn add_differential(&self, at: &At, [dx, dv]: [&[f64]; 2], df: &mut [f64]) {
         let [v, dv] = [at.v, dv].map(|speeds| self.is_damped.then_some(speeds));
         let fields = [Some(at.x), v, Some(dx), dv];
         self.add(Quantity::Differential, fields, df);
     }
 
-    /// Adds the springs' part in the product of a matrix with p to `out`.
+    /// Adds the springs' part of the product of a matrix with p to `out`.
     pub fn add_product(&self, matrix: &Matrix, p: &[f64], out: &mut [f64]) {
         let fields = [Some(matrix.x), None, Some(p), None];
         self.add(Quantity::product(matrix), fields, out);
@@ -91,9 +91,9 @@ impl Packed {
         self.add_in(self.order.bands(most), Task { quantity, fields }, f);
     }
 
-    /// Adds to f in so many bands.
+    /// Adds the quantity to f in `count` bands.
     fn add_in(&self, count: usize, task: Task, f: &mut [f64]) {
-        self.lend(|windows| {
+        self.windows.lend(|windows| {
             if windows.len() < count {
                 windows.resize_with(count, Window::default);
             }
@@ -101,8 +101,8 @@ impl Packed {
         });
     }
 
-    /// Adds to columns that begin at a row, in as many bands as there are windows. So many come
-    /// before, of so many in all.
+    /// Adds to columns that begin at a row, in as many bands as there are windows. `before` bands
+    /// come before these, of `count` in all.
     fn fork(
         &self,
         windows: &mut [Window],
@@ -125,7 +125,7 @@ impl Packed {
         );
     }
 
-    /// Adds the sums on a band of particles, some after others.
+    /// Adds the sums on one band of particles, panel by panel.
     fn sum(
         &self,
         window: &mut Window,
@@ -152,7 +152,7 @@ impl Packed {
                     Arch::new().dispatch(self.sum_of_blocks(window, blocks, offset, task.quantity));
                 }
             }
-            // The first panel may end before the band begins.
+            // The first panel may end before the band starts.
             let of = start.max(stretch.own.start)..(panel.end * TILE).min(stretch.own.end);
             if !of.is_empty() {
                 window.give(order, start, of, (&mut f, row));
@@ -197,15 +197,6 @@ impl Packed {
             f: &mut f[offset..],
             is_damped: self.is_damped,
             quantity,
-        }
-    }
-
-    /// Lends the scratch; evaluations that run meanwhile bring their own.
-    fn lend(&self, run: impl FnOnce(&mut Vec<Window>)) {
-        match self.windows.try_lock() {
-            Ok(mut windows) => run(&mut windows),
-            Err(TryLockError::Poisoned(poisoned)) => run(&mut poisoned.into_inner()),
-            Err(TryLockError::WouldBlock) => run(&mut vec![]),
         }
     }
 }

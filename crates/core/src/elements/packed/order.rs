@@ -9,37 +9,37 @@ use super::runs::Runs;
 use crate::elements::force::ends;
 use crate::spring::Spring;
 
-/// Particles of a tile, whose springs follow one another.
+/// Number of particles of a tile. The springs of a tile follow one another.
 pub(super) const TILE: usize = 256;
 
 /// Least number of tiles of a panel.
-const PANEL: usize = 8;
+const MIN_PANEL: usize = 8;
 
 /// Least number of springs of a block between consecutive particles.
-const DENSE: usize = BLOCK / 2;
+const MIN_RUN: usize = BLOCK / 2;
 
-/// Springs in runs and, where there are none, in blocks, tile by tile. The springs of a tile begin
-/// at its particles. In blocks, first come the first springs of all of them, then the second, and
-/// so on.
+/// Springs in runs, and all others in blocks, tile by tile. The springs of a tile have their first
+/// ends in it. In the blocks of a tile, the first springs of all particles come first, then the
+/// second springs, and so on.
 #[derive(Debug)]
 pub(super) struct Order {
     pub runs: Runs,
     pub blocks: Blocks,
-    /// The particles at the ends of springs, which are numbered in this order here.
+    /// Particles at the ends of springs. An index into this list is their number here.
     pub particles: Vec<u32>,
-    /// The first run and the first block of each tile, and the numbers of both.
+    /// First run and first block of each tile, and at the end the numbers of both.
     tiles: Vec<[usize; 2]>,
-    /// The most by which the numbers of the ends of a spring differ.
+    /// Largest difference of the numbers of a spring's ends.
     pub reach: usize,
-    /// Tiles of a panel: as many particles as springs reach beyond it, or more.
+    /// Number of tiles of a panel, which has at least as many particles as `reach`.
     pub panel: usize,
 }
 
-/// A part of the particles with all springs that reach it.
+/// A band of particles with all springs that reach it.
 pub(super) struct Stretch {
-    /// The particles.
+    /// Particles of the band.
     pub own: Range<usize>,
-    /// The tiles of which the springs reach them.
+    /// Tiles whose springs reach them.
     pub tiles: Range<usize>,
 }
 
@@ -82,7 +82,7 @@ impl Order {
         runs.laws.end();
         blocks.laws.end();
         Self {
-            panel: reach.div_ceil(TILE).max(PANEL).min(tiles.len() - 1),
+            panel: reach.div_ceil(TILE).max(MIN_PANEL).min(tiles.len() - 1),
             runs,
             blocks,
             particles: particles.iter().map(|i| *i as u32).collect(),
@@ -91,17 +91,17 @@ impl Order {
         }
     }
 
-    /// Number of particles of a window: those of a panel and those that its springs reach, with
-    /// what runs have beyond the last.
+    /// Returns the number of particles of a window: those of a panel, those that its springs reach,
+    /// and the padding of runs at the end.
     pub fn window(&self) -> usize {
         (self.panel * TILE + self.reach).next_multiple_of(8)
     }
 
-    /// The particles of some numbers.
+    /// Returns the particles of some numbers.
     pub fn places(&self, of: Range<usize>) -> Places<'_> {
         let all = &self.particles[of];
         match (all.first(), all.last()) {
-            // They are in ascending order.
+            // The particles are in ascending order.
             (Some(first), Some(last)) if (last - first) as usize == all.len() - 1 => {
                 Places::From(*first as usize)
             }
@@ -109,20 +109,20 @@ impl Order {
         }
     }
 
-    /// The runs and the blocks of a tile.
+    /// Returns the runs and the blocks of a tile.
     pub fn of_tile(&self, tile: usize) -> [Range<usize>; 2] {
         let (start, end) = (self.tiles[tile], self.tiles[tile + 1]);
         [0, 1].map(|kind| start[kind]..end[kind])
     }
 
-    /// The number of bands, up to the `most`, of which none is much smaller than what its springs
-    /// reach beside it.
+    /// Returns the number of bands, at most `most`, such that none is much smaller than the reach
+    /// of its springs.
     pub fn bands(&self, most: usize) -> usize {
         most.min(self.particles.len() / (2 * self.reach.max(1)))
             .max(1)
     }
 
-    /// Band number k of so many.
+    /// Returns band number k of `bands`.
     pub fn stretch(&self, k: usize, bands: usize) -> Stretch {
         let n = self.particles.len();
         let own = n * k / bands..n * (k + 1) / bands;
@@ -133,16 +133,17 @@ impl Order {
     }
 }
 
-/// Springs that make dense runs, block by block in the order of tiles, and the others.
+/// Splits springs into those that form dense runs, block by block in the order of tiles, and the
+/// others.
 fn split<'a>(all: &mut [Entry<'a>]) -> (Vec<Vec<Entry<'a>>>, Vec<Entry<'a>>) {
     let place = |([i, j], _): &Entry| (j - i, *i as usize / BLOCK);
     all.sort_by_key(|entry| (entry.0[1] - entry.0[0], entry.0[0]));
     let (mut dense, mut rest) = (vec![], vec![]);
     for chunk in all.chunk_by(|a, b| place(a) == place(b)) {
-        // Of springs between the same particles, one is in the run.
+        // Of several springs between the same particles, one is in the run.
         let mut run = chunk.to_vec();
         run.dedup_by_key(|entry| entry.0);
-        if run.len() < DENSE {
+        if run.len() < MIN_RUN {
             rest.extend_from_slice(chunk);
             continue;
         }
@@ -154,8 +155,7 @@ fn split<'a>(all: &mut [Entry<'a>]) -> (Vec<Vec<Entry<'a>>>, Vec<Entry<'a>>) {
     (dense, rest)
 }
 
-/// Springs in the order of tiles and, in each, of their numbers among those that begin at the same
-/// particle.
+/// Sorts springs by tiles and, within a tile, by their rank among those with the same first end.
 fn by_rank(mut all: Vec<Entry>) -> Vec<Entry> {
     all.sort_by_key(|(ends, _)| *ends);
     let same = |a: &Entry, b: &Entry| a.0[0] == b.0[0];

@@ -2,10 +2,10 @@
 
 use super::blocks::Numbers;
 
-/// Bytes of a line of the cache.
+/// Size of a cache line (bytes).
 const LINE: usize = 64;
 
-/// Three columns, which begin where vectors of the processor are loaded at once.
+/// Three columns of numbers, aligned for SIMD vectors.
 #[derive(Debug, Default)]
 pub(super) struct Columns(Vec<f64>);
 
@@ -14,7 +14,7 @@ impl Columns {
         self.0.as_ptr().align_offset(LINE)
     }
 
-    /// The columns, each of that length.
+    /// Returns the columns, resized to a length each.
     pub fn of_length(&mut self, len: usize) -> &mut [f64] {
         self.0.resize(3 * len + LINE / size_of::<f64>(), 0.0);
         let start = self.start();
@@ -35,13 +35,13 @@ impl Columns {
 /// Rows of an n x 3 matrix.
 #[derive(Clone, Copy)]
 pub(super) enum Places<'a> {
-    /// Consecutive ones.
+    /// Consecutive rows, from this one on.
     From(usize),
-    /// In ascending order.
+    /// Rows in ascending order.
     Each(&'a [u32]),
 }
 
-/// Adds to rows of a column, which begins at the row `start`.
+/// Adds numbers to rows of a column, which begins at the row `start`.
 pub(super) fn add(
     column: &mut [f64],
     start: usize,

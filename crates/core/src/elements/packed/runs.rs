@@ -1,5 +1,5 @@
-//! Runs: springs of which both ends are consecutive, as in the families of a jelly or of a cloth.
-//! The numbers of neighbours are then loaded at once, and nothing is gathered.
+//! Runs: springs whose first ends and second ends are consecutive particles, as in a jelly or a
+//! cloth. Their numbers are loaded as whole vectors, and none is gathered.
 
 #![expect(
     clippy::inline_always,
@@ -14,18 +14,17 @@ use super::laws::{self, Aligned, BLOCK, Each, Factors, Kernels, Laws, Products, 
 use crate::fused::mul_add;
 use crate::spring::Spring;
 
-/// Springs between consecutive particles. Where a spring is missing, there is one without
-/// stiffness.
+/// Springs between consecutive particles. A missing spring is replaced by one without stiffness.
 #[derive(Debug, Default)]
 pub(super) struct Runs {
-    /// The first particle at either end of each block.
+    /// Particles at the two ends of the first spring of each block.
     pub places: Vec<[u32; 2]>,
     pub laws: Laws,
 }
 
 impl Runs {
-    /// Adds springs of consecutive particles, in their order, of which the first ends are in one
-    /// block of all particles. Places are counted from a particle on.
+    /// Adds springs of consecutive particles, in their order, whose first ends are in one block of
+    /// particles. Ends are numbered from the particle `start` on.
     pub fn push(&mut self, springs: &[([u32; 2], &Spring)], start: u32) {
         let [i, j] = springs[0].0;
         let first = i - i % BLOCK as u32;
@@ -36,8 +35,8 @@ impl Runs {
     }
 }
 
-/// The forces of runs, added to f: of x and v, or their change by dx and dv. All have three columns
-/// of so many numbers.
+/// Task that adds the forces of runs at x and v to f, or their differential for dx and dv. All have
+/// three columns, `stride` numbers apart.
 pub(super) struct Sum<'a> {
     pub runs: &'a Runs,
     pub which: Range<usize>,
@@ -58,7 +57,7 @@ impl WithSimd for Sum<'_> {
     }
 }
 
-/// Three numbers of each particle of a block.
+/// Three numbers for each particle of a block.
 type Three<'a> = [&'a Each<f64>; 3];
 
 #[inline(always)]
@@ -77,7 +76,7 @@ fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
     mul_add(a[2], b[2], mul_add(a[1], b[1], a[0] * b[0]))
 }
 
-/// Takes g from the forces on the first ends, and gives it to the second.
+/// Subtracts g from the forces on the first ends, and adds it to those on the second.
 #[inline(always)]
 fn give(g: &[Aligned; 3], [i, j]: [u32; 2], stride: usize, f: &mut [f64]) {
     for (axis, Aligned(g)) in g.iter().enumerate() {
@@ -103,7 +102,7 @@ impl Kernels for Sum<'_> {
             let law = runs.laws.of(block);
             let [i, j] = runs.places[block];
             let places = [at(x, stride, i), at(x, stride, j)];
-            // Without damping, there are no speeds.
+            // Without damping, velocities are not loaded.
             let speeds = if DAMPED {
                 [at(v, stride, i), at(v, stride, j)]
             } else {
@@ -140,7 +139,7 @@ impl Kernels for Sum<'_> {
                 let a = self.fields[k];
                 [at(a, stride, i), at(a, stride, j)]
             });
-            // Without damping, there are no speeds.
+            // Without damping, velocities are not loaded.
             let [speeds, changes] = if DAMPED && !PRODUCT {
                 [1, 3].map(|k| {
                     let a = self.fields[k];

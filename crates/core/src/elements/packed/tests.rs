@@ -1,4 +1,4 @@
-//! Springs in blocks, with the same springs one by one as the oracle.
+//! Tests of packed springs against the same springs one by one.
 
 use pulp::{Scalar, WithSimd};
 
@@ -9,7 +9,7 @@ use crate::elements::axial::{add_all, add_differential, coupling};
 use crate::random::SplitMix;
 use crate::spring::{SpringKind, SpringLaw};
 
-/// Springs between random particles of which the numbers differ by at most so many.
+/// Returns springs between random particles whose numbers differ by at most `reach`.
 fn springs(count: usize, particles: usize, reach: usize, damping: f64) -> Vec<Spring> {
     let mut random = SplitMix(5);
     let mut below = |most: usize| random.between(0.0, most as f64) as usize;
@@ -34,8 +34,8 @@ fn springs(count: usize, particles: usize, reach: usize, damping: f64) -> Vec<Sp
     ends.into_iter().map(law).collect()
 }
 
-/// Springs from each particle to the next and to one as much further, but for some that are
-/// missing, and some between the same particles.
+/// Returns springs from each particle to the next and to the one `reach` further, except some that
+/// are missing, and some twice between the same particles.
 fn rows(reach: usize, particles: usize, damping: f64) -> Vec<Spring> {
     let starts = (0..particles).filter(|i| i % 11 != 3);
     let next = starts.flat_map(|i| [(i, i + 1), (i + reach, i), (i, i + reach + 1)]);
@@ -61,15 +61,15 @@ fn numbers(count: usize, seed: u64) -> Vec<f64> {
     (0..count).map(|_| random.between(-1.0, 1.0)).collect()
 }
 
-/// The most by which two vectors differ, over the largest number of the first.
+/// Returns the largest difference of two vectors, over the largest number of the first.
 fn off(a: &[f64], b: &[f64]) -> f64 {
     let size = a.iter().fold(0.0_f64, |most, a| most.max(a.abs()));
     let apart = a.iter().zip(b).map(|(a, b)| (a - b).abs());
     apart.fold(0.0, f64::max) / size
 }
 
-/// Forces, their differential, and products with a matrix that is clamped, and one that is not, in
-/// as many bands as asked for.
+/// Returns the forces, their differential, and products with a clamped matrix and with one that is
+/// not, computed in `bands` bands.
 fn in_bands(packed: &Packed, bands: usize, all: &[Vec<f64>; 4]) -> [Vec<f64>; 4] {
     let [x, v, dx, dv] = all.each_ref().map(|a| Some(a.as_slice()));
     let product = |clamped| Quantity::product(&matrix(&all[0], clamped));
@@ -97,7 +97,7 @@ fn matrix(x: &[f64], clamped: bool) -> Matrix<'_> {
     }
 }
 
-/// The part of a spring in a product, from its coupling.
+/// Adds the part of a spring in a product, from its coupling.
 fn add_product(spring: &Spring, matrix: &Matrix, p: &[f64], out: &mut [f64]) {
     let Coupling::Axial(c) = coupling(spring, matrix.x, matrix.clamped) else {
         unreachable!("a spring couples along its direction");
@@ -123,7 +123,7 @@ fn blocks_are_the_sum_of_springs_one_by_one_and_bands_change_no_bit() {
         (0, 9000, 3000, 300),
         (5, 0, 400, 0),
         (7, 9000, 3000, 300),
-        // As far as a panel is long, which then ends before a band begins.
+        // A reach as long as a panel, which then ends before a band starts.
         (0, 20_000, 9000, 2048),
         (70, 0, 1300, 0),
     ] {
@@ -133,7 +133,7 @@ fn blocks_are_the_sum_of_springs_one_by_one_and_bands_change_no_bit() {
             let what = format!("{dense} {count} {particles} {damping}");
             let mut all: [Vec<f64>; 4] =
                 std::array::from_fn(|seed| numbers(3 * particles, seed as u64));
-            // A spring without a length.
+            // A spring of length 0.
             let Spring { i, j, .. } = springs[7];
             for axis in 0..3 {
                 all[0][axis * particles + i] = all[0][axis * particles + j];
@@ -194,6 +194,6 @@ fn run(sum: impl WithSimd<Output = ()>, has_vectors: bool) {
 
 #[test]
 fn few_springs_are_not_packed() {
-    assert!(Packed::new(&springs(LEAST - 1, 50, 50, 0.0)).is_none());
-    assert!(Packed::new(&springs(LEAST, 50, 50, 0.0)).is_some());
+    assert!(Packed::new(&springs(MIN_SPRINGS - 1, 50, 50, 0.0)).is_none());
+    assert!(Packed::new(&springs(MIN_SPRINGS, 50, 50, 0.0)).is_some());
 }

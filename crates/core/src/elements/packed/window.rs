@@ -1,5 +1,5 @@
-//! What is seen of the particles at a time: those of a panel and those that their springs reach.
-//! It moves on from panel to panel, so that it stays in the cache.
+//! Window over the particles: those of a panel and those that their springs reach. It moves on from
+//! panel to panel, and stays in the cache.
 
 use std::ops::Range;
 
@@ -8,31 +8,31 @@ use super::order::{Order, TILE};
 use super::places::{Columns, add, copy, copy_rows};
 use crate::threads;
 
-/// x, v, dx and dv of the particles, and what is summed.
+/// x, v, dx and dv of the particles in the window, and the sums on them.
 #[derive(Debug, Default)]
 pub(super) struct Window {
     /// For runs, in three columns.
     pub columns: [Columns; 5],
     /// For blocks, three numbers side by side.
     pub rows: [Vec<Numbers>; 5],
-    /// Particles at its end that stay when it moves on.
+    /// Number of particles at the end of the window that stay when it moves on.
     stays: usize,
 }
 
 impl Window {
-    /// Forgets what it saw.
+    /// Empties the window.
     pub fn clear(&mut self) {
         self.stays = 0;
     }
 
-    /// Moves on, so that it starts at a particle: takes what it did not see of n x 3 matrices, of
-    /// which the sums begin at 0.
+    /// Moves the window on, so that it starts at the particle `start`: copies the rows of n x 3
+    /// matrices that are new in it, and sets the new sums to 0.
     pub fn take(&mut self, order: &Order, start: usize, fields: &[Option<&[f64]>; 4]) {
         let (size, stays) = (order.window(), self.stays);
         let n = order.particles.len();
         let new = n.min(start + stays)..n.min(start + size);
         let places = order.places(new.clone());
-        // After the fields, the sums, which have no source.
+        // The sums come after the fields, and have no source.
         let sources = fields.iter().map(|field| field.map(Some));
         for (k, source) in sources.chain([Some(None)]).enumerate() {
             let Some(source) = source else { continue };
@@ -45,7 +45,7 @@ impl Window {
                         Some(from) => copy(from, axis, places, taken),
                         None => taken.fill(0.0),
                     }
-                    // Runs go on beyond the last particle, without stiffness.
+                    // Springs without stiffness go on beyond the last particle.
                     beyond.fill(0.0);
                 }
             }
@@ -63,8 +63,8 @@ impl Window {
         self.stays = size - order.panel * TILE;
     }
 
-    /// Adds the sums on some of its particles, of which the first has the number `start`, to rows
-    /// of columns, which begin at a row: those of runs, then those of blocks.
+    /// Adds the sums on some particles of the window, which starts at the number `start`, to
+    /// columns that begin at a row: first the sums of runs, then those of blocks.
     pub fn give(
         &self,
         order: &Order,

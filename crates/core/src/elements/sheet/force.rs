@@ -3,7 +3,7 @@
 use super::super::axial;
 use super::super::diagonal::add_runs;
 use super::super::finish::Finish;
-use super::super::force::{At, Cost, Force, check_particle};
+use super::super::force::{At, Cost, Force, Matter, check_particle};
 use super::model::Sheet;
 use super::offsets::OFFSETS;
 use super::strips::{Quantity, set};
@@ -12,13 +12,16 @@ use crate::energy::Energy;
 use crate::error::Error;
 use crate::spring::Spring;
 
-/// How many times as fast the kernel is as the same springs one by one, on the grids that people
-/// look at.
+/// Time of the same springs one by one, over that of the kernel, on grids of usual sizes.
 const SPEED: f64 = 3.0;
 
 impl Force for Sheet {
     fn name(&self) -> &'static str {
         "springs"
+    }
+
+    fn matter(&self) -> Option<Matter> {
+        Some(Matter::Springs)
     }
 
     fn check(&self, particles: usize) -> Result<(), Error> {
@@ -50,6 +53,10 @@ impl Force for Sheet {
                 visit(axial::coupling(&Spring { kind, i, j, law }, x, clamped));
             }
         }
+    }
+
+    fn multiplies_together(&self) -> bool {
+        !self.is_empty()
     }
 
     fn add_diagonal(&self, matrix: &Matrix, diagonal: &mut Diagonal) -> usize {

@@ -1,6 +1,7 @@
-//! The springs of a row, found direction by direction and vector by vector, and kept: each pulls at
-//! its own row, and at this or one of the next two. The same bits on every processor:
-//! multiplications and additions are fused everywhere alike, and the sums have one order.
+//! The springs of a row, computed direction by direction and vector by vector. Each spring pulls at
+//! its own row, and at the same or one of the next two, for which its force is stored. The bits are
+//! the same on every processor: multiplications and additions are always fused, and the sums have
+//! one order.
 
 #![expect(
     clippy::inline_always,
@@ -21,19 +22,20 @@ use super::missing::Masks;
 use crate::elements::inverse_root::inverse_root;
 use crate::fused::{mul_adds, negate_mul_adds};
 
-/// Columns of forces that are kept from row to row: right, two right, down, down and right (of this
-/// row and of the one above), down and left (the same), two down (the same).
+/// Number of columns of forces that are stored from row to row, by the direction of the springs:
+/// right; two right; down; down and right, of this row and of the one above; down and left, of
+/// both; and two down, of both.
 pub(crate) const SPRING_FORCES: usize = 3 * 9;
 
-/// Quantities of springs: forces, undamped or damped; products of their tangents with a vector,
-/// clamped or not; or the change of the forces.
+/// Quantities of springs: forces, undamped or damped; products of their tangent with a vector,
+/// clamped or not; and the differential of the forces.
 pub(super) const PLAIN: u8 = 0;
 pub(super) const DAMPED: u8 = 1;
 pub(super) const TANGENT: u8 = 2;
 pub(super) const CLAMPED: u8 = 3;
 pub(super) const DIFFERENTIAL: u8 = 4;
 
-/// Addends to the forces of springs on a row, and their finish.
+/// Addends to the forces of springs on a row, and the operations that finish the sum.
 pub(super) struct Others<'a, S: Simd> {
     addends: Option<Columns<'a, S>>,
     gravity: Option<(Vectors<S>, Numbers<'a, S>)>,
@@ -107,27 +109,27 @@ impl<'a, S: Simd> Others<'a, S> {
 
 /// Source of the particles of a row, and use of the sums for them.
 pub(super) trait Use<S: Simd> {
-    /// Particles of vector i.
+    /// Returns the particles of vector i.
     fn here(&self, i: usize) -> Point<S>;
 
     /// Uses the finished sum f of vector i.
     fn put(&mut self, simd: S, i: usize, here: Point<S>, f: Vectors<S>);
 }
 
-/// A row of springs.
+/// The springs that start in a row.
 pub(super) struct RowOfSprings<'a> {
     pub laws: &'a [f64],
     /// Masks of the row, if springs are missing in it.
     pub masks: Option<Masks<'a>>,
-    /// Number of rows above it and below.
+    /// Numbers of rows above and below.
     pub above: usize,
     pub below: usize,
-    /// Forces that are kept from row to row.
+    /// Forces that are stored from row to row.
     pub spring_forces: &'a mut [f64],
 }
 
 impl RowOfSprings<'_> {
-    /// Finds the springs along the row.
+    /// Computes the springs along the row.
     #[inline(always)]
     pub fn find_along<S: Simd, const KIND: u8>(&mut self, simd: S, lanes: Lanes, here: &[f64]) {
         if self.masks.is_none() {
@@ -163,7 +165,7 @@ impl RowOfSprings<'_> {
         }
     }
 
-    /// Finds the springs to the rows below, and sums up.
+    /// Computes the springs to the rows below, and sums the forces on the row.
     #[inline(always)]
     pub fn find_below<S: Simd, const KIND: u8>(
         &mut self,
@@ -203,7 +205,7 @@ impl RowOfSprings<'_> {
             swap(&mut backslash, &mut from_left);
             swap(&mut slash, &mut from_right);
         }
-        // Where the row before last left its own, which this row's replace.
+        // Columns of the row before last, which this row's forces replace.
         let down2 = if is_odd { odd } else { even };
         let laws = |direction| {
             let of = (self.laws, self.masks);
@@ -241,9 +243,9 @@ impl RowOfSprings<'_> {
     }
 }
 
-/// Forces of springs from particles at p with velocity u on others, at their other ends: s d with s
-/// = k - k r / L + c (w . d) / L2. Of tangents, with w between vectors and q = k - k r / L: q w +
-/// (k - q + c) (w . d) d / L2. Of changes, e of d and g of w: s e + ds d.
+/// Returns the forces of springs between particles: s d with s = k - k r / L + c (w . d) / L2. For
+/// a tangent, with w the difference of the vectors and q = k - k r / L, they are q w + (k - q + c)
+/// (w . d) d / L2; for a differential, with the changes e of d and g of w, s e + ds d.
 #[inline(always)]
 fn spring<S: Simd, const KIND: u8>(
     simd: S,
@@ -258,7 +260,7 @@ fn spring<S: Simd, const KIND: u8>(
     let mut inverse = inverse_root(simd, square);
     if KIND == TANGENT || KIND == CLAMPED || KIND == DIFFERENTIAL {
         let zero = simd.splat_f64s(0.0);
-        // Without a length there is no direction.
+        // A spring of length 0 has no direction.
         let has_length = simd.less_than_f64s(zero, square);
         inverse = simd.select_f64s(has_length, inverse, zero);
     }
@@ -299,13 +301,13 @@ fn spring<S: Simd, const KIND: u8>(
     ]
 }
 
-/// a b2
+/// Returns a b2.
 #[inline(always)]
 fn twice<S: Simd>(simd: S, a: S::f64s, b: S::f64s) -> S::f64s {
     simd.mul_f64s(simd.mul_f64s(a, b), b)
 }
 
-/// a x + b y
+/// Returns a x + b y.
 #[inline(always)]
 fn sum_of<S: Simd>(simd: S, a: S::f64s, x: Vectors<S>, b: S::f64s, y: Vectors<S>) -> Vectors<S> {
     [

@@ -1,4 +1,4 @@
-//! Vectors of as many particles as the processor takes at a time, and columns of them.
+//! SIMD vectors of particles, and columns of them.
 
 #![expect(
     clippy::inline_always,
@@ -13,7 +13,7 @@ use crate::columns::columns_mut;
 use crate::fused::mul_adds;
 use crate::rows::PAD;
 
-/// Three numbers of each particle of a vector, and of each of a row.
+/// Three numbers for each particle of a vector, and for each of a row.
 pub(super) type Vectors<S> = [<S as Simd>::f64s; 3];
 pub(super) type Columns<'a, S> = [&'a [<S as Simd>::f64s]; 3];
 pub(super) type ColumnsMut<'a, S> = [&'a mut [<S as Simd>::f64s]; 3];
@@ -44,7 +44,7 @@ impl<S: Simd> Points<'_, S> {
     }
 }
 
-/// Layout of a row: numbers from one column to the next, and vectors in each.
+/// Layout of a row: the distance of columns, and the number of vectors in each.
 #[derive(Clone, Copy)]
 pub(super) struct Lanes {
     pub stride: usize,
@@ -60,14 +60,15 @@ impl Lanes {
         }
     }
 
-    /// Vectors of a column, beginning so many particles further right.
+    /// Returns the vectors of a column, shifted to the right by a number of particles.
     #[inline(always)]
     fn column<S: Simd>(self, a: &[f64], column: usize, shift: isize) -> &[S::f64s] {
         let start = (column * self.stride + PAD).wrapping_add_signed(shift);
         &S::as_simd_f64s(&a[start..start + self.count * S::F64_LANES]).0[..self.count]
     }
 
-    /// Vectors of three columns from the `first` on, beginning so many particles further right.
+    /// Returns the vectors of three columns from the `first` on, shifted to the right by a number
+    /// of particles.
     #[inline(always)]
     pub fn at<S: Simd>(self, a: &[f64], first: usize, shift: isize) -> Columns<'_, S> {
         [
@@ -82,8 +83,8 @@ impl Lanes {
         (self.at::<S>(a, 0, shift), self.at::<S>(a, 3, shift))
     }
 
-    /// Positions and velocities and, if there are such columns, their changes. Otherwise nobody
-    /// asks for these.
+    /// Returns the positions and velocities and, if there are such columns, their changes.
+    /// Otherwise these are not used.
     #[inline(always)]
     pub fn points<S: Simd>(self, a: &[f64], changes: bool, shift: isize) -> Points<'_, S> {
         let places = self.places::<S>(a, shift);
@@ -95,7 +96,7 @@ impl Lanes {
         Points { places, changes }
     }
 
-    /// Vectors of a matrix of three columns.
+    /// Returns the vectors of a matrix of three columns.
     #[inline(always)]
     pub fn at_mut<S: Simd>(self, a: &mut [f64]) -> ColumnsMut<'_, S> {
         let there = PAD..PAD + self.count * S::F64_LANES;
@@ -114,7 +115,7 @@ impl Lanes {
     }
 }
 
-/// A number of each particle of a row.
+/// A number for each particle of a row.
 #[derive(Clone, Copy)]
 pub(super) struct Numbers<'a, S: Simd> {
     whole: &'a [S::f64s],
@@ -128,7 +129,7 @@ impl<'a, S: Simd> Numbers<'a, S> {
         Self { whole, rest }
     }
 
-    /// Numbers of vector i, zeros where there is no particle.
+    /// Returns the numbers of vector i, with zeros where there is no particle.
     #[inline(always)]
     pub fn at(self, simd: S, i: usize) -> S::f64s {
         match self.whole.get(i) {
@@ -138,7 +139,7 @@ impl<'a, S: Simd> Numbers<'a, S> {
     }
 }
 
-/// a + b k.
+/// Returns a + b k.
 #[inline(always)]
 pub(super) fn plus<S: Simd>(simd: S, a: Vectors<S>, b: S::f64s, k: Vectors<S>) -> Vectors<S> {
     [
@@ -148,7 +149,7 @@ pub(super) fn plus<S: Simd>(simd: S, a: Vectors<S>, b: S::f64s, k: Vectors<S>) -
     ]
 }
 
-/// Vector i of three columns.
+/// Returns vector i of three columns.
 #[inline(always)]
 pub(super) fn pick<S: Simd>(a: Columns<S>, i: usize) -> Vectors<S> {
     [a[0][i], a[1][i], a[2][i]]
@@ -162,7 +163,7 @@ pub(super) fn put<S: Simd>(a: &mut ColumnsMut<S>, i: usize, [x, y, z]: Vectors<S
     a[2][i] = z;
 }
 
-/// Writes vector i, and returns what was there.
+/// Writes vector i, and returns the old one.
 #[inline(always)]
 pub(super) fn replace<S: Simd>(a: &mut ColumnsMut<S>, i: usize, by: Vectors<S>) -> Vectors<S> {
     let before = [a[0][i], a[1][i], a[2][i]];

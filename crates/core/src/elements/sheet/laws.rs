@@ -1,6 +1,6 @@
 //! The laws of a sheet's springs as its kernel reads them. All springs of a direction have one law,
-//! but for those that would end beside the sheet, whose law is zero: the vectors of a row have four
-//! different ones. A row in which a spring is missing has a mask of its own, by which the laws are
+//! except those that would end beside the sheet, whose law is zero: the vectors of a row have four
+//! different laws. A row in which springs are missing has a mask of its own, by which the laws are
 //! multiplied.
 
 #![expect(
@@ -16,11 +16,11 @@ use super::model::Sheet;
 use super::offsets::OFFSETS;
 use crate::rows::PAD;
 
-/// Places of vectors in a row whose laws differ: the first, the middle, the last but one, and the
-/// last.
+/// Number of kinds of vectors in a row, whose laws differ: the first, the middle ones, the last but
+/// one, and the last.
 const KINDS: usize = 4;
-/// Numbers of all laws: k, k r and c of the springs of each direction, zeros where none begins, and
-/// zeros for rows whose springs would end below the last.
+/// Count of the numbers of all laws: k, k r and c of the springs of each direction, with zeros
+/// where none starts, and zeros for rows whose springs would end below the last row.
 pub(crate) const LAWS: usize = 3 * (OFFSETS.len() + 1) * KINDS * PAD;
 
 /// Writes the laws of `width` columns from the `first` on.
@@ -34,7 +34,7 @@ pub(super) fn fill<S: Simd>(laws: &mut [f64], sheet: &Sheet, first: usize, width
         .zip(sheet.laws())
         .zip(OFFSETS);
     for ((three, law), (_, _, right)) in directions {
-        // Where springs begin that end on the sheet.
+        // The first ends of springs whose second ends are on the sheet.
         let from = right.min(0).unsigned_abs().saturating_sub(first);
         let to = width.min((cols - first).saturating_sub(right.max(0) as usize));
         let numbers = [law.stiffness, law.stiffness * law.rest_length, law.damping];
@@ -49,7 +49,7 @@ pub(super) fn fill<S: Simd>(laws: &mut [f64], sheet: &Sheet, first: usize, width
     }
 }
 
-/// Place of the laws of vector i of `count`.
+/// Returns the kind of vector i of `count`.
 #[inline(always)]
 pub(super) fn kind(i: usize, count: usize) -> usize {
     let after = count - 1 - i;
@@ -66,7 +66,7 @@ pub(super) struct Law<'a, S: Simd, const MASKED: bool> {
 }
 
 impl<'a, S: Simd, const MASKED: bool> Law<'a, S, MASKED> {
-    /// Laws of a row with so many rows `below` it and `count` vectors.
+    /// Returns the laws of a row with `below` rows below it and `count` vectors.
     #[inline(always)]
     pub fn new(
         simd: S,
@@ -105,7 +105,7 @@ impl<'a, S: Simd, const MASKED: bool> Law<'a, S, MASKED> {
         }
     }
 
-    /// The law of vector i, which is of that [`kind`].
+    /// Returns the law of vector i, of a [`kind`].
     #[inline(always)]
     pub fn at(&self, simd: S, i: usize, kind: usize) -> Vectors<S> {
         if MASKED {

@@ -1,4 +1,4 @@
-//! The springs that a sheet has lost.
+//! The springs that are missing from a sheet, because they broke.
 
 use super::offsets::OFFSETS;
 use crate::grid::Grid;
@@ -7,12 +7,11 @@ use crate::rows::{PAD, stride};
 /// Springs of a grid that are missing, and masks of the rows in which they are.
 #[derive(Debug, PartialEq)]
 pub(super) struct Missing {
-    /// Direction and first end of each, in order.
+    /// Direction and first end of each spring, in order.
     springs: Vec<(usize, usize)>,
-    /// For each row where its masks begin, if springs are missing in it.
+    /// Start of the masks of each row, if springs are missing in it.
     rows: Vec<Option<usize>>,
-    /// For each of those rows and each direction a column: 1 where a spring begins, and 0
-    /// elsewhere.
+    /// A column for each of these rows and each direction: 1 where a spring starts, 0 elsewhere.
     masks: Vec<f64>,
     stride: usize,
 }
@@ -26,14 +25,14 @@ pub(super) struct Masks<'a> {
 }
 
 impl<'a> Masks<'a> {
-    /// The mask of a direction, and what is beside it on the right.
+    /// Returns the mask of a direction, with the padding on its right.
     pub fn column(self, direction: usize) -> &'a [f64] {
         &self.columns[direction * self.stride..][..self.stride]
     }
 }
 
 impl Missing {
-    /// The springs of these directions and first ends, in order.
+    /// Creates the list of springs of these directions and first ends, in order.
     pub fn new(grid: Grid, springs: Vec<(usize, usize)>) -> Self {
         let (cols, stride) = (grid.cols(), stride(grid.cols()));
         let (mut rows, mut masks) = (vec![None; grid.rows()], vec![]);
@@ -55,7 +54,7 @@ impl Missing {
             });
             masks[start + direction * stride + PAD + col] = 0.0;
         }
-        // Room for those that begin at the last column.
+        // Room for vectors that start at the last column.
         masks.resize(masks.len() + stride, 0.0);
         Self {
             springs,
@@ -65,12 +64,12 @@ impl Missing {
         }
     }
 
-    /// Direction and first end of each, in order.
+    /// Returns the direction and the first end of each spring, in order.
     pub fn springs(&self) -> &[(usize, usize)] {
         &self.springs
     }
 
-    /// The masks of a row from column `first` on, if a spring is missing in it.
+    /// Returns the masks of a row from column `first` on, if a spring is missing in it.
     pub fn masks(
         &self,
         row: usize,

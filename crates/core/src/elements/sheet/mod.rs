@@ -1,4 +1,4 @@
-//! The springs of a grid in one pass over its rows, with vectors as wide as the processor has.
+//! The springs of a grid, in one pass over its rows, in the widest SIMD vectors of the processor.
 
 mod force;
 mod kernel;

@@ -10,7 +10,7 @@ use crate::grid::Grid;
 use crate::spring::{Spring, SpringKind, SpringLaw};
 
 /// A grid of particles and its springs: structural to the next particle, shear across each cell,
-/// bend to the next but one. Its particles are numbered row by row, from one of them on.
+/// bend to the next but one. Its particles are numbered row by row, from a first one on.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sheet {
     first: usize,
@@ -20,8 +20,8 @@ pub struct Sheet {
 }
 
 impl Sheet {
-    /// A sheet at rest in a flat grid of that `spacing` (m), whose particles are the first ones.
-    /// `stiffness` (N/m) is that of structural, shear and bend springs; each is damped by
+    /// Creates a sheet at rest in a flat grid of a `spacing` (m), whose particles are the first
+    /// ones. `stiffness` (N/m) is that of structural, shear and bend springs; each is damped by
     /// `damping_time` (s) times its stiffness.
     ///
     /// # Errors
@@ -52,26 +52,26 @@ impl Sheet {
         })
     }
 
-    /// The same sheet, of the particles from `first` on.
+    /// Returns the same sheet, of the particles from `first` on.
     #[must_use]
     pub fn starting_at(self, first: usize) -> Self {
         Self { first, ..self }
     }
 
-    /// Rows and columns.
+    /// Returns the rows and columns.
     #[must_use]
     pub fn grid(&self) -> Grid {
         self.grid
     }
 
-    /// Numbers of its particles.
+    /// Returns the numbers of the sheet's particles.
     #[must_use]
     pub fn particles(&self) -> Range<usize> {
         self.first..self.first.saturating_add(self.grid.particles())
     }
 
-    /// Laws of the springs to the right, down, down and right, down and left, two to the right, two
-    /// down.
+    /// Returns the laws of the springs to the right, down, down and right, down and left, two to
+    /// the right, two down.
     #[must_use]
     pub fn laws(&self) -> &[SpringLaw; 6] {
         &self.laws
@@ -82,7 +82,7 @@ impl Sheet {
         self.laws.iter().any(|law| law.damping > 0.0)
     }
 
-    /// The sheet with springs so many times as stiff, and so many times as damped.
+    /// Returns the sheet with the stiffness and the damping multiplied by these factors.
     pub(crate) fn scaled(&self, stiffness: f64, damping: f64) -> Self {
         let mut sheet = self.clone();
         sheet.scale(stiffness, damping);
@@ -96,7 +96,7 @@ impl Sheet {
         }
     }
 
-    /// Number of its springs.
+    /// Returns the number of springs.
     #[must_use]
     pub fn len(&self) -> usize {
         let (rows, cols) = (self.grid.rows(), self.grid.cols());
@@ -107,21 +107,21 @@ impl Sheet {
         whole - self.lost().len()
     }
 
-    /// Whether all its springs are missing.
+    /// Whether all springs are missing.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// The springs that are missing: direction and first end of each, in order.
+    /// Returns the direction and the first end of each missing spring, in order.
     fn lost(&self) -> &[(usize, usize)] {
         self.missing
             .as_ref()
             .map_or(&[], |missing| missing.springs())
     }
 
-    /// Each spring by itself, direction by direction, those of one in the order of their first
-    /// ends.
+    /// Returns the springs one by one, direction by direction, and within a direction in the order
+    /// of their first ends.
     pub fn springs(&self) -> impl Iterator<Item = Spring> {
         let laws = self.laws;
         self.runs().flat_map(move |(direction, begins, further)| {
@@ -134,8 +134,8 @@ impl Sheet {
         })
     }
 
-    /// The springs of each direction in each row, between those that are missing: the direction,
-    /// first ends next to each other, and by how much their second ends are further on.
+    /// Returns the springs in runs without gaps, by direction and row: the direction, the
+    /// consecutive first ends, and the offset of the second ends.
     pub(super) fn runs(&self) -> impl Iterator<Item = (usize, Range<usize>, usize)> {
         let (first, grid, lost) = (self.first, self.grid, self.lost());
         let rows = (0..OFFSETS.len()).flat_map(move |direction| {
@@ -172,7 +172,7 @@ impl Sheet {
         }
     }
 
-    /// Direction and first end of the spring between two particles.
+    /// Returns the direction and the first end of the spring between two particles.
     fn between(&self, [i, j]: [usize; 2]) -> Option<(usize, usize)> {
         let particles = self.particles();
         if !particles.contains(&i) || !particles.contains(&j) {
@@ -188,7 +188,7 @@ impl Sheet {
         Some((direction, i))
     }
 
-    /// Masks of a row from column `first` on, if a spring is missing in it.
+    /// Returns the masks of a row from column `first` on, if a spring is missing in it.
     #[inline]
     pub(super) fn masks(&self, row: usize, first: usize) -> Option<Masks<'_>> {
         let numbers =

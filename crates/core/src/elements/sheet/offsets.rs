@@ -2,7 +2,8 @@
 
 use crate::spring::SpringKind;
 
-/// Purpose of the springs of each direction, and how many rows down and columns right they go.
+/// Purpose of the springs of each direction, and their offset in rows down and columns to the
+/// right.
 pub(super) const OFFSETS: [(SpringKind, usize, isize); 6] = [
     (SpringKind::Structural, 0, 1),
     (SpringKind::Structural, 1, 0),

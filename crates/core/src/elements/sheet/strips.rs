@@ -1,5 +1,5 @@
-//! One evaluation of a sheet. Rows of wide grids are cut into strips, so that what is kept from row
-//! to row stays in the nearest cache, on the stack.
+//! One evaluation of a sheet. Rows of wide grids are cut into strips, so that the numbers stored
+//! from row to row stay in the first-level cache, on the stack.
 
 #![expect(
     clippy::inline_always,
@@ -22,8 +22,7 @@ use crate::columns::columns_mut;
 use crate::rows::{PAD, REACH, stride};
 use crate::threads::{fork, threads};
 
-/// Largest numbers of columns of a strip: what a strip keeps fits a cache, and is cleared only
-/// once.
+/// Largest numbers of columns of a strip, whose numbers fit into a cache and are cleared only once.
 const WIDTHS: [usize; 3] = [32, 128, 512];
 /// Columns beside a strip whose springs pull at it.
 const LEFT: usize = 2;
@@ -34,10 +33,10 @@ const RIGHT: usize = 1;
 pub(crate) enum Quantity {
     /// Forces on particles at x that move at v.
     Forces,
-    /// Change of the forces on particles at x by moving them by v, and at v, by the laws'
-    /// dampings. With `clamped`, stiffness across compressed springs counts as none.
+    /// Differential of the forces at x for a displacement and a velocity v, with the dampings of
+    /// the laws. With `clamped`, negative stiffness across compressed springs is taken as 0.
     Tangent { clamped: bool },
-    /// Change of the forces on particles at x that move at v, by dx and dv.
+    /// Differential of the forces on particles at x that move at v, for dx and dv.
     Differential,
 }
 
@@ -45,9 +44,8 @@ pub(crate) enum Quantity {
 const PLACES: usize = 6;
 const CHANGES: usize = 12;
 
-/// Sets f, on the particles of a sheet, to the finished sum of its springs' forces, and of what f
-/// holds before if that is to be `added`. The `fields` are x and v, and for differentials dx and
-/// dv.
+/// Sets f, on the particles of a sheet, to the finished sum of its springs' forces, plus the old f
+/// if `added`. The `fields` are x and v, and for differentials dx and dv.
 pub(crate) fn set(
     quantity: Quantity,
     sheet: &Sheet,
@@ -76,10 +74,10 @@ struct Forces<'a> {
     quantity: Quantity,
     sheet: &'a Sheet,
     fields: &'a [&'a [f64]],
-    /// Rows whose forces are wanted, and the forces there.
+    /// Rows whose forces are computed, and the forces there.
     rows: Range<usize>,
     f: [&'a mut [f64]; 3],
-    /// Whether the forces there are added to.
+    /// Whether the springs' forces are added to the old ones.
     added: bool,
     finish: &'a Finish<'a>,
 }
@@ -103,7 +101,7 @@ impl WithSimd for Forces<'_> {
 fn strips<S: Simd, const KIND: u8, const C: usize>(simd: S, forces: Forces) {
     const STRIDES: [usize; 3] = [stride(WIDTHS[0]), stride(WIDTHS[1]), stride(WIDTHS[2])];
     match forces.sheet.grid().cols() {
-        // Numbers that are taken one at a time need the cache less: one width serves them all.
+        // Scalar code depends less on the cache: one width is enough.
         _ if const { S::F64_LANES == 1 } => strips_of::<S, KIND, C, { STRIDES[1] }>(simd, forces),
         cols if cols <= WIDTHS[0] => strips_of::<S, KIND, C, { STRIDES[0] }>(simd, forces),
         cols if cols <= WIDTHS[1] => strips_of::<S, KIND, C, { STRIDES[1] }>(simd, forces),
@@ -111,7 +109,7 @@ fn strips<S: Simd, const KIND: u8, const C: usize>(simd: S, forces: Forces) {
     }
 }
 
-/// Numbers of a strip that are kept from row to row.
+/// Numbers of a strip that are stored from row to row.
 #[repr(C, align(64))]
 struct Kept<const C: usize, const P: usize> {
     /// Columns of three rows.
@@ -165,13 +163,13 @@ fn run<S: Simd, const KIND: u8, const C: usize, const P: usize>(
         ..
     } = forces;
     let (rows, cols) = (sheet.grid().rows(), sheet.grid().cols());
-    // The columns whose springs are found, and those whose particles they hold.
+    // The columns whose springs are computed, and those of the particles at their ends.
     let first = strip.start.saturating_sub(LEFT);
     let width = cols.min(strip.end + RIGHT) - first;
     let inside = PAD + strip.start - first..PAD + strip.end - first;
     laws::fill::<S>(&mut kept.laws, sheet, first, width);
     let (n, own) = (fields[0].len() / 3, sheet.particles().start);
-    // Forces of undamped springs read no velocities, unless there is drag.
+    // Forces of undamped springs depend on no velocities, unless there is drag.
     let read = if KIND == PLAIN && finish.drag.is_none() {
         1
     } else {
@@ -188,7 +186,7 @@ fn run<S: Simd, const KIND: u8, const C: usize, const P: usize>(
         }
     };
     let [mut here, mut next, mut next2] = kept.places.each_mut();
-    // Two rows above hand on what the first one needs.
+    // The springs of the two rows above pull at the first row.
     let begin = wanted.start.saturating_sub(REACH);
     take(begin, here);
     take(begin + 1, next);
@@ -230,7 +228,7 @@ fn run<S: Simd, const KIND: u8, const C: usize, const P: usize>(
     }
 }
 
-/// Writes forces down.
+/// Use that writes forces.
 struct Put<'a, S: Simd> {
     here: Points<'a, S>,
     f: ColumnsMut<'a, S>,
@@ -256,7 +254,7 @@ mod tests {
     use crate::grid::Grid;
     use crate::random::SplitMix;
 
-    /// The forces by one number at a time, and by every kind of vector that this processor has.
+    /// Returns the forces by scalar code, and by every kind of vector that this processor has.
     #[test]
     fn vectors_of_any_length_give_the_same_bits() {
         let sizes = [(2, 2), (5, 3), (9, 33), (4, 140), (3, 515), (3, 1050)];
@@ -305,7 +303,7 @@ mod tests {
                         assert_eq!(by(&|forces| Simd::vectorize(avx2, forces)), expected);
                     }
                 }
-                // Spring by spring.
+                // The oracle: spring by spring.
                 let mut expected = vec![0.0; fields[0].len()];
                 let [x, v, dx, dv] = fields;
                 let (masses, triangles) = (&[][..], &[][..]);

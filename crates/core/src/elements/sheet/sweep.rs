@@ -1,5 +1,5 @@
-//! A row of a sheet in a stage of a sweep. What a stage keeps from row to row is whole rows, and
-//! stages are summed up while accelerations are at hand.
+//! A row of a sheet in a stage of a sweep. A stage stores whole rows for the rows below, and is
+//! summed up as soon as its accelerations are known.
 
 #![expect(
     clippy::inline_always,
@@ -37,10 +37,10 @@ impl WithSimd for Begin<'_> {
     }
 }
 
-/// A row in a stage of a sweep.
+/// Task that takes a row through a stage of a sweep.
 pub(crate) struct Advance<'a> {
     pub sheet: &'a Sheet,
-    /// Whether the scratch holds addends to the forces.
+    /// Whether the scratch holds forces to be added.
     pub added: bool,
     pub finish: &'a Finish<'a>,
     /// Drift of the particles afterwards.
@@ -116,7 +116,7 @@ fn advance<S: Simd, const KIND: u8>(simd: S, job: Advance) {
     springs.find_below::<S, KIND>(simd, lanes, [next, next2], &others, combine);
 }
 
-/// Takes particles to the next stage by their accelerations, k = \[v | a\].
+/// Use that takes particles to the next stage by their accelerations, k = \[v | a\].
 struct Combine<'a, S: Simd> {
     y: PlacesMut<'a, S>,
     sum: PlacesMut<'a, S>,

@@ -1,4 +1,4 @@
-//! A solid: tetrahedra of one material, with their stretches and their neighbours.
+//! A solid: tetrahedra of one material, with their stretches and the neighbours of each particle.
 
 use std::array::from_fn;
 
@@ -21,12 +21,13 @@ pub struct Solid {
 }
 
 impl Solid {
-    /// Tetrahedra between particles that are numbered from `first` on, with their positions (m) at
-    /// rest. Corners 1, 2 and 3 of each turn counterclockwise as seen from corner 0 through them.
+    /// Creates a solid between particles that are numbered from `first` on, with their positions
+    /// (m) at rest. Corners 1, 2 and 3 of each turn counterclockwise as seen from corner 0 through
+    /// them.
     ///
     /// # Errors
-    /// There is no such material; a corner does not exist, or a tetrahedron is flat or inside out
-    /// at rest.
+    /// A number of the material is out of its range; a corner does not exist, or a tetrahedron is
+    /// flat or inside out at rest.
     pub fn new(
         first: usize,
         tetrahedra: &[[u32; 4]],
@@ -63,13 +64,13 @@ impl Solid {
         Ok(solid)
     }
 
-    /// Material.
+    /// Returns the material.
     #[must_use]
     pub fn material(&self) -> &Material {
         &self.material
     }
 
-    /// Corners of the tetrahedra.
+    /// Returns the corners of the tetrahedra.
     pub fn tetrahedra(&self) -> impl Iterator<Item = [u32; 4]> {
         (0..self.count).map(|k| {
             self.blocks[k / LANES]
@@ -78,13 +79,13 @@ impl Solid {
         })
     }
 
-    /// Volume at rest of each tetrahedron (m3).
+    /// Returns the volume at rest of each tetrahedron (m3).
     pub fn volumes(&self) -> impl Iterator<Item = f64> {
         (0..self.count).map(|k| self.blocks[k / LANES].volume[k % LANES])
     }
 
-    /// Corners of each tetrahedron, and its strain at x: the most by which a principal stretch
-    /// differs from 1.
+    /// Returns the corners of each tetrahedron, and its strain at x: the largest difference of a
+    /// principal stretch from 1.
     pub(crate) fn strains(&self, x: &[f64]) -> impl Iterator<Item = ([u32; 4], f64)> {
         self.stretches(x).map(|(corners, stretches)| {
             let strain = stretches.iter().map(|stretch| (stretch - 1.0).abs());
@@ -92,7 +93,7 @@ impl Solid {
         })
     }
 
-    /// Corners of each tetrahedron, and its principal stretches at x.
+    /// Returns the corners of each tetrahedron, and its principal stretches at x.
     pub(crate) fn stretches(&self, x: &[f64]) -> impl Iterator<Item = ([u32; 4], Vector3<f64>)> {
         self.deformed(x).map(|tetrahedron| {
             let f = Matrix3::from_fn(|row, column| tetrahedron.deformation[row][column]);
@@ -100,7 +101,7 @@ impl Solid {
         })
     }
 
-    /// Each neighbour of particle i in a tetrahedron, with its distance at rest (m).
+    /// Returns the neighbours of particle i in tetrahedra, with their distances at rest (m).
     pub(crate) fn neighbours(&self, i: usize) -> impl Iterator<Item = (usize, f64)> {
         let each = self
             .tetrahedra()
@@ -119,13 +120,14 @@ impl Solid {
         each.flatten().filter(move |(other, _)| *other != i)
     }
 
-    /// Gradients (1/m) of the shape functions of corners 1 to 3 of a tetrahedron.
+    /// Returns the gradients (1/m) of the shape functions of corners 1 to 3 of a tetrahedron.
     pub(super) fn gradients(&self, k: usize) -> Matrix<f64> {
         let gradients = &self.blocks[k / LANES].gradients;
         gradients.map(|row| row.map(|number| number[k % LANES]))
     }
 
-    /// Each tetrahedron: its corners, gradients, volume at rest, and deformation gradient at x.
+    /// Returns each tetrahedron: its corners, gradients, volume at rest, and deformation gradient
+    /// at x.
     pub(super) fn deformed(&self, x: &[f64]) -> impl Iterator<Item = Deformed> {
         let each = self.tetrahedra().zip(self.volumes()).enumerate();
         each.map(move |(k, (corners, volume))| {

@@ -1,5 +1,5 @@
-//! Forces of solids, in the processor's vectors. What a tetrahedron adds to its corners is the same
-//! for any of these, and is added in one order.
+//! Forces of solids, in SIMD vectors. The forces of a tetrahedron on its corners are the same for
+//! any length of the vectors, and are added in one order.
 
 #![expect(
     clippy::inline_always,
@@ -14,18 +14,26 @@ use super::matrix::{Matrix, dot, scaled, three};
 use super::number::{Dual, Number, Vector};
 use super::tetrahedra::{Block, Corners, Deformed, LANES, deformation};
 use crate::coupling::Coupling;
-use crate::elements::force::{At, Cost, Force, check_particle};
+use crate::elements::force::{At, Cost, Force, Matter, check_particle};
 use crate::energy::Energy;
 use crate::error::Error;
 
-/// Prices of a tetrahedron's forces, without viscosity and with it, and of gathering its couplings,
-/// in evaluations of single springs.
+/// Prices of a tetrahedron's forces, without viscosity and with it, and of the assembly of its
+/// couplings, in evaluations of one single spring.
 const PRICES: [f64; 2] = [3.7, 5.2];
-const GATHERING: f64 = 270.0;
+const ASSEMBLY: f64 = 270.0;
 
 impl Force for Solid {
     fn name(&self) -> &'static str {
         "solid"
+    }
+
+    fn damping_name(&self) -> &'static str {
+        "viscosity"
+    }
+
+    fn matter(&self) -> Option<Matter> {
+        Some(Matter::Elastic)
     }
 
     fn check(&self, particles: usize) -> Result<(), Error> {
@@ -75,8 +83,8 @@ impl Force for Solid {
         }
     }
 
-    fn gathering(&self) -> f64 {
-        GATHERING * self.count as f64
+    fn assembly(&self) -> f64 {
+        ASSEMBLY * self.count as f64
     }
 
     fn scale(&mut self, stiffness: f64, damping: f64) {
@@ -85,12 +93,12 @@ impl Force for Solid {
     }
 }
 
-/// Forces of a solid that are to be added to f, or their changes.
+/// Task that adds the forces of a solid to f, or their differential.
 struct Forces<'a> {
     solid: &'a Solid,
     /// Positions (m) and velocities (m/s).
     values: [&'a [f64]; 2],
-    /// Changes of these, if those of the forces are asked for.
+    /// Changes of these, for a differential.
     changes: Option<[&'a [f64]; 2]>,
     f: &'a mut [f64],
 }
@@ -138,7 +146,7 @@ impl WithSimd for Forces<'_> {
     }
 }
 
-/// Vectors number `part` of what a block has at its corners.
+/// Returns SIMD vectors number `part` of the numbers of a block.
 #[inline(always)]
 fn corners<S: Simd>(simd: S, a: &Corners<[f64; LANES]>, part: usize) -> Corners<Vector<S>> {
     let [first, ends @ ..] = a;
@@ -191,7 +199,7 @@ impl<S: Simd> Rest<Vector<S>> {
 }
 
 impl<N: Number> Rest<N> {
-    /// The same shape, which does not change.
+    /// Returns the same shape as numbers with differential 0.
     #[inline(always)]
     fn dual(&self) -> Rest<Dual<N>> {
         let Self { gradients, volume } = self;
@@ -205,7 +213,7 @@ impl<N: Number> Rest<N> {
         }
     }
 
-    /// Forces (N) on the corners.
+    /// Returns the forces (N) on the corners.
     #[inline(always)]
     fn forces(&self, material: &Material, x: &Corners<N>, v: Option<&Corners<N>>) -> Corners<N> {
         let Self { gradients, volume } = self;
@@ -222,7 +230,7 @@ impl<N: Number> Rest<N> {
     }
 }
 
-/// Vectors at the corners, out of an n x 3 matrix.
+/// Returns the vectors at the corners, from an n x 3 matrix.
 #[inline(always)]
 fn gather(block: &Block, a: &[f64]) -> Corners<[f64; LANES]> {
     let n = a.len() / 3;
@@ -238,7 +246,7 @@ fn gather(block: &Block, a: &[f64]) -> Corners<[f64; LANES]> {
     all
 }
 
-/// Adds vectors at the corners of so many tetrahedra to an n x 3 matrix.
+/// Adds vectors at the corners of the first `count` tetrahedra to an n x 3 matrix.
 #[inline(always)]
 fn scatter(block: &Block, count: usize, vectors: &Corners<[f64; LANES]>, f: &mut [f64]) {
     let n = f.len() / 3;

@@ -22,17 +22,18 @@ use crate::error::{Error, at_least, positive};
 /// Energy of an elastic material.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Hyperelastic {
-    /// Stable neo-Hookean energy, which turns a tetrahedron that is inside out back.
+    /// Stable neo-Hookean energy, which turns an inverted tetrahedron back.
     #[default]
     NeoHookean,
-    /// Energy after Saint Venant and Kirchhoff, which has as much rest in the mirror.
+    /// Energy after Saint Venant and Kirchhoff, by which an inverted tetrahedron can be at rest,
+    /// too.
     StVenantKirchhoff,
 }
 
 /// Elastic material with viscosity.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Material {
-    /// Energy.
+    /// Energy of the deformation.
     pub model: Hyperelastic,
     /// Young's modulus (Pa).
     pub young: f64,
@@ -43,7 +44,7 @@ pub struct Material {
 }
 
 impl Material {
-    /// `Ok` if there is such a material.
+    /// Checks the numbers of the material.
     ///
     /// # Errors
     /// Young's modulus is not a finite number above 0, Poisson's ratio not one between -1 and 0.5,
@@ -71,7 +72,7 @@ impl Material {
         )))
     }
 
-    /// Parameters lambda and mu of Lamé (Pa).
+    /// Returns the parameters lambda and mu of Lamé (Pa).
     #[must_use]
     pub fn lame(&self) -> [f64; 2] {
         let Self { young, poisson, .. } = *self;
@@ -81,14 +82,14 @@ impl Material {
         ]
     }
 
-    /// Parameters m, l and a of the neo-Hookean energy (Pa, Pa, 1).
+    /// Returns the parameters m, l and a of the neo-Hookean energy (Pa, Pa, 1).
     pub(super) fn neo_hookean(&self) -> [f64; 3] {
         let [lambda, mu] = self.lame();
         let (m, l) = (4.0 / 3.0 * mu, lambda + 5.0 / 6.0 * mu);
         [m, l, 1.0 + 0.75 * m / l]
     }
 
-    /// Energy of a volume above that at rest (J/m3).
+    /// Returns the energy per volume above that at rest (J/m3).
     pub(super) fn energy(&self, f: &Matrix<f64>) -> f64 {
         match self.model {
             Hyperelastic::NeoHookean => {
@@ -106,8 +107,8 @@ impl Material {
         }
     }
 
-    /// First Piola-Kirchhoff stress (Pa) at a deformation gradient F, with its rate F' (1/s) where
-    /// the material is viscous.
+    /// Returns the first Piola-Kirchhoff stress (Pa) at a deformation gradient F, with its rate F'
+    /// (1/s) if the material is viscous.
     #[inline(always)]
     pub(super) fn stress<N: Number>(&self, f: &Matrix<N>, rate: Option<&Matrix<N>>) -> Matrix<N> {
         let [lambda, mu] = self.lame();
@@ -144,7 +145,7 @@ impl Material {
     }
 }
 
-/// Strain E of Green and Saint Venant.
+/// Returns the strain E of Green and Saint Venant.
 #[inline(always)]
 fn strain<N: Number>(f: &Matrix<N>) -> Matrix<N> {
     let half = f[0][0].constant(0.5);
@@ -160,7 +161,7 @@ fn trace<N: Number>(a: &Matrix<N>) -> N {
     a[0][0] + a[1][1] + a[2][2]
 }
 
-/// Hooke's law, lambda tr E 1 + 2 mu E.
+/// Returns the stress by Hooke's law, lambda tr E 1 + 2 mu E.
 #[inline(always)]
 fn hooke<N: Number>([lambda, mu]: [f64; 2], strain: &Matrix<N>) -> Matrix<N> {
     let trace = trace(strain);

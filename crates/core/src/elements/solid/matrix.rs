@@ -7,7 +7,7 @@
 
 use super::number::Number;
 
-/// Array of what an expression is for 0, 1 and 2. Unlike a closure, it is compiled in its place.
+/// Array of the values of an expression for 0, 1 and 2. Unlike a closure, it is always inlined.
 macro_rules! three {
     ($k:ident => $value:expr) => {
         [
@@ -31,7 +31,7 @@ pub(super) use three;
 /// Matrix, row by row.
 pub(super) type Matrix<N> = [[N; 3]; 3];
 
-/// a . b
+/// Returns a . b.
 #[inline(always)]
 pub(super) fn dot<N: Number>(a: [N; 3], b: [N; 3]) -> N {
     (a[0] * b[0])
@@ -48,25 +48,25 @@ fn cross<N: Number>(a: [N; 3], b: [N; 3]) -> [N; 3] {
     ]
 }
 
-/// Column k.
+/// Returns column k.
 #[inline(always)]
 pub(super) fn column<N: Number>(a: &Matrix<N>, k: usize) -> [N; 3] {
     [a[0][k], a[1][k], a[2][k]]
 }
 
-/// a b
+/// Returns a b.
 #[inline(always)]
 pub(super) fn product<N: Number>(a: &Matrix<N>, b: &Matrix<N>) -> Matrix<N> {
     three!(i => three!(j => dot(a[i], column(b, j))))
 }
 
-/// a : b
+/// Returns a : b.
 #[inline(always)]
 pub(super) fn contraction<N: Number>(a: &Matrix<N>, b: &Matrix<N>) -> N {
     dot(a[0], b[0]) + dot(a[1], b[1]) + dot(a[2], b[2])
 }
 
-/// Symmetric part of aT b.
+/// Returns the symmetric part of aT b.
 #[inline(always)]
 pub(super) fn symmetric<N: Number>(a: &Matrix<N>, b: &Matrix<N>) -> Matrix<N> {
     let (a, b) = (transposed(a), transposed(b));
@@ -86,25 +86,25 @@ fn transposed<N: Number>(a: &Matrix<N>) -> Matrix<N> {
     three!(i => three!(j => a[j][i]))
 }
 
-/// Matrix of cofactors: the derivative of the determinant.
+/// Returns the matrix of cofactors, which is the derivative of the determinant.
 #[inline(always)]
 pub(super) fn cofactors<N: Number>(a: &Matrix<N>) -> Matrix<N> {
     [cross(a[1], a[2]), cross(a[2], a[0]), cross(a[0], a[1])]
 }
 
-/// a + b
+/// Returns a + b.
 #[inline(always)]
 pub(super) fn sum<N: Number>(a: &Matrix<N>, b: &Matrix<N>) -> Matrix<N> {
     three!(i => three!(j => a[i][j] + b[i][j]))
 }
 
-/// a + s b
+/// Returns a + s b.
 #[inline(always)]
 pub(super) fn plus<N: Number>(a: &Matrix<N>, s: N, b: &Matrix<N>) -> Matrix<N> {
     three!(i => three!(j => a[i][j].plus_product(s, b[i][j])))
 }
 
-/// s a
+/// Returns s a.
 #[inline(always)]
 pub(super) fn scaled<N: Number>(s: N, a: &Matrix<N>) -> Matrix<N> {
     three!(i => three!(j => s * a[i][j]))

@@ -1,6 +1,6 @@
-//! Numbers in which the law of a material is evaluated: one, or those of as many tetrahedra as the
-//! processor takes at a time, with their differentials or without. The law is written once for all
-//! of them.
+//! Types of numbers for which the law of a material is evaluated: SIMD vectors, which hold the
+//! numbers of several tetrahedra, and dual numbers, which are numbers with their differentials. The
+//! law is written once for all of them.
 
 #![expect(
     clippy::inline_always,
@@ -17,10 +17,10 @@ use crate::fused::mul_adds;
 pub(super) trait Number:
     Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self>
 {
-    /// Constant.
+    /// Returns a constant.
     fn constant(self, x: f64) -> Self;
 
-    /// self + a b
+    /// Returns self + a b.
     fn plus_product(self, a: Self, b: Self) -> Self;
 }
 
@@ -36,8 +36,8 @@ impl Number for f64 {
     }
 }
 
-/// Numbers of as many tetrahedra as the processor takes at a time. Their products are added
-/// unrounded, so that their bits are the same for any number of them.
+/// Numbers of several tetrahedra in a SIMD vector. Products are fused with additions, so that the
+/// bits are the same for any length of the vector.
 #[derive(Clone, Copy)]
 pub(super) struct Vector<S: Simd> {
     pub simd: S,
@@ -99,7 +99,7 @@ impl<S: Simd> Div for Vector<S> {
     }
 }
 
-/// Number and its differential.
+/// Dual number: a number and its differential.
 #[derive(Clone, Copy)]
 pub(super) struct Dual<N> {
     pub value: N,

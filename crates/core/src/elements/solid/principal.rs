@@ -1,11 +1,11 @@
-//! Principal stretches: F = U diag(s) VT with two rotations U and V, so that the last stretch,
-//! which is the smallest, is negative where a tetrahedron is inside out.
+//! Principal stretches: F = U diag(s) VT with two rotations U and V. The last stretch is the
+//! smallest, and is negative for an inverted tetrahedron.
 
 use std::array::from_fn;
 
 use super::matrix::{Matrix, column, dot};
 
-/// Most sweeps of rotations. Four are enough for all digits.
+/// Largest number of sweeps of rotations. Four are enough for all digits.
 const SWEEPS: usize = 8;
 
 /// Rotations U and V by their columns, and the stretches.
@@ -39,7 +39,7 @@ impl Principal {
     }
 }
 
-/// Eigenvalues and eigenvectors of a symmetric matrix, by Jacobi's rotations.
+/// Returns the eigenvalues and eigenvectors of a symmetric matrix, by Jacobi's rotations.
 pub(super) fn eigen(mut a: Matrix<f64>) -> ([f64; 3], [[f64; 3]; 3]) {
     let mut vectors = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
     for _ in 0..SWEEPS {
@@ -77,13 +77,13 @@ fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     })
 }
 
-/// The vector with length 1, if it has a direction.
+/// Returns the vector scaled to length 1, if it is not 0.
 fn unit(a: [f64; 3]) -> Option<[f64; 3]> {
     let length = dot(a, a).sqrt();
     (length > f64::MIN_POSITIVE).then(|| a.map(|x| x / length))
 }
 
-/// A vector of length 1 across one of length 1.
+/// Returns a vector of length 1 perpendicular to one of length 1.
 fn perpendicular(a: [f64; 3]) -> [f64; 3] {
     let axis = if a[0].abs() < 0.6 {
         [1.0, 0.0, 0.0]

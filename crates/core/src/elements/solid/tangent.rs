@@ -4,13 +4,13 @@
 //! (twist): Smith, de Goes, Kim, *Analytic Eigensystems for Isotropic Distortion Energies*, 2019.
 
 use std::array::from_fn;
-use std::sync::{Mutex, PoisonError};
 
 use super::material::{Hyperelastic, Material};
 use super::matrix::{Matrix, cofactors, dot};
 use super::principal::{Principal, eigen};
 use super::tetrahedra::Deformed;
 use crate::coupling::{Coupling, GeneralCoupling};
+use crate::scratch::Scratch;
 
 /// Pairs of corners of a tetrahedron.
 const CORNERS: [[usize; 2]; 6] = [[0, 1], [0, 2], [0, 3], [1, 2], [1, 3], [2, 3]];
@@ -19,24 +19,14 @@ const CORNERS: [[usize; 2]; 6] = [[0, 1], [0, 2], [0, 3], [1, 2], [1, 3], [2, 3]
 type Sums = [[f64; 9]; 2];
 
 /// Pairs of particles that are in one tetrahedron.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct Pairs {
-    /// Particles of each, the lower number first, in order.
+    /// Particles of each pair, the lower number first, in order.
     ends: Vec<[u32; 2]>,
-    /// Pair of each two corners of each tetrahedron.
+    /// Index of the pair of each two corners of each tetrahedron.
     places: Vec<[u32; 6]>,
-    /// Sums over tetrahedra, which one evaluation at a time borrows; none before the first.
-    sums: Mutex<Vec<Sums>>,
-}
-
-impl Clone for Pairs {
-    fn clone(&self) -> Self {
-        Self {
-            ends: self.ends.clone(),
-            places: self.places.clone(),
-            sums: Mutex::default(),
-        }
-    }
+    /// Sums over tetrahedra.
+    sums: Scratch<Vec<Sums>>,
 }
 
 impl Pairs {
@@ -49,7 +39,7 @@ impl Pairs {
         let place = |pair: [u32; 2]| ends.partition_point(|other| *other < pair) as u32;
         Self {
             places: all.into_iter().map(|pairs| pairs.map(place)).collect(),
-            sums: Mutex::default(),
+            sums: Scratch::default(),
             ends,
         }
     }
@@ -58,7 +48,7 @@ impl Pairs {
         self.ends.len()
     }
 
-    /// Visits the couplings of all pairs, in their order, of tetrahedra of a material.
+    /// Visits the couplings of all pairs, in order, for tetrahedra of a material.
     pub(super) fn visit_couplings(
         &self,
         material: &Material,
@@ -66,45 +56,46 @@ impl Pairs {
         clamped: bool,
         visit: &mut dyn FnMut(Coupling),
     ) {
-        let mut own = self.sums.lock().unwrap_or_else(PoisonError::into_inner);
-        own.clear();
-        own.resize(self.ends.len(), Sums::default());
-        for (tetrahedron, places) in tetrahedra.zip(&self.places) {
-            let hessian = Hessian::new(material, &tetrahedron, clamped);
-            for ([k, l], place) in CORNERS.into_iter().zip(places) {
-                // The pair has the lower number first.
-                let swapped = tetrahedron.corners[k] > tetrahedron.corners[l];
-                let pair = if swapped { [l, k] } else { [k, l] };
-                let sums = &mut own[*place as usize];
-                hessian.add(material, &tetrahedron, pair, sums);
+        self.sums.lend(|all| {
+            all.clear();
+            all.resize(self.ends.len(), Sums::default());
+            for (tetrahedron, places) in tetrahedra.zip(&self.places) {
+                let hessian = Hessian::new(material, &tetrahedron, clamped);
+                for ([k, l], place) in CORNERS.into_iter().zip(places) {
+                    // The pair has the lower number first.
+                    let swapped = tetrahedron.corners[k] > tetrahedron.corners[l];
+                    let pair = if swapped { [l, k] } else { [k, l] };
+                    hessian.add(material, &tetrahedron, pair, &mut all[*place as usize]);
+                }
             }
-        }
-        for ([i, j], [stiffness, damping]) in self.ends.iter().zip(&*own) {
-            visit(Coupling::General(GeneralCoupling {
-                i: *i as usize,
-                j: *j as usize,
-                stiffness: *stiffness,
-                damping: *damping,
-            }));
-        }
+            for ([i, j], [stiffness, damping]) in self.ends.iter().zip(all) {
+                visit(Coupling::General(GeneralCoupling {
+                    i: *i as usize,
+                    j: *j as usize,
+                    stiffness: *stiffness,
+                    damping: *damping,
+                }));
+            }
+        });
     }
 }
 
-/// Second derivative of a tetrahedron's energy by its deformation gradient, in the principal frame.
+/// Second derivative of a tetrahedron's energy with respect to its deformation gradient, in the
+/// principal frame.
 struct Hessian {
     frame: Principal,
-    /// Between the stretches (Pa).
+    /// Block between the stretches (Pa).
     stretch: Matrix<f64>,
     /// Eigenvalues of shear and of turn in the plane across each axis (Pa).
     flip: [f64; 3],
     twist: [f64; 3],
-    /// Gradients (1/m) of the shape functions of all corners: as they are, and in the frame.
+    /// Gradients (1/m) of the shape functions of all corners, in the world and in the frame.
     gradients: [[f64; 3]; 4],
     framed: [[f64; 3]; 4],
 }
 
 impl Hessian {
-    /// With `clamped`, negative eigenvalues are taken as zero.
+    /// Computes the second derivative. With `clamped`, negative eigenvalues are taken as zero.
     fn new(material: &Material, tetrahedron: &Deformed, clamped: bool) -> Self {
         let frame = Principal::new(&tetrahedron.deformation);
         let (mut stretch, mut flip, mut twist) = eigensystem(material, frame.stretches);
@@ -135,7 +126,7 @@ impl Hessian {
         [stiffness, damping]: &mut Sums,
     ) {
         let (a, b) = (self.framed[k], self.framed[l]);
-        // The derivative of the force along axis i of the frame by a motion along axis j.
+        // The derivative of the force along axis i of the frame for a motion along axis j.
         let framed: Matrix<f64> = from_fn(|i| {
             from_fn(|j| {
                 let stretch = self.stretch[i][j] * a[i] * b[j];
@@ -184,16 +175,16 @@ fn is_definite(a: &Matrix<f64>) -> bool {
     a[0][0] > 0.0 && cofactors[2][2] > 0.0 && dot(a[0], cofactors[0]) > 0.0
 }
 
-/// A symmetric matrix with its negative eigenvalues taken as zero.
+/// Returns a symmetric matrix with its negative eigenvalues taken as zero.
 fn positive_part(a: Matrix<f64>) -> Matrix<f64> {
     let (values, vectors) = eigen(a);
     let of = |i: usize, j: usize, k: usize| values[k].max(0.0) * vectors[k][i] * vectors[k][j];
     from_fn(|i| from_fn(|j| of(i, j, 0) + of(i, j, 1) + of(i, j, 2)))
 }
 
-/// Second derivatives of the energy of a volume by the stretches s (Pa), and, in the plane across
-/// each axis, (`e_i` - `e_j`) / (`s_i` - `s_j`) and (`e_i` + `e_j`) / (`s_i` + `s_j`) of its first
-/// derivatives e.
+/// Returns the second derivatives of the energy per volume with respect to the stretches s (Pa),
+/// and, in the plane across each axis, (`e_i` - `e_j`) / (`s_i` - `s_j`) and (`e_i` + `e_j`) /
+/// (`s_i` + `s_j`) of its first derivatives e.
 fn eigensystem(material: &Material, s: [f64; 3]) -> (Matrix<f64>, [f64; 3], [f64; 3]) {
     let others = |k: usize| [s[(k + 1) % 3], s[(k + 2) % 3]];
     match material.model {

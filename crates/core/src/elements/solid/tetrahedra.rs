@@ -1,4 +1,4 @@
-//! Tetrahedra: blocks of them beside one another, and each in a state.
+//! Tetrahedra at rest, in blocks for SIMD vectors, and single ones in a state.
 
 use std::array::from_fn;
 
@@ -7,13 +7,13 @@ use nalgebra::{Matrix3, Vector3};
 use super::matrix::{Matrix, product, three};
 use super::number::Number;
 
-/// Volume over that of a cube on the longest edge below which a tetrahedron counts as flat.
-const FLAT: f64 = 1e-9;
+/// Smallest volume of a tetrahedron that is not flat, over that of a cube on its longest edge.
+const MIN_VOLUME: f64 = 1e-9;
 
-/// Number of tetrahedra in a block: as many as the longest vectors of a processor hold, or more.
+/// Number of tetrahedra in a block: at least as many as the longest SIMD vector holds.
 pub(super) const LANES: usize = 8;
 
-/// Tetrahedra beside one another. The last block repeats its last one.
+/// Block of tetrahedra at rest. The last block repeats its last tetrahedron.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Block {
     pub(super) corners: [[u32; LANES]; 4],
@@ -37,15 +37,15 @@ pub(super) struct Deformed {
     pub(super) deformation: Matrix<f64>,
 }
 
-/// Derivative of a linear function, by its values at the corners.
+/// Returns the derivative of a linear function, from its values at the corners.
 #[inline(always)]
 pub(super) fn deformation<N: Number>(gradients: &Matrix<N>, a: &Corners<N>) -> Matrix<N> {
     let edges: Matrix<N> = three!(axis => three!(k => a[k + 1][axis] - a[0][axis]));
     product(&edges, gradients)
 }
 
-/// Gradients (1/m) of the shape functions of corners 1 to 3, and the volume (m3), or why there are
-/// none.
+/// Returns the gradients (1/m) of the shape functions of corners 1 to 3 and the volume (m3), or the
+/// reason why there are none.
 pub(super) fn shape(
     corners: &[u32; 4],
     rest: &[Vector3<f64>],
@@ -62,7 +62,7 @@ pub(super) fn shape(
     let longest = [b - a, c - a, d - a, c - b, d - b, d - c].map(|edge| edge.norm());
     let longest = longest.into_iter().fold(0.0, f64::max);
     let [i, j, k, l] = corners;
-    if six.is_nan() || six.abs() <= FLAT * longest.powi(3) {
+    if six.is_nan() || six.abs() <= MIN_VOLUME * longest.powi(3) {
         return Err(format!(
             "is flat: its corners {i}, {j}, {k} and {l} lie in a plane"
         ));

@@ -7,7 +7,7 @@ use crate::error::Error;
 use crate::integrators::arithmetic::add_scaled;
 use crate::integrators::integrator::check_dim;
 use crate::integrators::method::MAX_DENSE;
-use crate::system::{Measure, ParticleSystem};
+use crate::system::{Measure, ParticleSystem, rigid_of};
 use crate::work::Work;
 
 /// Half the step of a difference quotient, over the unit of the number.
@@ -85,8 +85,8 @@ impl Dense {
                 }
             }
             work += self.correct(system, t, a, base, y);
-            // The size of the state is independent of the positions of bodies.
-            let size = match system.rigid() {
+            // Where bodies are does not matter.
+            let size = match rigid_of(system) {
                 Some(_) => (self.unknowns.len() as f64).sqrt(),
                 None => self.norm(y),
             };

@@ -134,7 +134,7 @@ impl KeptSolver {
         match (&mut self.stage, linearized(system)) {
             (StageSolver::Mechanical(stage), Some(linearized)) => {
                 let x = &self.at[..self.at.len() / 2];
-                let mut work = stage.solver.gather(linearized, (t, a), x, clamped);
+                let mut work = stage.solver.assemble(linearized, (t, a), x, clamped);
                 let (cost, of_use) = stage.solver.prepare(linearized, FORCING);
                 work += cost;
                 (work, of_use)

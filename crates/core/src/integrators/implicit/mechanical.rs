@@ -62,7 +62,7 @@ impl Mechanical {
             dv: zeros(),
             dx: zeros(),
             before: zeros(),
-            secants: Secants::new(if mechanics.reach().is_finite() {
+            secants: Secants::new(if mechanics.hints().reach.is_finite() {
                 3 * n
             } else {
                 0
@@ -84,7 +84,7 @@ impl Mechanical {
         let (x, v) = y.split_at_mut(bx.len());
         place_pins(mechanics, t, x, v);
         let mut work = Work::default();
-        let searches = newton == Newton::Full && mechanics.reach().is_finite();
+        let searches = newton == Newton::Full && mechanics.hints().reach.is_finite();
         let mut changes = Changes::new(!searches);
         let most = if searches {
             MAX_CONTACT_ITERATIONS
@@ -154,7 +154,7 @@ impl Mechanical {
         let mut assembles = assembles;
         let residual = loop {
             if assembles {
-                *work += self.solver.gather(mechanics, (t, a), x, clamped);
+                *work += self.solver.assemble(mechanics, (t, a), x, clamped);
             }
             self.reduce(mechanics, a, bv, v);
             let tolerance = match newton {
@@ -202,7 +202,7 @@ impl Mechanical {
         self.dx.copy_from_slice(&self.gap);
         add_scaled(&mut self.dx, a, &self.dv);
         let begin = dot(&self.before, &self.dv);
-        let longest = mechanics.reach() / spread(&self.dx);
+        let longest = mechanics.hints().reach / spread(&self.dx);
         let mut share = longest.min(1.0);
         if share < 1.0 {
             add_scaled(x, share - 1.0, &self.dx);
@@ -256,8 +256,8 @@ impl Mechanical {
         Work::of(1)
     }
 
-    /// Writes M (bv - v) + a F - a K g for free particles to the right-hand side, with the K
-    /// assembled last.
+    /// Writes M (bv - v) + a F - a K g for free particles to the right-hand side, with the K that
+    /// was assembled last.
     pub(super) fn reduce(&mut self, mechanics: &dyn Linearized, a: f64, bv: &[f64], v: &[f64]) {
         let Self {
             solver,

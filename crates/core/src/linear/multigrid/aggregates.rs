@@ -1,33 +1,35 @@
-//! Particles in aggregates: each made of one and all its neighbours by strong couplings, as far as
-//! they are free, and of what is left between these (Vaněk, Mandel, Brezina, *Algebraic multigrid
-//! by smoothed aggregation for second and fourth order elliptic problems*, 1996).
+//! Aggregates of particles. An aggregate is a particle with all its neighbours by strong couplings,
+//! as far as these are in no other one; particles that are left join aggregates nearby (Vaněk,
+//! Mandel, Brezina, *Algebraic multigrid by smoothed aggregation for second and fourth order
+//! elliptic problems*, 1996).
 
 use super::lists::Lists;
 
-/// Least strength of a strong coupling, over that of the strongest of its particle.
-const STRONG: f64 = 0.25;
-/// Share of a particle's motion that it takes from its neighbours: two thirds, as of the damped
-/// iteration of Jacobi that smooths the motion of aggregates.
-const SMOOTHED: f64 = 2.0 / 3.0;
+/// Least strength of a strong coupling, over the strongest coupling of its particle.
+const MIN_STRENGTH: f64 = 0.25;
+/// Weight of the neighbours in the smoothed motion of a particle: two thirds, as in the damped
+/// Jacobi iteration that smooths the motion of aggregates.
+const NEIGHBOUR_WEIGHT: f64 = 2.0 / 3.0;
 /// No aggregate.
 pub(super) const NONE: u32 = u32::MAX;
 
-/// Couplings between particles, as far as the choice of aggregates needs them.
+/// Graph of particles and couplings, by which aggregates are chosen.
 pub(super) struct Graph {
     /// Number of particles.
     pub particles: usize,
     /// Ends of each coupling.
     pub ends: Vec<[u32; 2]>,
-    /// Strength of each coupling: the number of couplings between particles that are part of it.
+    /// Strength of each coupling: the number of couplings between particles that it combines.
     pub strengths: Vec<f64>,
 }
 
 /// Aggregates of the particles of a graph.
 pub(super) struct Aggregates {
     pub count: usize,
-    /// That of each particle; `NONE` for one that is pinned, or has no neighbour.
+    /// Aggregate of each particle; `NONE` for a particle that is pinned or has no neighbour.
     pub of: Vec<u32>,
-    /// How each particle moves with aggregates: with its own and those of its neighbours.
+    /// Weights of aggregates in the motion of each particle: of its own and those of its
+    /// neighbours.
     pub shares: Lists<(u32, f32)>,
 }
 
@@ -44,7 +46,7 @@ impl Aggregates {
             }
         }
         let both_ways = couplings.flat_map(|([i, j], s)| [(*i, (*j, *s)), (*j, (*i, *s))]);
-        let strong = both_ways.filter(|(i, (_, s))| *s >= STRONG * strongest[*i as usize]);
+        let strong = both_ways.filter(|(i, (_, s))| *s >= MIN_STRENGTH * strongest[*i as usize]);
         let neighbours = Lists::new(n, strong);
         let (of, count) = choose(&neighbours, n);
         let shares = (0..n).flat_map(|i| shares(i, &neighbours, &of));
@@ -56,7 +58,7 @@ impl Aggregates {
     }
 }
 
-/// The aggregate of each particle, and their number.
+/// Returns the aggregate of each particle, and their number.
 fn choose(neighbours: &Lists<(u32, f64)>, n: usize) -> (Vec<u32>, usize) {
     let (mut of, mut count) = (vec![NONE; n], 0);
     let is_alone = |i: usize| neighbours.of(i).is_empty();
@@ -75,7 +77,7 @@ fn choose(neighbours: &Lists<(u32, f64)>, n: usize) -> (Vec<u32>, usize) {
             .iter()
             .map(|(j, s)| (seeds[*j as usize], *s));
         let near = near.filter(|(aggregate, _)| *aggregate != NONE);
-        // Of equal ones the first.
+        // The first of equally strong ones.
         if let Some((aggregate, _)) = near.reduce(|a, b| if b.1 > a.1 { b } else { a }) {
             of[i] = aggregate;
         }
@@ -95,15 +97,15 @@ fn choose(neighbours: &Lists<(u32, f64)>, n: usize) -> (Vec<u32>, usize) {
     (of, count as usize)
 }
 
-/// The aggregates that a particle moves with, and by how much.
+/// Returns the aggregates that a particle moves with, and their weights.
 fn shares(i: usize, neighbours: &Lists<(u32, f64)>, of: &[u32]) -> Vec<(u32, (u32, f32))> {
     if of[i] == NONE {
         return vec![];
     }
     let all: f64 = neighbours.of(i).iter().map(|(_, s)| s).sum();
-    let mut shares = vec![(i as u32, (of[i], 1.0 - SMOOTHED as f32))];
+    let mut shares = vec![(i as u32, (of[i], 1.0 - NEIGHBOUR_WEIGHT as f32))];
     for (j, strength) in neighbours.of(i) {
-        let (aggregate, share) = (of[*j as usize], (SMOOTHED * strength / all) as f32);
+        let (aggregate, share) = (of[*j as usize], (NEIGHBOUR_WEIGHT * strength / all) as f32);
         match shares.iter_mut().find(|(_, (a, _))| *a == aggregate) {
             Some((_, (_, sum))) => *sum += share,
             None => shares.push((i as u32, (aggregate, share))),

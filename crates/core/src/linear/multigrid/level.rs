@@ -1,5 +1,5 @@
-//! A level of multigrid: a matrix of aggregates and the couplings between them, made from one of
-//! particles, or of smaller aggregates.
+//! A level of multigrid: the matrix of aggregates and of the couplings between them, formed from
+//! the matrix of particles or of smaller aggregates.
 
 use rayon::iter::{IndexedParallelIterator, IntoParallelRefMutIterator, ParallelIterator};
 
@@ -8,27 +8,27 @@ use super::aggregates::{Aggregates, Graph, NONE};
 use super::lists::Lists;
 use crate::threads::threads;
 
-/// Factor by which couplings between aggregates that move as one are stiffer than between those
-/// whose motion is smoothed: two for aggregates of two particles in a row, and three of three, of
-/// springs between neighbours; less of longer springs (Braess, *Towards algebraic multigrid for
-/// elliptic problems of second order*, 1995).
-const STIFFER: f64 = 2.0;
+/// Factor by which couplings of aggregates that move as one are stiffer than those of aggregates
+/// with smoothed motion. For springs between neighbours it is two for aggregates of two particles
+/// in a row, and three for those of three; less for longer springs (Braess, *Towards algebraic
+/// multigrid for elliptic problems of second order*, 1995).
+const STIFFNESS_RATIO: f64 = 2.0;
 
 /// Least number of aggregates for each thread.
-const LEAST: usize = 256;
+const MIN_PER_THREAD: usize = 256;
 
-/// A matrix of aggregates, with what it was made from.
+/// The matrix of aggregates, with its relation to the finer level.
 pub(super) struct Level {
     /// Aggregate of each finer particle.
     of: Vec<u32>,
-    /// How each finer particle moves with aggregates, and the same by aggregate.
+    /// Weights of aggregates in the motion of each finer particle, and the same by aggregate.
     shares: Lists<(u32, f32)>,
     shared: Lists<(u32, f32)>,
-    /// Coupling that each finer one is part of; `NONE` if it is within one aggregate.
+    /// Coupling that contains each finer coupling; `NONE` for one within an aggregate.
     part_of: Vec<u32>,
     /// Ends of the couplings.
     pub ends: Vec<[u32; 2]>,
-    /// What each aggregate has by itself: mass, and couplings to what is pinned.
+    /// Own block of each aggregate: its mass, and its couplings to pinned particles.
     pub own: Vec<Block>,
     /// Blocks of the couplings.
     pub couplings: Vec<Block>,
@@ -37,14 +37,14 @@ pub(super) struct Level {
     /// Each aggregate's neighbours before it, and after it, with their couplings.
     before: Lists<(u32, u32)>,
     after: Lists<(u32, u32)>,
-    /// Right-hand side, solution, and what is left of the former.
+    /// Right-hand side, solution, and residual.
     pub r: Vec<[f64; 3]>,
     pub z: Vec<[f64; 3]>,
     pub left: Vec<[f64; 3]>,
 }
 
 impl Level {
-    /// The aggregates of a graph's particles, and the graph of these aggregates; `None` where
+    /// Forms the aggregates of a graph's particles, and the graph of these aggregates; `None` if
     /// hardly any can be formed.
     pub fn new(graph: &Graph, is_free: impl Fn(u32) -> bool) -> Option<(Self, Graph)> {
         let Aggregates { count, of, shares } = Aggregates::new(graph, is_free);
@@ -91,14 +91,14 @@ impl Level {
         self.couplings.fill([0.0; 6]);
     }
 
-    /// Adds what a finer particle has by itself.
+    /// Adds the own block of a finer particle.
     pub fn add_own(&mut self, i: usize, block: &Block) {
         if let Some(own) = self.own.get_mut(self.of[i] as usize) {
             add(own, block);
         }
     }
 
-    /// Adds a finer coupling.
+    /// Adds the block of a finer coupling.
     pub fn add_coupling(&mut self, coupling: usize, [i, j]: [u32; 2], block: &Block) {
         let part_of = self.part_of[coupling];
         if part_of != NONE {
@@ -106,7 +106,7 @@ impl Level {
         } else if i == j {
             self.add_own(i as usize, block);
         } else {
-            // To an end that is pinned; what is within an aggregate does not change as it moves.
+            // A coupling to a pinned end. Those within an aggregate do not change as it moves.
             match [i, j].map(|i| self.of[i as usize]) {
                 [NONE, a] | [a, NONE] if a != NONE => add(&mut self.own[a as usize], block),
                 _ => {}
@@ -118,7 +118,7 @@ impl Level {
     pub fn finish(&mut self) {
         self.inverses.copy_from_slice(&self.own);
         for (ends, coupling) in self.ends.iter().zip(&mut self.couplings) {
-            *coupling = coupling.map(|k| k / STIFFER);
+            *coupling = coupling.map(|k| k / STIFFNESS_RATIO);
             for end in ends {
                 add(&mut self.inverses[*end as usize], coupling);
             }
@@ -128,7 +128,7 @@ impl Level {
         }
     }
 
-    /// Takes up a finer right-hand side.
+    /// Restricts a finer right-hand side to this level.
     pub fn restrict(&mut self, finer: impl Fn(usize) -> [f64; 3] + Sync) {
         let shared = &self.shared;
         let take_up = |(aggregate, r): (usize, &mut [f64; 3])| {
@@ -138,14 +138,14 @@ impl Level {
             }
         };
         if threads(self.of.len()) > 1 {
-            let all = self.r.par_iter_mut().with_min_len(LEAST);
+            let all = self.r.par_iter_mut().with_min_len(MIN_PER_THREAD);
             all.enumerate().for_each(take_up);
         } else {
             self.r.iter_mut().enumerate().for_each(take_up);
         }
     }
 
-    /// The solution at a finer particle.
+    /// Returns the solution at a finer particle.
     #[inline]
     pub fn prolong(&self, i: usize) -> [f64; 3] {
         let mut sum = [0.0; 3];
@@ -155,7 +155,8 @@ impl Level {
         sum
     }
 
-    /// Half an iteration of Gauss and Seidel from z = 0, and what it leaves.
+    /// Takes the forward half of a symmetric Gauss-Seidel iteration from z = 0, and forms the
+    /// residual.
     pub fn descend(&mut self) {
         for i in 0..self.z.len() {
             let sum = self.pulled(self.r[i], self.before.of(i));
@@ -166,7 +167,7 @@ impl Level {
         }
     }
 
-    /// The other half, backwards.
+    /// Takes the backward half of the iteration.
     pub fn ascend(&mut self) {
         for i in (0..self.z.len()).rev() {
             let sum = self.pulled(self.r[i], self.before.of(i));
@@ -175,7 +176,7 @@ impl Level {
         }
     }
 
-    /// Adds what neighbours pull.
+    /// Adds the pull of neighbours.
     #[inline]
     fn pulled(&self, mut sum: [f64; 3], neighbours: &[(u32, u32)]) -> [f64; 3] {
         for (j, coupling) in neighbours {
@@ -186,7 +187,7 @@ impl Level {
     }
 }
 
-/// The couplings between aggregates, and which of them each finer one is part of.
+/// The couplings between aggregates, and the one that contains each finer coupling.
 fn join(finer: &[[u32; 2]], of: &[u32], count: usize) -> (Vec<[u32; 2]>, Vec<u32>) {
     let between = finer.iter().enumerate().filter_map(|(k, ends)| {
         let [a, b] = ends.map(|end| of[end as usize]);

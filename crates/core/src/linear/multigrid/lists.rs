@@ -1,15 +1,15 @@
-//! A list for each of many, one after another in memory.
+//! Many lists, one after another in memory.
 
-/// Lists of numbers 0, 1, ... in the order in which they were given.
+/// Lists with numbers 0, 1, ..., each of items in the order in which they were given.
 #[derive(Debug, Default)]
 pub(super) struct Lists<T> {
-    /// Where each list begins, and the end of the last one.
+    /// Start of each list, and the end of the last one.
     starts: Vec<u32>,
     items: Vec<T>,
 }
 
 impl<T: Copy + Default> Lists<T> {
-    /// So many lists, of items that come with the number of their list.
+    /// Creates `count` lists, from items with the numbers of their lists.
     pub fn new(count: usize, items: impl Iterator<Item = (u32, T)> + Clone) -> Self {
         let mut starts = vec![0; count + 1];
         for (list, _) in items.clone() {
@@ -28,13 +28,13 @@ impl<T: Copy + Default> Lists<T> {
         Self { starts, items: all }
     }
 
-    /// The items of a list.
+    /// Returns the items of a list.
     #[inline]
     pub fn of(&self, list: usize) -> &[T] {
         &self.items[self.starts[list] as usize..self.starts[list + 1] as usize]
     }
 
-    /// All items with the numbers of their lists.
+    /// Returns all items with the numbers of their lists.
     pub fn all(&self) -> impl Iterator<Item = (u32, T)> + Clone {
         let lists = 0..self.starts.len() - 1;
         lists.flat_map(|list| self.of(list).iter().map(move |item| (list as u32, *item)))

@@ -1,7 +1,7 @@
-//! Multigrid by aggregates: neighbouring particles that move together, neighbouring aggregates that
-//! do, and so on. What conjugate gradients with a preconditioner for each particle by itself take
-//! many iterations for, motion over long distances, is solved for on the coarser levels. It knows
-//! couplings alone, so that it serves grids, jellies, meshes and lists alike.
+//! Multigrid by aggregation: neighbouring particles that move together form aggregates, and so do
+//! neighbouring aggregates on the next level. Coarser levels solve for motion over long distances,
+//! for which conjugate gradients preconditioned by each particle alone take many iterations. Only
+//! couplings are used, so that grids, jellies, meshes and lists of springs are all served.
 
 mod aggregates;
 mod level;
@@ -11,32 +11,32 @@ use super::tangent::Tangent;
 use aggregates::Graph;
 use level::Level;
 
-/// Number of aggregates that need no coarser level.
-const FEW: usize = 16;
+/// Largest number of aggregates on the coarsest level.
+const MAX_COARSEST: usize = 16;
 
 /// The coarser levels of a matrix whose pattern was analysed.
 pub(super) struct Multigrid {
     levels: Vec<Level>,
-    /// Pattern of the couplings, and what is free.
+    /// Pattern of the couplings, and the free particles.
     pattern: u64,
     free: Vec<f64>,
-    /// Version of the tangent whose matrix was taken up.
+    /// Version of the tangent whose matrix was prepared.
     version: u64,
 }
 
 impl Multigrid {
-    /// Levels for the pattern of a tangent; there are none where particles form no aggregates.
+    /// Creates the levels for the pattern of a tangent; none if the particles form no aggregates.
     pub fn new(tangent: &Tangent) -> Self {
         let ends: Vec<_> = tangent.pairs().collect();
         let mut graph = Graph {
             particles: tangent.particles(),
-            // By the pattern alone: the stiffness of a coupling may depend on where particles are,
-            // and a run that is resumed elsewhere has to find the same aggregates.
+            // Aggregates depend on the pattern alone: stiffness may depend on positions, and a run
+            // that is resumed elsewhere has to form the same aggregates.
             strengths: vec![1.0; ends.len()],
             ends,
         };
         let mut levels: Vec<Level> = vec![];
-        while graph.particles > FEW {
+        while graph.particles > MAX_COARSEST {
             let is_free = |i: u32| !levels.is_empty() || tangent.masses()[i as usize] != 0.0;
             let Some((level, coarser)) = Level::new(&graph, is_free) else {
                 break;
@@ -52,12 +52,12 @@ impl Multigrid {
         }
     }
 
-    /// Whether the same particles are still coupled, and pinned.
+    /// Whether the pattern and the pinned particles are the same.
     pub fn fits(&self, tangent: &Tangent) -> bool {
         self.pattern == tangent.pattern() && self.free == tangent.free()
     }
 
-    /// Takes up the matrix. Returns whether it is another than before.
+    /// Prepares the levels for the matrix. Returns whether it has changed.
     pub fn prepare(&mut self, tangent: &Tangent) -> bool {
         if self.version == tangent.version() {
             return false;
@@ -91,8 +91,8 @@ impl Multigrid {
         true
     }
 
-    /// Solves for the motion of aggregates about, from residuals r, n x 3. Returns the product of r
-    /// and the solution.
+    /// Solves for the motion of aggregates approximately, from residuals r, n x 3. Returns the
+    /// scalar product of r and the solution.
     pub fn solve(&mut self, r: &[f64]) -> f64 {
         let Some(first) = self.levels.first_mut() else {
             return 0.0;
@@ -110,7 +110,7 @@ impl Multigrid {
             .sum()
     }
 
-    /// The solution at a particle.
+    /// Returns the solution at a particle.
     #[inline]
     pub fn solution(&self, i: usize) -> [f64; 3] {
         self.levels

@@ -6,8 +6,8 @@ use crate::random::SplitMix;
 use crate::spring::{Spring, SpringKind, SpringLaw};
 use crate::{Network, Path, Vector3};
 
-/// Springs between random particles near one another, of stiffness over four orders, some of them
-/// damped; some particles are heavy, some pinned, and some have no spring.
+/// Returns springs between random particles near one another, of stiffness over four orders, some
+/// of them damped; some particles are heavy, some pinned, and some have no spring.
 fn thicket(seed: u64, particles: usize) -> (Network, Vec<f64>) {
     let mut random = SplitMix(seed);
     let masses = (0..particles).map(|_| libm::exp(random.between(-7.0, 1.0)));
@@ -53,7 +53,7 @@ fn solves_the_same_with_it_in_fewer_iterations() {
         let b = right_hand_side(&network);
         let mut solver = Solver::new(&network);
         solver.direct_always = Some(false);
-        let _ = solver.gather(&network, (0.0, 0.05), &x, true);
+        let _ = solver.assemble(&network, (0.0, 0.05), &x, true);
         let [alone, with] = [false, true].map(|multigrid| {
             solver.multigrid_always = Some(multigrid);
             let mut found = vec![0.0; b.len()];
@@ -73,7 +73,7 @@ fn solves_the_same_with_it_in_fewer_iterations() {
     }
 }
 
-/// The motion of aggregates for a residual.
+/// Returns the motion of aggregates for a residual.
 fn motion(multigrid: &mut Multigrid, r: &[f64]) -> Vec<f64> {
     let product = multigrid.solve(r);
     let n = r.len() / 3;
@@ -91,7 +91,7 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
 fn it_is_symmetric_and_positive_and_leaves_pinned_particles() {
     for (number, (network, x)) in cases().into_iter().enumerate() {
         let mut tangent = Tangent::new(&network);
-        tangent.gather(&network, (0.0, 0.05), &x, true);
+        tangent.assemble(&network, (0.0, 0.05), &x, true);
         let mut multigrid = Multigrid::new(&tangent);
         assert!(multigrid.prepare(&tangent) && !multigrid.prepare(&tangent));
         assert_eq!(multigrid.levels.is_empty(), number == 5);
@@ -114,16 +114,16 @@ fn it_is_symmetric_and_positive_and_leaves_pinned_particles() {
 fn it_follows_what_is_torn_and_what_is_pinned() {
     let (mut network, x) = cloth(12, 1e4);
     let mut tangent = Tangent::new(&network);
-    tangent.gather(&network, (0.0, 0.05), &x, true);
+    tangent.assemble(&network, (0.0, 0.05), &x, true);
     let multigrid = Multigrid::new(&tangent);
-    tangent.gather(&network, (0.0, 0.02), &x, false);
+    tangent.assemble(&network, (0.0, 0.02), &x, false);
     assert!(multigrid.fits(&tangent));
     network.pin(40, Path::Still(Vector3::zeros())).unwrap();
-    tangent.gather(&network, (0.0, 0.05), &x, true);
+    tangent.assemble(&network, (0.0, 0.05), &x, true);
     assert!(!multigrid.fits(&tangent));
     let multigrid = Multigrid::new(&tangent);
     network.break_springs(&[[50, 51]]).unwrap();
-    tangent.gather(&network, (0.0, 0.05), &x, true);
+    tangent.assemble(&network, (0.0, 0.05), &x, true);
     assert!(!multigrid.fits(&tangent));
 }
 
@@ -137,7 +137,7 @@ fn any_number_of_threads_finds_the_same_bits() {
         pool.build().unwrap().install(|| {
             let mut solver = Solver::new(&network);
             solver.direct_always = Some(false);
-            let _ = solver.gather(&network, (0.0, 0.05), &x, true);
+            let _ = solver.assemble(&network, (0.0, 0.05), &x, true);
             let mut found = vec![0.0; b.len()];
             let (work, _) = solver.solve(&network, &b, &mut found, 1e-6);
             assert!(solver.multigrid.is_some() && work.iterations > 10);

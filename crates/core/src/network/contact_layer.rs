@@ -1,8 +1,8 @@
 //! Contact of surfaces as a force: primitives nearer than their thickness repel each other.
 
-use super::force::{At, Force};
 use crate::contact::ContactLayer;
 use crate::coupling::{AxialCoupling, BlockCoupling, Coupling};
+use crate::elements::force::{At, Force};
 use crate::energy::Energy;
 
 impl Force for ContactLayer {
@@ -18,9 +18,9 @@ impl Force for ContactLayer {
         self.add_repulsion_differential(at.t, [at.x, at.v], d, df);
     }
 
-    /// Along the normals alone: what the turn of a normal adds is left out, as if clamped. The
-    /// weights w of a pair sum to zero, so its stiffness k w wT couples its points i and j by -k wi
-    /// wj, and those of obstacles to their places.
+    /// Visits couplings along the normals alone: the part from the rotation of a normal is left
+    /// out, as if clamped. The weights w of a pair sum to zero, so its stiffness k w wT couples its
+    /// points i and j by -k wi wj. Points of obstacles are places.
     fn couplings(&self, t: f64, x: &[f64], _clamped: bool, visit: &mut dyn FnMut(Coupling)) {
         let n = x.len() / 3;
         self.stiffnesses(t, x, |points, pair| {
