@@ -76,7 +76,9 @@ fn words_of_file(session: &Session, at: usize, scene: &str) -> Vec<String> {
     let mut option = |name: &str, value: &str| words.extend([name.into(), value.into()]);
     option("--scene", scene);
     let coloured = show.colouring.quantity;
-    if let Some(quantity) = coloured.filter(|quantity| looks::has(&session.runs.panes, *quantity)) {
+    if let Some(quantity) =
+        coloured.filter(|quantity| looks::has_quantity(&session.runs.panes, *quantity))
+    {
         option("--colour", quantity.name());
     }
     if let Some(arrows) = show.field.arrows {

@@ -57,8 +57,8 @@ pub fn table(session: &Session) -> String {
 fn line(pane: &Pane) -> String {
     let run = &pane.simulation;
     let start = format!("  {:<10}   {:>8}", run.method().name, run.control().value());
-    if let Some(lost) = run.blow_up() {
-        return format!("{start}   {lost}\n");
+    if let Some(blow_up) = run.blow_up() {
+        return format!("{start}   {blow_up}\n");
     }
     let number = |number: Option<f64>| number.map_or("-".into(), digits);
     format!(

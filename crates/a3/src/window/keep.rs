@@ -11,7 +11,7 @@ use crate::window::session::Session;
 
 /// Writes the run of pane `at` under the first free name, beside the file of its scene if there is
 /// one, and returns that name.
-pub fn keep(session: &mut Session, at: usize) -> Result<PathBuf, Failure> {
+pub fn save(session: &mut Session, at: usize) -> Result<PathBuf, Failure> {
     let run = &session.runs.panes[at.min(session.runs.panes.len() - 1)].simulation;
     let origin = &session.scenes.shown;
     let folder = origin.source.path.as_deref().and_then(Path::parent);
@@ -19,12 +19,12 @@ pub fn keep(session: &mut Session, at: usize) -> Result<PathBuf, Failure> {
     kept.tuned = panel::tuned(session);
     let folder = folder.unwrap_or("".as_ref());
     let path = output::write_new(folder, &run.scene().name, ENDING, &kept.bytes()?)?;
-    session.scenes.kept = Some(path.clone());
+    session.scenes.checkpoint = Some(path.clone());
     Ok(path)
 }
 
 /// Takes the run of a window up where it was kept, tuned alike. A hand lets go.
-pub fn take_up(session: &mut Session, path: &Path) -> Result<(), Failure> {
+pub fn load(session: &mut Session, path: &Path) -> Result<(), Failure> {
     if session.runs.panes.len() > 1 {
         return Err(Failure::usage(
             "a checkpoint has one run, so it cannot be opened beside others",
@@ -34,9 +34,9 @@ pub fn take_up(session: &mut Session, path: &Path) -> Result<(), Failure> {
     let origin = &session.scenes.shown;
     kept.check(path, &origin.source, origin.grid, session.runs.first())?;
     panel::tune(session, &kept.tuned);
-    let taken = session.take_up(&kept.checkpoint);
+    let taken = session.restore(&kept.checkpoint);
     taken.map_err(|why| Failure::usage(format!("{}: {why}", path.display())))?;
-    session.scenes.kept = Some(path.into());
+    session.scenes.checkpoint = Some(path.into());
     Ok(())
 }
 
@@ -63,13 +63,11 @@ mod tests {
         }
         assert!(panel::tuned(&first).len() > 3, "{:?}", panel::tuned(&first));
         frames(&mut first, 0.5);
-        let path = keep(&mut first, 0).ok().unwrap();
+        let path = save(&mut first, 0).ok().unwrap();
         assert_eq!(path, folder.path().join("a3-flag-1.checkpoint"));
         let mut second = session(&words[2..]);
         second.readings.in_window = true;
-        take_up(&mut second, &path)
-            .map_err(Failure::message)
-            .unwrap();
+        load(&mut second, &path).map_err(Failure::message).unwrap();
         assert_eq!(panel::tuned(&first), panel::tuned(&second));
         for session in [&mut first, &mut second] {
             frames(session, 0.5);
@@ -85,14 +83,12 @@ mod tests {
         };
         assert!(seen(&first) == seen(&second));
         // A run that is not tuned takes it back.
-        let plain = keep(&mut session(&words), 0).ok().unwrap();
-        take_up(&mut second, &plain)
-            .map_err(Failure::message)
-            .unwrap();
+        let plain = save(&mut session(&words), 0).ok().unwrap();
+        load(&mut second, &plain).map_err(Failure::message).unwrap();
         assert_eq!(panel::tuned(&second), []);
         assert_eq!(second.runs.first().time(), 0.0);
         let mut other = session(&["r", "0.01"]);
-        let why = take_up(&mut other, &path).err().unwrap().message();
+        let why = load(&mut other, &path).err().unwrap().message();
         assert!(why.contains("of the scene flag, not of cloth"), "{why}");
     }
 }

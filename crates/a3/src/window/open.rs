@@ -22,7 +22,7 @@ pub fn run(options: &WindowOptions) -> Result<(), Failure> {
         vec![]
     };
     if let Some(path) = &options.resume {
-        keep::take_up(&mut session, path)?;
+        keep::load(&mut session, path)?;
     }
     if let Some(i) = options.springs_of {
         terminal::say(&show::list_springs_of(session.runs.first(), i))?;

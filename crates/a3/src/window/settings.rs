@@ -13,13 +13,13 @@ use crate::base::failure::Failure;
 use crate::base::terminal;
 use crate::files::ending::Ending;
 use crate::files::output;
-use crate::window::session::{FILM_OF, SPAN};
+use crate::window::session::{DEFAULT_FILM_SECONDS, SPAN};
 
 /// Size of the largest file (bytes).
 #[cfg(not(target_arch = "wasm32"))]
-const LARGEST: u64 = 1 << 20;
+const MAX_FILE_SIZE: u64 = 1 << 20;
 /// The most files that are remembered.
-const MOST: usize = 12;
+const MAX_RECENT_FILES: usize = 12;
 /// Factors of the size of text and panel.
 pub const SCALES: [f32; 8] = [0.75, 0.9, 1.0, 1.15, 1.3, 1.5, 1.75, 2.0];
 
@@ -54,7 +54,7 @@ impl Default for Settings {
             panel: false,
             frame_limit: 0,
             film: Ending::default(),
-            film_seconds: FILM_OF,
+            film_seconds: DEFAULT_FILM_SECONDS,
             recent: vec![],
         }
     }
@@ -111,7 +111,7 @@ impl Settings {
         let mut all: Vec<PathBuf> = files.chain(std::mem::take(&mut self.recent)).collect();
         let mut seen = std::collections::HashSet::new();
         all.retain(|file| seen.insert(file.clone()));
-        all.truncate(MOST);
+        all.truncate(MAX_RECENT_FILES);
         self.recent = all;
     }
 }
@@ -121,7 +121,7 @@ impl Settings {
 fn text_of(path: &Path) -> Result<Option<String>, String> {
     let place = path.display();
     match fs::metadata(path) {
-        Ok(there) if there.is_file() && there.len() <= LARGEST => {}
+        Ok(there) if there.is_file() && there.len() <= MAX_FILE_SIZE => {}
         Ok(_) => {
             return Err(format!(
                 "{place}: it is no ordinary file of at most 1 MiB: the settings are neither read nor kept"

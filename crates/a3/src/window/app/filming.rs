@@ -22,14 +22,14 @@ impl Films {
     /// Films from now on, or completes that film.
     pub fn record(&mut self, session: &mut Session, graphics: Option<&Graphics>) {
         if self.recorder.as_ref().is_some_and(Recorder::is_live) {
-            return self.end(session);
+            return self.finish(session);
         }
         self.begin(session, graphics, Recorder::from_now);
     }
 
     /// Films the last seconds that are kept.
     pub fn record_last(&mut self, session: &mut Session, graphics: Option<&Graphics>) {
-        self.begin(session, graphics, Recorder::of_kept);
+        self.begin(session, graphics, Recorder::of_past);
     }
 
     /// Begins a film, if none is being made.
@@ -49,14 +49,14 @@ impl Films {
         let scale = graphics.scale();
         let format = Format {
             ending: session.panel.film,
-            size: panel::leaves(session, graphics.size(), scale),
+            size: panel::picture_size(session, graphics.size(), scale),
             scale,
         };
         match begin(graphics.gpu(), session, format) {
             Ok(recorder) => self.recorder = Some(recorder),
             Err(why) => session.readings.warn(why.message()),
         }
-        self.tell(session);
+        self.show_progress(session);
     }
 
     /// Draws the next frame of the film that is being made, if it is due, and returns whether the
@@ -65,33 +65,33 @@ impl Films {
         let (Some(recorder), Some(graphics)) = (&mut self.recorder, graphics) else {
             return false;
         };
-        match recorder.go_on(graphics.gpu(), session) {
+        match recorder.draw_next(graphics.gpu(), session) {
             Ok(true) => {}
-            Ok(false) => self.end(session),
+            Ok(false) => self.finish(session),
             Err(why) => {
                 self.recorder = None;
                 session.readings.warn(why.message());
             }
         }
-        self.tell(session);
+        self.show_progress(session);
         self.recorder.as_ref().is_some_and(|film| !film.is_live())
     }
 
     /// Completes a film of what happens from now on: something else is shown.
-    pub fn end_live(&mut self, session: &mut Session) {
+    pub fn finish_live(&mut self, session: &mut Session) {
         if self.recorder.as_ref().is_some_and(Recorder::is_live) {
-            self.end(session);
+            self.finish(session);
         }
     }
 
     /// Real time that passes for a session of which so much did (s), while it is filmed.
-    pub fn pace(&self, session: &Session, real: f64) -> f64 {
+    pub fn time_to_advance(&self, session: &Session, real: f64) -> f64 {
         let recorder = self.recorder.as_ref();
-        recorder.map_or(real, |recorder| recorder.pace(session, real))
+        recorder.map_or(real, |recorder| recorder.time_to_advance(session, real))
     }
 
     /// Completes the film that is being made, and says so.
-    pub fn end(&mut self, session: &mut Session) {
+    pub fn finish(&mut self, session: &mut Session) {
         let Some(recorder) = self.recorder.take() else {
             return;
         };
@@ -99,7 +99,7 @@ impl Films {
             Ok(said) => session.readings.say(said),
             Err(why) => session.readings.warn(why.message()),
         }
-        self.tell(session);
+        self.show_progress(session);
     }
 
     /// Completes the film that is being made before the window closes: with all moments that it is
@@ -110,13 +110,13 @@ impl Films {
         {
             thread::sleep(Duration::from_millis(1));
         }
-        self.end(session);
+        self.finish(session);
         if let Some(said) = session.readings.message.take() {
             terminal::warn(&said);
         }
     }
 
-    fn tell(&self, session: &mut Session) {
+    fn show_progress(&self, session: &mut Session) {
         session.readings.film = self.recorder.as_ref().map(Recorder::progress);
     }
 }

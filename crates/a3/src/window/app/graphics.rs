@@ -99,7 +99,7 @@ impl Graphics {
 
     /// The parts of the window that the panes fill.
     pub fn tiles(&self, session: &Session) -> Vec<Tile> {
-        let size = panel::leaves(session, self.size(), self.scale());
+        let size = panel::picture_size(session, self.size(), self.scale());
         layout::tiles(session.runs.panes.len(), size, self.scale())
     }
 
@@ -132,9 +132,9 @@ impl Graphics {
     }
 
     /// Notes that something happened that the text may tell of.
-    pub fn touch(&mut self) {
+    pub fn invalidate_text(&mut self) {
         if let Some(layer) = &mut self.layer {
-            layer.touch();
+            layer.invalidate();
         }
     }
 
@@ -152,7 +152,7 @@ impl Graphics {
     }
 
     /// Leaves torn springs and triangles out of the topology.
-    fn tear(&mut self, session: &Session) {
+    fn update_topology(&mut self, session: &Session) {
         self.tears.resize(session.runs.panes.len(), 0);
         for (k, (pane, tears)) in session.runs.panes.iter().zip(&mut self.tears).enumerate() {
             let now = pane.simulation.tears();
@@ -221,7 +221,7 @@ impl Graphics {
                 return Err(GpuError::Lost);
             }
         };
-        self.tear(session);
+        self.update_topology(session);
         for pane in &mut session.runs.panes {
             pane.show.compose(&pane.simulation);
         }
@@ -277,8 +277,8 @@ impl Graphics {
         let Some(mut layer) = self.layer.take() else {
             return self.write_text(encoder, view, wgpu::LoadOp::Load, session, cursor);
         };
-        let written = if let Some(stays) = layer.stays() {
-            (vec![], Some(stays), None)
+        let written = if let Some(left) = layer.time_left() {
+            (vec![], Some(left), None)
         } else {
             let empty = wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT);
             let on_layer = layer.texture.picture();

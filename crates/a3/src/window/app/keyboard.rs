@@ -52,8 +52,8 @@ pub fn text_key(event: &KeyEvent) -> Option<TextKey> {
         Key::Named(NamedKey::ArrowDown) => TextKey::Move(1),
         Key::Named(NamedKey::PageUp) => TextKey::Move(-10),
         Key::Named(NamedKey::PageDown) => TextKey::Move(10),
-        Key::Named(NamedKey::Enter) => TextKey::Take,
-        Key::Named(NamedKey::Escape) => TextKey::Close,
+        Key::Named(NamedKey::Enter) => TextKey::Accept,
+        Key::Named(NamedKey::Escape) => TextKey::Cancel,
         Key::Named(NamedKey::Backspace) => TextKey::Erase,
         _ => {
             let text = event.text.as_ref()?;

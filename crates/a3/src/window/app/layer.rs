@@ -5,7 +5,7 @@ use a3_render::{Gpu, Transfer};
 use web_time::{Duration, Instant};
 
 /// Time between two texts while nobody touches anything: faster than numbers can be read.
-const PACE: Duration = Duration::from_millis(100);
+const MAX_TEXT_AGE: Duration = Duration::from_millis(100);
 
 /// The layer, and when its text has to be drawn anew.
 pub struct Layer {
@@ -24,18 +24,19 @@ impl Layer {
     }
 
     /// Has the text drawn anew in the next frame.
-    pub fn touch(&mut self) {
+    pub fn invalidate(&mut self) {
         self.due = None;
     }
 
     /// How long the text may stay.
-    pub fn stays(&self) -> Option<Duration> {
+    pub fn time_left(&self) -> Option<Duration> {
         let left = self.due?.saturating_duration_since(Instant::now());
         (!left.is_zero()).then_some(left)
     }
 
     /// Notes that the text was drawn, and has to be drawn again after this time, if at all.
     pub fn drawn(&mut self, again: Option<Duration>) {
-        self.due = Some(Instant::now() + again.map_or(PACE, |delay| delay.min(PACE)));
+        self.due =
+            Some(Instant::now() + again.map_or(MAX_TEXT_AGE, |delay| delay.min(MAX_TEXT_AGE)));
     }
 }

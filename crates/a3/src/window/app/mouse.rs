@@ -6,15 +6,15 @@ use winit::dpi::PhysicalPosition;
 use winit::event::{MouseButton, MouseScrollDelta};
 
 use super::pick::Grip;
-use super::pointer::{CLICK, Pointer};
+use super::pointer::{MAX_CLICK_DISTANCE, Pointer};
 use super::screen::Screen;
 use crate::draw::show::{self, Target};
 use crate::window::session::{Selection, Session, looks};
 
 /// Angle by which the camera turns when the pointer moves by the height of the picture (rad).
-const TURN: f32 = 4.0;
+const ORBIT_ANGLE: f32 = 4.0;
 /// Pixels of smooth scrolling that count as a notch of the wheel.
-const NOTCH: f32 = 50.0;
+const PIXELS_PER_NOTCH: f32 = 50.0;
 
 /// A drag: the action of a pressed button while the pointer moves.
 #[derive(Clone, Copy, PartialEq)]
@@ -72,7 +72,9 @@ impl Mouse {
         }
         let pane = self.pointer.pane(session, screen);
         let double = self.pointer.press();
-        let share = self.pointer.timeline_share(session, screen, CLICK);
+        let share = self
+            .pointer
+            .timeline_share(session, screen, MAX_CLICK_DISTANCE);
         let hit = self.pointer.hit(session, screen, pane);
         let select = |pinned| Drag::Select {
             from: self.pointer.position,
@@ -115,23 +117,23 @@ impl Mouse {
         {
             session.toggle_pin(i);
         }
-        self.let_go(session, screen);
+        self.finish(session, screen);
     }
 
     /// Ends what the pressed button does.
-    pub fn let_go(&mut self, session: &mut Session, screen: &Screen) {
-        self.take_box(session, screen);
+    pub fn finish(&mut self, session: &mut Session, screen: &Screen) {
+        self.apply_selection(session, screen);
         session.release();
-        self.stop();
+        self.abort();
     }
 
     /// Ends the drag, and leaves the session as it is.
-    pub fn stop(&mut self) {
+    pub fn abort(&mut self) {
         (self.drag, self.button) = (Drag::None, None);
     }
 
     /// The particles in the box that is drawn, walls of tanks left out.
-    fn boxed(&self, session: &Session, screen: &Screen) -> Vec<usize> {
+    fn selected_particles(&self, session: &Session, screen: &Screen) -> Vec<usize> {
         let Drag::Select { from, .. } = self.drag else {
             return vec![];
         };
@@ -152,11 +154,11 @@ impl Mouse {
     }
 
     /// Shows the box, and how many particles are in it.
-    fn look_into_box(&self, session: &mut Session, screen: &Screen) {
+    fn show_selection(&self, session: &mut Session, screen: &Screen) {
         let scale = screen.scale();
         if let Drag::Select { from, pinned } = self.drag {
             let corners = [from, self.pointer.position].map(|at| at.map(|px| px / scale));
-            let count = self.boxed(session, screen).len();
+            let count = self.selected_particles(session, screen).len();
             session.readings.selection = Some(Selection {
                 corners,
                 count,
@@ -166,11 +168,11 @@ impl Mouse {
     }
 
     /// Pins what is in the box, or lets go of it.
-    fn take_box(&self, session: &mut Session, screen: &Screen) {
+    fn apply_selection(&self, session: &mut Session, screen: &Screen) {
         if let Drag::Select { pinned, .. } = self.drag
             && session.readings.selection.take().is_some()
         {
-            let particles = self.boxed(session, screen);
+            let particles = self.selected_particles(session, screen);
             session.pin_all(&particles, pinned);
         }
     }
@@ -204,7 +206,7 @@ impl Mouse {
         }
         let tile = screen.tile(session, self.pane);
         // A click moves nothing until the pointer has gone too far for one.
-        self.pointer.approach(position, screen.scale());
+        self.pointer.update_click(position, screen.scale());
         if self.pointer.is_click() && self.drag == Drag::Pan {
             return;
         }
@@ -213,7 +215,7 @@ impl Mouse {
         self.pointer.position = position;
         let camera = &mut session.view.camera;
         match self.drag {
-            Drag::Orbit => camera.orbit(-TURN * dx * aspect, TURN * dy),
+            Drag::Orbit => camera.orbit(-ORBIT_ANGLE * dx * aspect, ORBIT_ANGLE * dy),
             Drag::Pan => camera.pan(-dx * aspect, dy),
             Drag::Scrub => {
                 let share = self.pointer.timeline_share(session, screen, f32::INFINITY);
@@ -221,7 +223,7 @@ impl Mouse {
                     session.scrub_to(share);
                 }
             }
-            Drag::Select { .. } => self.look_into_box(session, screen),
+            Drag::Select { .. } => self.show_selection(session, screen),
             Drag::Pull(_) | Drag::None => return,
         }
         screen.redraw();
@@ -231,7 +233,7 @@ impl Mouse {
     pub fn scroll(&self, delta: MouseScrollDelta, session: &mut Session, screen: &Screen) {
         let notches = match delta {
             MouseScrollDelta::LineDelta(_, y) => y,
-            MouseScrollDelta::PixelDelta(p) => p.y as f32 / NOTCH,
+            MouseScrollDelta::PixelDelta(p) => p.y as f32 / PIXELS_PER_NOTCH,
         };
         let tile = screen.tile(session, self.pointer.pane(session, screen));
         let at = tile.place(self.pointer.position);

@@ -40,7 +40,7 @@ pub type Event = ();
 
 /// What the window has of the system.
 #[derive(Default)]
-pub struct Outside {
+pub struct Platform {
     /// The clipboard, once it was needed: what was copied is lost with it.
     clipboard: Option<Clipboard>,
     pub films: Films,
@@ -48,7 +48,7 @@ pub struct Outside {
     watch: Option<Watch>,
 }
 
-impl Outside {
+impl Platform {
     /// When one of `files` changes, the scene is loaded again.
     pub fn new(files: Vec<PathBuf>) -> Self {
         Self {
@@ -66,7 +66,7 @@ impl Outside {
     ) -> Option<Result<Graphics, GpuError>> {
         let window = screen.window.clone()?;
         // What was filmed is drawn by the device that goes.
-        self.films.end(session);
+        self.films.finish(session);
         // The old surface has to go before the window can have another.
         screen.graphics = None;
         let opened = pollster::block_on(adapter::open(window.clone(), screen.display.clone()));
@@ -103,7 +103,7 @@ impl Outside {
     }
 
     /// Time of the next look at the files that are watched.
-    pub fn next_look(&self) -> Option<Instant> {
+    pub fn next_check(&self) -> Option<Instant> {
         self.watch.as_ref().map(Watch::next)
     }
 }

@@ -47,13 +47,13 @@ pub fn send(event: Event) {
 }
 
 /// Makes [`send`] reach the window.
-pub fn reach(proxy: EventLoopProxy<Event>) {
+pub fn connect(proxy: EventLoopProxy<Event>) {
     PROXY.set(Some(proxy));
 }
 
 /// What the window has of the browser.
 #[derive(Default)]
-pub struct Outside {
+pub struct Platform {
     /// Whether an adapter is being opened.
     opening: bool,
     pub films: Films,
@@ -66,7 +66,7 @@ pub struct Films {
     picture: bool,
 }
 
-impl Outside {
+impl Platform {
     /// Opens all that depends on the adapter, for the window that is there: an event says that it
     /// is open.
     pub fn open_graphics(
@@ -86,7 +86,7 @@ impl Outside {
     }
 
     /// Takes the adapter that was opened, for the window that is there.
-    pub fn opened(
+    pub fn finish_opening(
         &mut self,
         opened: Result<(Gpu, wgpu::Surface<'static>), GpuError>,
         screen: &Screen,
@@ -125,7 +125,7 @@ impl Outside {
     }
 
     /// No files are watched.
-    pub fn next_look(&self) -> Option<Instant> {
+    pub fn next_check(&self) -> Option<Instant> {
         None
     }
 }
@@ -154,13 +154,13 @@ impl Films {
     }
 
     /// There are no films.
-    pub fn end_live(&mut self, _: &mut Session) {}
+    pub fn finish_live(&mut self, _: &mut Session) {}
 
     /// There are no films.
     pub fn complete(&mut self, _: &mut Session, _: Option<&Graphics>) {}
 
     /// Real time as it passes.
-    pub fn pace(&self, _: &Session, real: f64) -> f64 {
+    pub fn time_to_advance(&self, _: &Session, real: f64) -> f64 {
         real
     }
 }

@@ -9,11 +9,11 @@ use crate::window::hud::{layout, panel};
 use crate::window::session::Session;
 
 /// Distance from the pointer within which a particle is hit (points).
-const REACH: f32 = 18.0;
+const PICK_DISTANCE: f32 = 18.0;
 /// The farthest that the pointer may move during a click (points).
-pub const CLICK: f32 = 4.0;
+pub const MAX_CLICK_DISTANCE: f32 = 4.0;
 /// The longest time between the two clicks of a double click.
-const DOUBLE_CLICK: Duration = Duration::from_millis(400);
+const MAX_DOUBLE_CLICK_TIME: Duration = Duration::from_millis(400);
 
 /// The pointer.
 pub struct Pointer {
@@ -43,16 +43,16 @@ impl Pointer {
 
     /// Notes that a button was pressed, and returns whether that is the second of a double click.
     pub fn press(&mut self) -> bool {
-        let double = self.still && self.pressed.elapsed() < DOUBLE_CLICK;
+        let double = self.still && self.pressed.elapsed() < MAX_DOUBLE_CLICK_TIME;
         (self.pressed_at, self.pressed, self.still) = (self.position, Instant::now(), true);
         double
     }
 
     /// Notes where the pointer goes. Beyond the reach of a click from where the button was pressed,
     /// the click becomes a drag. There are `scale` pixels per point.
-    pub fn approach(&mut self, position: [f32; 2], scale: f32) {
+    pub fn update_click(&mut self, position: [f32; 2], scale: f32) {
         let [x, y] = [0, 1].map(|k| position[k] - self.pressed_at[k]);
-        self.still &= x.hypot(y) <= CLICK * scale;
+        self.still &= x.hypot(y) <= MAX_CLICK_DISTANCE * scale;
     }
 
     /// Whether the pressed button clicks until now, and does not drag.
@@ -68,7 +68,7 @@ impl Pointer {
     /// The particle or the obstacle under the pointer in a pane. A lost run cannot be pulled.
     pub fn hit(&self, session: &Session, screen: &Screen, pane: usize) -> Option<(Target, Grip)> {
         let (tile, pane) = (screen.tile(session, pane), &session.runs.panes[pane]);
-        let reach = REACH * screen.scale() / tile.height as f32;
+        let reach = PICK_DISTANCE * screen.scale() / tile.height as f32;
         let place = tile.place(self.position);
         let run = Some(&pane.simulation).filter(|_| pane.alive())?;
         pick::pick(run, &session.view.camera, place, tile.aspect(), reach)
@@ -97,7 +97,7 @@ impl Pointer {
             return false;
         };
         let (size, [x, y]) = (graphics.size(), self.position);
-        let free = panel::leaves(session, size, graphics.scale());
+        let free = panel::picture_size(session, size, graphics.scale());
         let inside = (0.0..free.0 as f32).contains(&x) && (0.0..free.1 as f32).contains(&y);
         inside && self.inside && session.list.is_none() && !session.readings.help
     }

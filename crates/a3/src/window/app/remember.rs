@@ -9,12 +9,12 @@ use crate::window::settings::Settings;
 pub fn remember(before: &Settings, session: &Session, screen: &Screen) {
     let mut now = Settings {
         interface_scale: screen.zoom,
-        full_screen: screen.is_full(),
+        full_screen: screen.is_full_screen(),
         dark: session.runs.panes[0].show.dark,
         panel: session.panel.open,
         frame_limit: session.panel.frame_limit,
         film: session.panel.film,
-        film_seconds: session.panel.film_of,
+        film_seconds: session.panel.film_seconds,
         recent: before.recent.clone(),
     };
     now.remember(session.scenes.files());

@@ -111,7 +111,7 @@ impl Screen {
     }
 
     /// Takes the graphics that were opened for the window.
-    pub fn take_graphics(&mut self, graphics: Result<Graphics, GpuError>) -> Result<(), GpuError> {
+    pub fn set_graphics(&mut self, graphics: Result<Graphics, GpuError>) -> Result<(), GpuError> {
         self.redraw();
         let mut graphics = graphics?;
         graphics.set_zoom(self.zoom);
@@ -121,13 +121,13 @@ impl Screen {
     }
 
     /// Whether the window fills the screen.
-    pub fn is_full(&self) -> bool {
+    pub fn is_full_screen(&self) -> bool {
         let window = self.window.as_ref();
         window.is_some_and(|window| window.fullscreen().is_some())
     }
 
     /// Fills the screen, or a window again.
-    pub fn toggle_full(&self) {
+    pub fn toggle_full_screen(&self) {
         if let Some(window) = &self.window {
             let whole = window.fullscreen().is_none();
             window.set_fullscreen(whole.then_some(Fullscreen::Borderless(None)));

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use winit::event_loop::EventLoop;
 
-use super::platform::{Event, Outside};
+use super::platform::{Event, Platform};
 use super::state::App;
 use crate::base::failure::Failure;
 use crate::window::session::{Session, looks};
@@ -35,7 +35,7 @@ pub fn open(
     };
     prepare(&mut session, settings.as_ref());
     let display = event_loop.owned_display_handle();
-    let mut app = App::new(session, display, status, Outside::new(files), settings);
+    let mut app = App::new(session, display, status, Platform::new(files), settings);
     event_loop.run_app(&mut app).map_err(Failure::run)?;
     match app.failure {
         None => Ok(End::Closed),
@@ -58,14 +58,14 @@ pub fn spawn(
     use winit::platform::web::EventLoopExtWebSys;
     let event_loop = EventLoop::<Event>::with_user_event().build();
     let event_loop = event_loop.map_err(Failure::run)?;
-    super::platform::reach(event_loop.create_proxy());
+    super::platform::connect(event_loop.create_proxy());
     prepare(&mut session, settings.as_ref());
     let display = event_loop.owned_display_handle();
     event_loop.spawn_app(App::new(
         session,
         display,
         status,
-        Outside::default(),
+        Platform::default(),
         settings,
     ));
     Ok(())
@@ -81,7 +81,7 @@ fn prepare(session: &mut Session, settings: Option<&Settings>) {
         }
         session.panel.film = settings.film;
         session.panel.frame_limit = settings.frame_limit;
-        session.panel.film_of = settings.film_seconds;
+        session.panel.film_seconds = settings.film_seconds;
         session.scenes.recent.clone_from(&settings.recent);
     }
 }

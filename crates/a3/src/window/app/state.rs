@@ -11,7 +11,7 @@ use winit::keyboard::{Key, ModifiersState, NamedKey};
 use super::graphics::Graphics;
 use super::keyboard;
 use super::mouse::Mouse;
-use super::platform::{self, Outside};
+use super::platform::{self, Platform};
 use super::remember::remember;
 use super::screen::Screen;
 use super::status::Status;
@@ -31,13 +31,13 @@ pub struct App {
     /// The mouse.
     pub mouse: Mouse,
     /// The keys that are held beside others.
-    pub held: ModifiersState,
+    pub modifiers: ModifiersState,
     /// Time when the simulation was last brought up to date.
-    pub last: Instant,
+    pub last_tick: Instant,
     /// The settings as they were read, unless none are remembered.
     pub settings: Option<Settings>,
     /// What the window has of the system.
-    pub outside: Outside,
+    pub platform: Platform,
     /// Lines for tests, if they are asked for.
     pub status: Option<Status>,
     /// The failure that closed the window, if there was one.
@@ -50,7 +50,7 @@ impl App {
         session: Session,
         display: OwnedDisplayHandle,
         status: bool,
-        outside: Outside,
+        platform: Platform,
         settings: Option<Settings>,
     ) -> Self {
         let zoom = settings.as_ref().map_or(1.0, |it| it.interface_scale);
@@ -58,10 +58,10 @@ impl App {
             session,
             screen: Screen::new(display, zoom),
             mouse: Mouse::new(),
-            held: ModifiersState::empty(),
-            last: Instant::now(),
+            modifiers: ModifiersState::empty(),
+            last_tick: Instant::now(),
             settings,
-            outside,
+            platform,
             status: status.then(Status::default),
             failure: None,
         }
@@ -76,20 +76,20 @@ impl App {
     /// Opens all that depends on the adapter.
     pub fn open_graphics(&mut self, event_loop: &ActiveEventLoop) {
         let opened = self
-            .outside
+            .platform
             .open_graphics(&mut self.screen, &mut self.session);
         if let Some(graphics) = opened {
-            self.take_graphics(event_loop, graphics);
+            self.set_graphics(event_loop, graphics);
         }
     }
 
     /// Takes up all that depends on the adapter.
-    pub fn take_graphics(
+    pub fn set_graphics(
         &mut self,
         event_loop: &ActiveEventLoop,
         graphics: Result<Graphics, GpuError>,
     ) {
-        if let Err(why) = self.screen.take_graphics(graphics) {
+        if let Err(why) = self.screen.set_graphics(graphics) {
             self.fail(event_loop, why);
         }
     }
@@ -102,7 +102,10 @@ impl App {
             graphics.lose_device();
             self.screen.redraw();
         }
-        if let (true, Some(by)) = (self.held.control_key(), keyboard::zoom(&event.logical_key)) {
+        if let (true, Some(by)) = (
+            self.modifiers.control_key(),
+            keyboard::zoom(&event.logical_key),
+        ) {
             let said = self.screen.scale_interface(by);
             return self.session.readings.say(said);
         }
@@ -119,7 +122,7 @@ impl App {
             return;
         }
         let key = keyboard::panel_key(&event.logical_key);
-        let shift = self.held.shift_key();
+        let shift = self.modifiers.shift_key();
         if key.is_some_and(|key| panel::press(&mut self.session, key, shift)) {
             self.screen.redraw();
             return;
@@ -148,7 +151,7 @@ impl App {
             Action::Run(action) => {
                 // No steps are due for the time in which nothing moved.
                 if !self.session.animated() {
-                    self.last = Instant::now();
+                    self.last_tick = Instant::now();
                 }
                 if self.session.act(action, pane) {
                     self.scene_changed();
@@ -170,13 +173,13 @@ impl App {
                 }
                 stays.map(Into::into)
             }
-            WindowAction::Picture => Some(self.outside.save_picture(session, graphics)),
+            WindowAction::Picture => Some(self.platform.save_picture(session, graphics)),
             WindowAction::FullScreen => {
-                self.screen.toggle_full();
+                self.screen.toggle_full_screen();
                 None
             }
             WindowAction::Undo | WindowAction::Redo => {
-                let again = action == WindowAction::Redo || self.held.shift_key();
+                let again = action == WindowAction::Redo || self.modifiers.shift_key();
                 panel::undo(session, again);
                 None
             }
@@ -188,23 +191,23 @@ impl App {
             }
             WindowAction::WritePlots => Some(said("wrote", write_plots(session))),
             WindowAction::Record => {
-                self.outside.films.record(session, graphics);
+                self.platform.films.record(session, graphics);
                 None
             }
             WindowAction::FilmLast => {
-                self.outside.films.record_last(session, graphics);
+                self.platform.films.record_last(session, graphics);
                 None
             }
             WindowAction::CommandLine => Some(match command_line::of(session, pane) {
-                Ok(line) => self.outside.copy(&line),
+                Ok(line) => self.platform.copy(&line),
                 Err(failure) => failure.message(),
             }),
-            WindowAction::Keep => Some(said("kept in", keep::keep(session, pane))),
-            WindowAction::TakeUp => {
-                let loaded = match session.scenes.kept.clone() {
+            WindowAction::SaveRun => Some(said("kept in", keep::save(session, pane))),
+            WindowAction::LoadRun => {
+                let loaded = match session.scenes.checkpoint.clone() {
                     None => "Nothing was kept: k keeps the run in a file.".into(),
                     Some(path) => {
-                        let taken = keep::take_up(session, &path);
+                        let taken = keep::load(session, &path);
                         said("loaded", taken.map(|()| path))
                     }
                 };
@@ -221,8 +224,8 @@ impl App {
 
     /// Shows another scene.
     pub fn scene_changed(&mut self) {
-        self.mouse.stop();
-        self.outside.films.end_live(&mut self.session);
+        self.mouse.abort();
+        self.platform.films.finish_live(&mut self.session);
         self.screen.set_scene(&self.session);
     }
 

@@ -6,7 +6,7 @@ use std::time::{Duration, Instant, SystemTime};
 
 /// Time from one check to the next. Editors rename, truncate and write files: checking works with
 /// all of them.
-const INTERVAL: Duration = Duration::from_millis(200);
+const CHECK_INTERVAL: Duration = Duration::from_millis(200);
 
 /// Time of change and length, by which one version of a file differs from the next; `None` without
 /// a file.
@@ -25,7 +25,7 @@ impl Watch {
         Self {
             seen: files.iter().map(stamp).collect(),
             files,
-            next: Instant::now() + INTERVAL,
+            next: Instant::now() + CHECK_INTERVAL,
         }
     }
 
@@ -39,7 +39,7 @@ impl Watch {
         if Instant::now() < self.next {
             return false;
         }
-        self.next = Instant::now() + INTERVAL;
+        self.next = Instant::now() + CHECK_INTERVAL;
         let now: Vec<_> = self.files.iter().map(stamp).collect();
         // A file that is being replaced is absent for a moment.
         if now == self.seen || now.iter().any(Option::is_none) {
@@ -67,7 +67,7 @@ mod tests {
         fs::write(&path, "a").unwrap();
         let mut watch = Watch::new(vec![path.clone()]);
         let mut look = || {
-            sleep(INTERVAL + Duration::from_millis(20));
+            sleep(CHECK_INTERVAL + Duration::from_millis(20));
             watch.changed()
         };
         assert!(!look());

@@ -8,15 +8,15 @@ use super::words::digits;
 use crate::window::session::Pane;
 
 /// Writes when the run blew up, which limit was passed, and which step would have held.
-pub fn blow_up(ui: &mut Ui, pane: &Pane, lost: &BlowUp) {
-    ui.label(ALARM.text(&format!("It {lost}.")).size(14.5).strong());
-    let method = lost.method;
+pub fn explain(ui: &mut Ui, pane: &Pane, blow_up: &BlowUp) {
+    ui.label(ALARM.text(&format!("It {blow_up}.")).size(14.5).strong());
+    let method = blow_up.method;
     let same = method == pane.simulation.method().title;
     let limit = pane.limit.limit().map(|limit| limit.step);
-    ui.label(text(match (lost.control, pane.limit.would_hold()) {
-        _ if lost.cause == Cause::ReadsVelocity => format!("{method} does not serve such forces."),
-        _ if is_hopeless(lost) => "A shorter step does not help.".into(),
-        (Control::Tolerance(tolerance), _) if matches!(lost.cause, Cause::StepTooSmall { .. }) => {
+    ui.label(text(match (blow_up.control, pane.limit.would_hold()) {
+        _ if blow_up.cause == Cause::ReadsVelocity => format!("{method} does not serve such forces."),
+        _ if no_step_is_stable(blow_up) => "A shorter step does not help.".into(),
+        (Control::Tolerance(tolerance), _) if matches!(blow_up.cause, Cause::StepTooSmall { .. }) => {
             format!("{method} found no step to a tolerance of {tolerance:e}: a larger one may do.")
         }
         (Control::Tolerance(tolerance), _) => {
@@ -37,18 +37,18 @@ pub fn blow_up(ui: &mut Ui, pane: &Pane, lost: &BlowUp) {
 }
 
 /// Whether surfaces that are led left no room, whatever the step.
-fn is_squeezed(lost: &BlowUp) -> bool {
-    matches!(lost.cause, Cause::Squeezed { .. })
+fn is_squeezed(blow_up: &BlowUp) -> bool {
+    matches!(blow_up.cause, Cause::Squeezed { .. })
 }
 
 /// Whether no step would have held.
-fn is_hopeless(lost: &BlowUp) -> bool {
-    is_squeezed(lost) || matches!(lost.cause, Cause::Contradiction(_))
+fn no_step_is_stable(blow_up: &BlowUp) -> bool {
+    is_squeezed(blow_up) || matches!(blow_up.cause, Cause::Contradiction(_))
 }
 
 /// The keys that lead out of a blow-up.
-pub fn way_out(lost: &BlowUp) -> String {
-    if is_squeezed(lost) {
+pub fn advice(blow_up: &BlowUp) -> String {
+    if is_squeezed(blow_up) {
         return "Press , to go back, or x to let surfaces pass through one another, then r.".into();
     }
     "Press < to go back, - for a shorter step, or a digit for another solver; or r to begin anew."

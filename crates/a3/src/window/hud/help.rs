@@ -7,7 +7,7 @@ use super::style::{MARGIN, sheet, text, title};
 use crate::window::session::{KEYS, MOUSE};
 
 /// Width of a window that has room for three columns (points).
-const WIDE: f32 = 800.0;
+const THREE_COLUMN_WIDTH: f32 = 800.0;
 
 /// Writes the help, for one pane or `several`. Where the window is too small for it, the wheel
 /// scrolls.
@@ -24,7 +24,9 @@ pub fn help(ctx: &Context, several: bool) {
                     .max_width(room.x)
                     .max_height(room.y.max(40.0))
                     .min_scrolled_height(room.y.max(40.0))
-                    .show(ui, |ui| columns(ui, several, window.width() > WIDE));
+                    .show(ui, |ui| {
+                        columns(ui, several, window.width() > THREE_COLUMN_WIDTH)
+                    });
             });
         });
 }
@@ -151,7 +153,7 @@ mod tests {
                 }
                 words
             };
-            let last = if size[0] > WIDE {
+            let last = if size[0] > THREE_COLUMN_WIDTH {
                 KEYS[KEYS.len() - 1].help
             } else {
                 integrators::METHODS[9].title

@@ -3,7 +3,7 @@
 use a3_render::Tile;
 
 /// Distance between panes (points).
-const GAP: f32 = 3.0;
+const PANE_GAP: f32 = 3.0;
 
 /// Height of the bar over several panes in a window of this width (points). In a narrow window the
 /// bar has two lines.
@@ -18,7 +18,7 @@ pub fn tiles(panes: usize, size: (u32, u32), scale: f32) -> Vec<Tile> {
     if panes < 2 {
         return vec![Tile::whole(size)];
     }
-    let gap = (GAP * scale).round().max(1.0) as u32;
+    let gap = (PANE_GAP * scale).round().max(1.0) as u32;
     let bar = (bar(size.0 as f32 / scale) * scale).round() as u32;
     // In the smallest windows the bar leaves room for the picture.
     let bar = (bar + gap).min(size.1 / 3);

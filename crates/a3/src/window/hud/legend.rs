@@ -5,14 +5,14 @@ use egui::{
     Align2, Color32, FontId, Mesh, Pos2, Rect, Sense, Shape, Stroke, Ui, epaint::Vertex, vec2,
 };
 
-use super::style::{FAINT, TEXT, exchanged};
+use super::style::{FAINT, TEXT, invert_lightness};
 use super::words::digits;
 use crate::draw::show::{self, Show};
 
 /// Width and height of the bar (points).
-const BAR: [f32; 2] = [200.0, 10.0];
+const BAR_SIZE: [f32; 2] = [200.0, 10.0];
 /// Number of pieces of the bar, between which its colours are mixed.
-const PIECES: u32 = 35;
+const BAR_PIECES: u32 = 35;
 
 /// Draws a bar of the colours with the ends of its scale and a mark at each tenth, as the surface
 /// has them, and says what arrows mean and which springs are which, where there are any.
@@ -20,9 +20,9 @@ pub fn legend(ui: &mut Ui, show: &Show) {
     let (colouring, field) = (&show.colouring, &show.field);
     let coloured = colouring.shown();
     if let Some(quantity) = coloured {
-        let width = BAR[0].min(ui.available_width());
-        let (rect, _) = ui.allocate_exact_size(vec2(width, BAR[1] + 17.0), Sense::hover());
-        let bar = Rect::from_min_size(rect.min, vec2(width, BAR[1]));
+        let width = BAR_SIZE[0].min(ui.available_width());
+        let (rect, _) = ui.allocate_exact_size(vec2(width, BAR_SIZE[1] + 17.0), Sense::hover());
+        let bar = Rect::from_min_size(rect.min, vec2(width, BAR_SIZE[1]));
         draw(ui, bar, show.dark);
         let scale = &colouring.scale;
         let power = |end: f64| {
@@ -85,12 +85,12 @@ fn springs(ui: &mut Ui, show: &Show, in_colours: bool) {
 
 fn draw(ui: &Ui, bar: Rect, dark: bool) {
     let mut mesh = Mesh::default();
-    for k in 0..=PIECES {
-        let share = k as f32 / PIECES as f32;
+    for k in 0..=BAR_PIECES {
+        let share = k as f32 / BAR_PIECES as f32;
         let [r, g, b, _] = ramp(share);
         let color = Color32::from(egui::Rgba::from_rgb(r, g, b));
         // The colours of values are the same in both themes.
-        let color = if dark { exchanged(color) } else { color };
+        let color = if dark { invert_lightness(color) } else { color };
         let x = bar.left() + share * bar.width();
         for y in [bar.top(), bar.bottom()] {
             mesh.vertices.push(Vertex {

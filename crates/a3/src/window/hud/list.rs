@@ -10,11 +10,11 @@ use super::style::{FAINT, MARGIN, PAPER, TEXT, faint, text, title};
 use crate::window::session::{Entry, Session, Topic};
 
 /// Width of the list in a window that is wide enough (points).
-const WIDTH: f32 = 560.0;
+const MAX_WIDTH: f32 = 560.0;
 /// Height of an entry (points).
-const HEIGHT: f32 = 22.0;
+const ENTRY_HEIGHT: f32 = 22.0;
 /// Width of the names (points).
-const NAME: f32 = 136.0;
+const NAME_WIDTH: f32 = 136.0;
 
 /// Draws the list that is open, and returns what the mouse asks for.
 pub fn show(ctx: &Context, session: &Session) -> Option<PanelRequest> {
@@ -35,7 +35,7 @@ pub fn show(ctx: &Context, session: &Session) -> Option<PanelRequest> {
                 .inner_margin(Margin::symmetric(12, 10));
             ui.style_mut().interaction.selectable_labels = false;
             sheet.show(ui, |ui| {
-                ui.set_width(WIDTH.min(window.width() - 24.0));
+                ui.set_width(MAX_WIDTH.min(window.width() - 24.0));
                 ui.horizontal(|ui| {
                     ui.label(title(heading));
                     ui.with_layout(egui::Layout::right_to_left(Align::Center), |ui| {
@@ -50,16 +50,16 @@ pub fn show(ctx: &Context, session: &Session) -> Option<PanelRequest> {
                 ui.label(typed);
                 ui.add_space(4.0);
                 ui.spacing_mut().item_spacing.y = 0.0;
-                let room = (window.height() - 90.0).max(HEIGHT);
+                let room = (window.height() - 90.0).max(ENTRY_HEIGHT);
                 ScrollArea::vertical()
                     .max_height(room)
-                    .min_scrolled_height(room.min(HEIGHT * list.entries().count() as f32))
+                    .min_scrolled_height(room.min(ENTRY_HEIGHT * list.entries().count() as f32))
                     .show(ui, |ui| {
                         let mut count = 0;
                         for (k, entry) in list.entries().enumerate() {
                             count += 1;
                             if row(ui, entry, k == list.chosen) {
-                                request = Some(PanelRequest::Take(entry.number));
+                                request = Some(PanelRequest::TakeEntry(entry.number));
                             }
                         }
                         if count == 0 {
@@ -78,7 +78,7 @@ pub fn show(ctx: &Context, session: &Session) -> Option<PanelRequest> {
 /// Draws an entry, and returns whether it was clicked.
 fn row(ui: &mut Ui, entry: &Entry, chosen: bool) -> bool {
     let (rect, response) =
-        ui.allocate_exact_size(vec2(ui.available_width(), HEIGHT), Sense::click());
+        ui.allocate_exact_size(vec2(ui.available_width(), ENTRY_HEIGHT), Sense::click());
     // It is scrolled to when another one is chosen, and left alone while the wheel turns.
     let was = Id::unique("chosen entry");
     if chosen && ui.data(|data| data.get_temp(was)) != Some(entry.number) {
@@ -106,7 +106,7 @@ fn row(ui: &mut Ui, entry: &Entry, chosen: bool) -> bool {
     };
     write(8.0, mark, 11.0, FAINT);
     let name = write(26.0, &entry.name, 13.5, ink);
-    let about = (name.right() - rect.left() + 14.0).max(26.0 + NAME);
+    let about = (name.right() - rect.left() + 14.0).max(26.0 + NAME_WIDTH);
     write(about, &entry.about, 12.5, FAINT);
     response.clicked()
 }
@@ -156,10 +156,10 @@ mod tests {
         }
         draw(&ctx, &session, middle, Some(true));
         let request = draw(&ctx, &session, middle, Some(false));
-        let Some(PanelRequest::Take(number)) = request else {
+        let Some(PanelRequest::TakeEntry(number)) = request else {
             panic!("{request:?}");
         };
-        assert!(panel::apply(&mut session, PanelRequest::Take(number)));
+        assert!(panel::apply(&mut session, PanelRequest::TakeEntry(number)));
         let name = a3_scenes::SCENES[number].name;
         assert_eq!(session.runs.first().scene().name, name);
         session.act(RunAction::Scenes, 0);

@@ -4,13 +4,13 @@ use a3_render::{Gpu, Part};
 use egui::epaint::{ClippedShape, Primitive};
 use egui::{ClippedPrimitive, Pos2, Rect, vec2};
 
-use super::style::{context, exchanged};
+use super::style::{context, invert_lightness};
 
 /// egui's layout and its renderer.
 pub struct Overlay {
     /// The layout.
     pub context: egui::Context,
-    /// Whether light and dark are exchanged.
+    /// Whether light and dark are invert_lightness.
     pub dark: bool,
     /// The parts of the view that the layout fills, which do not overlap.
     pub filled: Vec<Part>,
@@ -161,7 +161,7 @@ fn filled(shapes: &[ClippedShape], pixels_per_point: f32, size: (u32, u32)) -> V
 fn darken(shape: &mut ClippedPrimitive) {
     if let Primitive::Mesh(mesh) = &mut shape.primitive {
         for vertex in &mut mesh.vertices {
-            vertex.color = exchanged(vertex.color);
+            vertex.color = invert_lightness(vertex.color);
         }
     }
 }

@@ -2,18 +2,18 @@
 
 use egui::{Area, Context, Frame, Id, Margin, Pos2, Rect, Ui};
 
-use super::blow_up::blow_up;
+use super::blow_up::explain;
 use super::layout;
 use super::legend::legend;
 use super::style::{PAPER, faint, sheet, text, title};
-use super::words::{self, digits, each, energy, frames, scene, speed, states, time};
+use super::words::{self, digits, energy, frame_cost, frames, scene, speed, states, time};
 use crate::window::session::{Pane, Readings};
 
 /// Distance of a sheet from the edge of its pane (points).
 const MARGIN: f32 = 8.0;
 
 /// Height below which a pane has room for fewer lines (points).
-const LOW: f32 = 230.0;
+const MIN_FULL_HEIGHT: f32 = 230.0;
 
 /// Writes the bar, and a sheet in each pane unless the help is shown.
 pub fn show(ctx: &Context, panes: &[Pane], readings: &Readings) {
@@ -36,7 +36,7 @@ pub fn show(ctx: &Context, panes: &[Pane], readings: &Readings) {
     }
     for (k, (pane, rect)) in panes.iter().zip(rects).enumerate() {
         within(ctx, &format!("pane {k}"), rect, |ui| {
-            let low = rect.height() < LOW;
+            let low = rect.height() < MIN_FULL_HEIGHT;
             // The sheet is narrow, so that it hides little; in a low pane it is wide, so that it
             // fits.
             let narrow = (0.42 * rect.width()).max(210.0).min(rect.width());
@@ -97,7 +97,11 @@ fn bar(ui: &mut Ui, panes: &[Pane], readings: &Readings) {
                     say(faint(format!("slow  {slow}")));
                 }
                 if readings.rate > 0.0 && !readings.paused && width > 900.0 {
-                    say(text(format!("{},  {}", frames(readings), each(readings))));
+                    say(text(format!(
+                        "{},  {}",
+                        frames(readings),
+                        frame_cost(readings)
+                    )));
                 }
                 if width > 600.0 {
                     say(states(run, readings));
@@ -114,8 +118,8 @@ fn bar(ui: &mut Ui, panes: &[Pane], readings: &Readings) {
 fn caption(ui: &mut Ui, pane: &Pane, readings: &Readings, low: bool) {
     let run = &pane.simulation;
     ui.label(title(run.method().title).size(14.0));
-    if let Some(lost) = run.blow_up() {
-        return blow_up(ui, pane, &lost);
+    if let Some(blow_up) = run.blow_up() {
+        return explain(ui, pane, &blow_up);
     }
     let cost = pane.cost.map_or("-".into(), |cost| {
         format!(
@@ -134,7 +138,7 @@ fn caption(ui: &mut Ui, pane: &Pane, readings: &Readings, low: bool) {
     let (name, value) = energy(pane);
     let energy = (name, text(value));
     let gained = words::gained(run).map(|words| ("gained", words));
-    let broken = words::broken(run).map(|words| ("constraint", words));
+    let broken = words::worst_constraint(run).map(|words| ("constraint", words));
     let contact = words::contact(run).map(|words| ("contact", text(words)));
     let cost = ("cost", text(cost));
     let lines = if low {

@@ -3,7 +3,7 @@
 use a3_core::Simulation;
 use egui::{Align2, Context, RichText, Ui};
 
-use super::blow_up::{blow_up, way_out};
+use super::blow_up::{advice, explain};
 use super::legend::legend;
 use super::style::{MARGIN, column, faint, sheet, text, title};
 use super::words::{self, digits};
@@ -11,7 +11,7 @@ use crate::draw::show;
 use crate::window::session::{Pane, Readings};
 
 /// The most springs that are listed.
-const LISTED: usize = 12;
+const MAX_LISTED_SPRINGS: usize = 12;
 
 /// Writes the readings, a blow-up, the message and the springs of a particle, and names the key for
 /// help.
@@ -19,10 +19,10 @@ pub fn show(ctx: &Context, pane: &Pane, readings: &Readings) {
     column(ctx, "run", Align2::LEFT_TOP, [MARGIN, MARGIN], |ui| {
         ui.set_max_width(ui.available_width().min(460.0));
         sheet(ui, |ui| run(ui, pane, readings));
-        if let Some(lost) = pane.simulation.blow_up() {
+        if let Some(blow_up) = pane.simulation.blow_up() {
             sheet(ui, |ui| {
-                blow_up(ui, pane, &lost);
-                ui.label(text(way_out(&lost)));
+                explain(ui, pane, &blow_up);
+                ui.label(text(advice(&blow_up)));
             });
         }
         if let Some(film) = &readings.film {
@@ -78,7 +78,7 @@ fn run(ui: &mut Ui, pane: &Pane, readings: &Readings) {
             if let Some(gained) = words::gained(simulation) {
                 row("gained", gained);
             }
-            if let Some(broken) = words::broken(simulation) {
+            if let Some(broken) = words::worst_constraint(simulation) {
                 row("constraint", broken);
             }
             if let Some(stretch) = pane.stretch {
@@ -89,7 +89,7 @@ fn run(ui: &mut Ui, pane: &Pane, readings: &Readings) {
             }
             if !readings.paused {
                 row("frames", text(words::frames(readings)));
-                row("each", text(words::each(readings)));
+                row("each", text(words::frame_cost(readings)));
             }
         });
     ui.label(words::states(simulation, readings));
@@ -108,7 +108,7 @@ fn springs(ui: &mut Ui, simulation: &Simulation, i: usize) {
                 ui.label(faint(name));
             }
             ui.end_row();
-            for s in springs.iter().take(LISTED) {
+            for s in springs.iter().take(MAX_LISTED_SPRINGS) {
                 let other = s.i + s.j - i;
                 let length = (simulation.position(i) - simulation.position(other)).norm();
                 ui.label(text(show::kind_name(s.kind)));
@@ -122,8 +122,11 @@ fn springs(ui: &mut Ui, simulation: &Simulation, i: usize) {
                 ui.end_row();
             }
         });
-    if springs.len() > LISTED {
-        ui.label(faint(format!("and {} more", springs.len() - LISTED)));
+    if springs.len() > MAX_LISTED_SPRINGS {
+        ui.label(faint(format!(
+            "and {} more",
+            springs.len() - MAX_LISTED_SPRINGS
+        )));
     }
 }
 

@@ -49,7 +49,7 @@ impl Mark {
 
 /// The colour of the dark theme for one of the light theme, or the other way round: of the same hue
 /// and opacity, as light as the other is dark.
-pub fn exchanged(color: Color32) -> Color32 {
+pub fn invert_lightness(color: Color32) -> Color32 {
     let [r, g, b, a] = color.to_srgba_unmultiplied();
     let (low, high) = (r.min(g).min(b), r.max(g).max(b));
     // The sum of the least and the largest is twice the lightness; all move by the same.
@@ -131,12 +131,12 @@ mod tests {
 
     #[test]
     fn light_and_dark_are_exchanged_and_back() {
-        assert_eq!(exchanged(Color32::WHITE), Color32::BLACK);
-        assert_eq!(exchanged(Color32::TRANSPARENT), Color32::TRANSPARENT);
+        assert_eq!(invert_lightness(Color32::WHITE), Color32::BLACK);
+        assert_eq!(invert_lightness(Color32::TRANSPARENT), Color32::TRANSPARENT);
         for color in [TEXT, FAINT, SAFE.colour, ALARM.colour] {
-            let other = exchanged(color);
+            let other = invert_lightness(color);
             assert!(other.intensity() > color.intensity() + 0.1, "{other:?}");
-            assert_eq!(exchanged(other), color);
+            assert_eq!(invert_lightness(other), color);
         }
     }
 

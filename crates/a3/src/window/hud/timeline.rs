@@ -7,7 +7,7 @@ use super::style::{FAINT, PAPER, TEXT};
 use crate::window::session::TimelinePosition;
 
 /// Colour of the time up to the moment that is shown.
-const DONE: Color32 = Color32::from_rgb(158, 22, 34);
+const ELAPSED: Color32 = Color32::from_rgb(158, 22, 34);
 
 /// Draws the track, with a thumb at the moment that is shown.
 pub fn show(ctx: &Context, position: &TimelinePosition) {
@@ -29,8 +29,8 @@ pub fn show(ctx: &Context, position: &TimelinePosition) {
                 painter.hline(from..=to, y, Stroke::new(4.0, color));
             };
             line(from, to, FAINT.gamma_multiply(0.35));
-            line(from, at, DONE);
-            painter.circle_filled(Pos2::new(at, y), 7.0, DONE);
+            line(from, at, ELAPSED);
+            painter.circle_filled(Pos2::new(at, y), 7.0, ELAPSED);
             painter.circle_filled(Pos2::new(at, y), 2.5, PAPER);
             let say = |x, align, words: String, color| {
                 let place = Pos2::new(x, top + 6.0);

@@ -154,7 +154,7 @@ pub fn gained(simulation: &Simulation) -> Option<RichText> {
 }
 
 /// The constraint that the run does not meet, if it is off by much.
-pub fn broken(simulation: &Simulation) -> Option<RichText> {
+pub fn worst_constraint(simulation: &Simulation) -> Option<RichText> {
     let unmet = simulation.worst_constraint()?;
     let words = format!(
         "{} was off by {:.1} %",
@@ -170,7 +170,7 @@ pub fn frames(readings: &Readings) -> String {
 }
 
 /// The time that a frame takes.
-pub fn each(readings: &Readings) -> String {
+pub fn frame_cost(readings: &Readings) -> String {
     let (simulating, drawing) = (readings.simulating, readings.drawing);
     format!("{simulating:.1} ms steps + {drawing:.1} ms drawing")
 }

@@ -9,7 +9,7 @@ use crate::base::failure::Failure;
 use crate::files::film::Film;
 
 /// The most frames that wait to be encoded.
-const MOST: usize = 8;
+const MAX_WAITING_FRAMES: usize = 8;
 
 /// Encodes frames in the order in which they come.
 pub struct Encoder {
@@ -40,7 +40,7 @@ impl Encoder {
 
     /// Whether another frame may be added.
     pub fn has_room(&self) -> bool {
-        self.waiting.load(Ordering::Relaxed) < MOST
+        self.waiting.load(Ordering::Relaxed) < MAX_WAITING_FRAMES
     }
 
     /// Adds a frame: rows from the top, four bytes a pixel. Frames after a failure are lost.

@@ -34,7 +34,7 @@ enum Source {
     /// The session, at the time (s) on its clock that is next, and that far apart (s).
     Session { next: f64, interval: f64 },
     /// The moments that were kept, by runs of their own.
-    Kept {
+    Past {
         panes: Vec<Pane>,
         camera: Camera,
         moments: std::vec::IntoIter<Vec<Option<Checkpoint>>>,
@@ -61,8 +61,8 @@ impl Recorder {
     }
 
     /// Films the last seconds that the session has kept, as many as its panel says.
-    pub fn of_kept(gpu: &Gpu, session: &Session, format: Format) -> Result<Self, Failure> {
-        let (seconds, interval) = (session.panel.film_of, 1.0 / format.ending.rate());
+    pub fn of_past(gpu: &Gpu, session: &Session, format: Format) -> Result<Self, Failure> {
+        let (seconds, interval) = (session.panel.film_seconds, 1.0 / format.ending.rate());
         let moments = session.timeline.last(seconds, interval);
         if moments.len() < 2 {
             return Err(Failure::run("Nothing is kept yet that could be filmed."));
@@ -75,7 +75,7 @@ impl Recorder {
             Ok(Pane::new(copy, pane.show.clone()))
         };
         let panes: Result<_, a3_core::Error> = session.runs.panes.iter().map(copy).collect();
-        let source = Source::Kept {
+        let source = Source::Past {
             panes: panes.map_err(Failure::run)?,
             camera: session.view.camera,
             count: moments.len(),
@@ -111,19 +111,19 @@ impl Recorder {
 
     /// Real time (s) for which the session goes on in a frame of the window that takes `real`: not
     /// past the next frame of the film, and not at all while the encoder has no room for one.
-    pub fn pace(&self, session: &Session, real: f64) -> f64 {
+    pub fn time_to_advance(&self, session: &Session, real: f64) -> f64 {
         match self.source {
             Source::Session { .. } if !self.encoder.has_room() => 0.0,
             Source::Session { next, .. } => {
                 let left = (next - session.runs.clock).max(0.0);
                 real.min(left * 2f64.powi(session.readings.slowness))
             }
-            Source::Kept { .. } => real,
+            Source::Past { .. } => real,
         }
     }
 
     /// Draws the next frame if it is due, and returns whether more are to come.
-    pub fn go_on(&mut self, gpu: &Gpu, session: &mut Session) -> Result<bool, Failure> {
+    pub fn draw_next(&mut self, gpu: &Gpu, session: &mut Session) -> Result<bool, Failure> {
         if self.encoder.has_failed() {
             return Ok(false);
         }
@@ -147,7 +147,7 @@ impl Recorder {
                 self.studio
                     .draw(gpu, panes, camera, self.scale, &readings)?
             }
-            Source::Kept {
+            Source::Past {
                 panes,
                 camera,
                 moments,
@@ -181,7 +181,7 @@ impl Recorder {
                 let seconds = self.drawn as f64 / self.rate;
                 format!("recording {path}: {seconds:.1} s")
             }
-            Source::Kept { count, .. } => {
+            Source::Past { count, .. } => {
                 format!("writing {path}: {} %", 100 * self.drawn / count)
             }
         };

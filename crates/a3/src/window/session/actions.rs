@@ -69,9 +69,9 @@ pub enum WindowAction {
     /// Copy the command line that makes what is shown.
     CommandLine,
     /// Keep the run in a file.
-    Keep,
+    SaveRun,
     /// Go on from the last such file.
-    TakeUp,
+    LoadRun,
     /// Fill the screen, or a window again.
     FullScreen,
     /// Open the lessons.

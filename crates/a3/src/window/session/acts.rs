@@ -16,7 +16,7 @@ use super::tuning::Tuning;
 use crate::draw::show;
 
 /// The slowest motion is 1 / 2^6 of real time.
-const SLOWEST: i32 = 6;
+const MAX_SLOWNESS: i32 = 6;
 
 impl Session {
     /// Does an action, and returns whether another scene is shown. A solver is for the pane `at`,
@@ -53,24 +53,26 @@ impl Session {
             }
             RunAction::Touch => {
                 let done = self.runs.toggle_touch();
-                self.tell(done);
+                self.report(done);
             }
             RunAction::Wireframe => looks::next_style(&mut self.runs.panes),
             RunAction::Colour => self.readings.say(looks::next_colour(&mut self.runs.panes)),
             RunAction::Arrows => self.readings.say(looks::next_arrows(&mut self.runs.panes)),
             RunAction::Pause => {
                 self.readings.paused = !self.readings.paused;
-                self.start_anew();
+                self.restart_measuring();
             }
             RunAction::Step if self.readings.rewound.is_some() => self.scrub(1),
             RunAction::Scrub(by) => self.scrub(by),
-            RunAction::Slower => self.readings.slowness = (self.readings.slowness + 1).min(SLOWEST),
+            RunAction::Slower => {
+                self.readings.slowness = (self.readings.slowness + 1).min(MAX_SLOWNESS)
+            }
             RunAction::Faster => self.readings.slowness = (self.readings.slowness - 1).max(0),
             RunAction::Step => self.step(),
             RunAction::Solver(i) => match integrators::METHODS.get(i) {
                 Some(method) => {
                     let done = self.runs.set_method(method, at, &self.tuning.defaults);
-                    self.tell(done);
+                    self.report(done);
                 }
                 None => self
                     .readings
@@ -78,11 +80,11 @@ impl Session {
             },
             RunAction::LongerStep | RunAction::ShorterStep => {
                 let done = self.runs.set_steps(action == RunAction::LongerStep);
-                self.tell(done);
+                self.report(done);
             }
             RunAction::Camera => {
-                self.view.see_from(self.runs.panes[0].show.camera());
-                self.view.stay();
+                self.view.set_camera(self.runs.panes[0].show.camera());
+                self.view.stop_following();
             }
             RunAction::FreeAll => {
                 let all: Vec<_> = (0..self.runs.first().particles()).collect();
@@ -114,18 +116,18 @@ impl Session {
                 .say("Surfaces cross at the beginning, so they pass through one another again.");
         }
         self.readings.read_reference(self.runs.reference.as_ref());
-        self.another_run();
+        self.begin_new_run();
     }
 
     /// Pauses, and takes the longest step, and as many of the shorter ones as fit.
     fn step(&mut self) {
         self.readings.paused = true;
-        self.runs.settle();
+        self.runs.drop_due_steps();
         self.advance(self.runs.longest_step(), KEY_BUDGET, KEY_BUDGET);
     }
 
     /// Says why something was refused, if it was.
-    fn tell(&mut self, done: Result<(), impl ToString>) {
+    fn report(&mut self, done: Result<(), impl ToString>) {
         if let Err(why) = done {
             self.readings.say(why.to_string());
         }
@@ -134,14 +136,14 @@ impl Session {
     /// Sets the step (s) or the tolerance of one pane.
     pub fn set_step_of(&mut self, at: usize, value: f64) {
         let done = self.runs.set_step_of(at, value);
-        self.tell(done);
+        self.report(done);
     }
 
     /// Changes the model of every run. A reset keeps the change. Where surfaces touch and would
     /// cross then, a message names what does, and nothing is changed.
     pub fn adjust(&mut self, change: impl Fn(&mut Network)) {
         let done = self.runs.adjust(change);
-        self.tell(done);
+        self.report(done);
     }
 
     /// Lets go of the held particle or sphere.
@@ -203,15 +205,16 @@ impl Session {
         let Some(list) = &mut self.list else {
             return false;
         };
-        if key == TextKey::Close {
+        if key == TextKey::Cancel {
             self.list = None;
             return false;
         }
-        list.press(key).is_some_and(|number| self.take(number))
+        list.press(key)
+            .is_some_and(|number| self.take_entry(number))
     }
 
     /// Takes an entry by its number, closes the list, and returns whether another scene is shown.
-    pub fn take(&mut self, number: usize) -> bool {
+    pub fn take_entry(&mut self, number: usize) -> bool {
         match self.list.take().map(|list| list.topic) {
             Some(Topic::Scenes) => {
                 if let Some(file) = self.scenes.earlier_file(number) {
@@ -293,14 +296,14 @@ impl Session {
                 }
                 pane.wanted = method;
             }
-            self.runs.adapt();
+            self.runs.adapt_reference();
         }
         true
     }
 
     /// Sees a scene as it is first seen.
     fn see_scene(&mut self, setup: &Setup) {
-        self.view.see_from(show::camera(&setup.presentation));
+        self.view.set_camera(show::camera(&setup.presentation));
     }
 
     /// Begins another scene, with the same solvers and steps where they serve it.
@@ -308,10 +311,10 @@ impl Session {
         let said = match self.runs.set_scene(setup) {
             Ok(said) => {
                 self.tuning = Tuning::of(setup);
-                self.view.stay();
+                self.view.stop_following();
                 self.history.clear();
                 self.readings.read_reference(self.runs.reference.as_ref());
-                self.another_run();
+                self.begin_new_run();
                 said
             }
             Err(why) => Some(why.to_string()),

@@ -8,7 +8,7 @@ use super::runs::{KEY_BUDGET, Runs};
 
 impl Runs {
     /// The runs that go on, the reference included.
-    fn going(&mut self) -> impl Iterator<Item = &mut Simulation> {
+    fn running(&mut self) -> impl Iterator<Item = &mut Simulation> {
         let alive = self.panes.iter_mut().filter(|pane| pane.alive());
         let reference = self.reference.as_mut().and_then(ReferenceRun::run);
         alive.map(|pane| &mut pane.simulation).chain(reference)
@@ -28,11 +28,11 @@ impl Runs {
     /// Changes the model of every run. A reset keeps the change. Fails, and changes nothing, where
     /// surfaces touch and would cross then.
     pub fn adjust(&mut self, change: impl Fn(&mut Network)) -> Result<(), String> {
-        self.change_apart(&change, |run| run.adjust(&change))
+        self.change_unless_crossing(&change, |run| run.adjust(&change))
     }
 
     /// Applies a change to every run. Fails where surfaces touch and would cross with it.
-    fn change_apart(
+    fn change_unless_crossing(
         &mut self,
         change: impl Fn(&mut Network),
         apply: impl FnMut(&mut Simulation),
@@ -62,7 +62,7 @@ impl Runs {
         if self.panes.len() < 2 {
             return;
         }
-        self.settle();
+        self.drop_due_steps();
         let clock = self.clock;
         if let Some(reference) = &mut self.reference
             && reference.run().is_some()
@@ -70,7 +70,7 @@ impl Runs {
         {
             reference.stop("the reference is too slow");
         }
-        for run in self.going() {
+        for run in self.running() {
             // A blow-up is shown from now on.
             let _ = run.advance_to(clock);
         }
@@ -101,7 +101,7 @@ impl Runs {
     /// Takes hold of particle i in every run, and returns whether any run holds it.
     pub fn grab(&mut self, i: usize) -> bool {
         self.align();
-        self.going()
+        self.running()
             .fold(false, |held, run| held | run.grab(i).is_ok())
     }
 
@@ -109,13 +109,13 @@ impl Runs {
     pub fn grab_obstacle(&mut self, k: usize) -> bool {
         self.align();
         self.pushed = self.obstacle_path(k).map(|path| (k, path));
-        self.going()
+        self.running()
             .fold(false, |held, run| held | run.grab_obstacle(k).is_ok())
     }
 
     /// Pulls the held particle or sphere to the same point (m) in every run.
     pub fn pull(&mut self, target: Vector3<f64>) {
-        self.going().for_each(|run| {
+        self.running().for_each(|run| {
             run.pull(target);
             run.pull_obstacle(target);
         });
@@ -128,7 +128,7 @@ impl Runs {
     /// anywhere.
     pub(super) fn release(&mut self) -> Option<Change> {
         let held = |run: &Simulation| run.grabbed().is_some() || run.grabbed_obstacle().is_some();
-        if self.going().any(|run| held(run)) {
+        if self.running().any(|run| held(run)) {
             self.align();
         }
         for run in self.all_mut() {
@@ -158,7 +158,7 @@ impl Runs {
             // It is there: it was pushed.
             let _ = network.lead_obstacle(obstacle, path);
         };
-        self.change_apart(lead, |run| {
+        self.change_unless_crossing(lead, |run| {
             let _ = run.set_obstacle_path(obstacle, path);
         })
     }
@@ -240,7 +240,13 @@ mod tests {
         let touching = |session: &Session| {
             let panes = session.runs.panes.iter();
             let mut touching: Vec<_> = panes.map(|pane| pane.simulation.touching()).collect();
-            touching.extend(session.runs.reference.as_ref().map(|r| r.any().touching()));
+            touching.extend(
+                session
+                    .runs
+                    .reference
+                    .as_ref()
+                    .map(|r| r.simulation().touching()),
+            );
             touching
         };
         session.act(RunAction::Touch, 0);

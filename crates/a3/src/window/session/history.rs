@@ -5,9 +5,9 @@ use web_time::{Duration, Instant};
 use a3_core::Path;
 
 /// The most changes that are kept.
-const MOST: usize = 200;
+const MAX_CHANGES: usize = 200;
 /// Turns of the same knob by keys within this time of one another are one change.
-const ONE: Duration = Duration::from_millis(800);
+const MERGE_TIME: Duration = Duration::from_millis(800);
 
 /// A change, which can be undone.
 #[derive(Clone, Debug, PartialEq)]
@@ -44,7 +44,7 @@ impl History {
     pub fn note(&mut self, change: Change) {
         let soon = self
             .last
-            .is_some_and(|last| self.held || last.elapsed() < ONE);
+            .is_some_and(|last| self.held || last.elapsed() < MERGE_TIME);
         self.last = Some(Instant::now());
         self.undone.clear();
         if let Change::Knob { row, pane, to, .. } = change
@@ -61,7 +61,7 @@ impl History {
             return;
         }
         self.done.push(change);
-        if self.done.len() > MOST {
+        if self.done.len() > MAX_CHANGES {
             self.done.remove(0);
         }
     }
@@ -131,7 +131,7 @@ mod tests {
                 pinned: true,
             });
         }
-        assert_eq!(history.done.len(), MOST);
+        assert_eq!(history.done.len(), MAX_CHANGES);
     }
 
     #[test]

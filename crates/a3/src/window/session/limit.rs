@@ -8,15 +8,15 @@ use a3_core::{Mechanics, Method, Simulation};
 use crate::base::holding::would_hold;
 
 /// The least time from one estimate to the next.
-const INTERVAL: Duration = Duration::from_millis(250);
+const MIN_INTERVAL: Duration = Duration::from_millis(250);
 /// The least time from one estimate to the next, over the time that the estimate took: estimates
 /// take two percent of the time at most.
-const IDLE: u32 = 50;
+const MIN_IDLE_RATIO: u32 = 50;
 /// Most numbers in a state for all of its modes to be computed while it runs: that takes two
 /// evaluations for each number.
-const MOST_NUMBERS: usize = 300;
+const MAX_STATE_LENGTH: usize = 300;
 /// Rate at which a mode grows by itself, over its frequency, twice: less is that of rounding.
-const GROWS: f64 = 0.01;
+const MIN_GROWTH_RATIO: f64 = 0.01;
 
 /// The largest stable step for the fastest motion of a run, estimated every now and then.
 #[derive(Default)]
@@ -27,7 +27,7 @@ pub struct LimitWatch {
     next: Option<Instant>,
     would_hold: Option<f64>,
     /// Whether such a step was looked for.
-    tried: bool,
+    searched: bool,
 }
 
 impl LimitWatch {
@@ -42,31 +42,31 @@ impl LimitWatch {
     }
 
     /// Estimates again if the last estimate is old enough, or if the run was just lost.
-    pub fn look(&mut self, run: &Simulation) {
+    pub fn update(&mut self, run: &Simulation) {
         let begun = Instant::now();
-        let lost = run.blow_up();
-        let wait = if lost.is_some() {
-            self.tried
+        let blow_up = run.blow_up();
+        let wait = if blow_up.is_some() {
+            self.searched
         } else {
             self.next.is_some_and(|next| begun < next)
         };
         if wait {
             return;
         }
-        if let Some(lost) = lost {
+        if let Some(blow_up) = blow_up {
             // The state of a lost run is crumpled: the limits that count are those of the scene.
             let scene = run.scene();
             let modes = spectrum(scene.model.system(), 0.0, &scene.state);
             self.modes.clone_from(&modes);
-            self.ask(run.method());
-            self.would_hold = would_hold(run, lost.time, &modes);
-            self.tried = true;
+            self.set_method(run.method());
+            self.would_hold = would_hold(run, blow_up.time, &modes);
+            self.searched = true;
             return;
         }
         self.modes = self.modes_of(run);
-        self.ask(run.method());
+        self.set_method(run.method());
         let after = Instant::now();
-        self.next = Some(after + INTERVAL.max(IDLE * after.duration_since(begun)));
+        self.next = Some(after + MIN_INTERVAL.max(MIN_IDLE_RATIO * after.duration_since(begun)));
     }
 
     /// The modes that set the limit: the fastest, or all of them where damping mixes modes, and
@@ -74,12 +74,13 @@ impl LimitWatch {
     /// that, or if a mode grows by itself: then the modes set no limit.
     fn modes_of(&mut self, run: &Simulation) -> Vec<Mode> {
         let (system, y) = (run.model().system(), run.state());
-        let small = y.len() <= MOST_NUMBERS;
+        let small = y.len() <= MAX_STATE_LENGTH;
         let all = || spectrum(system, run.time(), y);
         let linearized = system.mechanics().and_then(Mechanics::linearized);
         let Some(free) = linearized.filter(|m| m.baumgarte_frequency().is_none()) else {
             let modes = if small { all() } else { vec![] };
-            let grows = |mode: &Mode| mode.drag + mode.damping < -GROWS * mode.frequency();
+            let grows =
+                |mode: &Mode| mode.drag + mode.damping < -MIN_GROWTH_RATIO * mode.frequency();
             return if modes.iter().any(grows) {
                 vec![]
             } else {
@@ -95,15 +96,15 @@ impl LimitWatch {
     }
 
     /// Makes the next look estimate again: the forces have changed.
-    pub fn hurry(&mut self) {
+    pub fn expire(&mut self) {
         self.next = None;
     }
 
     /// Finds the limit of another method, for the motion that was seen last.
-    pub fn ask(&mut self, method: &Method) {
+    pub fn set_method(&mut self, method: &Method) {
         // Fails for a method that does not serve damped springs, on a mode that they damp.
         self.limit = largest_step(method, &self.modes).ok().flatten();
-        (self.would_hold, self.tried) = (None, false);
+        (self.would_hold, self.searched) = (None, false);
     }
 }
 
@@ -122,7 +123,7 @@ mod tests {
             let mut run = Simulation::new(scene.clone(), euler, Control::Step(step)).unwrap();
             assert!(run.advance_to(10.0).is_err());
             let mut watch = LimitWatch::default();
-            watch.look(&run);
+            watch.update(&run);
             watch.would_hold().unwrap()
         });
         // Whatever step was too long, the step that would have held is the same.
@@ -140,25 +141,25 @@ mod tests {
         let mut run = Simulation::new(scene, method("rk4"), Control::Step(0.01)).unwrap();
         let mut watch = LimitWatch::default();
         assert_eq!(watch.limit(), None);
-        watch.look(&run);
+        watch.update(&run);
         let flat = watch.limit().unwrap().step;
         assert!((flat - 0.0349).abs() < 0.001, "{flat}");
         run.advance_to(1.5).unwrap();
         // Not yet time to look.
-        watch.look(&run);
+        watch.update(&run);
         assert_eq!(watch.limit().unwrap().step, flat);
         for _ in 0..8 {
             watch.next = None;
-            watch.look(&run);
+            watch.update(&run);
         }
         let stretched = watch.limit().unwrap().step;
         assert!(
             stretched < 0.985 * flat && stretched > 0.9 * flat,
             "{stretched}"
         );
-        watch.ask(method("implicit"));
+        watch.set_method(method("implicit"));
         assert!(watch.limit().unwrap().step.is_infinite());
-        watch.ask(method("trapezoid"));
+        watch.set_method(method("trapezoid"));
         assert!(watch.limit().unwrap().step < 0.3 * flat);
     }
 }

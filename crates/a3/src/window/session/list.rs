@@ -42,8 +42,8 @@ pub enum TextKey {
     Move(isize),
     Type(char),
     Erase,
-    Take,
-    Close,
+    Accept,
+    Cancel,
 }
 
 impl List {
@@ -78,8 +78,8 @@ impl List {
             }
             TextKey::Type(letter) => self.edit(Some(letter)),
             TextKey::Erase => self.edit(None),
-            TextKey::Take => return self.entries().nth(self.chosen).map(|entry| entry.number),
-            TextKey::Close => {}
+            TextKey::Accept => return self.entries().nth(self.chosen).map(|entry| entry.number),
+            TextKey::Cancel => {}
         }
         None
     }
@@ -152,17 +152,17 @@ mod tests {
         let name = |session: &Session| session.runs.first().scene().name.clone();
         session.act(RunAction::Scenes, 0);
         type_words(&mut session, "Jel");
-        assert!(keys(&mut session, &[TextKey::Take]));
+        assert!(keys(&mut session, &[TextKey::Accept]));
         assert!(session.list.is_none());
         assert_eq!(name(&session), "jelly");
         // The list begins at what is shown.
         session.act(RunAction::Scenes, 0);
-        assert!(keys(&mut session, &[TextKey::Move(1), TextKey::Take]));
+        assert!(keys(&mut session, &[TextKey::Move(1), TextKey::Accept]));
         assert_eq!(name(&session), a3_scenes::SCENES[9].name);
         session.act(RunAction::PreviousScene, 0);
         assert_eq!(name(&session), "jelly");
         session.act(RunAction::Scenes, 0);
-        assert!(keys(&mut session, &[TextKey::Move(-99), TextKey::Take]));
+        assert!(keys(&mut session, &[TextKey::Move(-99), TextKey::Accept]));
         assert_eq!(name(&session), "cloth");
         // Before the first comes the last.
         session.act(RunAction::PreviousScene, 0);
@@ -170,10 +170,10 @@ mod tests {
         // Nothing matches: Enter does nothing, and Esc closes the list.
         session.act(RunAction::Scenes, 0);
         type_words(&mut session, "zz");
-        assert!(!keys(&mut session, &[TextKey::Take]) && session.list.is_some());
+        assert!(!keys(&mut session, &[TextKey::Accept]) && session.list.is_some());
         keys(&mut session, &[TextKey::Erase, TextKey::Erase]);
         assert!(session.list.as_ref().unwrap().entries().count() > 10);
-        keys(&mut session, &[TextKey::Close]);
+        keys(&mut session, &[TextKey::Cancel]);
         assert!(session.list.is_none());
     }
 
@@ -200,7 +200,7 @@ mod tests {
         type_words(&mut session, "strip.toml");
         let list = session.list.as_ref().unwrap();
         assert_eq!(list.entries().count(), 1);
-        assert!(keys(&mut session, &[TextKey::Take]));
+        assert!(keys(&mut session, &[TextKey::Accept]));
         let shown = session.scenes.shown.source.typed.clone();
         assert!(shown.ends_with("strip.toml"), "{shown}");
         // It is one of the files of this window now.
@@ -216,7 +216,7 @@ mod tests {
         let mut session = compared(&["e:0.01", "r:0.01", "--scene", "chain"], 0.1);
         session.act(RunAction::Solvers, 1);
         type_words(&mut session, "dop853");
-        keys(&mut session, &[TextKey::Take]);
+        keys(&mut session, &[TextKey::Accept]);
         let names: Vec<_> = session
             .runs
             .panes

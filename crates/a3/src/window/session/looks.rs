@@ -27,13 +27,13 @@ pub fn next_style(panes: &mut [Pane]) {
 }
 
 /// Whether the runs can be coloured by a quantity.
-pub fn has(panes: &[Pane], quantity: Quantity) -> bool {
+pub fn has_quantity(panes: &[Pane], quantity: Quantity) -> bool {
     quantity.is_in(&panes[0].simulation, panes.len() > 1)
 }
 
 /// Colours by the next quantity that the runs have, and after the last by none.
 pub fn next_colour(panes: &mut [Pane]) -> String {
-    let has = |quantity: &Quantity| has(panes, *quantity);
+    let has = |quantity: &Quantity| has_quantity(panes, *quantity);
     let all: Vec<_> = Quantity::ALL.into_iter().filter(has).collect();
     let next = after(&all, panes[0].show.colouring.quantity);
     set_colour(panes, next);
@@ -121,10 +121,11 @@ mod tests {
     fn contact_is_there_where_something_touches_and_errors_where_there_is_a_reference() {
         let mut flag = session(&["v", "0.005", "--scene", "mit"]);
         assert!(
-            !has(&flag.runs.panes, Quantity::Contact) && !has(&flag.runs.panes, Quantity::Error)
+            !has_quantity(&flag.runs.panes, Quantity::Contact)
+                && !has_quantity(&flag.runs.panes, Quantity::Error)
         );
         flag.act(RunAction::Touch, 0);
-        assert!(has(&flag.runs.panes, Quantity::Contact));
+        assert!(has_quantity(&flag.runs.panes, Quantity::Contact));
         let mut two = compared(&["e:0.0005", "r:0.01", "--scene", "mit"], 0.0);
         for _ in 0..4 {
             two.act(RunAction::Colour, 0);

@@ -3,7 +3,7 @@
 use web_time::{Duration, Instant};
 
 /// Real time between two readings (s).
-const INTERVAL: f32 = 0.5;
+const READING_SECONDS: f32 = 0.5;
 
 /// Frames and their time since the last reading.
 pub struct Meter {
@@ -52,7 +52,7 @@ impl Meter {
         self.frames += 1;
         self.drawing += drawing;
         let elapsed = self.begun.elapsed().as_secs_f32();
-        if elapsed < INTERVAL {
+        if elapsed < READING_SECONDS {
             return None;
         }
         let done = std::mem::replace(self, Self::new());

@@ -36,7 +36,7 @@ pub use samples::{SPAN, Sample, Samples};
 pub use save::write_scene;
 pub use state::{Beginning, Session};
 pub use timeline::TimelinePosition;
-pub use tuning::{FILM_OF, Tuning};
+pub use tuning::{DEFAULT_FILM_SECONDS, Tuning};
 
 #[cfg(test)]
 pub use pane::Cost;

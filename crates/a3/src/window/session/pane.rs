@@ -13,7 +13,7 @@ use crate::base::progress;
 use crate::draw::show::Show;
 
 /// Simulated time by which an adaptive method goes on at once (s).
-pub const PORTION: f64 = 1.0 / 240.0;
+pub const ADAPTIVE_SLICE: f64 = 1.0 / 240.0;
 
 /// A run on the screen.
 pub struct Pane {
@@ -85,7 +85,7 @@ impl Pane {
     pub fn take_due_steps(&mut self, time: f64) {
         let begun = Instant::now();
         let adaptive = self.simulation.control().step().is_none();
-        let step = self.pace();
+        let step = self.slice();
         let due = ((time - self.simulation.time()) / step + 1e-9).floor() as u64;
         if !self.alive() {
         } else if adaptive && !self.show.has_trail() {
@@ -93,14 +93,14 @@ impl Pane {
             let _ = self.simulation.advance_to(time);
         } else if adaptive {
             while self.alive() && self.simulation.time() < time {
-                let next = (self.simulation.time() + PORTION).min(time);
+                let next = (self.simulation.time() + ADAPTIVE_SLICE).min(time);
                 let _ = self.simulation.advance_to(next);
                 self.follow();
             }
         } else if due > 0 {
             // A trail has a point for each step, or for as many as make a portion.
             let at_once = if self.show.has_trail() {
-                ((PORTION / step) as u64).max(1)
+                ((ADAPTIVE_SLICE / step) as u64).max(1)
             } else {
                 due
             };
@@ -116,8 +116,8 @@ impl Pane {
 
     /// Simulated time by which the run goes on at once (s): its step, or a portion for a run to a
     /// tolerance, whose state can be read off anywhere.
-    pub fn pace(&self) -> f64 {
-        self.simulation.control().step().unwrap_or(PORTION)
+    pub fn slice(&self) -> f64 {
+        self.simulation.control().step().unwrap_or(ADAPTIVE_SLICE)
     }
 
     /// Brings the run to `time` (s) exactly, however long that takes. A blow-up is shown from then
@@ -160,7 +160,7 @@ impl Pane {
         let computing = self.computing.as_secs_f64();
         self.samples
             .take(&self.simulation, energy, self.stretch, computing);
-        self.limit.look(&self.simulation);
+        self.limit.update(&self.simulation);
     }
 
     /// Takes the cost since it was last taken, if any time was simulated.
@@ -180,14 +180,14 @@ impl Pane {
 
     /// Counts the cost from here on: of another method, or of another step.
     pub fn restart_cost(&mut self) {
-        self.limit.ask(self.simulation.method());
+        self.limit.set_method(self.simulation.method());
         let evaluations = self.simulation.work().total();
         self.counted = (self.simulation.time(), evaluations, self.computing);
     }
 
     /// Notes that the forces of the scene have changed.
     pub fn forces_changed(&mut self) {
-        self.limit.hurry();
+        self.limit.expire();
         self.restart_cost();
     }
 
@@ -222,7 +222,7 @@ impl Pane {
 
     /// Goes on where a run was kept in a checkpoint. A hand lets go. Fails if the checkpoint is not
     /// of such a run.
-    pub fn take_up(&mut self, checkpoint: &Checkpoint) -> Result<(), Error> {
+    pub fn restore(&mut self, checkpoint: &Checkpoint) -> Result<(), Error> {
         self.simulation.restore(checkpoint)?;
         self.simulation.release();
         self.simulation.release_obstacle();

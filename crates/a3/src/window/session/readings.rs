@@ -6,7 +6,7 @@ use super::reference::ReferenceRun;
 use super::timeline::TimelinePosition;
 
 /// Time that a message stays.
-const MESSAGE_TIME: Duration = Duration::from_secs(4);
+const MESSAGE_DURATION: Duration = Duration::from_secs(4);
 
 /// What is said of a film that is being made.
 #[derive(Clone, Debug)]
@@ -67,7 +67,7 @@ impl Readings {
     /// Shows a message for a few seconds.
     pub fn say(&mut self, message: impl Into<String>) {
         self.message = Some(message.into());
-        self.message_ends = Some(Instant::now() + MESSAGE_TIME);
+        self.message_ends = Some(Instant::now() + MESSAGE_DURATION);
     }
 
     /// Shows a message until there is another one.

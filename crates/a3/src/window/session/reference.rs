@@ -4,13 +4,13 @@ use web_time::{Duration, Instant};
 
 use a3_core::{Control, Method, Simulation, integrators};
 
-use super::pane::{PORTION, Pane};
+use super::pane::{ADAPTIVE_SLICE, Pane};
 use super::predictability::Predictability;
 use crate::base::failure::Failure;
 use crate::base::progress;
 
 /// Frames in a row that the reference may be late before it is stopped.
-const PATIENCE: u32 = 30;
+const MAX_LATE_FRAMES: u32 = 30;
 
 /// A run of the panes' scene that is much more exact than they are and gets the same hands.
 pub struct ReferenceRun {
@@ -24,7 +24,7 @@ pub struct ReferenceRun {
 }
 
 /// Method and tolerance of the reference: tight, and tighter still beside adaptive panes.
-fn choose(panes: &[Pane]) -> (&'static Method, Control) {
+fn method_and_control(panes: &[Pane]) -> (&'static Method, Control) {
     let method = integrators::find("dop853").unwrap_or(&integrators::METHODS[0]);
     let tolerances = panes
         .iter()
@@ -39,7 +39,7 @@ impl ReferenceRun {
         let [first, _, ..] = panes else {
             return Ok(None);
         };
-        let (method, control) = choose(panes);
+        let (method, control) = method_and_control(panes);
         let run = &first.simulation;
         let mut scene = run.scene().clone();
         scene.limits.absolute = None;
@@ -60,7 +60,7 @@ impl ReferenceRun {
 
     /// Fits the tolerance to panes that have other methods or steps.
     pub fn adapt(&mut self, panes: &[Pane]) {
-        let (method, control) = choose(panes);
+        let (method, control) = method_and_control(panes);
         // The method serves every scene, so it is not refused.
         if self.simulation.control() != control {
             let _ = self.simulation.set_method(method, control);
@@ -73,12 +73,12 @@ impl ReferenceRun {
     }
 
     /// The run to look at, stopped or not.
-    pub fn any(&self) -> &Simulation {
+    pub fn simulation(&self) -> &Simulation {
         &self.simulation
     }
 
     /// The run to change, stopped or not.
-    pub fn any_run(&mut self) -> &mut Simulation {
+    pub fn simulation_mut(&mut self) -> &mut Simulation {
         &mut self.simulation
     }
 
@@ -108,7 +108,7 @@ impl ReferenceRun {
             if begun.elapsed() >= budget {
                 return false;
             }
-            result = run.advance_to((run.time() + PORTION).min(time));
+            result = run.advance_to((run.time() + ADAPTIVE_SLICE).min(time));
         }
         if result.is_err() {
             self.stop("the reference blew up");
@@ -144,7 +144,7 @@ impl ReferenceRun {
                 pane.set_errors(differences(&pane.simulation, &self.simulation));
             }
             self.late = if kept_up { 0 } else { self.late + 1 };
-            if self.late > PATIENCE {
+            if self.late > MAX_LATE_FRAMES {
                 self.stop("the reference is too slow");
             }
         }
@@ -208,7 +208,7 @@ mod tests {
         assert_eq!(panes[0].error, None);
         reference.follow(&mut panes, Duration::MAX);
         assert!(panes[0].error.unwrap() > panes[1].error.unwrap());
-        for late in 1..=PATIENCE + 1 {
+        for late in 1..=MAX_LATE_FRAMES + 1 {
             go(&mut panes, 0.5 + 0.01 * f64::from(late));
             assert_eq!(reference.stopped(), None);
             reference.follow(&mut panes, Duration::ZERO);

@@ -6,7 +6,7 @@ use a3_core::{Control, Error, Method, Path, Simulation, integrators};
 use a3_scenes::{Defaults, Setup};
 
 use super::ladder::next_step;
-use super::pane::{PORTION, Pane};
+use super::pane::{ADAPTIVE_SLICE, Pane};
 use super::reference::ReferenceRun;
 use crate::base::bounds;
 use crate::base::failure::Failure;
@@ -56,20 +56,20 @@ impl Runs {
     /// All runs, the reference last.
     pub(super) fn all(&self) -> impl Iterator<Item = &Simulation> {
         let panes = self.panes.iter().map(|pane| &pane.simulation);
-        panes.chain(self.reference.as_ref().map(ReferenceRun::any))
+        panes.chain(self.reference.as_ref().map(ReferenceRun::simulation))
     }
 
     /// All runs to change, lost and stopped ones too, the reference last.
     pub(super) fn all_mut(&mut self) -> impl Iterator<Item = &mut Simulation> {
         let panes = self.panes.iter_mut().map(|pane| &mut pane.simulation);
-        panes.chain(self.reference.as_mut().map(ReferenceRun::any_run))
+        panes.chain(self.reference.as_mut().map(ReferenceRun::simulation_mut))
     }
 
     /// Brings all panes to a simulated time (s) in short slices, so that none is ahead of the
     /// others when the budget of real time is over before.
     pub(super) fn advance(&mut self, until: f64, budget: Duration, reference_budget: Duration) {
         let begun = Instant::now();
-        let steps = self.panes.iter().map(Pane::pace);
+        let steps = self.panes.iter().map(Pane::slice);
         let mut slice = steps.fold(f64::INFINITY, f64::min);
         while self.clock < until && begun.elapsed() < budget && self.any_alive() {
             self.clock = (self.clock + slice).min(until);
@@ -91,7 +91,7 @@ impl Runs {
     /// The longest step of the runs that go on (s).
     pub(super) fn longest_step(&self) -> f64 {
         let alive = self.panes.iter().filter(|pane| pane.alive());
-        let step = alive.map(|pane| pane.simulation.step_size().unwrap_or(PORTION));
+        let step = alive.map(|pane| pane.simulation.step_size().unwrap_or(ADAPTIVE_SLICE));
         step.fold(0.0, f64::max)
     }
 
@@ -103,11 +103,11 @@ impl Runs {
         if let Some(reference) = &mut self.reference {
             reference.run_to(time, &mut self.panes);
         }
-        self.settle();
+        self.drop_due_steps();
     }
 
     /// Sets the clock to the time of the pane that is farthest, so that no steps are due.
-    pub(super) fn settle(&mut self) {
+    pub(super) fn drop_due_steps(&mut self) {
         let alive = self.panes.iter().filter(|pane| pane.alive());
         let times = alive.map(|pane| pane.simulation.time());
         self.clock = times.reduce(f64::max).unwrap_or(self.clock);
@@ -115,8 +115,8 @@ impl Runs {
 
     /// Begins to read the states again, with no steps due: after a time in which nothing was
     /// simulated.
-    pub(super) fn start_anew(&mut self) {
-        self.settle();
+    pub(super) fn restart_measuring(&mut self) {
+        self.drop_due_steps();
         self.read = None;
     }
 
@@ -194,7 +194,7 @@ impl Runs {
     ) -> Result<(), Error> {
         let at = at.min(self.panes.len() - 1);
         let set = self.panes[at].set_method(method, defaults);
-        self.adapt();
+        self.adapt_reference();
         set
     }
 
@@ -207,19 +207,19 @@ impl Runs {
             let next = next_step(control.value(), longer).clamp(*range.start(), *range.end());
             all = pane.set_step(next).and(all);
         }
-        self.adapt();
+        self.adapt_reference();
         all
     }
 
     /// Sets the step (s) or the tolerance of one pane. Fails if it is refused.
     pub(super) fn set_step_of(&mut self, at: usize, value: f64) -> Result<(), Error> {
         let set = self.panes[at].set_step(value);
-        self.adapt();
+        self.adapt_reference();
         set
     }
 
     /// Fits the reference to the solvers and steps of the panes.
-    pub(super) fn adapt(&mut self) {
+    pub(super) fn adapt_reference(&mut self) {
         if let Some(reference) = &mut self.reference {
             reference.adapt(&self.panes);
         }
@@ -267,7 +267,7 @@ mod tests {
     fn panes_keep_the_same_time() {
         let session = compared(&["t:0.03", "r:0.07", "v", "--scene", "chain"], 2.0);
         for pane in &session.runs.panes {
-            let (run, step) = (&pane.simulation, pane.pace());
+            let (run, step) = (&pane.simulation, pane.slice());
             assert!(
                 run.time() < session.runs.clock + 1e-9
                     && run.time() > session.runs.clock - step - 1e-9,

@@ -8,7 +8,7 @@ use a3_core::{Energy, Simulation};
 pub const SPAN: f64 = 20.0;
 /// The least simulated time between two samples (s): a little less than a tenth, so that rounding
 /// leaves ten a second.
-const INTERVAL: f64 = 0.09;
+const MIN_INTERVAL: f64 = 0.09;
 
 /// Values of a run at one time.
 #[derive(Clone, Copy, Debug)]
@@ -46,7 +46,7 @@ impl Samples {
             self.samples.pop_back();
         }
         let before = self.samples.back();
-        if before.is_some_and(|last| time - last.time < INTERVAL) {
+        if before.is_some_and(|last| time - last.time < MIN_INTERVAL) {
             return;
         }
         let total = [run.work().total(), computing];
@@ -81,7 +81,7 @@ impl Samples {
             .samples
             .iter()
             .min_by(|a, b| distance(a).total_cmp(&distance(b)));
-        nearest.filter(|sample| distance(sample) < 5.0 * INTERVAL)
+        nearest.filter(|sample| distance(sample) < 5.0 * MIN_INTERVAL)
     }
 
     /// The samples, the oldest first.

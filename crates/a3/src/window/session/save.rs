@@ -12,15 +12,15 @@ use crate::base::failure::Failure;
 use crate::files::output;
 
 /// The most particles of a scene file that can be read again.
-const MOST: usize = 60_000;
+const MAX_PARTICLES: usize = 60_000;
 
 /// Writes a run of the scene that a session shows under the first free name, beside the file of
 /// that scene if there is one, and returns that name.
 pub fn write_scene(session: &Session, run: &Simulation) -> Result<String, String> {
     let particles = run.particles();
-    if particles > MOST {
+    if particles > MAX_PARTICLES {
         return Err(format!(
-            "a scene file has at most {MOST} particles, but this run has {particles}"
+            "a scene file has at most {MAX_PARTICLES} particles, but this run has {particles}"
         ));
     }
     let folder = session

@@ -22,7 +22,7 @@ pub struct Scenes {
     /// Files that were opened in earlier windows, the last one first.
     pub recent: Vec<PathBuf>,
     /// The checkpoint that was written or opened last.
-    pub kept: Option<PathBuf>,
+    pub checkpoint: Option<PathBuf>,
 }
 
 /// A scene that was loaded again, and what is new in its file.
@@ -46,7 +46,7 @@ impl Scenes {
             shown: origin.clone(),
             asked: vec![origin],
             recent: vec![],
-            kept: None,
+            checkpoint: None,
         }
     }
 

@@ -23,7 +23,7 @@ use crate::draw::show::{Manner, Show};
 /// time that the frame stands for, so that steps may take as long as a slow display. Steps that do
 /// not fit are left out: all runs are then slower than real time. Tests run several at a time and
 /// must not depend on it.
-const BUDGET: (Duration, f64) = (
+const STEP_BUDGET: (Duration, f64) = (
     Duration::from_millis(if cfg!(test) { 400 } else { 12 }),
     0.5,
 );
@@ -32,7 +32,7 @@ const BUDGET: (Duration, f64) = (
 const REFERENCE_BUDGET: (Duration, f64) =
     (Duration::from_millis(if cfg!(test) { 400 } else { 4 }), 0.1);
 /// The most real time (s) that a frame makes up for, however long the last one took.
-const LONGEST_FRAME: f64 = 0.3;
+const MAX_FRAME_TIME: f64 = 0.3;
 
 /// How a session begins.
 #[derive(Clone, Copy, Default)]
@@ -110,15 +110,15 @@ impl Session {
     /// asked for.
     pub fn tick(&mut self, real: f64) {
         if self.animated() {
-            let real = real.min(LONGEST_FRAME);
+            let real = real.min(MAX_FRAME_TIME);
             let budget = |(least, share): (Duration, f64)| {
                 let share = Duration::from_secs_f64(share * real);
                 share.max(least)
             };
             let simulated = real * 0.5f64.powi(self.readings.slowness);
-            self.advance(simulated, budget(BUDGET), budget(REFERENCE_BUDGET));
+            self.advance(simulated, budget(STEP_BUDGET), budget(REFERENCE_BUDGET));
         } else {
-            self.runs.settle();
+            self.runs.drop_due_steps();
         }
     }
 
@@ -157,7 +157,7 @@ impl Session {
 
     /// Counts a frame that took `drawing` to draw. Twice a second the rates are taken, unless all
     /// runs stand still.
-    pub fn drawn(&mut self, drawing: Duration) {
+    pub fn count_frame(&mut self, drawing: Duration) {
         if !self.animated() {
             self.readings.factor = 0.0;
             self.meter = Meter::new();
@@ -174,8 +174,8 @@ impl Session {
     }
 
     /// Begins to measure again, with no steps due: after a time in which nothing was simulated.
-    pub fn start_anew(&mut self) {
-        self.runs.start_anew();
+    pub fn restart_measuring(&mut self) {
+        self.runs.restart_measuring();
         self.meter = Meter::new();
     }
 
@@ -202,7 +202,7 @@ impl Session {
     fn pause_to_scrub(&mut self) {
         self.readings.paused = true;
         if self.readings.rewound.is_none() {
-            self.runs.settle();
+            self.runs.drop_due_steps();
             self.keep(true);
         }
     }
@@ -213,22 +213,22 @@ impl Session {
         self.runs.states_changed();
         self.readings.rewound = self.timeline.position();
         self.runs.hide_hand();
-        self.start_anew();
+        self.restart_measuring();
     }
 
     /// Takes the first run up where it was kept in a checkpoint. A hand lets go.
-    pub fn take_up(&mut self, checkpoint: &Checkpoint) -> Result<(), Error> {
-        self.runs.panes[0].take_up(checkpoint)?;
-        self.another_run();
+    pub fn restore(&mut self, checkpoint: &Checkpoint) -> Result<(), Error> {
+        self.runs.panes[0].restore(checkpoint)?;
+        self.begin_new_run();
         Ok(())
     }
 
     /// Clears the timeline and begins to measure again, because another run begins.
-    pub(super) fn another_run(&mut self) {
+    pub(super) fn begin_new_run(&mut self) {
         self.timeline.clear();
         self.readings.rewound = None;
         self.runs.hide_hand();
-        self.start_anew();
+        self.restart_measuring();
     }
 }
 
@@ -255,7 +255,7 @@ mod tests {
     fn a_frame_of_minutes_is_no_huge_step() {
         let mut session = session(&["t", "0.01", "--scene", "chain"]);
         session.tick(300.0);
-        assert!(session.runs.panes[0].simulation.time() <= LONGEST_FRAME + 1e-9);
+        assert!(session.runs.panes[0].simulation.time() <= MAX_FRAME_TIME + 1e-9);
         assert!(session.runs.panes[0].simulation.steps() <= 30);
     }
 

@@ -9,7 +9,7 @@ const INTERVAL: f64 = 1.0 / 60.0;
 /// Simulated time from the oldest to the newest moment (s).
 const SPAN: f64 = 20.0;
 /// Memory that all moments together may take (bytes).
-const MEMORY: usize = 64 << 20;
+const MAX_MEMORY: usize = 64 << 20;
 
 /// Kept moments, the oldest first.
 #[derive(Default)]
@@ -66,7 +66,7 @@ impl Timeline {
         let size: usize = self.moments.iter().map(Entry::size).sum();
         let next = self.moments.back().map_or(0, Entry::size);
         let old = |entry: &Entry| entry.clock < clock - SPAN;
-        let full = self.moments.len() > 1 && size + next > MEMORY;
+        let full = self.moments.len() > 1 && size + next > MAX_MEMORY;
         // The memory of the oldest moment is used again.
         let spare = if full || self.moments.front().is_some_and(old) {
             self.moments.pop_front()
@@ -180,7 +180,7 @@ mod tests {
             timeline.keep(f64::from(k), false, [&large, &large].into_iter());
         }
         let size = 2 * large.moment().size();
-        assert_eq!(timeline.moments.len(), (MEMORY / size).min(21));
+        assert_eq!(timeline.moments.len(), (MAX_MEMORY / size).min(21));
     }
 
     #[test]

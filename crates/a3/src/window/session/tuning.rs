@@ -34,7 +34,7 @@ impl Tuning {
 }
 
 /// Simulated time that a film of what was kept covers, if nothing else was chosen (s).
-pub const FILM_OF: f64 = 5.0;
+pub const DEFAULT_FILM_SECONDS: f64 = 5.0;
 
 /// The panel beside the picture, as far as it is no setting of a run.
 pub struct PanelState {
@@ -49,7 +49,7 @@ pub struct PanelState {
     /// The format of films.
     pub film: Ending,
     /// Simulated time that a film of what was kept covers (s).
-    pub film_of: f64,
+    pub film_seconds: f64,
     /// The pane that the panel is about: the last that the pointer was over.
     pub pane: usize,
 }
@@ -62,7 +62,7 @@ impl Default for PanelState {
             typed: None,
             frame_limit: 0,
             film: Ending::default(),
-            film_of: FILM_OF,
+            film_seconds: DEFAULT_FILM_SECONDS,
             pane: 0,
         }
     }

@@ -42,7 +42,7 @@ impl View {
     }
 
     /// Sees from another camera, in the same projection.
-    pub fn see_from(&mut self, camera: Camera) {
+    pub fn set_camera(&mut self, camera: Camera) {
         let parallel = self.camera.is_parallel();
         self.camera = camera;
         self.camera.set_parallel(parallel);
@@ -75,7 +75,7 @@ impl View {
     }
 
     /// Follows nothing.
-    pub fn stay(&mut self) {
+    pub fn stop_following(&mut self) {
         self.followed = None;
     }
 
@@ -85,7 +85,7 @@ impl View {
     }
 
     /// Moves the camera as the particle that it follows has moved.
-    pub fn go_along(&mut self, panes: &[Pane]) {
+    pub fn track_followed(&mut self, panes: &[Pane]) {
         if let Some(followed) = &mut self.followed {
             let run = &panes[followed.pane].simulation;
             let now = show::to_f32(run.position(followed.particle));
@@ -148,12 +148,12 @@ mod tests {
         session.view.follow(&session.runs.panes, 0, Some(last));
         let begun = session.view.camera.target();
         frames(&mut session, 0.7);
-        session.view.go_along(&session.runs.panes);
+        session.view.track_followed(&session.runs.panes);
         assert!(
             near(offset(&session), before) && (session.view.camera.target() - begun).norm() > 0.1
         );
         session.act(RunAction::Scrub(-20), 0);
-        session.view.go_along(&session.runs.panes);
+        session.view.track_followed(&session.runs.panes);
         assert!(near(offset(&session), before));
         // The same particle again, or none, ends it; and so does another scene.
         session.view.follow(&session.runs.panes, 0, Some(last));

@@ -4,7 +4,7 @@ use a3_core::contact::Shape;
 use a3_core::{Network, Vector3};
 
 use super::dial::{Dial, DialScale, Turn};
-use super::seen::{arrows, colour, film, film_of, frame_limit, full_colour, style};
+use super::seen::{arrows, colour, film, film_seconds, frame_limit, full_colour, style};
 use super::values::{
     damping, drag, floor, gravity, gusts, network, own, radii, solver, sphere, springs_of, step,
     stiffness, strain_limit, strain_limits, switch,
@@ -311,9 +311,9 @@ pub static KNOBS: &[Knob] = &[
     knob(
         "film of",
         "Simulated time that key n films, in s.",
-        |session, _| Some(film_of(session)),
+        |session, _| Some(film_seconds(session)),
         |session, _, seconds| {
-            session.panel.film_of = seconds;
+            session.panel.film_seconds = seconds;
         },
     ),
 ];

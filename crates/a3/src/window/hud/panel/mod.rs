@@ -14,7 +14,7 @@ pub use knobs::{tune, tuned};
 pub use plots::csv;
 pub use request::{PanelKey, PanelRequest, Request, apply, press, press_text};
 pub use undo::undo;
-pub use view::{inset, leaves, show};
+pub use view::{inset, picture_size, show};
 
 #[cfg(test)]
 mod tests;

@@ -8,19 +8,19 @@ use super::super::words::digits;
 use crate::window::session::{Pane, SPAN, Sample, Samples};
 
 /// Least height of a plot (points).
-const LEAST: f32 = 56.0;
+const MIN_HEIGHT: f32 = 56.0;
 /// Largest height of a plot over its width.
-const MOST: f32 = 0.6;
+const MAX_HEIGHT_PER_WIDTH: f32 = 0.6;
 /// Height of the line with the title (points).
-const HEAD: f32 = 17.0;
+const TITLE_HEIGHT: f32 = 17.0;
 /// Height of the numbers below the last plot (points).
-const FOOT: f32 = 15.0;
+const TICK_LABEL_HEIGHT: f32 = 15.0;
 /// Width of the numbers on the left (points).
-const NUMBERS: f32 = 40.0;
+const TICK_LABEL_WIDTH: f32 = 40.0;
 /// Size of the numbers (points).
-const SMALL: f32 = 10.5;
+const TICK_LABEL_SIZE: f32 = 10.5;
 /// Length of the piece of a curve before its name (points).
-const SAMPLE: f32 = 14.0;
+const LEGEND_LINE_LENGTH: f32 = 14.0;
 
 const TEAL: Color32 = Color32::from_rgb(0, 122, 128);
 const AMBER: Color32 = Color32::from_rgb(190, 106, 0);
@@ -141,19 +141,22 @@ pub fn draw(painter: &Painter, room: Rect, samples: &Samples, pointer: Option<Po
         samples.iter().filter_map(of).count() > 1
     });
     let shown: Vec<_> = shown.collect();
-    let high = room.height() - FOOT;
-    let count = shown.len().min((high / LEAST).max(0.0) as usize);
+    let high = room.height() - TICK_LABEL_HEIGHT;
+    let count = shown.len().min((high / MIN_HEIGHT).max(0.0) as usize);
     if count == 0 {
         return;
     }
-    let plots = Rect::from_x_y_ranges(room.left() + NUMBERS..=room.right() - 2.0, room.y_range());
+    let plots = Rect::from_x_y_ranges(
+        room.left() + TICK_LABEL_WIDTH..=room.right() - 2.0,
+        room.y_range(),
+    );
     let pointed = pointer
         .filter(|pointer| plots.contains(*pointer))
         .and_then(|pointer| {
             let share = (pointer.x - plots.left()) / plots.width();
             samples.nearest(time[0] + f64::from(share) * SPAN)
         });
-    let height = (high / count as f32).min(MOST * room.width());
+    let height = (high / count as f32).min(MAX_HEIGHT_PER_WIDTH * room.width());
     for (k, plot) in shown[..count].iter().enumerate() {
         let top = room.top() + k as f32 * height;
         let rect = Rect::from_min_max(pos2(room.left(), top), pos2(room.right(), top + height));
@@ -190,13 +193,13 @@ impl Plot {
             let at = pos2(right, rect.top());
             right = words(at, Align2::RIGHT_TOP, &said, 11.5, curve.colour).left() - 7.0;
             if !curve.name.is_empty() {
-                let ends = [right + 4.0 - SAMPLE, right + 4.0];
+                let ends = [right + 4.0 - LEGEND_LINE_LENGTH, right + 4.0];
                 curve.draw(painter, &ends.map(|x| pos2(x, rect.top() + 7.5)));
                 right = ends[0] - 5.0;
             }
         }
         let area = Rect::from_min_max(
-            rect.left_top() + egui::vec2(NUMBERS, HEAD),
+            rect.left_top() + egui::vec2(TICK_LABEL_WIDTH, TITLE_HEIGHT),
             rect.right_bottom() - egui::vec2(2.0, 5.0),
         );
         let values = || {
@@ -212,7 +215,7 @@ impl Plot {
             painter.hline(area.x_range(), at, rule);
             let place = pos2(area.left() - 5.0, at);
             let label = label(tick.value, tick.label);
-            words(place, Align2::RIGHT_CENTER, &label, SMALL, FAINT);
+            words(place, Align2::RIGHT_CENTER, &label, TICK_LABEL_SIZE, FAINT);
         }
         for tick in x.ticks(44.0) {
             let at = x.at(tick.value) as f32;
@@ -228,7 +231,7 @@ impl Plot {
                     )
                 };
                 let label = format!("{}{unit}", tick.label);
-                words(place, anchor, &label, SMALL, FAINT);
+                words(place, anchor, &label, TICK_LABEL_SIZE, FAINT);
             }
         }
         if let Some(sample) = pointed {

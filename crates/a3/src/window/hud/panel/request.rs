@@ -17,13 +17,13 @@ pub enum Request {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum PanelRequest {
     /// Choose a row, by its number in the table of knobs.
-    Choose(usize),
+    ChooseRow(usize),
     /// Type a value for the knob of that number.
     Type(usize),
     /// Turn the knob of that number.
     Turn(usize, Turn),
     /// Take the entry of this number from the list that is open.
-    Take(usize),
+    TakeEntry(usize),
     /// Close that list.
     CloseList,
 }
@@ -98,12 +98,12 @@ pub fn apply(session: &mut Session, request: PanelRequest) -> bool {
             session.panel.row = row;
             session.panel.typed = Some(String::new());
         }
-        PanelRequest::Choose(row) => session.panel.row = row,
+        PanelRequest::ChooseRow(row) => session.panel.row = row,
         PanelRequest::Turn(row, turn) => {
             session.panel.row = row;
             KNOBS[row].turn(session, at, turn);
         }
-        PanelRequest::Take(number) => return session.take(number),
+        PanelRequest::TakeEntry(number) => return session.take_entry(number),
         PanelRequest::CloseList => session.list = None,
     }
     false
@@ -120,9 +120,9 @@ pub fn press_text(session: &mut Session, key: TextKey) -> bool {
     match key {
         TextKey::Type(letter) => typed.push(letter),
         TextKey::Erase => drop(typed.pop()),
-        TextKey::Close => session.panel.typed = None,
+        TextKey::Cancel => session.panel.typed = None,
         TextKey::Move(_) => {}
-        TextKey::Take => {
+        TextKey::Accept => {
             let (typed, row) = (typed.clone(), session.panel.row);
             match value(session, row, &typed) {
                 Ok(value) => {

@@ -26,9 +26,9 @@ const CHOSEN: Color32 = Color32::from_rgb(207, 211, 218);
 const HOVERED: Color32 = Color32::from_rgb(217, 218, 220);
 
 /// Width of the name (points).
-const NAME: f32 = 76.0;
+const NAME_WIDTH: f32 = 76.0;
 /// Width of the value (points).
-const VALUE: f32 = 76.0;
+const VALUE_WIDTH: f32 = 76.0;
 
 /// A row: a knob with its number in the table, and its dial.
 pub struct Row<'a> {
@@ -60,12 +60,13 @@ impl Row<'_> {
         let whole = whole.on_hover_text(self.about());
         let mut request = None;
         if let DialScale::Choice(_) = dial.scale {
-            let left = rect.left() + NAME - 18.0;
+            let left = rect.left() + NAME_WIDTH - 18.0;
             let room = Rect::from_x_y_ranges(left..=rect.right(), rect.y_range());
             request = choice(ui, room, id, dial).map(|turn| PanelRequest::Turn(number, turn));
         } else {
-            let value = Rect::from_x_y_ranges(rect.right() - VALUE..=rect.right(), rect.y_range());
-            let left = rect.left() + NAME;
+            let value =
+                Rect::from_x_y_ranges(rect.right() - VALUE_WIDTH..=rect.right(), rect.y_range());
+            let left = rect.left() + NAME_WIDTH;
             let room = Rect::from_x_y_ranges(left..=value.left() - 4.0, rect.y_range());
             let set = if dial.scale == DialScale::Switch {
                 switch(ui, room, id("dial"), dial)
@@ -75,7 +76,7 @@ impl Row<'_> {
             let set = set.map(|turn| PanelRequest::Turn(number, turn));
             request = set.or(self.value(ui, value, id("value"))).or(request);
         }
-        request.or_else(|| whole.clicked().then_some(PanelRequest::Choose(number)))
+        request.or_else(|| whole.clicked().then_some(PanelRequest::ChooseRow(number)))
     }
 
     /// Draws the value, or what is typed for it. A click begins to type, and a double click brings

@@ -12,20 +12,20 @@ use crate::window::session::{Action, RunAction, Session, WindowAction};
 const WIDTH: (f32, f32, f32) = (304.0, 460.0, 0.2);
 /// Width of a window that has room for a picture beside the panel (points). In a narrower one the
 /// panel covers the picture, until it is closed.
-const BESIDE: f32 = 480.0;
+const MIN_WIDTH_BESIDE: f32 = 480.0;
 /// Distance of the rows from the edges of the panel (points).
 pub(super) const MARGIN: f32 = 14.0;
 /// Height of the title (points).
-const HEAD: f32 = 36.0;
+const TITLE_HEIGHT: f32 = 36.0;
 /// Height of the button and its margins (points).
-const FOOT: f32 = 46.0;
+const BUTTONS_HEIGHT: f32 = 46.0;
 /// Distance between groups of rows (points).
-const GAP: f32 = 7.0;
+const GROUP_GAP: f32 = 7.0;
 
 /// Width of the panel in a window of that width (points).
 pub(super) fn width(window: f32) -> f32 {
     let (least, most, share) = WIDTH;
-    if window < BESIDE {
+    if window < MIN_WIDTH_BESIDE {
         window
     } else {
         (share * window).round().clamp(least, most)
@@ -33,12 +33,12 @@ pub(super) fn width(window: f32) -> f32 {
 }
 
 /// Size that the panel leaves of a window of `size` (px) at `scale` pixels per point.
-pub fn leaves(session: &Session, size: (u32, u32), scale: f32) -> (u32, u32) {
+pub fn picture_size(session: &Session, size: (u32, u32), scale: f32) -> (u32, u32) {
     if !is_shown(session) {
         return size;
     }
     let window = size.0 as f32 / scale;
-    if window < BESIDE {
+    if window < MIN_WIDTH_BESIDE {
         return size;
     }
     let taken = (width(window) * scale).round() as u32;
@@ -47,7 +47,7 @@ pub fn leaves(session: &Session, size: (u32, u32), scale: f32) -> (u32, u32) {
 
 /// Width on the right that text must keep clear of (points).
 pub fn inset(session: &Session, size: (u32, u32), scale: f32) -> f32 {
-    (size.0 - leaves(session, size, scale).0) as f32 / scale
+    (size.0 - picture_size(session, size, scale).0) as f32 / scale
 }
 
 /// Draws the panel, if it is shown, and returns what the mouse asks for.
@@ -76,11 +76,11 @@ pub fn show(ctx: &Context, session: &Session) -> Option<Request> {
             let chosen = rows.iter().rposition(|(k, ..)| *k <= session.panel.row);
             let chosen = chosen.unwrap_or(0);
             // In a low window there are as many rows as fit, the chosen one among them.
-            let room = inner.bottom() - FOOT - (inner.top() + HEAD);
+            let room = inner.bottom() - BUTTONS_HEIGHT - (inner.top() + TITLE_HEIGHT);
             let fit = ((room / row::HEIGHT) as usize).max(1);
-            let gap = if fit > rows.len() { GAP } else { 0.0 };
+            let gap = if fit > rows.len() { GROUP_GAP } else { 0.0 };
             let first = (chosen + 1).saturating_sub(fit);
-            let mut top = inner.top() + HEAD;
+            let mut top = inner.top() + TITLE_HEIGHT;
             for (n, (k, knob, dial)) in rows.iter().enumerate().skip(first).take(fit) {
                 if knob.apart && n > first {
                     top += gap;
@@ -100,7 +100,7 @@ pub fn show(ctx: &Context, session: &Session) -> Option<Request> {
             request = foot(ui, inner, session).or(request);
             let room = Rect::from_min_max(
                 pos2(inner.left(), top + 12.0),
-                pos2(inner.right(), inner.bottom() - FOOT),
+                pos2(inner.right(), inner.bottom() - BUTTONS_HEIGHT),
             );
             let pane = &session.runs.panes[request::pane(session)];
             let pointer = ui.ctx().pointer_latest_pos();
@@ -141,7 +141,7 @@ fn head(ui: &egui::Ui, inner: Rect, session: &Session) {
 /// Draws the buttons: they write a scene file and the plots, film from now on, and film the last
 /// seconds.
 fn foot(ui: &egui::Ui, inner: Rect, session: &Session) -> Option<Request> {
-    let last = format!("last {} s", session.panel.film_of);
+    let last = format!("last {} s", session.panel.film_seconds);
     let live = session.readings.film.as_ref().is_some_and(|film| film.live);
     let record = if live { "stop" } else { "film" };
     let buttons = [
@@ -156,7 +156,7 @@ fn foot(ui: &egui::Ui, inner: Rect, session: &Session) -> Option<Request> {
     for (k, (words, key, action)) in buttons.into_iter().enumerate() {
         let left = inner.left() + k as f32 * (width + gap);
         let rect = Rect::from_min_max(
-            pos2(left, inner.bottom() - FOOT + 8.0),
+            pos2(left, inner.bottom() - BUTTONS_HEIGHT + 8.0),
             pos2(left + width, inner.bottom() - 10.0),
         );
         let response = ui.interact(rect, Id::unique(("button", k)), Sense::click());

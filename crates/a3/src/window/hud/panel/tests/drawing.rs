@@ -6,7 +6,7 @@ use super::opened::{changed, dials, every_scene, opened};
 use super::screen::Screen;
 use crate::window::hud::panel::dial::DialScale;
 use crate::window::hud::panel::request::rows;
-use crate::window::hud::panel::view::{leaves, width};
+use crate::window::hud::panel::view::{picture_size, width};
 use crate::window::session::RunAction;
 
 const SIZES: [[f32; 2]; 2] = [[1280.0, 720.0], [800.0, 600.0]];
@@ -106,10 +106,10 @@ fn the_chosen_row_is_seen() {
 #[test]
 fn the_help_stands_alone() {
     let mut session = opened(&["r", "0.005"]);
-    assert_eq!(leaves(&session, (1280, 720), 1.0), (976, 720));
-    assert_eq!(leaves(&session, (2560, 1440), 2.0), (1952, 1440));
+    assert_eq!(picture_size(&session, (1280, 720), 1.0), (976, 720));
+    assert_eq!(picture_size(&session, (2560, 1440), 2.0), (1952, 1440));
     session.act(RunAction::Help, 0);
-    assert_eq!(leaves(&session, (1280, 720), 1.0), (1280, 720));
+    assert_eq!(picture_size(&session, (1280, 720), 1.0), (1280, 720));
     assert!(
         !Screen::new(SIZES[0])
             .read(&session)

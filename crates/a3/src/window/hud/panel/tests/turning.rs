@@ -220,9 +220,9 @@ fn values_are_typed() {
         for letter in words.chars() {
             assert!(press_text(session, TextKey::Type(letter)));
         }
-        press_text(session, TextKey::Take);
+        press_text(session, TextKey::Accept);
         let typing = session.panel.typed.is_some();
-        press_text(session, TextKey::Close);
+        press_text(session, TextKey::Cancel);
         assert!(!press_text(session, TextKey::Type('1')));
         typing
     };
