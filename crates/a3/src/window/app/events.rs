@@ -53,7 +53,7 @@ impl ApplicationHandler<Event> for App {
     }
 
     fn about_to_wait(&mut self, _: &ActiveEventLoop) {
-        // While all moves, each frame looks.
+        // While the runs advance, each frame does this.
         if self.screen.visible
             && !self.session.animated()
             && self
@@ -84,7 +84,7 @@ impl ApplicationHandler<Event> for App {
         if !matches!(event, WindowEvent::RedrawRequested) {
             graphics.invalidate_text();
         }
-        // Keys are for the table of keys: egui gets none.
+        // All keys belong to the table of keys, none to egui.
         let is_key = matches!(event, WindowEvent::KeyboardInput { .. });
         let taken = !is_key && (graphics.on_event(&event) || self.session.list.is_some())
             || panel::picture_size(&self.session, graphics.size(), graphics.scale()).0 as f32
@@ -100,7 +100,7 @@ impl ApplicationHandler<Event> for App {
             }
             WindowEvent::Occluded(hidden) => {
                 self.screen.visible = !hidden;
-                // Time spent hidden is not simulated.
+                // Do not simulate the time for which the window was hidden.
                 self.last_tick = Instant::now();
                 self.session.restart_measuring();
                 self.say_status();

@@ -1,4 +1,4 @@
-//! Frames: the session is brought up to date and drawn, and the next frame is asked for.
+//! Frames: advancing and drawing the session, and scheduling the next frame.
 
 use web_time::{Duration, Instant};
 
@@ -9,11 +9,12 @@ use super::graphics::FrameOutcome;
 use super::state::App;
 use crate::window::hud::panel::{self, Request};
 
-/// Time after which a frame that could not be drawn is tried again.
+/// Delay after which a skipped frame is drawn again.
 const RETRY_DELAY: Duration = Duration::from_millis(50);
 
 impl App {
-    /// Brings the simulation up to date and draws it.
+    /// Advances the session by the time since the last frame, draws it, and schedules the next
+    /// frame.
     pub fn frame(&mut self, event_loop: &ActiveEventLoop) {
         if self.platform.files_changed() && self.session.reload() {
             self.last_tick = Instant::now();
@@ -74,7 +75,7 @@ impl App {
         self.say_status();
     }
 
-    /// Writes a line for tests, if they are asked for.
+    /// Writes a status line, if they are enabled.
     pub fn say_status(&mut self) {
         if let Some(status) = &mut self.status {
             status.say(&self.session, &self.screen, self.mouse.cursor);

@@ -1,5 +1,5 @@
-//! What is under the pointer: its shape says what a press would do, and what the press would take
-//! is highlighted.
+//! Hovering: the shape of the pointer tells the effect of a press, and the particle, body or sphere
+//! that a press would grab is highlighted.
 
 use egui::CursorIcon;
 
@@ -10,8 +10,8 @@ use crate::draw::show::Target;
 use crate::window::session::Session;
 
 impl Mouse {
-    /// Finds the particle, body or timeline under the pointer, and returns whether the picture has
-    /// to be drawn again. With Shift, a press would begin a box.
+    /// Finds what is under the pointer, and sets the pointer's shape and the highlight. With
+    /// `shift`, a press would draw a box. Returns whether shape or highlight changed.
     pub fn update_hover(&mut self, shift: bool, session: &mut Session, screen: &Screen) -> bool {
         let pointer = &self.pointer;
         let at = pointer.pane(session, screen);

@@ -1,4 +1,4 @@
-//! What the window does through the system or, in a page, through the browser.
+//! The platform: the operating system, or the browser in a page.
 
 #[cfg(not(target_arch = "wasm32"))]
 pub use super::native::{Event, Platform, attributes, open_lessons, quit};

@@ -1,11 +1,11 @@
-//! What is remembered of a window when it closes.
+//! Saving the settings when the window closes.
 
 use super::screen::Screen;
 use crate::base::terminal;
 use crate::window::session::Session;
 use crate::window::settings::Settings;
 
-/// Writes the settings as they are now, if they have changed.
+/// Writes the present settings, if they have changed. Warns on the terminal if that fails.
 pub fn remember(before: &Settings, session: &Session, screen: &Screen) {
     let mut now = Settings {
         interface_scale: screen.zoom,

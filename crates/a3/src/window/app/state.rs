@@ -1,4 +1,4 @@
-//! The window's state: its session, its screen and its mouse.
+//! The state of the window: its session, its screen and its mouse.
 
 use std::path::PathBuf;
 use web_time::Instant;
@@ -22,30 +22,30 @@ use crate::window::session::{Action, RunAction, Session, WindowAction};
 use crate::window::settings::Settings;
 use crate::window::{command_line, keep};
 
-/// The window, from the first event to the last.
+/// The window application.
 pub struct App {
-    /// The session that is shown.
+    /// The session.
     pub session: Session,
     /// The window on the screen.
     pub screen: Screen,
     /// The mouse.
     pub mouse: Mouse,
-    /// The keys that are held beside others.
+    /// The modifier keys that are held.
     pub modifiers: ModifiersState,
-    /// Time when the simulation was last brought up to date.
+    /// Time when the session was last advanced.
     pub last_tick: Instant,
-    /// The settings as they were read, unless none are remembered.
+    /// The settings as they were read; `None` if they are not saved.
     pub settings: Option<Settings>,
-    /// What the window has of the system.
+    /// Services of the operating system or the browser.
     pub platform: Platform,
-    /// Lines for tests, if they are asked for.
+    /// Writer of status lines, if they are enabled.
     pub status: Option<Status>,
     /// The failure that closed the window, if there was one.
     pub failure: Option<Failure>,
 }
 
 impl App {
-    /// A session in a window that is yet to be opened.
+    /// Creates an application whose window is not open yet.
     pub fn new(
         session: Session,
         display: OwnedDisplayHandle,
@@ -73,7 +73,7 @@ impl App {
         event_loop.exit();
     }
 
-    /// Opens all that depends on the adapter.
+    /// Opens the graphics, or starts to.
     pub fn open_graphics(&mut self, event_loop: &ActiveEventLoop) {
         let opened = self
             .platform
@@ -83,7 +83,7 @@ impl App {
         }
     }
 
-    /// Takes up all that depends on the adapter.
+    /// Sets the graphics, or closes the window if they could not be opened.
     pub fn set_graphics(
         &mut self,
         event_loop: &ActiveEventLoop,
@@ -94,7 +94,7 @@ impl App {
         }
     }
 
-    /// Does what a key is for: in the panel, or by the table of keys.
+    /// Handles a key: in an open list, for a typed value, in the panel, or by the table of keys.
     pub fn press_key(&mut self, event_loop: &ActiveEventLoop, event: &KeyEvent) {
         if let (Some(_), Some(graphics)) = (&self.status, &self.screen.graphics)
             && event.logical_key == Key::Named(NamedKey::F12)
@@ -144,12 +144,12 @@ impl App {
         }
     }
 
-    /// Does an action of the keys.
+    /// Performs an action.
     pub fn act(&mut self, event_loop: &ActiveEventLoop, action: Action) {
         let pane = self.mouse.pointer.pane(&self.session, &self.screen);
         match action {
             Action::Run(action) => {
-                // No steps are due for the time in which nothing moved.
+                // Do not simulate the time in which the runs stood still.
                 if !self.session.animated() {
                     self.last_tick = Instant::now();
                 }
@@ -162,7 +162,7 @@ impl App {
         self.screen.redraw();
     }
 
-    /// Does an action that needs the window. The pointer is over `pane`.
+    /// Performs an action that needs the window. The pointer is over `pane`.
     fn act_in_window(&mut self, event_loop: &ActiveEventLoop, action: WindowAction, pane: usize) {
         let (session, graphics) = (&mut self.session, self.screen.graphics.as_ref());
         let message = match action {
@@ -202,10 +202,10 @@ impl App {
                 Ok(line) => self.platform.copy(&line),
                 Err(failure) => failure.message(),
             }),
-            WindowAction::SaveRun => Some(said("kept in", keep::save(session, pane))),
+            WindowAction::SaveRun => Some(said("saved", keep::save(session, pane))),
             WindowAction::LoadRun => {
                 let loaded = match session.scenes.checkpoint.clone() {
-                    None => "Nothing was kept: k keeps the run in a file.".into(),
+                    None => "No run was saved yet: key k saves one.".into(),
                     Some(path) => {
                         let taken = keep::load(session, &path);
                         said("loaded", taken.map(|()| path))
@@ -222,14 +222,14 @@ impl App {
         }
     }
 
-    /// Shows another scene.
+    /// Ends drags and live films, and shows another scene.
     pub fn scene_changed(&mut self) {
         self.mouse.abort();
         self.platform.films.finish_live(&mut self.session);
         self.screen.set_scene(&self.session);
     }
 
-    /// Keeps the settings for the next window, if they are remembered.
+    /// Saves the settings for the next window, unless that is disabled.
     pub fn remember(&self) {
         if let Some(before) = &self.settings {
             remember(before, &self.session, &self.screen);
@@ -237,7 +237,7 @@ impl App {
     }
 }
 
-/// Message about a file that was written or read, or why it was not.
+/// Returns a message about a file that was written or read, or about the failure.
 fn said(done: &str, file: Result<PathBuf, Failure>) -> String {
     match file {
         Ok(path) => format!("{done} {}", path.display()),
@@ -245,7 +245,8 @@ fn said(done: &str, file: Result<PathBuf, Failure>) -> String {
     }
 }
 
-/// Writes the samples of all panes under the first name that is free.
+/// Writes the samples of all panes under the first free name, and returns the path. Fails if the
+/// file cannot be written.
 fn write_plots(session: &Session) -> Result<PathBuf, Failure> {
     let table = panel::csv(&session.runs.panes).map_err(Failure::run)?;
     let scene = &session.runs.first().scene().name;
