@@ -1,4 +1,4 @@
-//! The command line that makes what a window shows now.
+//! The command line that opens a window with the present run and picture.
 
 use a3_core::{Simulation, StepLimits};
 use a3_render::Style;
@@ -11,9 +11,9 @@ use crate::window::begin;
 use crate::window::hud::panel;
 use crate::window::session::{Session, looks, write_scene};
 
-/// The command line that begins with the picture and the run of pane `at` as they are now. Where
-/// options cannot say what they are, a scene file is written. A comparison begins at its beginning,
-/// because its runs have no state in common later.
+/// Returns the command line that opens the present run and the picture of pane `at`. If options
+/// cannot express the state, writes a scene file. A comparison starts from its initial state,
+/// because its runs share no later one. Fails if that file cannot be written.
 pub fn of(session: &Session, at: usize) -> Result<String, Failure> {
     let mut words = words(session, at);
     if !makes(&words, session) {
@@ -31,7 +31,7 @@ pub fn of(session: &Session, at: usize) -> Result<String, Failure> {
     Ok(format!("a3 {}", quoted.join(" ")))
 }
 
-/// The words after the program's name, with the scene as it was asked for.
+/// Returns the arguments, with the scene as the user named it.
 fn words(session: &Session, at: usize) -> Vec<String> {
     let (origin, run) = (&session.scenes.shown, session.runs.first());
     let description = &origin.source.description;
@@ -53,7 +53,8 @@ fn words(session: &Session, at: usize) -> Vec<String> {
     words
 }
 
-/// The words after the program's name, with a scene in which all has its beginning.
+/// Returns the arguments for `scene`, a name or file that contains the grid, the wind and the
+/// swing.
 fn words_of_file(session: &Session, at: usize, scene: &str) -> Vec<String> {
     let control = |run: &Simulation| run.control().value();
     let mut words = if session.runs.panes.len() == 1 {
@@ -100,7 +101,8 @@ fn words_of_file(session: &Session, at: usize, scene: &str) -> Vec<String> {
     words
 }
 
-/// Whether these words make what a session shows now, or for a comparison what it began with.
+/// Returns whether these arguments recreate the present state of a session, or the initial state of
+/// a comparison.
 fn makes(words: &[String], session: &Session) -> bool {
     let program = ["a3".to_owned()];
     let Ok(options) = Cli::try_parse_from(program.iter().chain(words)) else {
@@ -127,7 +129,7 @@ fn makes(words: &[String], session: &Session) -> bool {
         && pairs.all(|(now, made)| begins_alike(&now.simulation, &made.simulation))
 }
 
-/// The run at its beginning, with the wind, the swing and the contact that it has now.
+/// Returns the initial state of the run, with its present wind, swing and self-collision.
 fn beginning(run: &Simulation) -> Result<Simulation, a3_core::Error> {
     let mut begun = Simulation::new(run.scene().clone(), run.method(), run.control())?;
     if run.windy() != begun.windy() {
@@ -138,7 +140,7 @@ fn beginning(run: &Simulation) -> Result<Simulation, a3_core::Error> {
     Ok(begun)
 }
 
-/// A word as a shell takes it.
+/// Quotes an argument for a shell, if it needs quotes.
 fn quoted(word: &str) -> String {
     let plain = |c: char| c.is_ascii_alphanumeric() || "-_./:,=+@%".contains(c);
     if !word.is_empty() && word.chars().all(plain) {
@@ -152,7 +154,7 @@ mod tests {
     use super::*;
     use crate::window::session::{RunAction, compared, frames, session};
 
-    /// The words of a command line that has no quotes.
+    /// Opens the session of a command line without quotes.
     fn again(line: &str) -> Session {
         let words: Vec<_> = line.split(' ').skip(1).collect();
         session(&words)
@@ -172,7 +174,7 @@ mod tests {
             let made: std::collections::BTreeSet<_> = line.split(' ').skip(1).collect();
             assert_eq!(made, words.iter().copied().collect(), "{line}");
         }
-        // A comparison begins at its beginning.
+        // A comparison starts from its initial state.
         let later = compared(&["e:0.05", "r:0.01", "--scene", "simple"], 0.5);
         let line = of(&later, 0).ok().unwrap();
         assert_eq!(line, "a3 compare euler:0.05 rk4:0.01 --scene simple");
@@ -187,7 +189,7 @@ mod tests {
         let mut session = session(&["rk4", "0.001", "--scene", file, "--colour", "speed"]);
         let line = of(&session, 0).ok().unwrap();
         assert!(line.contains("/own.toml"), "{line}");
-        // Some time later, seen from elsewhere, and tuned.
+        // Advance the run, move the camera, and tune the scene.
         frames(&mut session, 0.3);
         session.view.camera.orbit(0.3, 0.1);
         panel::tune(
@@ -207,10 +209,10 @@ mod tests {
             .and_then(a3_core::Network::gravity);
         assert_eq!(gravity.unwrap().y, -5.0);
         assert!((made.view.camera.eye() - session.view.camera.eye()).norm() < 1e-4);
-        // What it makes is said by options again, with that file.
+        // The file and its options then express the whole state, without another file.
         let same = of(&made, 0).ok().unwrap();
         assert_eq!(same, line);
-        // A comparison has no state in common.
+        // The panes of a comparison have different states, so its initial state is written.
         let words = ["e:0.001", "r:0.001", "--scene", file];
         let mut several = compared(&words, 0.2);
         panel::tune(&mut several, &[("gravity".into(), 5.0)]);

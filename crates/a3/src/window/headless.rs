@@ -1,5 +1,5 @@
-//! The window's job where there is no display: ten simulated seconds with a line for each, and a
-//! picture at the end.
+//! The substitute for a window without a display: ten simulated seconds, a line for each of them,
+//! and a final picture.
 
 use a3_core::Simulation;
 use a3_render::{Gpu, Offscreen};
@@ -10,10 +10,11 @@ use crate::files::output;
 use crate::window::compare::{self, SIZE};
 use crate::window::session::{Pane, Session};
 
-/// Simulated time (s).
+/// Simulated time of the run (s).
 const SECONDS: u32 = 10;
 
-/// Says `why` there is no window, and does its job without one.
+/// Warns that there is no window because of `why`, then simulates and draws without one. Fails if
+/// the run blows up or a file cannot be written.
 pub fn run(why: &str, mut session: Session) -> Result<(), Failure> {
     terminal::warn(&format!(
         "{why}: simulating {SECONDS} seconds without a window."
@@ -37,7 +38,7 @@ pub fn run(why: &str, mut session: Session) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Simulates, and writes a line for each simulated second.
+/// Simulates, and prints a line for each simulated second.
 fn tell(pane: &mut Pane) -> Result<(), Failure> {
     let Pane {
         simulation, show, ..
@@ -62,7 +63,7 @@ fn tell(pane: &mut Pane) -> Result<(), Failure> {
     Ok(())
 }
 
-/// The line for the state as it is now.
+/// Returns the line for the present state.
 fn line(simulation: &Simulation) -> String {
     let number = |value: Option<f64>, digits: usize| {
         value.map_or("-".into(), |value| format!("{value:.digits$}"))

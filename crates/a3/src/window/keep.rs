@@ -1,5 +1,4 @@
-//! Runs of the window in checkpoints, with what the panel has tuned: kept by a key, and opened
-//! again.
+//! Saving and loading the window's run, with its tuning, as a checkpoint.
 
 use std::path::{Path, PathBuf};
 
@@ -9,8 +8,8 @@ use crate::files::output;
 use crate::window::hud::panel;
 use crate::window::session::Session;
 
-/// Writes the run of pane `at` under the first free name, beside the file of its scene if there is
-/// one, and returns that name.
+/// Saves the run of pane `at` under the first free name, in the folder of its scene file if it has
+/// one, and returns the path. Fails if the file cannot be written.
 pub fn save(session: &mut Session, at: usize) -> Result<PathBuf, Failure> {
     let run = &session.runs.panes[at.min(session.runs.panes.len() - 1)].simulation;
     let origin = &session.scenes.shown;
@@ -23,11 +22,12 @@ pub fn save(session: &mut Session, at: usize) -> Result<PathBuf, Failure> {
     Ok(path)
 }
 
-/// Takes the run of a window up where it was kept, tuned alike. A hand lets go.
+/// Loads a saved run into the window, with its tuning, and releases the grabbed particle or sphere.
+/// Fails if the checkpoint cannot be read or is of another scene, or in a comparison.
 pub fn load(session: &mut Session, path: &Path) -> Result<(), Failure> {
     if session.runs.panes.len() > 1 {
         return Err(Failure::usage(
-            "a checkpoint has one run, so it cannot be opened beside others",
+            "a checkpoint holds one run, so it cannot be loaded into a comparison",
         ));
     }
     let kept = Kept::read(path)?;
@@ -47,7 +47,7 @@ mod tests {
     use crate::window::session::{RunAction, frames, session};
 
     #[test]
-    fn a_tuned_run_goes_on_from_its_file() {
+    fn a_tuned_run_continues_from_its_file() {
         let folder = tempfile::tempdir().unwrap();
         let scene = folder.path().join("own.toml");
         let text = a3_scenes::find("flag").unwrap().text;
@@ -56,7 +56,7 @@ mod tests {
         let mut first = session(&words);
         first.readings.in_window = true;
         first.act(RunAction::Panel, 0);
-        // Every row, solver and step too.
+        // Turn every row, including solver and step.
         for _ in 0..20 {
             press(&mut first, PanelKey::Down, false);
             press(&mut first, PanelKey::Right, true);
@@ -82,7 +82,7 @@ mod tests {
             )
         };
         assert!(seen(&first) == seen(&second));
-        // A run that is not tuned takes it back.
+        // Loading an untuned run resets the tuning.
         let plain = save(&mut session(&words), 0).ok().unwrap();
         load(&mut second, &plain).map_err(Failure::message).unwrap();
         assert_eq!(panel::tuned(&second), []);
