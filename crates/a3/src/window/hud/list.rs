@@ -1,4 +1,4 @@
-//! A list to choose from, over the picture.
+//! The open list, drawn over the picture.
 
 use egui::{
     Align, Align2, Area, Context, CornerRadius, FontId, Frame, Id, Margin, Order, ScrollArea,
@@ -9,14 +9,14 @@ use super::panel::PanelRequest;
 use super::style::{FAINT, MARGIN, PAPER, TEXT, faint, text, title};
 use crate::window::session::{Entry, Session, Topic};
 
-/// Width of the list in a window that is wide enough (points).
+/// Largest width of the list (points).
 const MAX_WIDTH: f32 = 560.0;
 /// Height of an entry (points).
 const ENTRY_HEIGHT: f32 = 22.0;
-/// Width of the names (points).
+/// Smallest width of the names (points).
 const NAME_WIDTH: f32 = 136.0;
 
-/// Draws the list that is open, and returns what the mouse asks for.
+/// Draws the open list, and returns the request of the mouse.
 pub fn show(ctx: &Context, session: &Session) -> Option<PanelRequest> {
     let list = session.list.as_ref()?;
     let window = ctx.content_rect().shrink(MARGIN);
@@ -43,7 +43,7 @@ pub fn show(ctx: &Context, session: &Session) -> Option<PanelRequest> {
                     });
                 });
                 let typed = if list.filter.is_empty() {
-                    faint("type to search; arrows and Enter, or a click, choose")
+                    faint("type to search; choose by arrows and Enter, or by a click")
                 } else {
                     text(format!("{}_", list.filter))
                 };
@@ -63,7 +63,7 @@ pub fn show(ctx: &Context, session: &Session) -> Option<PanelRequest> {
                             }
                         }
                         if count == 0 {
-                            ui.label(faint("nothing has these words"));
+                            ui.label(faint("no entry has these words"));
                         }
                     });
             });
@@ -79,7 +79,7 @@ pub fn show(ctx: &Context, session: &Session) -> Option<PanelRequest> {
 fn row(ui: &mut Ui, entry: &Entry, chosen: bool) -> bool {
     let (rect, response) =
         ui.allocate_exact_size(vec2(ui.available_width(), ENTRY_HEIGHT), Sense::click());
-    // It is scrolled to when another one is chosen, and left alone while the wheel turns.
+    // Scroll to the chosen entry only when it changes, so that the wheel can scroll.
     let was = Id::unique("chosen entry");
     if chosen && ui.data(|data| data.get_temp(was)) != Some(entry.number) {
         ui.data_mut(|data| data.insert_temp(was, entry.number));
@@ -119,7 +119,7 @@ mod tests {
     use crate::window::hud::panel;
     use crate::window::session::{RunAction, session};
 
-    /// Draws the list, with the pointer at a place and perhaps pressed there.
+    /// Draws the list, with the pointer at a position, and a button pressed or released there.
     fn draw(
         ctx: &Context,
         session: &Session,

@@ -1,4 +1,5 @@
-//! The text over a single pane: its readings, and sheets for what has just happened.
+//! The text over a single pane: its readings, and sheets for a blow-up, a film, a message and
+//! springs.
 
 use a3_core::Simulation;
 use egui::{Align2, Context, RichText, Ui};
@@ -10,11 +11,10 @@ use super::words::{self, digits};
 use crate::draw::show;
 use crate::window::session::{Pane, Readings};
 
-/// The most springs that are listed.
+/// Largest number of springs that are listed.
 const MAX_LISTED_SPRINGS: usize = 12;
 
-/// Writes the readings, a blow-up, the message and the springs of a particle, and names the key for
-/// help.
+/// Draws all sheets, and the hint at the key for help.
 pub fn show(ctx: &Context, pane: &Pane, readings: &Readings) {
     column(ctx, "run", Align2::LEFT_TOP, [MARGIN, MARGIN], |ui| {
         ui.set_max_width(ui.available_width().min(460.0));
@@ -96,7 +96,7 @@ fn run(ui: &mut Ui, pane: &Pane, readings: &Readings) {
     legend(ui, &pane.show);
 }
 
-/// Lists the springs of a particle, and how far they are stretched now.
+/// Lists the springs of a particle and their present stretch.
 fn springs(ui: &mut Ui, simulation: &Simulation, i: usize) {
     let springs = show::springs_of(simulation, i);
     ui.label(title(format!("particle {i}: {} springs", springs.len())).size(14.0));
@@ -136,7 +136,7 @@ mod tests {
     use crate::window::hud::{pane, read};
 
     #[test]
-    fn everything_is_said() {
+    fn all_readings_are_shown() {
         let mut pane = pane("cloth", "t", 0.01);
         (pane.energy, pane.stretch) = (Some(12.3456), Some(1.25));
         let run = &mut pane.simulation;
@@ -175,7 +175,7 @@ mod tests {
         };
         let (words, _) = read(&panes, &readings, [1280.0, 720.0]);
         assert!(words.contains("paused   wind"), "{words}");
-        // Rates are of what moves.
+        // A paused run shows no rates.
         assert_eq!(words.matches("paused").count(), 1, "{words}");
         assert!(!words.contains("per second") && !words.contains("drawing"));
         let circle = [crate::window::hud::pane("simple", "e", 1e-7)];

@@ -1,4 +1,4 @@
-//! Knobs: all that can be tuned while a scene runs, in one table for the mouse and the keys.
+//! The table of knobs: everything that can be tuned during a run, by mouse or keys.
 
 use a3_core::contact::Shape;
 use a3_core::{Network, Vector3};
@@ -16,20 +16,21 @@ use crate::window::session::{Change, RunAction, Session, Tuning, looks};
 /// A knob: a row of the table.
 #[derive(Clone, Copy)]
 pub struct Knob {
-    /// The name of its row.
+    /// Name of the row.
     pub name: &'static str,
-    /// What it is, and its unit.
+    /// Description for the tooltip, with the unit.
     pub about: &'static str,
-    /// Whether its row stands apart from the one above it.
+    /// Whether the row starts a group.
     pub apart: bool,
-    /// Whether it tunes the scene itself, of which a checkpoint knows nothing.
+    /// Whether the knob tunes the scene, so that a checkpoint must store its value separately.
     pub tunes: bool,
-    /// The dial for a session and the number of a pane, if the knob has a meaning there.
+    /// Returns the dial for a session and a pane, if the knob applies to them.
     pub read: fn(&Session, usize) -> Option<Dial>,
-    /// Sets its value in a session and the pane of that number.
+    /// Sets the value in a session and a pane.
     pub(super) set: fn(&mut Session, usize, f64),
 }
 
+/// Creates a knob that starts no group and does not tune the scene.
 const fn knob(
     name: &'static str,
     about: &'static str,
@@ -46,7 +47,7 @@ const fn knob(
     }
 }
 
-/// The knob, apart from the one above it.
+/// Makes a knob start a group.
 const fn apart(knob: Knob) -> Knob {
     Knob {
         apart: true,
@@ -54,7 +55,7 @@ const fn apart(knob: Knob) -> Knob {
     }
 }
 
-/// The knob, as one that tunes the scene itself.
+/// Marks a knob as one that tunes the scene.
 const fn tunes(knob: Knob) -> Knob {
     Knob {
         tunes: true,
@@ -95,7 +96,7 @@ pub static KNOBS: &[Knob] = &[
     )),
     tunes(knob(
         "strain limit",
-        "Springs that a step leaves longer than so many rest lengths are shortened to that.",
+        "Largest length of a spring over its rest length. Longer ones are shortened after each step.",
         strain_limit,
         |session, _, value| {
             let limits: Vec<_> = own(session).into_iter().flat_map(strain_limits).collect();
@@ -104,7 +105,7 @@ pub static KNOBS: &[Knob] = &[
             };
             session.adjust(|network| {
                 for (particles, own) in &limits {
-                    // Each is as far above 1 in proportion to its own as the first is.
+                    // Scale all limits above 1 in proportion to that of the first body.
                     let limit = match (first, own) {
                         (Some(first), Some(own)) => {
                             1.0 + (own - 1.0) * (value - 1.0) / (first - 1.0)
@@ -112,7 +113,7 @@ pub static KNOBS: &[Knob] = &[
                         _ => value,
                     };
                     let limit = (value > 1.0).then_some(limit);
-                    // The value is within its scale, so it is not refused.
+                    // The value is within its scale, so this does not fail.
                     let _ = network.set_strain_limit(particles.clone(), limit);
                 }
             });
@@ -120,18 +121,18 @@ pub static KNOBS: &[Knob] = &[
     )),
     tunes(knob(
         "drag",
-        "Drag of the air on each particle over its velocity, in kg/s.",
+        "Air drag on each particle over its velocity, in kg/s.",
         drag,
         |session, _, drag| {
             session.adjust(|network| {
-                // The value is within its scale, so it is not refused.
+                // The value is within its scale, so this does not fail.
                 let _ = network.set_drag(drag);
             });
         },
     )),
     tunes(knob(
         "gravity",
-        "Acceleration downwards, in m/s².",
+        "Downward acceleration, in m/s².",
         gravity,
         |session, _, g| {
             session.adjust(|network| {
@@ -258,7 +259,7 @@ pub static KNOBS: &[Knob] = &[
     ),
     knob(
         "full colour",
-        "The value at the end of the scale of colours. It fits the largest value until it is set.",
+        "Upper end of the colour scale. It follows the largest value until it is set.",
         full_colour,
         |session, at, end| {
             let fits = end == session.runs.panes[at].show.colouring.scale.fitting;
@@ -290,19 +291,19 @@ pub static KNOBS: &[Knob] = &[
     ),
     apart(knob(
         "dark",
-        "Whether light things are drawn on a dark background.",
+        "Whether the dark theme is on.",
         |session, _| Some(switch(session.runs.panes[0].show.dark, false)),
         |session, _, on| looks::set_dark(&mut session.runs.panes, on != 0.0),
     )),
     knob(
         "frames",
-        "The most frames a second, to spare the processor. Simulated time stays real time.",
+        "Largest frame rate, to spare the processor. The simulation still keeps up with real time.",
         frame_limit,
         |session, _, limit| session.panel.frame_limit = limit as u32,
     ),
     knob(
         "film as",
-        "The format of films by the keys n and m.",
+        "Format of the films that keys n and m make.",
         film,
         |session, _, k| {
             session.panel.film = Ending::ALL.get(k as usize).copied().unwrap_or_default();
@@ -318,7 +319,7 @@ pub static KNOBS: &[Knob] = &[
     ),
 ];
 
-/// What is tuned other than the scene has it, by the names of its rows.
+/// Returns the names and values of all knobs that tune the scene and differ from its own values.
 pub fn tuned(session: &Session) -> Vec<(String, f64)> {
     let tuning = KNOBS.iter().filter(|knob| knob.tunes);
     let dials = tuning.filter_map(|knob| Some((knob.name, (knob.read)(session, 0)?)));
@@ -328,7 +329,8 @@ pub fn tuned(session: &Session) -> Vec<(String, f64)> {
         .collect()
 }
 
-/// Tunes a session so, and all else as the scene has it.
+/// Tunes the scene of a session to `tuned`, by names and values, and resets all other knobs that
+/// tune it.
 pub fn tune(session: &mut Session, tuned: &[(String, f64)]) {
     for knob in KNOBS.iter().filter(|knob| knob.tunes) {
         let Some(dial) = (knob.read)(session, 0) else {
@@ -343,7 +345,7 @@ pub fn tune(session: &mut Session, tuned: &[(String, f64)]) {
 }
 
 impl Knob {
-    /// Turns the knob, if it has a meaning.
+    /// Turns the knob, if it applies, and records the change in the history.
     pub fn turn(&self, session: &mut Session, at: usize, turn: Turn) {
         let Some(dial) = (self.read)(session, at) else {
             return;
@@ -368,7 +370,7 @@ impl Knob {
     }
 }
 
-/// Gives the springs the stiffness and the damping that they are tuned to.
+/// Scales the springs of the scene to the tuned stiffness and damping.
 fn set_springs(session: &mut Session) {
     let Tuning {
         own,
@@ -380,7 +382,8 @@ fn set_springs(session: &mut Session) {
         return;
     };
     session.adjust(|network| {
-        // The springs are those of the same scene, and the factors within their scales.
+        // The springs are of the same scene and the factors within their scales, so this does not
+        // fail.
         let _ = network
             .copy_springs(own)
             .and_then(|()| network.scale_springs(stiffness, damping));

@@ -1,4 +1,4 @@
-//! The panel beside the picture: knobs, and plots of what they do. Key Tab.
+//! The panel beside the picture, with knobs and plots (key Tab).
 
 mod dial;
 mod knobs;

@@ -7,11 +7,11 @@ use super::super::style::{FAINT, TEXT};
 use super::super::words::digits;
 use crate::window::session::{Pane, SPAN, Sample, Samples};
 
-/// Least height of a plot (points).
+/// Smallest height of a plot (points).
 const MIN_HEIGHT: f32 = 56.0;
 /// Largest height of a plot over its width.
 const MAX_HEIGHT_PER_WIDTH: f32 = 0.6;
-/// Height of the line with the title (points).
+/// Height of the title line (points).
 const TITLE_HEIGHT: f32 = 17.0;
 /// Height of the numbers below the last plot (points).
 const TICK_LABEL_HEIGHT: f32 = 15.0;
@@ -19,7 +19,7 @@ const TICK_LABEL_HEIGHT: f32 = 15.0;
 const TICK_LABEL_WIDTH: f32 = 40.0;
 /// Size of the numbers (points).
 const TICK_LABEL_SIZE: f32 = 10.5;
-/// Length of the piece of a curve before its name (points).
+/// Length of the sample of a curve before its name (points).
 const LEGEND_LINE_LENGTH: f32 = 14.0;
 
 const TEAL: Color32 = Color32::from_rgb(0, 122, 128);
@@ -31,15 +31,16 @@ const GRID: Color32 = Color32::from_rgb(196, 197, 200);
 #[derive(Clone, Copy)]
 struct Curve {
     name: &'static str,
-    /// Its name in a file, with its unit.
+    /// Name of the column in a file, with the unit.
     column: &'static str,
     colour: Color32,
-    /// Lengths of its dashes and of the gaps after them (points); empty for a whole line.
+    /// Lengths of dashes and gaps in turn (points); empty for a solid line.
     dashes: &'static [f32],
+    /// Returns the value of a sample.
     of: fn(&Sample) -> Option<f64>,
 }
 
-/// A plot, whose title has the unit.
+/// A plot, whose title includes the unit.
 struct Plot {
     title: &'static str,
     curves: &'static [Curve],
@@ -60,7 +61,7 @@ const fn curve(
     }
 }
 
-/// The curve, in dashes: curves of one plot differ in more than their colours.
+/// Makes a curve dashed, so that the curves of a plot differ not only in colour.
 const fn dashed(dashes: &'static [f32], curve: Curve) -> Curve {
     Curve { dashes, ..curve }
 }
@@ -110,7 +111,7 @@ static PLOTS: &[Plot] = &[
     },
 ];
 
-/// The samples of all panes as CSV: a row for each sample.
+/// Returns the samples of all panes as CSV, a row per sample. Fails if the CSV cannot be encoded.
 pub fn csv(panes: &[Pane]) -> Result<Vec<u8>, csv::Error> {
     let curves = || PLOTS.iter().flat_map(|plot| plot.curves);
     let mut writer = csv::Writer::from_writer(vec![]);
@@ -128,8 +129,8 @@ pub fn csv(panes: &[Pane]) -> Result<Vec<u8>, csv::Error> {
     writer.into_inner().map_err(|e| e.into_error().into())
 }
 
-/// Draws the plots that have something to show, as many as there is room for. Where the pointer is
-/// over them, they say the values there.
+/// Draws the plots that have at least two values, as many as fit. At the pointer, they show the
+/// time and the values.
 pub fn draw(painter: &Painter, room: Rect, samples: &Samples, pointer: Option<Pos2>) {
     let Some(last) = samples.iter().last() else {
         return;
@@ -177,7 +178,7 @@ impl Plot {
         let words = |at: Pos2, anchor, words: &str, size, colour| {
             painter.text(at, anchor, words, FontId::proportional(size), colour)
         };
-        // The values where the pointer is take the places of the names.
+        // Values at the pointer replace the names of the curves.
         let title = match pointed {
             Some(sample) => format!("at {:.2} s", sample.time),
             None => self.title.into(),
@@ -268,7 +269,7 @@ impl Curve {
     }
 }
 
-/// The ends of an axis around all values, with some room.
+/// Returns the ends of an axis around all values, with a margin.
 fn ends(values: impl Iterator<Item = f64>) -> [f64; 2] {
     let finite = values.filter(|v| v.is_finite());
     let [low, high] = finite.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], v| {
@@ -277,14 +278,14 @@ fn ends(values: impl Iterator<Item = f64>) -> [f64; 2] {
     if low > high {
         return [0.0, 1.0];
     }
-    // A value that hardly changes is shown as a level line, not as a magnified rounding error.
+    // Show a nearly constant value as a level line, not as magnified rounding errors.
     let gap = (0.08 * (high - low))
         .max(0.02 * high.abs().max(low.abs()))
         .max(1e-9);
     [low - gap, high + gap]
 }
 
-/// The label of a tick, short enough to stand beside a plot.
+/// Returns the label of a tick, in exponential notation if it is too long for the margin.
 fn label(value: f64, label: String) -> String {
     if label.chars().count() > 6 {
         format!("{value:.1e}")

@@ -1,4 +1,4 @@
-//! The panel as egui draws it: a row for each knob, a button, and plots where there is room.
+//! Drawing of the panel: a row for each knob, plots if they fit, and buttons.
 
 use egui::{Align2, Area, Context, FontId, Id, Rect, Sense, Stroke, pos2, vec2};
 
@@ -8,21 +8,22 @@ use super::request::{self, Request, is_shown, rows};
 use super::row::{self, Row};
 use crate::window::session::{Action, RunAction, Session, WindowAction};
 
-/// Least and largest width of the panel (points), and the share of a window's width between them.
+/// Smallest and largest width of the panel (points), and its share of the window's width between
+/// them.
 const WIDTH: (f32, f32, f32) = (304.0, 460.0, 0.2);
-/// Width of a window that has room for a picture beside the panel (points). In a narrower one the
-/// panel covers the picture, until it is closed.
+/// Smallest width of a window with the panel beside the picture (points). In a narrower one, the
+/// panel covers the picture.
 const MIN_WIDTH_BESIDE: f32 = 480.0;
 /// Distance of the rows from the edges of the panel (points).
 pub(super) const MARGIN: f32 = 14.0;
 /// Height of the title (points).
 const TITLE_HEIGHT: f32 = 36.0;
-/// Height of the button and its margins (points).
+/// Height of the buttons and their margins (points).
 const BUTTONS_HEIGHT: f32 = 46.0;
 /// Distance between groups of rows (points).
 const GROUP_GAP: f32 = 7.0;
 
-/// Width of the panel in a window of that width (points).
+/// Returns the width of the panel in a window of a width (points).
 pub(super) fn width(window: f32) -> f32 {
     let (least, most, share) = WIDTH;
     if window < MIN_WIDTH_BESIDE {
@@ -32,7 +33,8 @@ pub(super) fn width(window: f32) -> f32 {
     }
 }
 
-/// Size that the panel leaves of a window of `size` (px) at `scale` pixels per point.
+/// Returns the size (px) of the picture beside the panel, in a window of `size` (px) at `scale`
+/// pixels per point.
 pub fn picture_size(session: &Session, size: (u32, u32), scale: f32) -> (u32, u32) {
     if !is_shown(session) {
         return size;
@@ -45,12 +47,12 @@ pub fn picture_size(session: &Session, size: (u32, u32), scale: f32) -> (u32, u3
     (size.0.saturating_sub(taken).max(1), size.1)
 }
 
-/// Width on the right that text must keep clear of (points).
+/// Returns the width on the right that is not available to text (points).
 pub fn inset(session: &Session, size: (u32, u32), scale: f32) -> f32 {
     (size.0 - picture_size(session, size, scale).0) as f32 / scale
 }
 
-/// Draws the panel, if it is shown, and returns what the mouse asks for.
+/// Draws the panel, if it is visible, and returns the request of the mouse.
 pub fn show(ctx: &Context, session: &Session) -> Option<Request> {
     if !is_shown(session) {
         return None;
@@ -75,7 +77,7 @@ pub fn show(ctx: &Context, session: &Session) -> Option<Request> {
             let rows = rows(session);
             let chosen = rows.iter().rposition(|(k, ..)| *k <= session.panel.row);
             let chosen = chosen.unwrap_or(0);
-            // In a low window there are as many rows as fit, the chosen one among them.
+            // In a low window, draw as many rows as fit, including the chosen one.
             let room = inner.bottom() - BUTTONS_HEIGHT - (inner.top() + TITLE_HEIGHT);
             let fit = ((room / row::HEIGHT) as usize).max(1);
             let gap = if fit > rows.len() { GROUP_GAP } else { 0.0 };
@@ -138,8 +140,8 @@ fn head(ui: &egui::Ui, inner: Rect, session: &Session) {
     );
 }
 
-/// Draws the buttons: they write a scene file and the plots, film from now on, and film the last
-/// seconds.
+/// Draws the buttons: write a scene file, write the plots, start or stop a live film, and film the
+/// last seconds.
 fn foot(ui: &egui::Ui, inner: Rect, session: &Session) -> Option<Request> {
     let last = format!("last {} s", session.panel.film_seconds);
     let live = session.readings.film.as_ref().is_some_and(|film| film.live);
