@@ -15,28 +15,28 @@ use crate::window::session::{Session, looks, write_scene};
 /// cannot express the state, writes a scene file. A comparison starts from its initial state,
 /// because its runs share no later one. Fails if that file cannot be written.
 pub fn of(session: &Session, at: usize) -> Result<String, Failure> {
-    let mut words = words(session, at);
-    if !makes(&words, session) {
+    let mut words = arguments(session, at);
+    if !recreates(&words, session) {
         let written = if session.runs.panes.len() == 1 {
             write_scene(session, session.runs.first())
         } else {
             write_scene(
                 session,
-                &beginning(session.runs.first()).map_err(Failure::run)?,
+                &initial_run(session.runs.first()).map_err(Failure::run)?,
             )
         };
-        words = words_of_file(session, at, &written.map_err(Failure::Run)?);
+        words = arguments_with_scene(session, at, &written.map_err(Failure::Run)?);
     }
-    let quoted: Vec<_> = words.iter().map(|word| quoted(word)).collect();
+    let quoted: Vec<_> = words.iter().map(|word| quote(word)).collect();
     Ok(format!("a3 {}", quoted.join(" ")))
 }
 
 /// Returns the arguments, with the scene as the user named it.
-fn words(session: &Session, at: usize) -> Vec<String> {
+fn arguments(session: &Session, at: usize) -> Vec<String> {
     let (origin, run) = (&session.scenes.shown, session.runs.first());
     let description = &origin.source.description;
     let begins_windy = description.wind.as_ref().is_some_and(|wind| wind.on);
-    let mut words = words_of_file(session, at, &origin.source.typed);
+    let mut words = arguments_with_scene(session, at, &origin.source.typed);
     if let Some(grid) = origin.grid {
         words.extend(["--grid".into(), format!("{}x{}", grid.rows(), grid.cols())]);
     }
@@ -55,7 +55,7 @@ fn words(session: &Session, at: usize) -> Vec<String> {
 
 /// Returns the arguments for `scene`, a name or file that contains the grid, the wind and the
 /// swing.
-fn words_of_file(session: &Session, at: usize, scene: &str) -> Vec<String> {
+fn arguments_with_scene(session: &Session, at: usize, scene: &str) -> Vec<String> {
     let control = |run: &Simulation| run.control().value();
     let mut words = if session.runs.panes.len() == 1 {
         let run = session.runs.first();
@@ -103,7 +103,7 @@ fn words_of_file(session: &Session, at: usize, scene: &str) -> Vec<String> {
 
 /// Returns whether these arguments recreate the present state of a session, or the initial state of
 /// a comparison.
-fn makes(words: &[String], session: &Session) -> bool {
+fn recreates(words: &[String], session: &Session) -> bool {
     let program = ["a3".to_owned()];
     let Ok(options) = Cli::try_parse_from(program.iter().chain(words)) else {
         return false;
@@ -119,7 +119,7 @@ fn makes(words: &[String], session: &Session) -> bool {
         let begun = if session.runs.panes.len() == 1 {
             Ok(now.moment())
         } else {
-            beginning(now).map(|run| run.moment())
+            initial_run(now).map(|run| run.moment())
         };
         begun.is_ok_and(|begun| begun == made.moment())
     };
@@ -130,7 +130,7 @@ fn makes(words: &[String], session: &Session) -> bool {
 }
 
 /// Returns the initial state of the run, with its present wind, swing and self-collision.
-fn beginning(run: &Simulation) -> Result<Simulation, a3_core::Error> {
+fn initial_run(run: &Simulation) -> Result<Simulation, a3_core::Error> {
     let mut begun = Simulation::new(run.scene().clone(), run.method(), run.control())?;
     if run.windy() != begun.windy() {
         begun.set_wind(run.windy());
@@ -141,7 +141,7 @@ fn beginning(run: &Simulation) -> Result<Simulation, a3_core::Error> {
 }
 
 /// Quotes an argument for a shell, if it needs quotes.
-fn quoted(word: &str) -> String {
+fn quote(word: &str) -> String {
     let plain = |c: char| c.is_ascii_alphanumeric() || "-_./:,=+@%".contains(c);
     if !word.is_empty() && word.chars().all(plain) {
         return word.into();
@@ -155,7 +155,7 @@ mod tests {
     use crate::window::session::{RunAction, compared, frames, session};
 
     /// Opens the session of a command line without quotes.
-    fn again(line: &str) -> Session {
+    fn reopen(line: &str) -> Session {
         let words: Vec<_> = line.split(' ').skip(1).collect();
         session(&words)
     }
@@ -198,7 +198,7 @@ mod tests {
         );
         let line = of(&session, 0).ok().unwrap();
         assert!(line.contains("/a3-flag-1.toml --colour speed"), "{line}");
-        let made = again(&line);
+        let made = reopen(&line);
         assert_eq!(made.runs.first().state(), session.runs.first().state());
         assert_eq!(made.runs.first().control(), session.runs.first().control());
         let gravity = made
@@ -217,9 +217,9 @@ mod tests {
         let mut several = compared(&words, 0.2);
         panel::tune(&mut several, &[("gravity".into(), 5.0)]);
         let line = of(&several, 0).ok().unwrap();
-        let made = again(&line);
+        let made = reopen(&line);
         assert_eq!(made.runs.panes.len(), 2);
-        let begun = beginning(several.runs.first()).unwrap();
+        let begun = initial_run(several.runs.first()).unwrap();
         assert_eq!(made.runs.first().state(), begun.state());
         several.act(RunAction::Reset, 0);
         assert!(of(&several, 0).ok().unwrap().contains("a3-flag-3"));
@@ -227,9 +227,9 @@ mod tests {
 
     #[test]
     fn words_are_quoted_for_shells() {
-        assert_eq!(quoted("docs/a-b_1.toml"), "docs/a-b_1.toml");
-        assert_eq!(quoted("my scene.toml"), "'my scene.toml'");
-        assert_eq!(quoted("it's"), r"'it'\''s'");
-        assert_eq!(quoted(""), "''");
+        assert_eq!(quote("docs/a-b_1.toml"), "docs/a-b_1.toml");
+        assert_eq!(quote("my scene.toml"), "'my scene.toml'");
+        assert_eq!(quote("it's"), r"'it'\''s'");
+        assert_eq!(quote(""), "''");
     }
 }

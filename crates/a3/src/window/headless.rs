@@ -11,20 +11,20 @@ use crate::window::compare::{self, SIZE};
 use crate::window::session::{Pane, Session};
 
 /// Simulated time of the run (s).
-const SECONDS: u32 = 10;
+const SIMULATED_SECONDS: u32 = 10;
 
 /// Warns that there is no window because of `why`, then simulates and draws without one. Fails if
 /// the run blows up or a file cannot be written.
 pub fn run(why: &str, mut session: Session) -> Result<(), Failure> {
     terminal::warn(&format!(
-        "{why}: simulating {SECONDS} seconds without a window."
+        "{why}: simulating {SIMULATED_SECONDS} seconds without a window."
     ));
     let scene = session.runs.first().scene().name.clone();
     if session.runs.panes.len() > 1 {
-        session.run_to(f64::from(SECONDS));
+        session.run_to(f64::from(SIMULATED_SECONDS));
         terminal::say(&compare::table(&session))?;
     } else {
-        tell(&mut session.runs.panes[0])?;
+        simulate(&mut session.runs.panes[0])?;
     }
     match pollster::block_on(Gpu::headless()) {
         Ok(gpu) => {
@@ -39,24 +39,24 @@ pub fn run(why: &str, mut session: Session) -> Result<(), Failure> {
 }
 
 /// Simulates, and prints a line for each simulated second.
-fn tell(pane: &mut Pane) -> Result<(), Failure> {
+fn simulate(pane: &mut Pane) -> Result<(), Failure> {
     let Pane {
         simulation, show, ..
     } = pane;
     terminal::say("  time [s]   energy [J]   lowest [m]   stretch\n")?;
     terminal::say(&line(simulation))?;
-    for second in 1..=SECONDS {
+    for second in 1..=SIMULATED_SECONDS {
         progress::advance(simulation, f64::from(second), |simulation| {
             show.follow(simulation);
         })
         .and_then(|()| {
-            if second == SECONDS {
+            if second == SIMULATED_SECONDS {
                 simulation.conclude()
             } else {
                 Ok(())
             }
         })
-        .map_err(|error| verdict::lost(simulation, &error, "", f64::from(SECONDS)))?;
+        .map_err(|error| verdict::lost(simulation, &error, "", f64::from(SIMULATED_SECONDS)))?;
         terminal::say(&line(simulation))?;
     }
     verdict::warn(simulation);

@@ -104,7 +104,7 @@ impl Settings {
 
     fn write_to(&self, path: &Path) -> Result<(), Failure> {
         let text = toml::to_string(self).map_err(Failure::run)?;
-        keep(path, &text)
+        store(path, &text)
     }
 
     /// Puts `files`, the most recent first, before the recent files.
@@ -139,7 +139,7 @@ fn text_of(path: &Path) -> Result<Option<String>, String> {
 
 /// Writes a file, and creates its folder if need be. Fails if that is not possible.
 #[cfg(not(target_arch = "wasm32"))]
-fn keep(path: &Path, text: &str) -> Result<(), Failure> {
+fn store(path: &Path, text: &str) -> Result<(), Failure> {
     if let Some(folder) = path.parent() {
         fs::create_dir_all(folder)
             .map_err(|why| Failure::run(format!("{}: {why}", folder.display())))?;
@@ -156,7 +156,7 @@ fn text_of(path: &Path) -> Result<Option<String>, String> {
 
 /// Stores a text in the browser under a name, if the browser allows it.
 #[cfg(target_arch = "wasm32")]
-fn keep(path: &Path, text: &str) -> Result<(), Failure> {
+fn store(path: &Path, text: &str) -> Result<(), Failure> {
     if let Some(storage) = browser::storage() {
         let _ = storage.set_item(&path.to_string_lossy(), text);
     }

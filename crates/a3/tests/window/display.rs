@@ -37,7 +37,7 @@ pub fn until<T>(what: &str, mut probe: impl FnMut() -> Option<T>) -> T {
 
 /// Lock for one display at a time: two servers and two software renderers would slow each other
 /// down on two cores.
-static TURN: Mutex<()> = Mutex::new(());
+static DISPLAY_LOCK: Mutex<()> = Mutex::new(());
 
 /// A virtual display with a window manager; closed when dropped.
 pub struct Display {
@@ -45,7 +45,7 @@ pub struct Display {
     manager: Child,
     name: String,
     folder: TempDir,
-    _turn: MutexGuard<'static, ()>,
+    _lock: MutexGuard<'static, ()>,
 }
 
 impl Display {
@@ -73,7 +73,7 @@ impl Display {
             return None;
         }
         // A failed test has released the display too.
-        let turn = TURN.lock().unwrap_or_else(PoisonError::into_inner);
+        let lock = DISPLAY_LOCK.lock().unwrap_or_else(PoisonError::into_inner);
         let folder = tempfile::tempdir().unwrap();
         let mut server = quiet("Xvfb")
             .args([
@@ -102,7 +102,7 @@ impl Display {
             manager,
             name,
             folder,
-            _turn: turn,
+            _lock: lock,
         };
         // A window that opens before the manager runs gets no focus.
         until("a window manager", || {

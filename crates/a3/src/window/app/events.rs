@@ -90,7 +90,9 @@ impl ApplicationHandler<Event> for App {
             || panel::picture_size(&self.session, graphics.size(), graphics.scale()).0 as f32
                 <= self.mouse.pointer.position[0];
         if let WindowEvent::MouseInput { state, .. } = event {
-            self.session.history.hold(state == ElementState::Pressed);
+            self.session
+                .history
+                .set_button_held(state == ElementState::Pressed);
         }
         match event {
             WindowEvent::CloseRequested => event_loop.exit(),

@@ -256,7 +256,7 @@ impl Graphics {
         }
         // egui's renderer panics on a device that has just been lost.
         self.gpu.check()?;
-        let (before, again, request) = self.text(&mut encoder, &text_view, session, cursor);
+        let (before, again, request) = self.draw_text(&mut encoder, &text_view, session, cursor);
         self.gpu
             .queue
             .submit(before.into_iter().chain([encoder.finish()]));
@@ -269,7 +269,7 @@ impl Graphics {
     /// Draws the text over the picture, by way of its layer if it has one. Returns the commands to
     /// submit first, the time after which the text must be drawn again, and the request of the
     /// mouse.
-    fn text(
+    fn draw_text(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
         view: &wgpu::TextureView,
@@ -277,14 +277,14 @@ impl Graphics {
         cursor: CursorIcon,
     ) -> (Vec<wgpu::CommandBuffer>, Option<Duration>, Option<Request>) {
         let Some(mut layer) = self.layer.take() else {
-            return self.write_text(encoder, view, wgpu::LoadOp::Load, session, cursor);
+            return self.draw_text_to(encoder, view, wgpu::LoadOp::Load, session, cursor);
         };
         let written = if let Some(left) = layer.time_left() {
             (vec![], Some(left), None)
         } else {
             let empty = wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT);
             let on_layer = layer.texture.picture();
-            let written = self.write_text(encoder, on_layer, empty, session, cursor);
+            let written = self.draw_text_to(encoder, on_layer, empty, session, cursor);
             layer.drawn(written.1);
             written
         };
@@ -296,8 +296,8 @@ impl Graphics {
     }
 
     /// Lays out the text and draws it in its own pass, over what `below` keeps of the view. Returns
-    /// what [`Self::text`] does.
-    fn write_text(
+    /// what [`Self::draw_text`] does.
+    fn draw_text_to(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
         view: &wgpu::TextureView,

@@ -24,7 +24,7 @@ pub fn help(ctx: &Context, several: bool) {
                     .max_height(room.y.max(40.0))
                     .min_scrolled_height(room.y.max(40.0))
                     .show(ui, |ui| {
-                        columns(ui, several, window.width() > THREE_COLUMN_WIDTH)
+                        columns(ui, several, window.width() > THREE_COLUMN_WIDTH);
                     });
             });
         });

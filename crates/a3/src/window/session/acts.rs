@@ -29,7 +29,7 @@ impl Session {
                 } else {
                     -1
                 };
-                self.show_scene(self.scenes.beside(by));
+                self.show_scene(self.scenes.neighbour(by));
                 return true;
             }
             RunAction::Scenes => self.toggle_list(Topic::Scenes),
@@ -65,7 +65,7 @@ impl Session {
             RunAction::Step if self.readings.rewound.is_some() => self.scrub(1),
             RunAction::Scrub(by) => self.scrub(by),
             RunAction::Slower => {
-                self.readings.slowness = (self.readings.slowness + 1).min(MAX_SLOWNESS)
+                self.readings.slowness = (self.readings.slowness + 1).min(MAX_SLOWNESS);
             }
             RunAction::Faster => self.readings.slowness = (self.readings.slowness - 1).max(0),
             RunAction::Step => self.step(),
@@ -149,7 +149,7 @@ impl Session {
     /// Releases the grabbed particle or sphere.
     pub fn release(&mut self) {
         if let Some(push) = self.runs.release() {
-            self.history.note(push);
+            self.history.record(push);
         }
     }
 
@@ -181,7 +181,7 @@ impl Session {
         let particles = self.runs.pin(particles, pinned);
         let count = particles.len();
         if count > 0 {
-            self.history.note(Change::Pins { particles, pinned });
+            self.history.record(Change::Pins { particles, pinned });
         }
         count
     }
@@ -232,7 +232,7 @@ impl Session {
     fn show_scene(&mut self, number: usize) {
         match self.scenes.show(number) {
             Ok(setup) => {
-                self.see_scene(&setup);
+                self.reset_camera(&setup);
                 self.set_scene(&setup);
             }
             Err(why) => self.readings.warn(why),
@@ -248,7 +248,7 @@ impl Session {
                 let summary = source.description.summary.as_deref();
                 let what = summary.map_or(String::new(), |what| format!(": {what}"));
                 self.readings.say(format!("opened {}{what}", source.typed));
-                self.see_scene(&setup);
+                self.reset_camera(&setup);
                 self.set_scene(&setup);
                 true
             }
@@ -272,7 +272,7 @@ impl Session {
         };
         let setup = &reloaded.setup;
         if reloaded.camera {
-            self.see_scene(setup);
+            self.reset_camera(setup);
         }
         let typed = &self.scenes.shown.source.typed;
         self.readings.say(format!("loaded {typed} again"));
@@ -300,7 +300,7 @@ impl Session {
     }
 
     /// Moves the camera to its initial position in a scene.
-    fn see_scene(&mut self, setup: &Setup) {
+    fn reset_camera(&mut self, setup: &Setup) {
         self.view.set_camera(show::camera(&setup.presentation));
     }
 

@@ -155,7 +155,7 @@ impl Runs {
 
     /// Moves an obstacle to a path in every run. Fails, and changes nothing, if self-collision is
     /// on and surfaces would cross.
-    pub fn put_back(&mut self, obstacle: usize, path: Path) -> Result<(), String> {
+    pub fn set_obstacle_path(&mut self, obstacle: usize, path: Path) -> Result<(), String> {
         let lead = |network: &mut Network| {
             // The obstacle exists, because it was pushed.
             let _ = network.lead_obstacle(obstacle, path);

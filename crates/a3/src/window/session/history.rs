@@ -42,7 +42,7 @@ pub struct History {
 impl History {
     /// Records a change, and drops the undone ones. A turn of a knob extends the last change if it
     /// follows soon, or in the same drag.
-    pub fn note(&mut self, change: Change) {
+    pub fn record(&mut self, change: Change) {
         let soon = self
             .last
             .is_some_and(|last| self.held || last.elapsed() < MERGE_TIME);
@@ -69,7 +69,7 @@ impl History {
 
     /// Records that a mouse button was pressed or released. All turns of a knob in one drag are one
     /// change.
-    pub fn hold(&mut self, held: bool) {
+    pub fn set_button_held(&mut self, held: bool) {
         if held {
             self.last = None;
         }
@@ -111,23 +111,23 @@ mod tests {
         };
         let mut history = History::default();
         for (from, to) in [(1.0, 2.0), (2.0, 3.0), (3.0, 4.0)] {
-            history.note(knob(5, from, to));
+            history.record(knob(5, from, to));
         }
         // Another drag of the same knob is another change, even right after the first.
-        history.hold(true);
-        history.note(knob(5, 4.0, 5.0));
-        history.note(knob(5, 5.0, 6.0));
-        history.hold(false);
+        history.set_button_held(true);
+        history.record(knob(5, 4.0, 5.0));
+        history.record(knob(5, 5.0, 6.0));
+        history.set_button_held(false);
         assert_eq!(history.step(false), Some(knob(5, 4.0, 6.0)));
-        history.note(knob(6, 0.0, 1.0));
+        history.record(knob(6, 0.0, 1.0));
         assert_eq!(history.step(false), Some(knob(6, 0.0, 1.0)));
         assert_eq!(history.step(false), Some(knob(5, 1.0, 4.0)));
         assert_eq!(history.step(false), None);
         assert_eq!(history.step(true), Some(knob(5, 1.0, 4.0)));
-        history.note(knob(7, 0.0, 1.0));
+        history.record(knob(7, 0.0, 1.0));
         assert_eq!(history.step(true), None);
         for k in 0..300 {
-            history.note(Change::Pins {
+            history.record(Change::Pins {
                 particles: vec![k],
                 pinned: true,
             });

@@ -22,7 +22,7 @@ pub fn show_springs_of(panes: &mut [Pane], particle: Option<usize>) {
 /// Draws all panes in the next style that differs for their scene.
 pub fn next_style(panes: &mut [Pane]) {
     let styles = Show::styles(&panes[0].simulation);
-    let next = after(styles, Some(panes[0].show.style));
+    let next = next_after(styles, Some(panes[0].show.style));
     set_style(panes, next.unwrap_or_default());
 }
 
@@ -35,7 +35,7 @@ pub fn has_quantity(panes: &[Pane], quantity: Quantity) -> bool {
 pub fn next_colour(panes: &mut [Pane]) -> String {
     let has = |quantity: &Quantity| has_quantity(panes, *quantity);
     let all: Vec<_> = Quantity::ALL.into_iter().filter(has).collect();
-    let next = after(&all, panes[0].show.colouring.quantity);
+    let next = next_after(&all, panes[0].show.colouring.quantity);
     set_colour(panes, next);
     match next {
         Some(quantity) => format!("colours show the {}", quantity.name()),
@@ -48,7 +48,7 @@ pub fn next_arrows(panes: &mut [Pane]) -> String {
     let run = &panes[0].simulation;
     let has = |arrows: &Arrows| arrows.is_in(run);
     let all: Vec<_> = Arrows::ALL.into_iter().filter(has).collect();
-    let next = after(&all, panes[0].show.field.arrows);
+    let next = next_after(&all, panes[0].show.field.arrows);
     set_arrows(panes, next);
     match next {
         Some(arrows) => format!("arrows show the {}", arrows.name()),
@@ -86,7 +86,7 @@ pub fn fix_scale(panes: &mut [Pane], end: Option<f64>) {
 
 /// Returns the item after `now`: `None` after the last, and the first after `None` or an unknown
 /// one.
-fn after<T: Copy + PartialEq>(all: &[T], now: Option<T>) -> Option<T> {
+fn next_after<T: Copy + PartialEq>(all: &[T], now: Option<T>) -> Option<T> {
     let place = now.and_then(|now| all.iter().position(|one| *one == now));
     all.get(place.map_or(0, |place| place + 1)).copied()
 }

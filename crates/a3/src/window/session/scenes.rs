@@ -129,7 +129,7 @@ impl Scenes {
 
     /// Returns the number of the scene `by` places after the present one, or before it if `by` is
     /// negative.
-    pub fn beside(&self, by: isize) -> usize {
+    pub fn neighbour(&self, by: isize) -> usize {
         let count = self.names().len() as isize;
         (self.number as isize + by).rem_euclid(count) as usize
     }

@@ -124,22 +124,22 @@ impl Session {
     /// Advances the runs by `simulated` (s), as far as the budgets of real time allow, and records
     /// their states on the timeline.
     pub(super) fn advance(&mut self, simulated: f64, budget: Duration, reference_budget: Duration) {
-        self.keep(false);
+        self.record(false);
         let (begun, start) = (Instant::now(), self.runs.clock);
         self.runs
             .advance(start + simulated, budget, reference_budget);
         self.meter
             .count_steps(self.runs.clock - start, begun.elapsed());
         self.readings.read_reference(self.runs.reference.as_ref());
-        self.keep(false);
+        self.record(false);
     }
 
     /// Records the states on the timeline if the last moment is old enough, or in any case if
     /// `now`.
-    fn keep(&mut self, now: bool) {
+    fn record(&mut self, now: bool) {
         if self.readings.in_window {
             let runs = &self.runs;
-            self.timeline.keep(runs.clock, now, runs.all());
+            self.timeline.record(runs.clock, now, runs.all());
         }
         self.readings.rewound = self.timeline.position();
     }
@@ -203,7 +203,7 @@ impl Session {
         self.readings.paused = true;
         if self.readings.rewound.is_none() {
             self.runs.drop_due_steps();
-            self.keep(true);
+            self.record(true);
         }
     }
 

@@ -54,7 +54,12 @@ impl Timeline {
 
     /// Records the states at `clock` (s) if the last moment is old enough, or in any case if `now`.
     /// Drops the moments after the chosen one first.
-    pub fn keep<'r>(&mut self, clock: f64, now: bool, runs: impl Iterator<Item = &'r Simulation>) {
+    pub fn record<'r>(
+        &mut self,
+        clock: f64,
+        now: bool,
+        runs: impl Iterator<Item = &'r Simulation>,
+    ) {
         if let Some(k) = self.shown.take() {
             self.moments.truncate(k + 1);
         }
@@ -173,13 +178,13 @@ mod tests {
         let (small, large) = (run(3), run(200));
         let mut timeline = Timeline::default();
         for k in 0..3000 {
-            timeline.keep(f64::from(k) / 120.0, false, [&small].into_iter());
+            timeline.record(f64::from(k) / 120.0, false, [&small].into_iter());
         }
         // Every second state is recorded.
         assert!(timeline.moments.len().abs_diff(1201) <= 1);
         timeline.clear();
         for k in 0..50 {
-            timeline.keep(f64::from(k), false, [&large, &large].into_iter());
+            timeline.record(f64::from(k), false, [&large, &large].into_iter());
         }
         let size = 2 * large.moment().size();
         assert_eq!(timeline.moments.len(), (MAX_MEMORY / size).min(21));
@@ -189,10 +194,10 @@ mod tests {
     fn moments_after_the_chosen_one_are_dropped() {
         let (run, mut timeline) = (run(3), Timeline::default());
         for k in 0..5 {
-            timeline.keep(f64::from(k), false, [&run].into_iter());
+            timeline.record(f64::from(k), false, [&run].into_iter());
         }
         assert!(timeline.go(-3));
-        timeline.keep(1.5, false, [&run].into_iter());
+        timeline.record(1.5, false, [&run].into_iter());
         let clocks: Vec<_> = timeline.moments.iter().map(|entry| entry.clock).collect();
         assert_eq!(clocks, [0.0, 1.0, 1.5]);
     }
@@ -203,7 +208,7 @@ mod tests {
         // Every 20 ms, with a gap from 0.78 to 1.2 s.
         for k in (0..=100).filter(|k| !(40..60).contains(k)) {
             run.advance_to(0.02 * f64::from(k)).unwrap();
-            timeline.keep(run.time(), false, [&run].into_iter());
+            timeline.record(run.time(), false, [&run].into_iter());
         }
         let times = |seconds, interval| -> Vec<f64> {
             let moments = timeline.last(seconds, interval).into_iter();
@@ -239,9 +244,9 @@ mod tests {
         let mut run =
             Simulation::new(scene, integrators::find("e").unwrap(), Control::Step(0.05)).unwrap();
         let mut timeline = Timeline::default();
-        timeline.keep(0.0, false, [&run].into_iter());
+        timeline.record(0.0, false, [&run].into_iter());
         while run.take_steps(1).is_ok() {}
-        timeline.keep(1.0, false, [&run].into_iter());
+        timeline.record(1.0, false, [&run].into_iter());
         let kept = timeline.moments.iter().map(|e| e.moments[0].is_some());
         assert_eq!(kept.collect::<Vec<_>>(), [true, false]);
     }
@@ -251,7 +256,7 @@ mod tests {
         let mut timeline = Timeline::default();
         assert!(!timeline.go(-1) && !timeline.go_to(0.0) && timeline.position().is_none());
         for k in 0..5 {
-            timeline.keep(f64::from(k), false, [&run(3)].into_iter());
+            timeline.record(f64::from(k), false, [&run(3)].into_iter());
         }
         assert!(timeline.go(-3) && timeline.go(-3) && !timeline.go(-1));
         let position = timeline.position().unwrap();

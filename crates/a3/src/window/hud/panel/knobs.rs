@@ -21,9 +21,9 @@ pub struct Knob {
     /// Description for the tooltip, with the unit.
     pub about: &'static str,
     /// Whether the row starts a group.
-    pub apart: bool,
+    pub starts_group: bool,
     /// Whether the knob tunes the scene, so that a checkpoint must store its value separately.
-    pub tunes: bool,
+    pub tunes_scene: bool,
     /// Returns the dial for a session and a pane, if the knob applies to them.
     pub read: fn(&Session, usize) -> Option<Dial>,
     /// Sets the value in a session and a pane.
@@ -40,25 +40,25 @@ const fn knob(
     Knob {
         name,
         about,
-        apart: false,
-        tunes: false,
+        starts_group: false,
+        tunes_scene: false,
         read,
         set,
     }
 }
 
 /// Makes a knob start a group.
-const fn apart(knob: Knob) -> Knob {
+const fn starts_group(knob: Knob) -> Knob {
     Knob {
-        apart: true,
+        starts_group: true,
         ..knob
     }
 }
 
 /// Marks a knob as one that tunes the scene.
-const fn tunes(knob: Knob) -> Knob {
+const fn tunes_scene(knob: Knob) -> Knob {
     Knob {
-        tunes: true,
+        tunes_scene: true,
         ..knob
     }
 }
@@ -76,7 +76,7 @@ pub static KNOBS: &[Knob] = &[
             session.set_step_of(at, value);
         },
     ),
-    apart(tunes(knob(
+    starts_group(tunes_scene(knob(
         "stiffness",
         "Stiffness of all springs, as a multiple of the scene's own.",
         stiffness,
@@ -85,7 +85,7 @@ pub static KNOBS: &[Knob] = &[
             set_springs(session);
         },
     ))),
-    tunes(knob(
+    tunes_scene(knob(
         "damping",
         "Damping of all springs, as a multiple of the scene's own.",
         damping,
@@ -94,7 +94,7 @@ pub static KNOBS: &[Knob] = &[
             set_springs(session);
         },
     )),
-    tunes(knob(
+    tunes_scene(knob(
         "strain limit",
         "Largest length of a spring over its rest length. Longer ones are shortened after each step.",
         strain_limit,
@@ -119,7 +119,7 @@ pub static KNOBS: &[Knob] = &[
             });
         },
     )),
-    tunes(knob(
+    tunes_scene(knob(
         "drag",
         "Air drag on each particle over its velocity, in kg/s.",
         drag,
@@ -130,7 +130,7 @@ pub static KNOBS: &[Knob] = &[
             });
         },
     )),
-    tunes(knob(
+    tunes_scene(knob(
         "gravity",
         "Downward acceleration, in m/s².",
         gravity,
@@ -141,7 +141,7 @@ pub static KNOBS: &[Knob] = &[
             });
         },
     )),
-    apart(knob(
+    starts_group(knob(
         "wind",
         "Whether the wind blows.",
         |session, _| {
@@ -152,7 +152,7 @@ pub static KNOBS: &[Knob] = &[
             session.act(RunAction::Wind, at);
         },
     )),
-    tunes(knob(
+    tunes_scene(knob(
         "gusts",
         "Force or velocity of the wind, as a multiple of the scene's own.",
         gusts,
@@ -198,7 +198,7 @@ pub static KNOBS: &[Knob] = &[
             session.act(RunAction::Touch, at);
         },
     ),
-    tunes(knob(
+    tunes_scene(knob(
         "sphere",
         "Radius of the sphere, in m. Other spheres grow in proportion.",
         sphere,
@@ -215,7 +215,7 @@ pub static KNOBS: &[Knob] = &[
             });
         },
     )),
-    tunes(knob(
+    tunes_scene(knob(
         "floor",
         "Whether there is a floor.",
         |session, _| {
@@ -236,7 +236,7 @@ pub static KNOBS: &[Knob] = &[
             });
         },
     )),
-    apart(knob(
+    starts_group(knob(
         "springs of",
         "The particle whose springs are listed and highlighted, by its number.",
         springs_of,
@@ -289,7 +289,7 @@ pub static KNOBS: &[Knob] = &[
             );
         },
     ),
-    apart(knob(
+    starts_group(knob(
         "dark",
         "Whether the dark theme is on.",
         |session, _| Some(switch(session.runs.panes[0].show.dark, false)),
@@ -321,7 +321,7 @@ pub static KNOBS: &[Knob] = &[
 
 /// Returns the names and values of all knobs that tune the scene and differ from its own values.
 pub fn tuned(session: &Session) -> Vec<(String, f64)> {
-    let tuning = KNOBS.iter().filter(|knob| knob.tunes);
+    let tuning = KNOBS.iter().filter(|knob| knob.tunes_scene);
     let dials = tuning.filter_map(|knob| Some((knob.name, (knob.read)(session, 0)?)));
     let other = dials.filter(|(_, dial)| dial.value != dial.own);
     other
@@ -332,7 +332,7 @@ pub fn tuned(session: &Session) -> Vec<(String, f64)> {
 /// Tunes the scene of a session to `tuned`, by names and values, and resets all other knobs that
 /// tune it.
 pub fn tune(session: &mut Session, tuned: &[(String, f64)]) {
-    for knob in KNOBS.iter().filter(|knob| knob.tunes) {
+    for knob in KNOBS.iter().filter(|knob| knob.tunes_scene) {
         let Some(dial) = (knob.read)(session, 0) else {
             continue;
         };
@@ -360,7 +360,7 @@ impl Knob {
         if to != dial.value {
             (self.set)(session, at, to);
             let row = KNOBS.iter().position(|knob| knob.name == self.name);
-            session.history.note(Change::Knob {
+            session.history.record(Change::Knob {
                 row: row.unwrap_or(0),
                 pane: at,
                 from: dial.value,

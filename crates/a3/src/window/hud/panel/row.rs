@@ -57,7 +57,7 @@ impl Row<'_> {
         let at = pos2(rect.left(), middle);
         let font = FontId::proportional(12.5);
         painter.text(at, Align2::LEFT_CENTER, self.knob.name, font, colour);
-        let whole = whole.on_hover_text(self.about());
+        let whole = whole.on_hover_text(self.tooltip());
         let mut request = None;
         if let DialScale::Choice(_) = dial.scale {
             let left = rect.left() + NAME_WIDTH - 18.0;
@@ -103,7 +103,7 @@ impl Row<'_> {
         } else {
             write(&dial.words, colour);
         }
-        let response = response.on_hover_text(self.about());
+        let response = response.on_hover_text(self.tooltip());
         if response.double_clicked() {
             return Some(PanelRequest::Turn(self.number, Turn::Own));
         }
@@ -111,7 +111,7 @@ impl Row<'_> {
     }
 
     /// Returns the tooltip: the knob's description, range and use.
-    fn about(&self) -> String {
+    fn tooltip(&self) -> String {
         let dial = self.dial;
         let Some([from, to]) = dial.scale.ends() else {
             return self.knob.about.into();

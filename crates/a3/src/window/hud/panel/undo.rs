@@ -21,7 +21,10 @@ pub fn undo(session: &mut Session, redo: bool) {
         }
         Change::Push { obstacle, paths } => {
             // If surfaces would cross, the obstacle does not move.
-            if let Err(why) = session.runs.put_back(obstacle, paths[usize::from(redo)]) {
+            if let Err(why) = session
+                .runs
+                .set_obstacle_path(obstacle, paths[usize::from(redo)])
+            {
                 return session.readings.say(why);
             }
             "push".into()

@@ -73,7 +73,7 @@ pub fn show(ctx: &Context, session: &Session) -> Option<Request> {
             ui.painter()
                 .vline(rect.left(), rect.y_range(), Stroke::new(1.0, row::EDGE));
             let inner = rect.shrink2(vec2(MARGIN, 0.0));
-            head(ui, inner, session);
+            title(ui, inner, session);
             let rows = rows(session);
             let chosen = rows.iter().rposition(|(k, ..)| *k <= session.panel.row);
             let chosen = chosen.unwrap_or(0);
@@ -84,7 +84,7 @@ pub fn show(ctx: &Context, session: &Session) -> Option<Request> {
             let first = (chosen + 1).saturating_sub(fit);
             let mut top = inner.top() + TITLE_HEIGHT;
             for (n, (k, knob, dial)) in rows.iter().enumerate().skip(first).take(fit) {
-                if knob.apart && n > first {
+                if knob.starts_group && n > first {
                     top += gap;
                 }
                 let place =
@@ -99,7 +99,7 @@ pub fn show(ctx: &Context, session: &Session) -> Option<Request> {
                 request = row.show(ui, place).map(Request::Change).or(request);
                 top += row::HEIGHT;
             }
-            request = foot(ui, inner, session).or(request);
+            request = buttons(ui, inner, session).or(request);
             let room = Rect::from_min_max(
                 pos2(inner.left(), top + 12.0),
                 pos2(inner.right(), inner.bottom() - BUTTONS_HEIGHT),
@@ -112,7 +112,7 @@ pub fn show(ctx: &Context, session: &Session) -> Option<Request> {
 }
 
 /// Draws the title.
-fn head(ui: &egui::Ui, inner: Rect, session: &Session) {
+fn title(ui: &egui::Ui, inner: Rect, session: &Session) {
     let painter = ui.painter();
     let line = inner.top() + 19.0;
     let words = match session.runs.panes.len() {
@@ -142,7 +142,7 @@ fn head(ui: &egui::Ui, inner: Rect, session: &Session) {
 
 /// Draws the buttons: write a scene file, write the plots, start or stop a live film, and film the
 /// last seconds.
-fn foot(ui: &egui::Ui, inner: Rect, session: &Session) -> Option<Request> {
+fn buttons(ui: &egui::Ui, inner: Rect, session: &Session) -> Option<Request> {
     let last = format!("last {} s", session.panel.film_seconds);
     let live = session.readings.film.as_ref().is_some_and(|film| film.live);
     let record = if live { "stop" } else { "film" };
