@@ -19,8 +19,8 @@ use crate::draw::show;
 const MAX_SLOWNESS: i32 = 6;
 
 impl Session {
-    /// Performs an action, and returns whether it changed the scene. A solver applies to pane `at`,
-    /// everything else to all panes.
+    /// Performs an action, and returns whether it changed the scene. Solvers and scene files are
+    /// those of pane `at`; all other actions apply to every pane.
     pub fn act(&mut self, action: RunAction, at: usize) -> bool {
         match action {
             RunAction::NextScene | RunAction::PreviousScene => {

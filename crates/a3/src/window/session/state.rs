@@ -134,8 +134,8 @@ impl Session {
         self.record(false);
     }
 
-    /// Records the states on the timeline if the last moment is old enough, or in any case if
-    /// `now`.
+    /// Records the states on the timeline if the last moment is old enough, or with `now` if it is
+    /// older at all.
     fn record(&mut self, now: bool) {
         if self.readings.in_window {
             let runs = &self.runs;

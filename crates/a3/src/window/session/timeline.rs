@@ -52,8 +52,8 @@ impl Timeline {
         self.shown = None;
     }
 
-    /// Records the states at `clock` (s) if the last moment is old enough, or in any case if `now`.
-    /// Drops the moments after the chosen one first.
+    /// Records the states at `clock` (s) if the last moment is old enough, or with `now` if it is
+    /// older at all. Drops the moments after the chosen one first.
     pub fn record<'r>(
         &mut self,
         clock: f64,
