@@ -1,4 +1,4 @@
-//! From arguments to sessions, of windows and of pictures.
+//! Sessions from command-line arguments, for windows and for pictures.
 
 use a3_core::{Simulation, StepLimits};
 
@@ -8,7 +8,7 @@ use crate::draw::show::{self, Quantity};
 use crate::files::setup::Request;
 use crate::window::session::{Beginning, Origin, Session};
 
-/// The session of a window on one run.
+/// Creates the session of a window on one run. Fails if an option does not fit the scene.
 pub fn window(options: &WindowOptions) -> Result<Session, Failure> {
     let request = Request::read(&options.what)?;
     let source = &request.source;
@@ -35,7 +35,7 @@ pub fn window(options: &WindowOptions) -> Result<Session, Failure> {
     )
 }
 
-/// The session of a comparison.
+/// Creates the session of a comparison. Fails if an option does not fit the scene.
 pub fn comparison(options: &Compare) -> Result<Session, Failure> {
     let count = options.methods.len();
     if !(2..=4).contains(&count) {
@@ -64,7 +64,6 @@ pub fn comparison(options: &Compare) -> Result<Session, Failure> {
     )
 }
 
-/// The origin of the scene.
 fn origin(request: Request, limits: StepLimits) -> Origin {
     Origin {
         source: request.source,
@@ -73,7 +72,7 @@ fn origin(request: Request, limits: StepLimits) -> Origin {
     }
 }
 
-/// `Ok` if the scene has that particle.
+/// Checks that the scene has the particle whose springs are requested, if one is.
 pub fn check_particle(simulation: &Simulation, particle: Option<usize>) -> Result<(), Failure> {
     match (particle, simulation.model().network()) {
         (Some(i), Some(network)) => network
@@ -84,7 +83,8 @@ pub fn check_particle(simulation: &Simulation, particle: Option<usize>) -> Resul
     }
 }
 
-/// Checks that the scene supports the requested colours, arrows and springs.
+/// Checks that the scene supports the requested colours, arrows and springs. `compared` says
+/// whether the run is part of a comparison, which has errors.
 pub fn check_drawing(
     simulation: &Simulation,
     drawing: Drawing,
@@ -102,8 +102,7 @@ pub fn check_drawing(
              by --self-collision"
         ),
         (Some(Quantity::Error), _) => {
-            "errors are shown where there is a reference, which a3 compare runs: leave out --colour"
-                .into()
+            "errors need a reference, which only a3 compare runs: leave out --colour".into()
         }
         (Some(colour), _) => has_none(colour.name(), "colour"),
         (None, Some(arrows)) => has_none(arrows.name(), "arrows"),

@@ -1,4 +1,4 @@
-//! The command line that makes what a window shows now.
+//! The command line that opens a window with the present run and picture.
 
 use a3_core::{Simulation, StepLimits};
 use a3_render::Style;
@@ -11,32 +11,32 @@ use crate::window::begin;
 use crate::window::hud::panel;
 use crate::window::session::{Session, looks, write_scene};
 
-/// The command line that begins with the picture and the run of pane `at` as they are now. Where
-/// options cannot say what they are, a scene file is written. A comparison begins at its beginning,
-/// because its runs have no state in common later.
+/// Returns the command line that opens the present run and the picture of pane `at`. If options
+/// cannot express the state, writes a scene file. A comparison starts from its initial state,
+/// because its runs share no later one. Fails if that file cannot be written.
 pub fn of(session: &Session, at: usize) -> Result<String, Failure> {
-    let mut words = words(session, at);
-    if !makes(&words, session) {
+    let mut words = arguments(session, at);
+    if !recreates(&words, session) {
         let written = if session.runs.panes.len() == 1 {
             write_scene(session, session.runs.first())
         } else {
             write_scene(
                 session,
-                &beginning(session.runs.first()).map_err(Failure::run)?,
+                &initial_run(session.runs.first()).map_err(Failure::run)?,
             )
         };
-        words = words_of_file(session, at, &written.map_err(Failure::Run)?);
+        words = arguments_with_scene(session, at, &written.map_err(Failure::Run)?);
     }
-    let quoted: Vec<_> = words.iter().map(|word| quoted(word)).collect();
+    let quoted: Vec<_> = words.iter().map(|word| quote(word)).collect();
     Ok(format!("a3 {}", quoted.join(" ")))
 }
 
-/// The words after the program's name, with the scene as it was asked for.
-fn words(session: &Session, at: usize) -> Vec<String> {
+/// Returns the arguments, with the scene as the user named it.
+fn arguments(session: &Session, at: usize) -> Vec<String> {
     let (origin, run) = (&session.scenes.shown, session.runs.first());
     let description = &origin.source.description;
     let begins_windy = description.wind.as_ref().is_some_and(|wind| wind.on);
-    let mut words = words_of_file(session, at, &origin.source.typed);
+    let mut words = arguments_with_scene(session, at, &origin.source.typed);
     if let Some(grid) = origin.grid {
         words.extend(["--grid".into(), format!("{}x{}", grid.rows(), grid.cols())]);
     }
@@ -53,8 +53,9 @@ fn words(session: &Session, at: usize) -> Vec<String> {
     words
 }
 
-/// The words after the program's name, with a scene in which all has its beginning.
-fn words_of_file(session: &Session, at: usize, scene: &str) -> Vec<String> {
+/// Returns the arguments for `scene`, a name or file that contains the grid, the wind and the
+/// swing.
+fn arguments_with_scene(session: &Session, at: usize, scene: &str) -> Vec<String> {
     let control = |run: &Simulation| run.control().value();
     let mut words = if session.runs.panes.len() == 1 {
         let run = session.runs.first();
@@ -76,7 +77,9 @@ fn words_of_file(session: &Session, at: usize, scene: &str) -> Vec<String> {
     let mut option = |name: &str, value: &str| words.extend([name.into(), value.into()]);
     option("--scene", scene);
     let coloured = show.colouring.quantity;
-    if let Some(quantity) = coloured.filter(|quantity| looks::has(&session.runs.panes, *quantity)) {
+    if let Some(quantity) =
+        coloured.filter(|quantity| looks::has_quantity(&session.runs.panes, *quantity))
+    {
         option("--colour", quantity.name());
     }
     if let Some(arrows) = show.field.arrows {
@@ -98,8 +101,9 @@ fn words_of_file(session: &Session, at: usize, scene: &str) -> Vec<String> {
     words
 }
 
-/// Whether these words make what a session shows now, or for a comparison what it began with.
-fn makes(words: &[String], session: &Session) -> bool {
+/// Returns whether these arguments recreate the present state of a session, or the initial state of
+/// a comparison.
+fn recreates(words: &[String], session: &Session) -> bool {
     let program = ["a3".to_owned()];
     let Ok(options) = Cli::try_parse_from(program.iter().chain(words)) else {
         return false;
@@ -115,7 +119,7 @@ fn makes(words: &[String], session: &Session) -> bool {
         let begun = if session.runs.panes.len() == 1 {
             Ok(now.moment())
         } else {
-            beginning(now).map(|run| run.moment())
+            initial_run(now).map(|run| run.moment())
         };
         begun.is_ok_and(|begun| begun == made.moment())
     };
@@ -125,8 +129,8 @@ fn makes(words: &[String], session: &Session) -> bool {
         && pairs.all(|(now, made)| begins_alike(&now.simulation, &made.simulation))
 }
 
-/// The run at its beginning, with the wind, the swing and the contact that it has now.
-fn beginning(run: &Simulation) -> Result<Simulation, a3_core::Error> {
+/// Returns the initial state of the run, with its present wind, swing and self-collision.
+fn initial_run(run: &Simulation) -> Result<Simulation, a3_core::Error> {
     let mut begun = Simulation::new(run.scene().clone(), run.method(), run.control())?;
     if run.windy() != begun.windy() {
         begun.set_wind(run.windy());
@@ -136,8 +140,8 @@ fn beginning(run: &Simulation) -> Result<Simulation, a3_core::Error> {
     Ok(begun)
 }
 
-/// A word as a shell takes it.
-fn quoted(word: &str) -> String {
+/// Quotes an argument for a shell, if it needs quotes.
+fn quote(word: &str) -> String {
     let plain = |c: char| c.is_ascii_alphanumeric() || "-_./:,=+@%".contains(c);
     if !word.is_empty() && word.chars().all(plain) {
         return word.into();
@@ -150,8 +154,8 @@ mod tests {
     use super::*;
     use crate::window::session::{RunAction, compared, frames, session};
 
-    /// The words of a command line that has no quotes.
-    fn again(line: &str) -> Session {
+    /// Opens the session of a command line without quotes.
+    fn reopen(line: &str) -> Session {
         let words: Vec<_> = line.split(' ').skip(1).collect();
         session(&words)
     }
@@ -170,7 +174,7 @@ mod tests {
             let made: std::collections::BTreeSet<_> = line.split(' ').skip(1).collect();
             assert_eq!(made, words.iter().copied().collect(), "{line}");
         }
-        // A comparison begins at its beginning.
+        // A comparison starts from its initial state.
         let later = compared(&["e:0.05", "r:0.01", "--scene", "simple"], 0.5);
         let line = of(&later, 0).ok().unwrap();
         assert_eq!(line, "a3 compare euler:0.05 rk4:0.01 --scene simple");
@@ -185,7 +189,7 @@ mod tests {
         let mut session = session(&["rk4", "0.001", "--scene", file, "--colour", "speed"]);
         let line = of(&session, 0).ok().unwrap();
         assert!(line.contains("/own.toml"), "{line}");
-        // Some time later, seen from elsewhere, and tuned.
+        // Advance the run, move the camera, and tune the scene.
         frames(&mut session, 0.3);
         session.view.camera.orbit(0.3, 0.1);
         panel::tune(
@@ -194,7 +198,7 @@ mod tests {
         );
         let line = of(&session, 0).ok().unwrap();
         assert!(line.contains("/a3-flag-1.toml --colour speed"), "{line}");
-        let made = again(&line);
+        let made = reopen(&line);
         assert_eq!(made.runs.first().state(), session.runs.first().state());
         assert_eq!(made.runs.first().control(), session.runs.first().control());
         let gravity = made
@@ -205,17 +209,17 @@ mod tests {
             .and_then(a3_core::Network::gravity);
         assert_eq!(gravity.unwrap().y, -5.0);
         assert!((made.view.camera.eye() - session.view.camera.eye()).norm() < 1e-4);
-        // What it makes is said by options again, with that file.
+        // The file and its options then express the whole state, without another file.
         let same = of(&made, 0).ok().unwrap();
         assert_eq!(same, line);
-        // A comparison has no state in common.
+        // The panes of a comparison have different states, so its initial state is written.
         let words = ["e:0.001", "r:0.001", "--scene", file];
         let mut several = compared(&words, 0.2);
         panel::tune(&mut several, &[("gravity".into(), 5.0)]);
         let line = of(&several, 0).ok().unwrap();
-        let made = again(&line);
+        let made = reopen(&line);
         assert_eq!(made.runs.panes.len(), 2);
-        let begun = beginning(several.runs.first()).unwrap();
+        let begun = initial_run(several.runs.first()).unwrap();
         assert_eq!(made.runs.first().state(), begun.state());
         several.act(RunAction::Reset, 0);
         assert!(of(&several, 0).ok().unwrap().contains("a3-flag-3"));
@@ -223,9 +227,9 @@ mod tests {
 
     #[test]
     fn words_are_quoted_for_shells() {
-        assert_eq!(quoted("docs/a-b_1.toml"), "docs/a-b_1.toml");
-        assert_eq!(quoted("my scene.toml"), "'my scene.toml'");
-        assert_eq!(quoted("it's"), r"'it'\''s'");
-        assert_eq!(quoted(""), "''");
+        assert_eq!(quote("docs/a-b_1.toml"), "docs/a-b_1.toml");
+        assert_eq!(quote("my scene.toml"), "'my scene.toml'");
+        assert_eq!(quote("it's"), r"'it'\''s'");
+        assert_eq!(quote(""), "''");
     }
 }

@@ -1,4 +1,4 @@
-//! `a3 compare` with `--output`: several methods side by side in a picture.
+//! `a3 compare --output`: several methods side by side in a picture.
 
 use a3_render::{Gpu, Offscreen};
 
@@ -11,10 +11,11 @@ use crate::window::begin;
 use crate::window::hud::{Studio, digits};
 use crate::window::session::{Pane, Session};
 
-/// Size of a picture for which none is given (px).
+/// Default size of a picture (px).
 pub const SIZE: (u32, u32) = (1280, 720);
 
-/// Runs the methods and writes their picture and table.
+/// Runs the methods and writes their picture and table. Fails if an option does not fit, the
+/// graphics device cannot draw the picture, or a file cannot be written.
 pub fn run(options: &Compare) -> Result<(), Failure> {
     let mut session = begin::comparison(options)?;
     let (Some(path), Some(until)) = (&options.output, options.until) else {
@@ -27,14 +28,14 @@ pub fn run(options: &Compare) -> Result<(), Failure> {
     }
     output::check(path, &["png"])?;
     let gpu = pollster::block_on(Gpu::headless()).map_err(Failure::run)?;
-    // The device may not support pictures of this size: it is asked before the work begins.
+    // The device may not support this size, so check it before the runs.
     let offscreen = Offscreen::new(&gpu, options.size.unwrap_or(SIZE)).map_err(Failure::usage)?;
     session.run_to(until);
     terminal::say(&table(&session))?;
     output::write(path, &picture(&gpu, offscreen, &mut session)?)
 }
 
-/// A table of the methods: what the picture says about each.
+/// Returns a table of the methods with the same readings as the picture.
 pub fn table(session: &Session) -> String {
     let head =
         "  solver        setting   time [s]    error [m]   evaluations/s   computing [ms/s]\n";
@@ -53,12 +54,12 @@ pub fn table(session: &Session) -> String {
         .collect()
 }
 
-/// The line of a method.
+/// Returns the table row of a pane.
 fn line(pane: &Pane) -> String {
     let run = &pane.simulation;
     let start = format!("  {:<10}   {:>8}", run.method().name, run.control().value());
-    if let Some(lost) = run.blow_up() {
-        return format!("{start}   {lost}\n");
+    if let Some(blow_up) = run.blow_up() {
+        return format!("{start}   {blow_up}\n");
     }
     let number = |number: Option<f64>| number.map_or("-".into(), digits);
     format!(
@@ -70,10 +71,10 @@ fn line(pane: &Pane) -> String {
     )
 }
 
-/// A picture of the session as it is now, as PNG.
+/// Draws the present state of the session as PNG. Fails if drawing or encoding does.
 pub fn picture(gpu: &Gpu, offscreen: Offscreen, session: &mut Session) -> Result<Vec<u8>, Failure> {
     let size = offscreen.size();
-    // Text does not shrink with the picture: it could not be read.
+    // Do not shrink text below its normal size: it would be illegible.
     let scale = painter::scale(size).max(1.0);
     let (panes, readings) = (&mut session.runs.panes, &session.readings);
     let mut studio = Studio::new(gpu, offscreen, panes);

@@ -1,5 +1,5 @@
-//! The window's job where there is no display: ten simulated seconds with a line for each, and a
-//! picture at the end.
+//! The substitute for a window without a display: ten simulated seconds, a line for each of them,
+//! and a final picture.
 
 use a3_core::Simulation;
 use a3_render::{Gpu, Offscreen};
@@ -10,20 +10,21 @@ use crate::files::output;
 use crate::window::compare::{self, SIZE};
 use crate::window::session::{Pane, Session};
 
-/// Simulated time (s).
-const SECONDS: u32 = 10;
+/// Simulated time of the run (s).
+const SIMULATED_SECONDS: u32 = 10;
 
-/// Says `why` there is no window, and does its job without one.
+/// Warns that there is no window because of `why`, then simulates and draws without one. Fails if
+/// the run blows up or a file cannot be written.
 pub fn run(why: &str, mut session: Session) -> Result<(), Failure> {
     terminal::warn(&format!(
-        "{why}: simulating {SECONDS} seconds without a window."
+        "{why}: simulating {SIMULATED_SECONDS} seconds without a window."
     ));
     let scene = session.runs.first().scene().name.clone();
     if session.runs.panes.len() > 1 {
-        session.run_to(f64::from(SECONDS));
+        session.run_to(f64::from(SIMULATED_SECONDS));
         terminal::say(&compare::table(&session))?;
     } else {
-        tell(&mut session.runs.panes[0])?;
+        simulate(&mut session.runs.panes[0])?;
     }
     match pollster::block_on(Gpu::headless()) {
         Ok(gpu) => {
@@ -37,32 +38,32 @@ pub fn run(why: &str, mut session: Session) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Simulates, and writes a line for each simulated second.
-fn tell(pane: &mut Pane) -> Result<(), Failure> {
+/// Simulates, and prints a line for each simulated second.
+fn simulate(pane: &mut Pane) -> Result<(), Failure> {
     let Pane {
         simulation, show, ..
     } = pane;
     terminal::say("  time [s]   energy [J]   lowest [m]   stretch\n")?;
     terminal::say(&line(simulation))?;
-    for second in 1..=SECONDS {
+    for second in 1..=SIMULATED_SECONDS {
         progress::advance(simulation, f64::from(second), |simulation| {
             show.follow(simulation);
         })
         .and_then(|()| {
-            if second == SECONDS {
+            if second == SIMULATED_SECONDS {
                 simulation.conclude()
             } else {
                 Ok(())
             }
         })
-        .map_err(|error| verdict::lost(simulation, &error, "", f64::from(SECONDS)))?;
+        .map_err(|error| verdict::lost(simulation, &error, "", f64::from(SIMULATED_SECONDS)))?;
         terminal::say(&line(simulation))?;
     }
     verdict::warn(simulation);
     Ok(())
 }
 
-/// The line for the state as it is now.
+/// Returns the line for the present state.
 fn line(simulation: &Simulation) -> String {
     let number = |value: Option<f64>, digits: usize| {
         value.map_or("-".into(), |value| format!("{value:.digits$}"))

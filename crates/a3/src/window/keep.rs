@@ -1,5 +1,4 @@
-//! Runs of the window in checkpoints, with what the panel has tuned: kept by a key, and opened
-//! again.
+//! Saving and loading the window's run, with its tuning, as a checkpoint.
 
 use std::path::{Path, PathBuf};
 
@@ -9,9 +8,9 @@ use crate::files::output;
 use crate::window::hud::panel;
 use crate::window::session::Session;
 
-/// Writes the run of pane `at` under the first free name, beside the file of its scene if there is
-/// one, and returns that name.
-pub fn keep(session: &mut Session, at: usize) -> Result<PathBuf, Failure> {
+/// Saves the run of pane `at` under the first free name, in the folder of its scene file if it has
+/// one, and returns the path. Fails if the file cannot be written.
+pub fn save(session: &mut Session, at: usize) -> Result<PathBuf, Failure> {
     let run = &session.runs.panes[at.min(session.runs.panes.len() - 1)].simulation;
     let origin = &session.scenes.shown;
     let folder = origin.source.path.as_deref().and_then(Path::parent);
@@ -19,24 +18,25 @@ pub fn keep(session: &mut Session, at: usize) -> Result<PathBuf, Failure> {
     kept.tuned = panel::tuned(session);
     let folder = folder.unwrap_or("".as_ref());
     let path = output::write_new(folder, &run.scene().name, ENDING, &kept.bytes()?)?;
-    session.scenes.kept = Some(path.clone());
+    session.scenes.checkpoint = Some(path.clone());
     Ok(path)
 }
 
-/// Takes the run of a window up where it was kept, tuned alike. A hand lets go.
-pub fn take_up(session: &mut Session, path: &Path) -> Result<(), Failure> {
+/// Loads a saved run into the window, with its tuning, and releases the grabbed particle or sphere.
+/// Fails if the checkpoint cannot be read or is of another scene, or in a comparison.
+pub fn load(session: &mut Session, path: &Path) -> Result<(), Failure> {
     if session.runs.panes.len() > 1 {
         return Err(Failure::usage(
-            "a checkpoint has one run, so it cannot be opened beside others",
+            "a checkpoint holds one run, so it cannot be loaded into a comparison",
         ));
     }
     let kept = Kept::read(path)?;
     let origin = &session.scenes.shown;
     kept.check(path, &origin.source, origin.grid, session.runs.first())?;
     panel::tune(session, &kept.tuned);
-    let taken = session.take_up(&kept.checkpoint);
+    let taken = session.restore(&kept.checkpoint);
     taken.map_err(|why| Failure::usage(format!("{}: {why}", path.display())))?;
-    session.scenes.kept = Some(path.into());
+    session.scenes.checkpoint = Some(path.into());
     Ok(())
 }
 
@@ -47,7 +47,7 @@ mod tests {
     use crate::window::session::{RunAction, frames, session};
 
     #[test]
-    fn a_tuned_run_goes_on_from_its_file() {
+    fn a_tuned_run_continues_from_its_file() {
         let folder = tempfile::tempdir().unwrap();
         let scene = folder.path().join("own.toml");
         let text = a3_scenes::find("flag").unwrap().text;
@@ -56,18 +56,18 @@ mod tests {
         let mut first = session(&words);
         first.readings.in_window = true;
         first.act(RunAction::Panel, 0);
-        // Every row, solver and step too.
+        // Turn every row, including solver and step.
         for _ in 0..20 {
             press(&mut first, PanelKey::Down, false);
             press(&mut first, PanelKey::Right, true);
         }
         assert!(panel::tuned(&first).len() > 3, "{:?}", panel::tuned(&first));
         frames(&mut first, 0.5);
-        let path = keep(&mut first, 0).ok().unwrap();
+        let path = save(&mut first, 0).ok().unwrap();
         assert_eq!(path, folder.path().join("a3-flag-1.checkpoint"));
         let mut second = session(&words[2..]);
         second.readings.in_window = true;
-        take_up(&mut second, &path)
+        load(&mut second, &path)
             .map_err(|failure| failure.to_string())
             .unwrap();
         assert_eq!(panel::tuned(&first), panel::tuned(&second));
@@ -84,15 +84,15 @@ mod tests {
             )
         };
         assert!(seen(&first) == seen(&second));
-        // A run that is not tuned takes it back.
-        let plain = keep(&mut session(&words), 0).ok().unwrap();
-        take_up(&mut second, &plain)
+        // Loading an untuned run resets the tuning.
+        let plain = save(&mut session(&words), 0).ok().unwrap();
+        load(&mut second, &plain)
             .map_err(|failure| failure.to_string())
             .unwrap();
         assert_eq!(panel::tuned(&second), []);
         assert_eq!(second.runs.first().time(), 0.0);
         let mut other = session(&["r", "0.01"]);
-        let why = take_up(&mut other, &path).err().unwrap().to_string();
+        let why = load(&mut other, &path).err().unwrap().to_string();
         assert!(why.contains("of the scene flag, not of cloth"), "{why}");
     }
 }

@@ -1,4 +1,4 @@
-//! The window and the page: sessions, what stands over their pictures, and what the user does.
+//! The window and the page: sessions, the text over their pictures, and the input of the user.
 
 pub mod app;
 pub mod begin;

@@ -1,4 +1,4 @@
-//! `a3` and `a3 compare` in a window; without a display, its job is done without one.
+//! Opening `a3` and `a3 compare` in a window, or running them without one if there is no display.
 
 use std::path::PathBuf;
 
@@ -12,7 +12,8 @@ use crate::window::session::Session;
 use crate::window::settings::Settings;
 use crate::window::{begin, headless, keep};
 
-/// Opens the window on one run.
+/// Opens the window on one run, until it is closed. Fails if an option does not fit, or with the
+/// failure that closed the window.
 pub fn run(options: &WindowOptions) -> Result<(), Failure> {
     let mut session = begin::window(options)?;
     // The scene, its meshes and their buffers.
@@ -22,7 +23,7 @@ pub fn run(options: &WindowOptions) -> Result<(), Failure> {
         vec![]
     };
     if let Some(path) = &options.resume {
-        keep::take_up(&mut session, path)?;
+        keep::load(&mut session, path)?;
     }
     if let Some(i) = options.springs_of {
         terminal::say(&show::list_springs_of(session.runs.first(), i))?;
@@ -30,7 +31,7 @@ pub fn run(options: &WindowOptions) -> Result<(), Failure> {
     open(session, &options.look, files)
 }
 
-/// Opens the window on several runs.
+/// Opens the window on several runs, until it is closed. Fails as [`run`] does.
 pub fn compare(options: &Compare) -> Result<(), Failure> {
     open(begin::comparison(options)?, &options.look, vec![])
 }
@@ -39,7 +40,7 @@ fn open(session: Session, look: &Look, files: Vec<PathBuf>) -> Result<(), Failur
     let settings = if look.no_config {
         None
     } else {
-        // A file of another program, or of another version, is left as it is.
+        // A file of another program or version is not overwritten.
         Settings::read().map_err(|why| terminal::warn(&why)).ok()
     };
     match app::open(session, look.status, files, settings)? {

@@ -1,4 +1,4 @@
-//! Settings of the window that are remembered from one time to the next.
+//! Settings of the window that are saved between sessions.
 
 use std::path::{Path, PathBuf};
 #[cfg(not(target_arch = "wasm32"))]
@@ -13,35 +13,35 @@ use crate::base::failure::Failure;
 use crate::base::terminal;
 use crate::files::ending::Ending;
 use crate::files::output;
-use crate::window::session::{FILM_OF, SPAN};
+use crate::window::session::{DEFAULT_FILM_SECONDS, SPAN};
 
-/// Size of the largest file (bytes).
+/// Largest size of a settings file (bytes).
 #[cfg(not(target_arch = "wasm32"))]
-const LARGEST: u64 = 1 << 20;
-/// The most files that are remembered.
-const MOST: usize = 12;
-/// Factors of the size of text and panel.
+const MAX_FILE_SIZE: u64 = 1 << 20;
+/// Largest number of recent files.
+const MAX_RECENT_FILES: usize = 12;
+/// Scale factors that text and panel can have.
 pub const SCALES: [f32; 8] = [0.75, 0.9, 1.0, 1.15, 1.3, 1.5, 1.75, 2.0];
 
-/// What is not of a scene.
+/// The settings that do not belong to a scene.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Settings {
-    /// Size of text and panel over that of the screen's own scale.
+    /// Scale factor of text and panel, on top of the screen's own.
     pub interface_scale: f32,
     /// Whether the window fills the screen.
     pub full_screen: bool,
-    /// Whether the background is dark, and text light.
+    /// Whether the dark theme is on.
     pub dark: bool,
     /// Whether the panel is open.
     pub panel: bool,
-    /// The most frames a second, or 0 for as many as the screen shows.
+    /// Largest frame rate (1/s), or 0 for that of the screen.
     pub frame_limit: u32,
     /// The format of films.
     pub film: Ending,
-    /// Simulated time that a film of what was kept covers (s).
+    /// Simulated time that a film of the last seconds covers (s).
     pub film_seconds: f64,
-    /// Files of scenes, the one opened last first.
+    /// Scene files, the most recently opened first.
     pub recent: Vec<PathBuf>,
 }
 
@@ -54,14 +54,15 @@ impl Default for Settings {
             panel: false,
             frame_limit: 0,
             film: Ending::default(),
-            film_seconds: FILM_OF,
+            film_seconds: DEFAULT_FILM_SECONDS,
             recent: vec![],
         }
     }
 }
 
 impl Settings {
-    /// The settings in the user's folder, or the first ones where there are none yet.
+    /// Reads the settings from the user's folder; returns the defaults if there are none. Fails if
+    /// they cannot be read or are not valid.
     pub fn read() -> Result<Self, String> {
         Self::read_from(&file())
     }
@@ -75,7 +76,7 @@ impl Settings {
             let line = why
                 .span()
                 .map_or(1, |span| 1 + text[..span.start].matches('\n').count());
-            format!("{place}:{line}: this is no setting of a3")
+            format!("{place}:{line}: this is not a setting of a3")
         })?;
         let [least, .., most] = SCALES;
         let limit = f64::from(read.frame_limit);
@@ -96,35 +97,36 @@ impl Settings {
         Ok(read)
     }
 
-    /// Writes the settings to the user's folder.
+    /// Writes the settings to the user's folder. Fails if that is not possible.
     pub fn write(&self) -> Result<(), Failure> {
         self.write_to(&file())
     }
 
     fn write_to(&self, path: &Path) -> Result<(), Failure> {
         let text = toml::to_string(self).map_err(Failure::run)?;
-        keep(path, &text)
+        store(path, &text)
     }
 
-    /// Remembers files, the last one first, before those that were remembered already.
+    /// Puts `files`, the most recent first, before the recent files.
     pub fn remember(&mut self, files: impl Iterator<Item = PathBuf>) {
         let mut all: Vec<PathBuf> = files.chain(std::mem::take(&mut self.recent)).collect();
         let mut seen = std::collections::HashSet::new();
         all.retain(|file| seen.insert(file.clone()));
-        all.truncate(MOST);
+        all.truncate(MAX_RECENT_FILES);
         self.recent = all;
     }
 }
 
-/// The text of a file, if there is one.
+/// Reads the text of a file, `None` if it does not exist. Fails if it is not a regular file, too
+/// large, or unreadable.
 #[cfg(not(target_arch = "wasm32"))]
 fn text_of(path: &Path) -> Result<Option<String>, String> {
     let place = path.display();
     match fs::metadata(path) {
-        Ok(there) if there.is_file() && there.len() <= LARGEST => {}
+        Ok(there) if there.is_file() && there.len() <= MAX_FILE_SIZE => {}
         Ok(_) => {
             return Err(format!(
-                "{place}: it is no ordinary file of at most 1 MiB: the settings are neither read nor kept"
+                "{place}: this is not a regular file of at most 1 MiB: the settings are neither read nor saved"
             ));
         }
         Err(why) if why.kind() == io::ErrorKind::NotFound => return Ok(None),
@@ -135,9 +137,9 @@ fn text_of(path: &Path) -> Result<Option<String>, String> {
         .map_err(|why| format!("{place}: {}", terminal::reason(&why)))
 }
 
-/// Writes a file, in a folder that is made if it is not there.
+/// Writes a file, and creates its folder if need be. Fails if that is not possible.
 #[cfg(not(target_arch = "wasm32"))]
-fn keep(path: &Path, text: &str) -> Result<(), Failure> {
+fn store(path: &Path, text: &str) -> Result<(), Failure> {
     if let Some(folder) = path.parent() {
         fs::create_dir_all(folder)
             .map_err(|why| Failure::run(format!("{}: {why}", folder.display())))?;
@@ -145,29 +147,29 @@ fn keep(path: &Path, text: &str) -> Result<(), Failure> {
     output::write(path, text.as_bytes())
 }
 
-/// What the browser remembers under that name.
+/// Reads the text that the browser stores under a name.
 #[cfg(target_arch = "wasm32")]
 fn text_of(path: &Path) -> Result<Option<String>, String> {
     let storage = browser::storage();
     Ok(storage.and_then(|it| it.get_item(&path.to_string_lossy()).ok().flatten()))
 }
 
-/// Lets the browser remember a text under that name, if it does.
+/// Stores a text in the browser under a name, if the browser allows it.
 #[cfg(target_arch = "wasm32")]
-fn keep(path: &Path, text: &str) -> Result<(), Failure> {
+fn store(path: &Path, text: &str) -> Result<(), Failure> {
     if let Some(storage) = browser::storage() {
         let _ = storage.set_item(&path.to_string_lossy(), text);
     }
     Ok(())
 }
 
-/// What the browser remembers the settings by.
+/// Returns the name under which the browser stores the settings.
 #[cfg(target_arch = "wasm32")]
 fn file() -> PathBuf {
     "a3 settings".into()
 }
 
-/// The file of the settings.
+/// Returns the path of the settings file.
 #[cfg(not(target_arch = "wasm32"))]
 fn file() -> PathBuf {
     let named = |name| {
@@ -194,7 +196,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_was_written_is_read_again() {
+    fn written_settings_are_read_back() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a3").join("settings.toml");
         assert_eq!(Settings::read_from(&path), Ok(Settings::default()));
@@ -217,14 +219,14 @@ mod tests {
         assert_eq!(Settings::read_from(&path), Ok(settings));
     }
 
-    /// What is no file for settings is not waited for, and no more of it is read than a file has.
+    /// Devices and pipes are refused without blocking, and large files without reading them.
     #[test]
-    fn what_is_no_ordinary_file_is_passed_over() {
+    fn only_small_regular_files_are_read() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("settings.toml");
         let refused = |path: &Path| {
             let why = Settings::read_from(path).unwrap_err();
-            assert!(why.contains("no ordinary file of at most 1 MiB"), "{why}");
+            assert!(why.contains("not a regular file of at most 1 MiB"), "{why}");
         };
         refused(folder.path());
         fs::write(&path, vec![b'#'; (1 << 20) + 1]).unwrap();
@@ -240,7 +242,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_settings_is_refused_with_its_line() {
+    fn invalid_settings_are_refused_with_their_line() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("settings.toml");
         for (text, line) in [

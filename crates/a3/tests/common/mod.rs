@@ -1,4 +1,4 @@
-//! The program as it is typed, in a folder of its own.
+//! The program, run from its command line in a folder.
 
 #![allow(dead_code, reason = "not every test needs all of it")]
 
@@ -32,7 +32,7 @@ pin = [
 ]
 "#;
 
-/// Without a display.
+/// Returns a command that runs the program without a display.
 pub fn command(folder: &Path, words: &[&str]) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_a3"));
     command
@@ -44,7 +44,7 @@ pub fn command(folder: &Path, words: &[&str]) -> Command {
         .env_remove("DISPLAY")
         .env_remove("WAYLAND_DISPLAY")
         .env_remove("WAYLAND_SOCKET")
-        // A folder for the libraries that complain when there is none.
+        // Some libraries warn if this folder is not set.
         .env("XDG_RUNTIME_DIR", folder);
     command
 }
@@ -57,7 +57,7 @@ pub fn text(bytes: &[u8]) -> &str {
     std::str::from_utf8(bytes).unwrap()
 }
 
-/// The state that the program writes to standard output.
+/// Runs `a3 simulate`, and returns the state that it writes to standard output.
 pub fn simulate(folder: &Path, words: &[&str]) -> Value {
     let words = [&["simulate"], words, &["--output", "-"]].concat();
     let output = a3(folder, &words);
@@ -65,7 +65,7 @@ pub fn simulate(folder: &Path, words: &[&str]) -> Value {
     serde_json::from_slice(&output.stdout).unwrap()
 }
 
-/// The line on stderr, of a program that left with `code` and said nothing else.
+/// Returns the only line on stderr, of a program that exited with `code` and wrote nothing else.
 pub fn complaint(output: &Output, code: i32) -> String {
     let stderr = text(&output.stderr);
     assert_eq!(output.status.code(), Some(code), "{stderr}");
@@ -74,17 +74,17 @@ pub fn complaint(output: &Output, code: i32) -> String {
     stderr.trim_end().to_owned()
 }
 
-/// Says loudly what is not tested, unless that variable says that it has to be.
+/// Prints that a test is skipped, or fails if the variable `required` is set.
 pub fn skip(why: &str, required: &str) {
     assert!(
         std::env::var_os(required).is_none(),
         "{required} is set: {why}"
     );
-    // Past the test runner, which keeps what a passing test prints.
+    // Bypass the test runner, which hides the output of passing tests.
     let _ = writeln!(std::io::stderr(), "SKIPPED, NOT TESTED: {why}");
 }
 
-/// Whether there is no adapter to draw with.
+/// Returns whether there is no graphics adapter, with a message.
 pub fn gpu_is_missing(output: &Output) -> bool {
     let stderr = text(&output.stderr);
     let missing = stderr.contains("mesa-vulkan-drivers");
@@ -94,7 +94,7 @@ pub fn gpu_is_missing(output: &Output) -> bool {
     missing
 }
 
-/// Whether that program is not here: one of those that check what others wrote.
+/// Returns whether a program that checks files is missing, with a message.
 pub fn is_missing(program: &str) -> bool {
     let found = Command::new(program)
         .arg("-version")
@@ -109,7 +109,7 @@ pub fn is_missing(program: &str) -> bool {
     missing
 }
 
-/// What another program says of a file, which it must find well.
+/// Runs a program that checks files, and returns its output. It must succeed.
 pub fn asked(folder: &Path, program: &str, words: &[&str]) -> String {
     let output = Command::new(program)
         .args(words)

@@ -1,4 +1,4 @@
-//! The program in its window.
+//! A running program with its window.
 
 use std::collections::HashMap;
 use std::ffi::OsString;
@@ -10,7 +10,7 @@ use std::thread::sleep;
 use std::time::{Duration, Instant};
 use std::{env, fs};
 
-use crate::display::{Display, PATIENCE, until};
+use crate::display::{Display, MAX_WAIT, until};
 use crate::screen::Screen;
 
 fn first_in_path(folder: &Path) -> OsString {
@@ -23,17 +23,17 @@ fn first_in_path(folder: &Path) -> OsString {
     .unwrap()
 }
 
-/// The program in its window, gone when dropped.
+/// A running program with its window; killed when dropped.
 pub struct App<'d> {
     display: &'d Display,
     child: Child,
     pub window: String,
     lines: Arc<Mutex<Vec<String>>>,
-    /// What it wrote to its standard output.
+    /// Lines on its standard output so far.
     said: Arc<Mutex<Vec<String>>>,
 }
 
-/// Collects the lines of a stream as they come.
+/// Collects the lines of a stream on a thread.
 fn collect(stream: impl Read + Send + 'static) -> Arc<Mutex<Vec<String>>> {
     let lines = Arc::new(Mutex::new(vec![]));
     let sink = lines.clone();
@@ -46,8 +46,8 @@ fn collect(stream: impl Read + Send + 'static) -> Arc<Mutex<Vec<String>>> {
 }
 
 impl<'d> App<'d> {
-    /// Starts the program. Now and then its window does not show up, and why is not known: up to
-    /// three tries, said aloud.
+    /// Starts the program, and tries up to three times, with a message: occasionally its window
+    /// does not appear, for an unknown reason.
     pub fn open(display: &'d Display, folder: &Path, words: &[&str]) -> Self {
         (0..3)
             .find_map(|_| Self::try_open(display, folder, words))
@@ -64,7 +64,7 @@ impl<'d> App<'d> {
             .stdout(Stdio::piped())
             .env("XDG_CACHE_HOME", folder)
             .env("XDG_CONFIG_HOME", folder)
-            // A test may put programs there that are found before the system's own.
+            // A test may put programs there that replace the system's own.
             .env("PATH", first_in_path(folder))
             .stderr(Stdio::piped())
             .spawn()
@@ -83,7 +83,7 @@ impl<'d> App<'d> {
                     lines.lock().unwrap()
                 );
             }
-            if begun.elapsed() > PATIENCE / 3 {
+            if begun.elapsed() > MAX_WAIT / 3 {
                 child.kill().unwrap();
                 child.wait().unwrap();
                 let lines = lines.lock().unwrap();
@@ -106,11 +106,12 @@ impl<'d> App<'d> {
         Some(app)
     }
 
-    /// What it wrote to its standard output so far.
+    /// Returns its standard output so far.
     pub fn said(&self) -> String {
         self.said.lock().unwrap().join("\n")
     }
 
+    /// Returns the last status line, by its keys.
     pub fn status(&self) -> Option<HashMap<String, String>> {
         let lines = self.lines.lock().unwrap();
         let line = lines
@@ -137,7 +138,7 @@ impl<'d> App<'d> {
         self.status()?.get(key)?.parse().ok()
     }
 
-    /// Left and top of the window on the screen.
+    /// Returns left and top of the window on the screen (px).
     pub fn corner(&self) -> (i32, i32) {
         let text = self
             .display
@@ -150,6 +151,7 @@ impl<'d> App<'d> {
         (value("X="), value("Y="))
     }
 
+    /// Waits until a key of the status has a value.
     pub fn expect(&self, key: &str, value: &str) {
         until(&format!("{key}={value}, is {}", self.get(key)), || {
             (self.get(key) == value).then_some(())
@@ -166,15 +168,16 @@ impl<'d> App<'d> {
         self.expect(name, value);
     }
 
-    pub fn frames_go_on(&self) {
+    /// Waits for further frames.
+    pub fn expect_frames(&self) {
         let before = self.number("frames").unwrap();
         until("more frames", || {
             (self.number("frames")? > before + 2.0).then_some(())
         });
     }
 
-    /// Waits until what is paused is drawn, and looks.
-    pub fn settled(&self) -> Screen {
+    /// Waits until a paused program draws no more, and returns the screen.
+    pub fn still_screen(&self) -> Screen {
         let mut last = self.display.screen();
         until("a still picture", || {
             sleep(Duration::from_millis(250));

@@ -1,4 +1,4 @@
-//! Lists of scenes and solvers, by typing and by the mouse; and the command line of now.
+//! Choosing scenes and solvers in lists, by typing and by the mouse; and copying the command line.
 
 use std::fs;
 use std::process::Stdio;
@@ -13,7 +13,7 @@ fn lists() {
     };
     let folder = tempfile::tempdir().unwrap();
     let app = App::open(&display, folder.path(), &["t", "0.01"]);
-    // Letters are typed, and mean no keys: t would show the next scene, and Esc would quit.
+    // In a list, letters are typed: otherwise t would show the next scene, and Esc would quit.
     app.press_for("o", "list", "true");
     for letter in ["d", "o", "u", "b", "t"] {
         app.press(letter);
@@ -25,14 +25,14 @@ fn lists() {
     app.press_for("Next", "scene", "double-pendulum");
     app.press_for("o", "list", "true");
     app.press_for("Escape", "list", "false");
-    // By arrows: the solver below the one that runs.
+    // By arrows: choose the solver below the present one.
     app.press_for("e", "list", "true");
     app.press("Down");
     app.press_for("Return", "solver", "midpoint");
-    // By the mouse: an entry, and nothing.
+    // By the mouse: click an entry, then outside the list.
     app.press_for("space", "paused", "true");
     app.press_for("o", "list", "true");
-    app.settled();
+    app.still_screen();
     display.xdotool(&["mousemove", "--window", &app.window, "640", "400"]);
     display.xdotool(&["click", "1"]);
     app.expect("list", "false");
@@ -46,13 +46,13 @@ fn lists() {
 }
 
 #[test]
-fn the_command_line_of_now() {
+fn copying_the_command_line() {
     let Some(display) = Display::open() else {
         return;
     };
     let folder = tempfile::tempdir().unwrap();
     let words = ["v", "0.005", "--scene", "chain", "--paused"];
-    // The clipboard belongs to the program while it runs.
+    // The clipboard is lost when the program ends.
     let app = App::open(&display, folder.path(), &words);
     app.press("y");
     until("a line on the terminal", || {

@@ -5,7 +5,7 @@ use crate::display::{Display, until};
 use crate::keys::SCENES;
 use crate::screen::{Screen, is_amber, is_red};
 
-/// Where the hands are in the left and in the right pane (px).
+/// Returns the positions of the grabbed particles in the left and the right pane (px).
 fn hands(app: &App) -> Option<((i32, i32), (i32, i32))> {
     let hands = app.get("hands");
     let place = |hand: &str| {
@@ -16,7 +16,7 @@ fn hands(app: &App) -> Option<((i32, i32), (i32, i32))> {
     Some((place(a)?, place(b)?))
 }
 
-/// Both panes are coloured by their errors, and then as they were.
+/// Colours both panes by their errors, and then as before.
 #[test]
 fn errors_in_colour() {
     let Some(display) = Display::open() else {
@@ -40,7 +40,7 @@ fn errors_in_colour() {
     });
 }
 
-/// Several methods at the same time: each in its pane, with its own error; keys and hands for all.
+/// Each method has its pane and its error; keys and pulls act on all.
 #[test]
 fn comparing() {
     let Some(display) = Display::open() else {
@@ -62,7 +62,7 @@ fn comparing() {
     let (a, b) = both("times").unwrap();
     assert!((a - b).abs() < 0.051, "{a} {b}");
 
-    // Plus is for all; a digit for the pane under the pointer.
+    // Plus acts on all panes, a digit on the pane under the pointer.
     app.press_for("plus", "step_sizes", "0.06,0.06");
     display.xdotool(&["mousemove", "--window", &app.window, "1000", "600"]);
     app.press_for("2", "solvers", "euler,trapezoid");
@@ -75,14 +75,14 @@ fn comparing() {
     let picture = image::open(&picture).unwrap();
     assert_eq!((picture.width(), picture.height()), (1280, 720));
 
-    // Sizes in which the panes are elsewhere.
+    // Sizes with other layouts of the panes.
     for (width, height) in [("260", "860"), ("90", "70"), ("1280", "720")] {
         display.xdotool(&["windowsize", &app.window, width, height]);
         app.expect("size", &format!("{width}x{height}"));
-        app.frames_go_on();
+        app.expect_frames();
     }
 
-    // The next scene is there in both panes, and a pull in the right one is a pull in both.
+    // Another scene is shown in both panes, and a pull in the right one acts on both.
     for scene in &SCENES[1..] {
         app.press_for("t", "scene", scene);
     }
@@ -123,7 +123,7 @@ fn comparing() {
         let moved = b.0.abs_diff(near.0 + 60) < 4 && b.1.abs_diff(near.1 - 40) < 4;
         (moved && a.0.abs_diff(b.0 - 641) < 4 && a.1.abs_diff(b.1) < 4).then_some(())
     });
-    // A fold of the cloth may lie before a mark for a while.
+    // A fold of the cloth may hide a mark for a while.
     let mut elsewhere = [(-120, -60), (60, -40)].into_iter().cycle();
     until("a mark in each pane", || {
         let marked = halves(&display.screen(), is_amber);
@@ -138,9 +138,9 @@ fn comparing() {
     app.expect("grabbed", "-");
     app.expect("lost", "false,false");
 
-    // The device is lost, and both pictures come back.
+    // Both pictures come back after the loss of the device.
     app.press_for("F12", "devices", "2");
-    app.frames_go_on();
+    app.expect_frames();
     assert!(
         halves(&display.screen(), is_red)
             .into_iter()

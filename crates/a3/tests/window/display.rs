@@ -10,8 +10,10 @@ use std::time::{Duration, Instant};
 use crate::screen::Screen;
 use tempfile::TempDir;
 
-pub const PATIENCE: Duration = Duration::from_secs(30);
+/// Longest time to wait for anything.
+pub const MAX_WAIT: Duration = Duration::from_secs(30);
 
+/// Returns a command without input and output.
 pub fn quiet(program: &str) -> Command {
     let mut command = Command::new(program);
     command
@@ -21,31 +23,33 @@ pub fn quiet(program: &str) -> Command {
     command
 }
 
+/// Waits until `probe` returns something, and returns it.
 pub fn until<T>(what: &str, mut probe: impl FnMut() -> Option<T>) -> T {
     let begun = Instant::now();
     loop {
         if let Some(found) = probe() {
             return found;
         }
-        assert!(begun.elapsed() < PATIENCE, "waited in vain: {what}");
+        assert!(begun.elapsed() < MAX_WAIT, "waited in vain: {what}");
         sleep(Duration::from_millis(20));
     }
 }
 
-/// One display at a time: two servers and two software renderers on two cores are in one another's
-/// way.
-static TURN: Mutex<()> = Mutex::new(());
+/// Lock for one display at a time: two servers and two software renderers would slow each other
+/// down on two cores.
+static DISPLAY_LOCK: Mutex<()> = Mutex::new(());
 
-/// A display with a window manager, gone when dropped.
+/// A virtual display with a window manager; closed when dropped.
 pub struct Display {
     server: Child,
     manager: Child,
     name: String,
     folder: TempDir,
-    _turn: MutexGuard<'static, ()>,
+    _lock: MutexGuard<'static, ()>,
 }
 
 impl Display {
+    /// Opens a display, or returns `None`, with a message, if a tool is missing.
     pub fn open() -> Option<Self> {
         let missing: Vec<_> = ["Xvfb", "openbox", "xdotool", "wmctrl", "xclip"]
             .into_iter()
@@ -61,15 +65,15 @@ impl Display {
                 std::env::var_os("A3_REQUIRE_DISPLAY").is_none(),
                 "A3_REQUIRE_DISPLAY is set: no {missing:?}"
             );
-            // Past the test runner, which keeps what a passing test prints.
+            // Bypass the test runner, which hides the output of passing tests.
             let _ = writeln!(
                 std::io::stderr(),
                 "SKIPPED, NOT TESTED: the window needs {missing:?}"
             );
             return None;
         }
-        // A test that failed has had its turn all the same.
-        let turn = TURN.lock().unwrap_or_else(PoisonError::into_inner);
+        // A failed test has released the display too.
+        let lock = DISPLAY_LOCK.lock().unwrap_or_else(PoisonError::into_inner);
         let folder = tempfile::tempdir().unwrap();
         let mut server = quiet("Xvfb")
             .args([
@@ -98,9 +102,9 @@ impl Display {
             manager,
             name,
             folder,
-            _turn: turn,
+            _lock: lock,
         };
-        // A window that is mapped before the manager is up gets no focus.
+        // A window that opens before the manager runs gets no focus.
         until("a window manager", || {
             display
                 .command("wmctrl")
@@ -131,7 +135,7 @@ impl Display {
         String::from_utf8(output.stdout).unwrap()
     }
 
-    /// The screen as it is: red, green and blue by rows.
+    /// Returns the present contents of the screen.
     pub fn screen(&self) -> Screen {
         let file = self.folder.path().join("Xvfb_screen0");
         Screen::of(&fs::read(file).unwrap())

@@ -1,5 +1,4 @@
-//! Films of what the window shows: of the seconds that it keeps, from now on, and completed when it
-//! closes.
+//! Films of the window: of the last seconds, live, and completed when the window closes.
 
 use std::fs::File;
 use std::io::BufReader;
@@ -11,14 +10,15 @@ use image::codecs::gif::GifDecoder;
 use crate::app::App;
 use crate::display::{Display, until};
 
-/// The frames of a GIF.
+/// Returns the frames of a GIF.
 fn frames(path: &Path) -> Vec<image::Frame> {
     let file = BufReader::new(File::open(path).unwrap());
     let frames = GifDecoder::new(file).unwrap().into_frames();
     frames.collect_frames().unwrap()
 }
 
-/// Checks a film: so many frames at least, of 50 ms, of which hardly any is as the one before.
+/// Checks that a film has at least `least` frames of 50 ms, of which fewer than a third equal the
+/// previous one.
 fn check(path: &Path, least: usize) {
     until("a film", || path.exists().then_some(()));
     let frames = frames(path);
@@ -30,7 +30,7 @@ fn check(path: &Path, least: usize) {
     }
     assert!(
         3 * same < frames.len(),
-        "{same} of {} as the one before",
+        "{same} of {} equal the previous one",
         frames.len()
     );
 }
@@ -51,18 +51,18 @@ fn filming() {
     };
     let file = |name: &str| folder.path().join(name);
     later(1.5);
-    // What was kept, while the window goes on.
+    // The last seconds, while the run continues.
     app.press_for("n", "film", "true");
     later(0.1);
     app.expect("film", "false");
     check(&file("a3-chain-1.gif"), 25);
-    // From now on, until the key is pressed again.
+    // A live film, until the key is pressed again.
     app.press_for("m", "film", "true");
     later(1.0);
     assert_eq!(app.get("film"), "true");
     app.press_for("m", "film", "false");
     check(&file("a3-chain-2.gif"), 18);
-    // As numbered pictures: the last row of the panel but one.
+    // Numbered pictures: the second last row of the panel.
     app.press_for("Tab", "panel", "true");
     for key in ["Up", "Up", "Left"] {
         app.press(key);
@@ -70,11 +70,11 @@ fn filming() {
     app.press_for("Tab", "panel", "false");
     app.press_for("m", "film", "true");
     later(0.5);
-    // Another scene ends it.
+    // Another scene ends a live film.
     app.press_for("t", "film", "false");
     let pictures = (1..).take_while(|k| file(&format!("a3-chain-1-{k:04}.png")).exists());
     assert!(pictures.count() >= 12);
-    // The window closes: the film is complete all the same.
+    // Closing the window completes the film.
     app.press_for("Prior", "scene", "chain");
     later(1.0);
     app.press_for("n", "film", "true");

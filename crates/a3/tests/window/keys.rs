@@ -1,4 +1,4 @@
-//! Keys: what each changes, while the simulation runs, is paused, or has blown up.
+//! Keys: the effect of each while a run advances, is paused, or has blown up.
 
 use std::thread::sleep;
 use std::time::{Duration, Instant};
@@ -7,7 +7,7 @@ use crate::app::App;
 use crate::display::{Display, until};
 use crate::screen::is_red;
 
-/// In the order of key t, after the cloth.
+/// The scenes in the order of key t, after the cloth.
 pub const SCENES: [&str; 16] = [
     "simple",
     "pendulum",
@@ -43,7 +43,7 @@ fn keys() {
         assert_eq!(app.get(key), value);
     }
 
-    // Simulated time keeps up with real time, in steps of exactly that size.
+    // Simulated time keeps up with real time, in steps of exactly the chosen size.
     let (time, begun) = (app.number("time").unwrap(), Instant::now());
     sleep(Duration::from_secs(2));
     let factor = (app.number("time").unwrap() - time) / begun.elapsed().as_secs_f64();
@@ -91,16 +91,16 @@ fn keys() {
 }
 
 #[test]
-fn pausing_looking_and_help() {
+fn pausing_the_camera_and_help() {
     let Some(display) = Display::open() else {
         return;
     };
     let folder = tempfile::tempdir().unwrap();
     let app = App::open(&display, folder.path(), &["t", "0.01"]);
 
-    // Paused it stands still, costs nothing, and takes single steps.
+    // A paused run stands still, takes no computing time, and takes single steps.
     app.press_for("space", "paused", "true");
-    let shaded = app.settled();
+    let shaded = app.still_screen();
     let (steps, ticks) = (app.number("steps").unwrap(), app.processor_ticks());
     sleep(Duration::from_secs(2));
     assert!(
@@ -121,16 +121,16 @@ fn pausing_looking_and_help() {
         shaded.count(is_red)
     );
     app.press_for("w", "style", "Wireframe");
-    let wires = app.settled();
+    let wires = app.still_screen();
     assert!(
         wires.count(is_red) < 100,
         "{} red pixels",
         wires.count(is_red)
     );
     assert!(wires.difference(&shaded) > 2.0);
-    // All springs are wires in three colours.
+    // The springs have three colours.
     app.press_for("w", "style", "Springs");
-    let springs = app.settled();
+    let springs = app.still_screen();
     assert!(springs.difference(&wires) > 1.0);
     let amber = |[r, g, b]: [u8; 3]| r > 180 && g > 100 && r - 30 > g && g - 30 > b;
     let violet = |[r, g, b]: [u8; 3]| b > 120 && r > 60 && b - 20 > r && r - 20 > g;
@@ -142,8 +142,8 @@ fn pausing_looking_and_help() {
     }
     app.press_for("w", "style", "Shaded");
 
-    // Help comes and goes without a trace.
-    let before = app.settled();
+    // Closing the help restores the picture.
+    let before = app.still_screen();
     app.press_for("h", "help", "true");
     until("the help", || {
         (display.screen().difference(&before) > 1.0).then_some(())
@@ -153,7 +153,7 @@ fn pausing_looking_and_help() {
         (display.screen().difference(&before) < 0.1).then_some(())
     });
 
-    // Wheel and drag move the camera, c brings it home.
+    // Wheel and drag move the camera, and c resets it.
     display.xdotool(&[
         "mousemove",
         "--window",
@@ -191,7 +191,7 @@ fn pausing_looking_and_help() {
     assert!(app.exit().success());
 }
 
-/// When a run blows up, the window says so, stands still, and starts again with r.
+/// When a run blows up, the window says so and stands still, and key r starts the run again.
 #[test]
 fn blowing_up() {
     let Some(display) = Display::open() else {
@@ -203,9 +203,9 @@ fn blowing_up() {
     let steps = app.number("steps").unwrap();
     sleep(Duration::from_millis(500));
     assert_eq!(app.number("steps").unwrap(), steps);
-    // In red, on the sheet below the first one, where nothing else can be red.
+    // The text is red, on the second sheet, where nothing else can be red.
     let (left, top) = app.corner();
-    let screen = app.settled();
+    let screen = app.still_screen();
     let told = screen.count_within(left + 12..left + 320, top + 200..top + 300, |[r, g, b]| {
         r > 150 && g < 90 && b < 90
     });
@@ -217,7 +217,7 @@ fn blowing_up() {
         (app.number("step")? < 0.0003).then_some(())
     });
     app.press_for("r", "blown", "false");
-    app.frames_go_on();
+    app.expect_frames();
     app.press("Escape");
     assert!(app.exit().success());
 }

@@ -1,4 +1,4 @@
-//! Key F1: the lessons, by the system's opener.
+//! Key F1, which opens the lessons with the system's opener.
 
 use std::fs;
 use std::os::unix::fs::PermissionsExt;
@@ -27,5 +27,5 @@ fn a_key_opens_the_lessons() {
     assert_eq!(asked.trim_end(), index.to_str().unwrap());
     let page = fs::read_to_string(index).unwrap();
     assert!(page.starts_with("# Lessons"), "{page}");
-    app.frames_go_on();
+    app.expect_frames();
 }

@@ -1,8 +1,8 @@
-//! The window for real: the built program on a virtual display, with real keys, a real mouse and a
-//! window manager.
+//! Tests of the built program in its window, on a virtual display with keys, a mouse and a window
+//! manager.
 //!
-//! Needs Xvfb, openbox, xdotool, wmctrl and xclip. Without them the tests are skipped with a loud
-//! word, unless `A3_REQUIRE_DISPLAY` forbids that.
+//! They need Xvfb, openbox, xdotool, wmctrl and xclip. Without these they are skipped with a
+//! message, or fail if `A3_REQUIRE_DISPLAY` is set.
 
 #![cfg(target_os = "linux")]
 #![allow(missing_docs, reason = "a test")]

@@ -1,4 +1,4 @@
-//! The mouse: pulling, pinning and listing springs; and going back in time along the bar.
+//! The mouse: pulling, pinning, listing springs, drawing boxes, and going back on the timeline.
 
 use std::thread::sleep;
 use std::time::{Duration, Instant};
@@ -17,7 +17,7 @@ fn pulling() {
     until("the cloth to hang", || {
         (app.number("time")? > 2.0).then_some(())
     });
-    // Places in the window from now on.
+    // Convert to positions in the window.
     let (x, y) = display.screen().middle(is_red);
     let (left, top) = app.corner();
     let (x, y) = (x - left, y - top);
@@ -30,7 +30,7 @@ fn pulling() {
             &y.to_string(),
         ]);
     };
-    // The pointer says what a press would do.
+    // The shape of the pointer tells the effect of a press.
     go(30, 600);
     app.expect("cursor", "Default");
     go(x, y);
@@ -51,8 +51,7 @@ fn pulling() {
         hx.abs_diff(x) < 40 && hy.abs_diff(y) < 40,
         "the particle {hx},{hy} is near the pointer {x},{y}"
     );
-    // A fast drag: all of the way at once, then here and there. The particle stays where it is
-    // under the pointer.
+    // A fast drag, in jumps: the particle keeps its offset from the pointer.
     let (mut seen, off) = (0, (hx - x, hy - y));
     for (dx, dy) in [(150, -60), (-170, -40), (120, 60)] {
         go(x + dx, y + dy);
@@ -61,14 +60,14 @@ fn pulling() {
             (hx.abs_diff(x + dx + off.0) < 3 && hy.abs_diff(y + dy + off.1) < 3).then_some(())
         });
         assert_eq!(app.get("grabbed"), particle);
-        app.frames_go_on();
+        app.expect_frames();
         seen = seen.max(display.screen().count(is_amber));
     }
-    assert!(seen > 10, "the particle in the hand is marked");
+    assert!(seen > 10, "the grabbed particle is marked");
     display.xdotool(&["mouseup", "1"]);
     app.expect("grabbed", "-");
     app.expect("blown", "false");
-    // Off the cloth there is nothing to grab.
+    // Beside the cloth, there is nothing to grab.
     display.xdotool(&[
         "mousemove",
         "--window",
@@ -78,7 +77,7 @@ fn pulling() {
         "mousedown",
         "1",
     ]);
-    app.frames_go_on();
+    app.expect_frames();
     assert_eq!(app.get("grabbed"), "-");
     display.xdotool(&["mouseup", "1"]);
     go(x, y);
@@ -89,14 +88,14 @@ fn pulling() {
     until("a particle to follow", || {
         (app.get("followed") != "-").then_some(())
     });
-    // Where nothing is, the camera stays.
+    // Where there is no particle, the camera stops following.
     go(30, 600);
     app.press_for("j", "followed", "-");
     app.press("Escape");
     assert!(app.exit().success());
 }
 
-/// A right click pins and lets go, a right drag does not; a double click lists springs; time goes
+/// A right click pins and frees, a right drag does not; a double click lists springs; time goes
 /// slowly, and back.
 #[test]
 fn clicks_slow_motion_and_going_back() {
@@ -125,7 +124,7 @@ fn clicks_slow_motion_and_going_back() {
     until("the same time", || {
         (app.number("time")? == now).then_some(())
     });
-    // Along the bar.
+    // Drag along the timeline.
     app.press_for("comma", "scrubbed", "true");
     let go = |x: &str| display.xdotool(&["mousemove", "--window", &app.window, x, "682"]);
     go("800");
@@ -155,11 +154,11 @@ fn clicks_slow_motion_and_going_back() {
     app.expect("pins", "20");
     click(&["click", "--repeat", "2", "--delay", "60", "1"]);
     until("springs", || (app.get("springs_of") != "-").then_some(()));
-    // Two clicks far apart are not one of two.
+    // Two clicks far apart are no double click.
     let beside = |x: &'static str| ["mousemove", "--window", &app.window, x, "600", "click", "1"];
     display.xdotool(&[beside("1100"), beside("1200")].concat());
-    // A paused run draws a frame only where something changed.
-    let before = app.settled();
+    // A paused run draws frames only after a change.
+    let before = app.still_screen();
     assert_ne!(app.get("springs_of"), "-");
     click(&[
         "mousedown",
@@ -181,8 +180,8 @@ fn clicks_slow_motion_and_going_back() {
     assert!(app.exit().success());
 }
 
-/// With Shift, the left button draws a box and pins what is in it, and the right one lets go;
-/// Delete lets go of all; z takes that back, and with Shift does it again.
+/// With Shift, the left button draws a box and pins the particles in it, and the right one frees
+/// them. Delete frees all. Key z undoes that, and with Shift redoes it.
 #[test]
 fn boxes_and_undoing() {
     let Some(display) = Display::open() else {
@@ -212,13 +211,13 @@ fn boxes_and_undoing() {
     app.press_for("z", "pins", "20");
     // A box around nothing changes nothing.
     drag("1", ["20", "500"], ["60", "600"]);
-    app.settled();
+    app.still_screen();
     app.expect("pins", "20");
-    // A slider that was dragged is one change.
+    // A drag of a slider is one change.
     app.press_for("Tab", "panel", "true");
     let slide = |words: &[&str]| {
         display.xdotool(&[&["mousemove", "--window", &app.window], words].concat());
-        app.settled();
+        app.still_screen();
     };
     slide(&["1120", "70"]);
     slide(&["1120", "70", "mousedown", "1"]);

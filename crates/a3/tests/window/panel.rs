@@ -1,10 +1,10 @@
-//! The panel of what can be tuned.
+//! The panel: tuning, and saving a tuned run.
 
 use crate::app::App;
 use crate::display::{Display, until};
 
-/// By keys and by the mouse, which turns nothing else then; and what was tuned is written and goes
-/// on.
+/// Knobs turn by keys and by the mouse, which then acts on nothing else; a scene file keeps the
+/// tuning.
 #[test]
 fn tuning() {
     let Some(display) = Display::open() else {
@@ -18,24 +18,24 @@ fn tuning() {
     app.press_for("shift+Right", "step", "0.0129");
     app.press_for("Return", "step", "0.01");
     app.press_for("s", "swing", "true");
-    // The slider of the same row: to its end, past the panel's edge.
+    // Drag the slider of the same row to its end, past the edge of the panel.
     let slide = |words: &[&str]| {
         display.xdotool(&[&["mousemove", "--window", &app.window], words].concat());
     };
     slide(&["1120", "70", "mousedown", "1"]);
-    app.frames_go_on();
+    app.expect_frames();
     slide(&["700", "300"]);
     app.expect("step", "0.00001");
     assert_eq!(app.get("grabbed"), "-");
     display.xdotool(&["mouseup", "1"]);
-    app.frames_go_on();
+    app.expect_frames();
     slide(&["1250", "70", "click", "--repeat", "2", "--delay", "60", "1"]);
     app.expect("step", "0.01");
-    // Typed: letters and Esc are no keys then.
+    // While a value is typed, letters and Esc do not act as keys.
     slide(&["1250", "70"]);
     std::thread::sleep(std::time::Duration::from_millis(600));
     display.xdotool(&["click", "1"]);
-    app.frames_go_on();
+    app.expect_frames();
     display.xdotool(&["type", "0.t"]);
     app.press("BackSpace");
     display.xdotool(&["type", "02"]);
@@ -68,9 +68,9 @@ fn tuning() {
     assert!(app.exit().success());
 }
 
-/// By key k, and taken up by key l and by the command line: where it was, tuned alike.
+/// Key k saves the run, and key l and the command line load it, with its tuning.
 #[test]
-fn keeping() {
+fn saving_and_loading() {
     let Some(display) = Display::open() else {
         return;
     };

@@ -1,4 +1,4 @@
-//! What the window remembers from one time to the next.
+//! Settings that are saved between windows.
 
 use std::fs;
 
@@ -24,7 +24,7 @@ fn settings_come_back_unless_they_are_not_wanted() {
     app.press_for("ctrl+plus", "scale", "1.15");
     app.press_for("ctrl+plus", "scale", "1.3");
     app.press_for("ctrl+minus", "scale", "1.15");
-    // The step and the solver are not meant then.
+    // With Ctrl, plus and minus do not change the step.
     app.expect("step", "0.01");
     app.press("Escape");
     assert!(app.exit().success());
@@ -36,7 +36,7 @@ fn settings_come_back_unless_they_are_not_wanted() {
     app.expect("scale", "1.15");
     app.expect("dark", "true");
     app.press_for("ctrl+0", "scale", "1");
-    // The file of then is in the list.
+    // The file of the earlier window is in the list.
     app.press_for("o", "list", "true");
     for letter in ["o", "w", "n"] {
         app.press(letter);
@@ -51,7 +51,7 @@ fn settings_come_back_unless_they_are_not_wanted() {
     app.press_for("Tab", "panel", "false");
     app.press("Escape");
     assert!(app.exit().success());
-    // What is no settings is said, and left as it is.
+    // An invalid settings file is reported and not overwritten.
     fs::write(&file, "colour = 'red'\n").unwrap();
     let app = App::open(&display, folder.path(), &[]);
     app.expect("panel", "false");

@@ -7,17 +7,18 @@ pub struct Screen {
     pixels: Vec<[u8; 3]>,
 }
 
+/// Returns whether a pixel has the red of surfaces and balls.
 pub fn is_red([r, g, b]: [u8; 3]) -> bool {
     r > 100 && r / 2 > g && r / 2 > b
 }
 
-/// The grabbed particle's ball.
+/// Returns whether a pixel has the colour of the ball at a grabbed particle.
 pub fn is_amber([r, g, b]: [u8; 3]) -> bool {
     r > 170 && g > 100 && g < r && u16::from(b) * 2 < u16::from(g) + 60 && b < 110
 }
 
 impl Screen {
-    /// The screen of an XWD file, which the server keeps up to date.
+    /// Reads the screen from the XWD file of the server.
     pub fn of(bytes: &[u8]) -> Self {
         let word =
             |k: usize| u32::from_be_bytes(bytes[4 * k..4 * k + 4].try_into().unwrap()) as usize;
@@ -59,7 +60,7 @@ impl Screen {
             .count()
     }
 
-    /// Mean difference of the channels.
+    /// Returns the mean absolute difference of the channels, from 0 to 255.
     pub fn difference(&self, other: &Self) -> f64 {
         let pairs = self
             .pixels
@@ -70,7 +71,7 @@ impl Screen {
             / (3.0 * self.pixels.len() as f64)
     }
 
-    /// The middle of the pixels that are like that.
+    /// Returns the mean position of the pixels for which `is` is true.
     pub fn middle(&self, is: impl Fn([u8; 3]) -> bool) -> (i32, i32) {
         let places: Vec<_> = (0..self.pixels.len())
             .filter(|k| is(self.pixels[*k]))

@@ -22,9 +22,9 @@ fn sizes_minimising_a_lost_device_and_closing() {
     ] {
         display.xdotool(&["windowsize", &app.window, width, height]);
         app.expect("size", &format!("{width}x{height}"));
-        app.frames_go_on();
+        app.expect_frames();
     }
-    // A flood of sizes.
+    // Many sizes in quick succession.
     for k in 0..40 {
         display.xdotool(&[
             "windowsize",
@@ -46,17 +46,17 @@ fn sizes_minimising_a_lost_device_and_closing() {
     );
     display.xdotool(&["windowmap", &app.window, "windowactivate", &app.window]);
     app.expect("visible", "true");
-    app.frames_go_on();
+    app.expect_frames();
     assert!(
         app.number("time").unwrap() < time + 1.5,
         "time ran on while minimised"
     );
 
-    // The device is lost, and the picture comes back, the simulation untouched.
+    // After the loss of the device, the picture comes back, and the run continues.
     for lost in 1..=3 {
         let steps = app.number("steps").unwrap();
         app.press_for("F12", "devices", &(1 + lost).to_string());
-        app.frames_go_on();
+        app.expect_frames();
         assert!(app.number("steps").unwrap() > steps);
     }
     assert!(display.screen().count(is_red) > 10_000);

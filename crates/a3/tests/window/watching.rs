@@ -1,4 +1,4 @@
-//! Scene files that are loaded again when they change.
+//! Reloading of changed scene files.
 
 use std::fs;
 use std::thread::sleep;
@@ -7,8 +7,8 @@ use std::time::Duration;
 use crate::app::App;
 use crate::display::Display;
 
-/// A scene file that is saved is loaded again; one with a fault leaves the scene as it is, until it
-/// is mended. Also while all stands still.
+/// A changed scene file is reloaded, also while the run is paused. A file with an error leaves the
+/// scene unchanged until it is corrected.
 #[test]
 fn watching() {
     let Some(display) = Display::open() else {
@@ -28,13 +28,13 @@ fn watching() {
         &["--scene", "mine.toml", "--watch"],
     );
     app.expect("pins", "5");
-    app.frames_go_on();
+    app.expect_frames();
     save("0.005", "'top-left', 'top-right'");
     app.expect("pins", "2");
     app.expect("step", "0.005");
     fs::write(&file, "step = 0.002\n[[cloth]]\ngrid = [5,").unwrap();
     sleep(Duration::from_secs(1));
-    app.frames_go_on();
+    app.expect_frames();
     assert_eq!(
         (app.get("pins"), app.get("step")),
         ("2".into(), "0.005".into())

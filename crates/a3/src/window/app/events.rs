@@ -27,17 +27,19 @@ impl ApplicationHandler<Event> for App {
         }
         self.screen.set_title(&self.session);
         self.open_graphics(event_loop);
-        self.last = Instant::now();
+        self.last_tick = Instant::now();
     }
 
     #[cfg(target_arch = "wasm32")]
     fn user_event(&mut self, event_loop: &ActiveEventLoop, event: Event) {
         match event {
             Event::Opened(opened) => {
-                let opened = self.outside.opened(opened, &self.screen, &self.session);
+                let opened = self
+                    .platform
+                    .finish_opening(opened, &self.screen, &self.session);
                 if let Some(graphics) = opened {
-                    self.take_graphics(event_loop, graphics);
-                    self.last = Instant::now();
+                    self.set_graphics(event_loop, graphics);
+                    self.last_tick = Instant::now();
                 }
             }
             Event::Open(path) => {
@@ -51,12 +53,12 @@ impl ApplicationHandler<Event> for App {
     }
 
     fn about_to_wait(&mut self, _: &ActiveEventLoop) {
-        // While all moves, each frame looks.
+        // While the runs advance, each frame does this.
         if self.screen.visible
             && !self.session.animated()
             && self
                 .mouse
-                .look(self.held.shift_key(), &mut self.session, &self.screen)
+                .update_hover(self.modifiers.shift_key(), &mut self.session, &self.screen)
         {
             self.screen.redraw();
         }
@@ -64,7 +66,7 @@ impl ApplicationHandler<Event> for App {
 
     fn exiting(&mut self, _: &ActiveEventLoop) {
         let graphics = self.screen.graphics.as_ref();
-        self.outside.films.complete(&mut self.session, graphics);
+        self.platform.films.complete(&mut self.session, graphics);
         self.remember();
     }
 
@@ -80,15 +82,17 @@ impl ApplicationHandler<Event> for App {
             return;
         };
         if !matches!(event, WindowEvent::RedrawRequested) {
-            graphics.touch();
+            graphics.invalidate_text();
         }
-        // Keys are for the table of keys: egui gets none.
+        // All keys belong to the table of keys, none to egui.
         let is_key = matches!(event, WindowEvent::KeyboardInput { .. });
         let taken = !is_key && (graphics.on_event(&event) || self.session.list.is_some())
-            || panel::leaves(&self.session, graphics.size(), graphics.scale()).0 as f32
+            || panel::picture_size(&self.session, graphics.size(), graphics.scale()).0 as f32
                 <= self.mouse.pointer.position[0];
         if let WindowEvent::MouseInput { state, .. } = event {
-            self.session.history.hold(state == ElementState::Pressed);
+            self.session
+                .history
+                .set_button_held(state == ElementState::Pressed);
         }
         match event {
             WindowEvent::CloseRequested => event_loop.exit(),
@@ -98,14 +102,14 @@ impl ApplicationHandler<Event> for App {
             }
             WindowEvent::Occluded(hidden) => {
                 self.screen.visible = !hidden;
-                // Time spent hidden is not simulated.
-                self.last = Instant::now();
-                self.session.start_anew();
+                // Do not simulate the time for which the window was hidden.
+                self.last_tick = Instant::now();
+                self.session.restart_measuring();
                 self.say_status();
                 self.screen.redraw();
             }
-            WindowEvent::ModifiersChanged(held) => self.held = held.state(),
-            WindowEvent::Focused(false) => self.mouse.let_go(&mut self.session, &self.screen),
+            WindowEvent::ModifiersChanged(held) => self.modifiers = held.state(),
+            WindowEvent::Focused(false) => self.mouse.finish(&mut self.session, &self.screen),
             WindowEvent::KeyboardInput { event, .. } if event.state == ElementState::Pressed => {
                 self.press_key(event_loop, &event);
             }
@@ -114,7 +118,7 @@ impl ApplicationHandler<Event> for App {
                 button,
                 ..
             } if !taken => {
-                let shift = self.held.shift_key();
+                let shift = self.modifiers.shift_key();
                 self.mouse
                     .press(button, shift, &mut self.session, &self.screen);
                 self.screen.redraw();

@@ -1,4 +1,4 @@
-//! Films of the session, made while the window goes on.
+//! Films of the session, made while its window stays in use.
 
 use std::thread;
 use std::time::Duration;
@@ -12,27 +12,27 @@ use crate::window::hud::panel;
 use crate::window::recorder::{Format, Recorder};
 use crate::window::session::Session;
 
-/// The film that is being made, if there is one.
+/// The recorder of the film, if one is being made.
 #[derive(Default)]
 pub struct Films {
     recorder: Option<Recorder>,
 }
 
 impl Films {
-    /// Films from now on, or completes that film.
+    /// Starts a live film, or completes it.
     pub fn record(&mut self, session: &mut Session, graphics: Option<&Graphics>) {
         if self.recorder.as_ref().is_some_and(Recorder::is_live) {
-            return self.end(session);
+            return self.finish(session);
         }
         self.begin(session, graphics, Recorder::from_now);
     }
 
-    /// Films the last seconds that are kept.
+    /// Starts a film of the last seconds.
     pub fn record_last(&mut self, session: &mut Session, graphics: Option<&Graphics>) {
-        self.begin(session, graphics, Recorder::of_kept);
+        self.begin(session, graphics, Recorder::of_past);
     }
 
-    /// Begins a film, if none is being made.
+    /// Starts a film, unless another one is being made.
     fn begin(
         &mut self,
         session: &mut Session,
@@ -49,49 +49,50 @@ impl Films {
         let scale = graphics.scale();
         let format = Format {
             ending: session.panel.film,
-            size: panel::leaves(session, graphics.size(), scale),
+            size: panel::picture_size(session, graphics.size(), scale),
             scale,
         };
         match begin(graphics.gpu(), session, format) {
             Ok(recorder) => self.recorder = Some(recorder),
             Err(why) => session.readings.warn(why.to_string()),
         }
-        self.tell(session);
+        self.show_progress(session);
     }
 
-    /// Draws the next frame of the film that is being made, if it is due, and returns whether the
-    /// film needs another frame of the window for the next.
+    /// Draws the next frame of the film, if one is due. Returns whether the window must draw
+    /// another frame, because the film of the last seconds continues.
     pub fn draw(&mut self, session: &mut Session, graphics: Option<&Graphics>) -> bool {
         let (Some(recorder), Some(graphics)) = (&mut self.recorder, graphics) else {
             return false;
         };
-        match recorder.go_on(graphics.gpu(), session) {
+        match recorder.draw_next(graphics.gpu(), session) {
             Ok(true) => {}
-            Ok(false) => self.end(session),
+            Ok(false) => self.finish(session),
             Err(why) => {
                 self.recorder = None;
                 session.readings.warn(why.to_string());
             }
         }
-        self.tell(session);
+        self.show_progress(session);
         self.recorder.as_ref().is_some_and(|film| !film.is_live())
     }
 
-    /// Completes a film of what happens from now on: something else is shown.
-    pub fn end_live(&mut self, session: &mut Session) {
+    /// Completes a live film, because the scene has changed.
+    pub fn finish_live(&mut self, session: &mut Session) {
         if self.recorder.as_ref().is_some_and(Recorder::is_live) {
-            self.end(session);
+            self.finish(session);
         }
     }
 
-    /// Real time that passes for a session of which so much did (s), while it is filmed.
-    pub fn pace(&self, session: &Session, real: f64) -> f64 {
+    /// Returns the real time (s) by which the session may advance in a frame of `real` (s), limited
+    /// by a live film.
+    pub fn time_to_advance(&self, session: &Session, real: f64) -> f64 {
         let recorder = self.recorder.as_ref();
-        recorder.map_or(real, |recorder| recorder.pace(session, real))
+        recorder.map_or(real, |recorder| recorder.time_to_advance(session, real))
     }
 
-    /// Completes the film that is being made, and says so.
-    pub fn end(&mut self, session: &mut Session) {
+    /// Completes the film, and shows a message.
+    pub fn finish(&mut self, session: &mut Session) {
         let Some(recorder) = self.recorder.take() else {
             return;
         };
@@ -99,24 +100,25 @@ impl Films {
             Ok(said) => session.readings.say(said),
             Err(why) => session.readings.warn(why.to_string()),
         }
-        self.tell(session);
+        self.show_progress(session);
     }
 
-    /// Completes the film that is being made before the window closes: with all moments that it is
-    /// to show.
+    /// Completes the film before the window closes. A film of the last seconds gets all of its
+    /// frames.
     pub fn complete(&mut self, session: &mut Session, graphics: Option<&Graphics>) {
         while self.recorder.as_ref().is_some_and(|film| !film.is_live())
             && self.draw(session, graphics)
         {
             thread::sleep(Duration::from_millis(1));
         }
-        self.end(session);
+        self.finish(session);
         if let Some(said) = session.readings.message.take() {
             terminal::warn(&said);
         }
     }
 
-    fn tell(&self, session: &mut Session) {
+    /// Shows the progress of the film.
+    fn show_progress(&self, session: &mut Session) {
         session.readings.film = self.recorder.as_ref().map(Recorder::progress);
     }
 }

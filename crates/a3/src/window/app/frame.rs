@@ -1,4 +1,4 @@
-//! Frames: the session is brought up to date and drawn, and the next frame is asked for.
+//! Frames: advancing and drawing the session, and scheduling the next frame.
 
 use web_time::{Duration, Instant};
 
@@ -9,26 +9,27 @@ use super::graphics::FrameOutcome;
 use super::state::App;
 use crate::window::hud::panel::{self, Request};
 
-/// Time after which a frame that could not be drawn is tried again.
-const RETRY: Duration = Duration::from_millis(50);
+/// Delay after which a skipped frame is drawn again.
+const RETRY_DELAY: Duration = Duration::from_millis(50);
 
 impl App {
-    /// Brings the simulation up to date and draws it.
+    /// Advances the session by the time since the last frame, draws it, and schedules the next
+    /// frame.
     pub fn frame(&mut self, event_loop: &ActiveEventLoop) {
-        if self.outside.files_changed() && self.session.reload() {
-            self.last = Instant::now();
+        if self.platform.files_changed() && self.session.reload() {
+            self.last_tick = Instant::now();
             self.scene_changed();
         }
         let now = Instant::now();
-        let real = now.duration_since(self.last).as_secs_f64();
-        self.last = now;
+        let real = now.duration_since(self.last_tick).as_secs_f64();
+        self.last_tick = now;
         let session = &mut self.session;
         self.mouse.pull(session, &self.screen);
-        session.tick(self.outside.films.pace(session, real));
-        session.view.go_along(&session.runs.panes);
+        session.tick(self.platform.films.time_to_advance(session, real));
+        session.view.track_followed(&session.runs.panes);
         session.read_state();
         self.mouse
-            .look(self.held.shift_key(), session, &self.screen);
+            .update_hover(self.modifiers.shift_key(), session, &self.screen);
         let message_ends = session.readings.message_ends();
         let Some(graphics) = &mut self.screen.graphics else {
             return;
@@ -36,8 +37,8 @@ impl App {
         let begun = Instant::now();
         match graphics.frame(session, self.mouse.cursor) {
             Ok(FrameOutcome::Drawn(again, request)) => {
-                session.drawn(begun.elapsed());
-                let filmed = self.outside.films.draw(session, Some(graphics));
+                session.count_frame(begun.elapsed());
+                let filmed = self.platform.films.draw(session, Some(graphics));
                 let again = if filmed || request.is_some() {
                     Some(Duration::ZERO)
                 } else {
@@ -58,7 +59,7 @@ impl App {
                     Some(now + frame_time)
                 } else {
                     let again = again.map(|delay| now + delay.max(frame_time));
-                    [again, message_ends, self.outside.next_look()]
+                    [again, message_ends, self.platform.next_check()]
                         .into_iter()
                         .flatten()
                         .min()
@@ -67,14 +68,14 @@ impl App {
                     self.screen.wait_until(event_loop, next);
                 }
             }
-            Ok(FrameOutcome::Skipped) => self.screen.wait_until(event_loop, now + RETRY),
+            Ok(FrameOutcome::Skipped) => self.screen.wait_until(event_loop, now + RETRY_DELAY),
             Err(GpuError::Lost) => self.open_graphics(event_loop),
             Err(why) => self.fail(event_loop, why),
         }
         self.say_status();
     }
 
-    /// Writes a line for tests, if they are asked for.
+    /// Writes a status line, if they are enabled.
     pub fn say_status(&mut self) {
         if let Some(status) = &mut self.status {
             status.say(&self.session, &self.screen, self.mouse.cursor);

@@ -1,5 +1,5 @@
-//! The window's surface, the picture on it and the text over it. All of it can be dropped and made
-//! again.
+//! The window's surface, with the picture and the text on it. All of it is replaced after the loss
+//! of a device.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -17,39 +17,40 @@ use crate::window::session::Session;
 
 /// The outcome of drawing a frame.
 pub enum FrameOutcome {
-    /// The frame was drawn. The text must be drawn again after this time, if at all: it fades in.
-    /// The mouse may ask for something.
+    /// The frame was drawn: the time after which the text must be drawn again, because it fades in,
+    /// and the request of the mouse.
     Drawn(Option<Duration>, Option<Request>),
-    /// The frame could not be drawn now. It may be at the next event, or soon.
+    /// The frame could not be drawn now, but a later one may be.
     Skipped,
 }
 
-/// All that depends on the adapter.
+/// The graphics: everything that depends on the adapter.
 pub struct Graphics {
     surface: wgpu::Surface<'static>,
     config: wgpu::SurfaceConfiguration,
-    /// Format of the view that the picture is drawn to. The text is drawn to another view.
+    /// Format of the view for the picture. The text has another view.
     format: wgpu::TextureFormat,
     renderer: Renderer,
     targets: Targets,
-    /// Is drawn into, where the surface cannot be seen in two formats.
+    /// Texture for the picture, if the surface cannot have views in two formats.
     transfer: Option<Transfer>,
-    /// Holds the text, where it is not drawn in each frame.
+    /// Layer of the text, if it is not drawn in every frame.
     layer: Option<Layer>,
-    /// Number of broken springs when the topology of each pane was made.
+    /// Number of torn springs in each pane's topology.
     tears: Vec<usize>,
     overlay: Overlay,
     egui_winit: egui_winit::State,
-    /// Size of text and panel over that of the screen's own scale.
+    /// Scale factor of text and panel, on top of the screen's own.
     zoom: f32,
-    /// Whether the window has another size than the surface.
+    /// Whether the surface must be resized to the window.
     stale: bool,
     gpu: Gpu,
     window: Arc<Window>,
 }
 
 impl Graphics {
-    /// What draws the session to the window, by an adapter that is open for it.
+    /// Creates the graphics for a session, from an open adapter and its surface. Fails if the
+    /// adapter cannot draw to the window.
     pub fn new(
         gpu: Gpu,
         surface: wgpu::Surface<'static>,
@@ -92,67 +93,67 @@ impl Graphics {
         })
     }
 
-    /// Size of the surface (px).
+    /// Returns the size of the surface (px).
     pub fn size(&self) -> (u32, u32) {
         (self.config.width, self.config.height)
     }
 
-    /// The parts of the window that the panes fill.
+    /// Returns the parts of the window that the panes fill.
     pub fn tiles(&self, session: &Session) -> Vec<Tile> {
-        let size = panel::leaves(session, self.size(), self.scale());
+        let size = panel::picture_size(session, self.size(), self.scale());
         layout::tiles(session.runs.panes.len(), size, self.scale())
     }
 
-    /// Pixels per point.
+    /// Returns the number of pixels per point.
     pub fn scale(&self) -> f32 {
         self.window.scale_factor() as f32 * self.zoom
     }
 
-    /// Makes text and panel larger or smaller than the screen's own scale asks for.
+    /// Sets the scale factor of text and panel, on top of the screen's own.
     pub fn set_zoom(&mut self, zoom: f32) {
         self.zoom = zoom;
         self.overlay.context.set_zoom_factor(zoom);
     }
 
-    /// The adapter, for pictures that are drawn beside the window.
+    /// Returns the adapter, for pictures outside the window.
     pub fn gpu(&self) -> &Gpu {
         &self.gpu
     }
 
-    /// Name of the adapter.
+    /// Returns the name of the adapter.
     pub fn adapter(&self) -> String {
         self.gpu.name()
     }
 
-    /// Shows an event to egui, and returns whether egui keeps it for itself.
+    /// Passes an event to egui, and returns whether egui consumed it.
     pub fn on_event(&mut self, event: &winit::event::WindowEvent) -> bool {
         self.egui_winit
             .on_window_event(&self.window, event)
             .consumed
     }
 
-    /// Notes that something happened that the text may tell of.
-    pub fn touch(&mut self) {
+    /// Has the text drawn again in the next frame, because it may have changed.
+    pub fn invalidate_text(&mut self) {
         if let Some(layer) = &mut self.layer {
-            layer.touch();
+            layer.invalidate();
         }
     }
 
-    /// Notes that the window has another size. The surface follows at the next frame, once for
-    /// however many changes.
+    /// Notes that the size of the window has changed. The next frame resizes the surface, once for
+    /// any number of changes.
     pub fn resized(&mut self) {
         self.stale = true;
     }
 
-    /// Takes the topology of another scene.
+    /// Uploads the topology of another scene.
     pub fn set_scene(&mut self, session: &Session) {
         self.renderer
             .set_topology(&self.gpu, &session.runs.panes[0].topology());
         self.tears.clear();
     }
 
-    /// Leaves torn springs and triangles out of the topology.
-    fn tear(&mut self, session: &Session) {
+    /// Uploads the topology of panes with newly torn springs.
+    fn update_topology(&mut self, session: &Session) {
         self.tears.resize(session.runs.panes.len(), 0);
         for (k, (pane, tears)) in session.runs.panes.iter().zip(&mut self.tears).enumerate() {
             let now = pane.simulation.tears();
@@ -164,11 +165,12 @@ impl Graphics {
         }
     }
 
-    /// Breaks the device, for tests.
+    /// Destroys the device, for tests.
     pub fn lose_device(&self) {
         self.gpu.device.destroy();
     }
 
+    /// Resizes the surface, and everything of its size, to the window.
     fn reconfigure(&mut self) {
         self.stale = false;
         let size = clamped(&self.gpu, &self.window);
@@ -186,8 +188,8 @@ impl Graphics {
         }
     }
 
-    /// Draws the session to the window, if that is possible now. Where egui has no other, the
-    /// pointer has the shape `cursor`.
+    /// Draws the session to the window, if that is possible now. The pointer has the shape
+    /// `cursor`, unless egui sets another. Fails if the device was lost.
     pub fn frame(
         &mut self,
         session: &mut Session,
@@ -203,7 +205,7 @@ impl Graphics {
         let frame = match self.surface.get_current_texture() {
             CurrentSurfaceTexture::Success(frame) => frame,
             CurrentSurfaceTexture::Suboptimal(frame) => {
-                // Configuring panics while a frame is alive.
+                // Configuring the surface panics while a frame is alive.
                 drop(frame);
                 self.reconfigure();
                 return Ok(FrameOutcome::Skipped);
@@ -215,13 +217,13 @@ impl Graphics {
             CurrentSurfaceTexture::Timeout | CurrentSurfaceTexture::Occluded => {
                 return Ok(FrameOutcome::Skipped);
             }
-            // A lost device may say Validation too: the check finds out.
+            // A lost device may also return `Validation`: check it.
             CurrentSurfaceTexture::Lost | CurrentSurfaceTexture::Validation => {
                 self.gpu.check()?;
                 return Err(GpuError::Lost);
             }
         };
-        self.tear(session);
+        self.update_topology(session);
         for pane in &mut session.runs.panes {
             pane.show.compose(&pane.simulation);
         }
@@ -254,7 +256,7 @@ impl Graphics {
         }
         // egui's renderer panics on a device that has just been lost.
         self.gpu.check()?;
-        let (before, again, request) = self.text(&mut encoder, &text_view, session, cursor);
+        let (before, again, request) = self.draw_text(&mut encoder, &text_view, session, cursor);
         self.gpu
             .queue
             .submit(before.into_iter().chain([encoder.finish()]));
@@ -264,10 +266,10 @@ impl Graphics {
         Ok(FrameOutcome::Drawn(again, request))
     }
 
-    /// Writes the text over the picture, or on its layer, if that is due, and lays the layer over
-    /// the picture. Returns the commands to submit before it, the time after which it must be
-    /// drawn again, and what the mouse asks of the panel.
-    fn text(
+    /// Draws the text over the picture, by way of its layer if it has one. Returns the commands to
+    /// submit first, the time after which the text must be drawn again, and the request of the
+    /// mouse.
+    fn draw_text(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
         view: &wgpu::TextureView,
@@ -275,14 +277,14 @@ impl Graphics {
         cursor: CursorIcon,
     ) -> (Vec<wgpu::CommandBuffer>, Option<Duration>, Option<Request>) {
         let Some(mut layer) = self.layer.take() else {
-            return self.write_text(encoder, view, wgpu::LoadOp::Load, session, cursor);
+            return self.draw_text_to(encoder, view, wgpu::LoadOp::Load, session, cursor);
         };
-        let written = if let Some(stays) = layer.stays() {
-            (vec![], Some(stays), None)
+        let written = if let Some(left) = layer.time_left() {
+            (vec![], Some(left), None)
         } else {
             let empty = wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT);
             let on_layer = layer.texture.picture();
-            let written = self.write_text(encoder, on_layer, empty, session, cursor);
+            let written = self.draw_text_to(encoder, on_layer, empty, session, cursor);
             layer.drawn(written.1);
             written
         };
@@ -293,8 +295,9 @@ impl Graphics {
         written
     }
 
-    /// Writes the text in a pass of its own.
-    fn write_text(
+    /// Lays out the text and draws it in its own pass, over what `below` keeps of the view. Returns
+    /// what [`Self::draw_text`] does.
+    fn draw_text_to(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
         view: &wgpu::TextureView,

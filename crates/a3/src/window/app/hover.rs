@@ -1,18 +1,18 @@
-//! What is under the pointer: its shape says what a press would do, and what the press would take
-//! is highlighted.
+//! Hovering: the shape of the pointer tells the effect of a press, and the particle, body or sphere
+//! that a press would grab is highlighted.
 
 use egui::CursorIcon;
 
 use super::mouse::{Drag, Mouse};
-use super::pointer::CLICK;
+use super::pointer::MAX_CLICK_DISTANCE;
 use super::screen::Screen;
 use crate::draw::show::Target;
 use crate::window::session::Session;
 
 impl Mouse {
-    /// Finds the particle, body or timeline under the pointer, and returns whether the picture has
-    /// to be drawn again. With Shift, a press would begin a box.
-    pub fn look(&mut self, shift: bool, session: &mut Session, screen: &Screen) -> bool {
+    /// Finds what is under the pointer, and sets the pointer's shape and the highlight. With
+    /// `shift`, a press would draw a box. Returns whether shape or highlight changed.
+    pub fn update_hover(&mut self, shift: bool, session: &mut Session, screen: &Screen) -> bool {
         let pointer = &self.pointer;
         let at = pointer.pane(session, screen);
         let (cursor, hovered) = match self.drag {
@@ -22,7 +22,11 @@ impl Mouse {
             Drag::Scrub => (CursorIcon::ResizeHorizontal, None),
             Drag::Select { .. } => (CursorIcon::Crosshair, None),
             Drag::None if !pointer.is_over_picture(session, screen) => (CursorIcon::Default, None),
-            Drag::None if pointer.timeline_share(session, screen, CLICK).is_some() => {
+            Drag::None
+                if pointer
+                    .timeline_share(session, screen, MAX_CLICK_DISTANCE)
+                    .is_some() =>
+            {
                 (CursorIcon::ResizeHorizontal, None)
             }
             Drag::None if shift => (CursorIcon::Crosshair, None),

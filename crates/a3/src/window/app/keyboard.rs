@@ -1,4 +1,4 @@
-//! Keys as winit names them, in the words of the table of keys and of the panel.
+//! Translation of winit's keys to those of the table of keys, of the panel, and of text.
 
 use winit::event::KeyEvent;
 use winit::keyboard::{Key, NamedKey};
@@ -6,7 +6,7 @@ use winit::keyboard::{Key, NamedKey};
 use crate::window::hud::panel::PanelKey;
 use crate::window::session::{self, Action, TextKey};
 
-/// The action of a key, if it has one.
+/// Returns the action of a key, if it has one.
 pub fn action(key: &Key) -> Option<Action> {
     match key {
         Key::Named(NamedKey::Space) => session::action("Space"),
@@ -23,7 +23,8 @@ pub fn action(key: &Key) -> Option<Action> {
     }
 }
 
-/// The steps by which a key, with Ctrl, makes text and panel larger: 0 for as at first.
+/// Returns the number of steps by which a key, with Ctrl, enlarges text and panel; 0 resets their
+/// size.
 pub fn zoom(key: &Key) -> Option<isize> {
     match key {
         Key::Character(text) if text == "+" || text == "=" => Some(1),
@@ -33,7 +34,7 @@ pub fn zoom(key: &Key) -> Option<isize> {
     }
 }
 
-/// The meaning of a key in the panel, if it has one there.
+/// Returns the meaning of a key in the panel, if it has one.
 pub fn panel_key(key: &Key) -> Option<PanelKey> {
     match key {
         Key::Named(NamedKey::ArrowUp) => Some(PanelKey::Up),
@@ -45,15 +46,15 @@ pub fn panel_key(key: &Key) -> Option<PanelKey> {
     }
 }
 
-/// The meaning of a key where something is typed, if it has one there.
+/// Returns the meaning of a key while text is typed, if it has one.
 pub fn text_key(event: &KeyEvent) -> Option<TextKey> {
     Some(match &event.logical_key {
         Key::Named(NamedKey::ArrowUp) => TextKey::Move(-1),
         Key::Named(NamedKey::ArrowDown) => TextKey::Move(1),
         Key::Named(NamedKey::PageUp) => TextKey::Move(-10),
         Key::Named(NamedKey::PageDown) => TextKey::Move(10),
-        Key::Named(NamedKey::Enter) => TextKey::Take,
-        Key::Named(NamedKey::Escape) => TextKey::Close,
+        Key::Named(NamedKey::Enter) => TextKey::Accept,
+        Key::Named(NamedKey::Escape) => TextKey::Cancel,
         Key::Named(NamedKey::Backspace) => TextKey::Erase,
         _ => {
             let text = event.text.as_ref()?;

@@ -1,20 +1,20 @@
-//! Text on a layer of its own, for software adapters: they may take as long for text as for the
-//! picture, so that it is not drawn anew in each frame.
+//! A separate layer for the text on software adapters. They may take as long for the text as for
+//! the picture, so the text is not drawn in every frame.
 
 use a3_render::{Gpu, Transfer};
 use web_time::{Duration, Instant};
 
-/// Time between two texts while nobody touches anything: faster than numbers can be read.
-const PACE: Duration = Duration::from_millis(100);
+/// Longest time for which a drawn text is reused: numbers cannot be read faster.
+const MAX_TEXT_AGE: Duration = Duration::from_millis(100);
 
-/// The layer, and when its text has to be drawn anew.
+/// The layer, and the time when its text must be drawn again.
 pub struct Layer {
     pub texture: Transfer,
     due: Option<Instant>,
 }
 
 impl Layer {
-    /// A layer over a surface, if the adapter needs one.
+    /// Creates a layer over a surface, if the adapter needs one.
     pub fn new(gpu: &Gpu, config: &wgpu::SurfaceConfiguration) -> Option<Self> {
         let size = (config.width, config.height);
         gpu.is_software().then(|| Self {
@@ -23,19 +23,21 @@ impl Layer {
         })
     }
 
-    /// Has the text drawn anew in the next frame.
-    pub fn touch(&mut self) {
+    /// Has the text drawn again in the next frame.
+    pub fn invalidate(&mut self) {
         self.due = None;
     }
 
-    /// How long the text may stay.
-    pub fn stays(&self) -> Option<Duration> {
+    /// Returns the time for which the text can be reused, if it can.
+    pub fn time_left(&self) -> Option<Duration> {
         let left = self.due?.saturating_duration_since(Instant::now());
         (!left.is_zero()).then_some(left)
     }
 
-    /// Notes that the text was drawn, and has to be drawn again after this time, if at all.
+    /// Notes that the text was drawn, and must be drawn again after `again`, or after
+    /// `MAX_TEXT_AGE` if that is sooner.
     pub fn drawn(&mut self, again: Option<Duration>) {
-        self.due = Some(Instant::now() + again.map_or(PACE, |delay| delay.min(PACE)));
+        self.due =
+            Some(Instant::now() + again.map_or(MAX_TEXT_AGE, |delay| delay.min(MAX_TEXT_AGE)));
     }
 }

@@ -1,4 +1,4 @@
-//! The window: events in, frames out. Nothing else knows winit.
+//! The window, from events to frames: the only module that uses winit.
 
 mod adapter;
 mod events;

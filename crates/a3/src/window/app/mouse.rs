@@ -1,4 +1,5 @@
-//! Actions of the mouse: pull, turn, move, pin, and drag the timeline.
+//! Actions of the mouse: pulling, turning and moving the camera, pinning, and dragging the
+//! timeline.
 
 use a3_core::Vector3;
 use egui::CursorIcon;
@@ -6,17 +7,17 @@ use winit::dpi::PhysicalPosition;
 use winit::event::{MouseButton, MouseScrollDelta};
 
 use super::pick::Grip;
-use super::pointer::{CLICK, Pointer};
+use super::pointer::{MAX_CLICK_DISTANCE, Pointer};
 use super::screen::Screen;
 use crate::draw::show::{self, Target};
 use crate::window::session::{Selection, Session, looks};
 
 /// Angle by which the camera turns when the pointer moves by the height of the picture (rad).
-const TURN: f32 = 4.0;
-/// Pixels of smooth scrolling that count as a notch of the wheel.
-const NOTCH: f32 = 50.0;
+const ORBIT_ANGLE: f32 = 4.0;
+/// Smooth scrolling that counts as a notch of the wheel (px).
+const PIXELS_PER_NOTCH: f32 = 50.0;
 
-/// A drag: the action of a pressed button while the pointer moves.
+/// A drag: the effect of a pressed button while the pointer moves.
 #[derive(Clone, Copy, PartialEq)]
 pub enum Drag {
     /// No action.
@@ -27,20 +28,20 @@ pub enum Drag {
     Orbit,
     /// Move the camera.
     Pan,
-    /// Go along the timeline.
+    /// Drag the timeline.
     Scrub,
-    /// Pin or release the particles in a box from a corner (px) to the pointer.
+    /// Pin or free the particles in a box between the corner `from` (px) and the pointer.
     Select { from: [f32; 2], pinned: bool },
 }
 
 /// The mouse.
 pub struct Mouse {
     pub pointer: Pointer,
-    /// The drag by the pressed button.
+    /// The present drag.
     pub drag: Drag,
     /// The pane in which the button was pressed.
     pane: usize,
-    /// The button that is pressed: the first one, if there are several.
+    /// The pressed button: the first one, if there are several.
     pub button: Option<MouseButton>,
     /// The shape of the pointer over the picture.
     pub cursor: CursorIcon,
@@ -58,7 +59,7 @@ impl Mouse {
         }
     }
 
-    /// Begins what a button does where the pointer is, with the key Shift or without.
+    /// Starts the drag of a button at the pointer, with or without Shift.
     pub fn press(
         &mut self,
         button: MouseButton,
@@ -66,13 +67,15 @@ impl Mouse {
         session: &mut Session,
         screen: &Screen,
     ) {
-        // One button at a time.
+        // Ignore a second button.
         if self.button.is_some() {
             return;
         }
         let pane = self.pointer.pane(session, screen);
         let double = self.pointer.press();
-        let share = self.pointer.timeline_share(session, screen, CLICK);
+        let share = self
+            .pointer
+            .timeline_share(session, screen, MAX_CLICK_DISTANCE);
         let hit = self.pointer.hit(session, screen, pane);
         let select = |pinned| Drag::Select {
             from: self.pointer.position,
@@ -103,7 +106,7 @@ impl Mouse {
         (self.drag, self.pane, self.button) = (drag, pane, Some(button));
     }
 
-    /// Ends what a button does: a click with the right one pins, or lets go of a pin.
+    /// Ends the drag of a button. A right click pins or frees the particle under the pointer.
     pub fn release(&mut self, button: MouseButton, session: &mut Session, screen: &Screen) {
         if self.button != Some(button) {
             return;
@@ -115,23 +118,24 @@ impl Mouse {
         {
             session.toggle_pin(i);
         }
-        self.let_go(session, screen);
+        self.finish(session, screen);
     }
 
-    /// Ends what the pressed button does.
-    pub fn let_go(&mut self, session: &mut Session, screen: &Screen) {
-        self.take_box(session, screen);
+    /// Ends the drag: pins or frees the particles in the box, and releases a grabbed particle or
+    /// sphere.
+    pub fn finish(&mut self, session: &mut Session, screen: &Screen) {
+        self.apply_selection(session, screen);
         session.release();
-        self.stop();
+        self.abort();
     }
 
-    /// Ends the drag, and leaves the session as it is.
-    pub fn stop(&mut self) {
+    /// Ends the drag without an effect on the session.
+    pub fn abort(&mut self) {
         (self.drag, self.button) = (Drag::None, None);
     }
 
-    /// The particles in the box that is drawn, walls of tanks left out.
-    fn boxed(&self, session: &Session, screen: &Screen) -> Vec<usize> {
+    /// Returns the particles in the box, without the walls of tanks.
+    fn selected_particles(&self, session: &Session, screen: &Screen) -> Vec<usize> {
         let Drag::Select { from, .. } = self.drag else {
             return vec![];
         };
@@ -151,12 +155,12 @@ impl Mouse {
             .collect()
     }
 
-    /// Shows the box, and how many particles are in it.
-    fn look_into_box(&self, session: &mut Session, screen: &Screen) {
+    /// Shows the box and the number of particles in it.
+    fn show_selection(&self, session: &mut Session, screen: &Screen) {
         let scale = screen.scale();
         if let Drag::Select { from, pinned } = self.drag {
             let corners = [from, self.pointer.position].map(|at| at.map(|px| px / scale));
-            let count = self.boxed(session, screen).len();
+            let count = self.selected_particles(session, screen).len();
             session.readings.selection = Some(Selection {
                 corners,
                 count,
@@ -165,17 +169,17 @@ impl Mouse {
         }
     }
 
-    /// Pins what is in the box, or lets go of it.
-    fn take_box(&self, session: &mut Session, screen: &Screen) {
+    /// Pins or frees the particles in the box, if one is drawn.
+    fn apply_selection(&self, session: &mut Session, screen: &Screen) {
         if let Drag::Select { pinned, .. } = self.drag
             && session.readings.selection.take().is_some()
         {
-            let particles = self.boxed(session, screen);
+            let particles = self.selected_particles(session, screen);
             session.pin_all(&particles, pinned);
         }
     }
 
-    /// Pulls the grabbed particle or obstacle to the pointer.
+    /// Pulls the grabbed particle or obstacle towards the pointer.
     pub fn pull(&self, session: &mut Session, screen: &Screen) {
         if let Drag::Pull(grip) = self.drag {
             let tile = screen.tile(session, self.pane);
@@ -187,7 +191,7 @@ impl Mouse {
         }
     }
 
-    /// Moves the pointer, and what the pressed button holds.
+    /// Moves the pointer, and continues the drag.
     pub fn move_to(
         &mut self,
         position: PhysicalPosition<f64>,
@@ -199,12 +203,12 @@ impl Mouse {
         if session.panel.open {
             let under = screen.pane_at(session, position);
             session.panel.pane = under.unwrap_or(session.panel.pane);
-            // The row under the pointer is drawn in another colour.
+            // The panel highlights the row under the pointer.
             screen.redraw();
         }
         let tile = screen.tile(session, self.pane);
-        // A click moves nothing until the pointer has gone too far for one.
-        self.pointer.approach(position, screen.scale());
+        // Do not move the camera until the pointer is too far for a click.
+        self.pointer.update_click(position, screen.scale());
         if self.pointer.is_click() && self.drag == Drag::Pan {
             return;
         }
@@ -213,7 +217,7 @@ impl Mouse {
         self.pointer.position = position;
         let camera = &mut session.view.camera;
         match self.drag {
-            Drag::Orbit => camera.orbit(-TURN * dx * aspect, TURN * dy),
+            Drag::Orbit => camera.orbit(-ORBIT_ANGLE * dx * aspect, ORBIT_ANGLE * dy),
             Drag::Pan => camera.pan(-dx * aspect, dy),
             Drag::Scrub => {
                 let share = self.pointer.timeline_share(session, screen, f32::INFINITY);
@@ -221,17 +225,17 @@ impl Mouse {
                     session.scrub_to(share);
                 }
             }
-            Drag::Select { .. } => self.look_into_box(session, screen),
+            Drag::Select { .. } => self.show_selection(session, screen),
             Drag::Pull(_) | Drag::None => return,
         }
         screen.redraw();
     }
 
-    /// Zooms to the pointer by the notches of the wheel.
+    /// Zooms towards the pointer by the notches of the wheel.
     pub fn scroll(&self, delta: MouseScrollDelta, session: &mut Session, screen: &Screen) {
         let notches = match delta {
             MouseScrollDelta::LineDelta(_, y) => y,
-            MouseScrollDelta::PixelDelta(p) => p.y as f32 / NOTCH,
+            MouseScrollDelta::PixelDelta(p) => p.y as f32 / PIXELS_PER_NOTCH,
         };
         let tile = screen.tile(session, self.pointer.pane(session, screen));
         let at = tile.place(self.pointer.position);

@@ -1,5 +1,5 @@
-//! What the window does through the system: the clipboard, films, files that are watched, and the
-//! adapter, which is waited for.
+//! The operating system's part of the window: clipboard, films, watched files, and an adapter that
+//! is opened synchronously.
 
 use std::path::PathBuf;
 use std::time::Instant;
@@ -24,32 +24,32 @@ use crate::files::output;
 use crate::window::hud::Studio;
 use crate::window::session::{Readings, Session};
 
-/// How the window begins.
+/// Returns the initial attributes of the window.
 pub fn attributes() -> WindowAttributes {
     let attributes = Window::default_attributes()
         .with_inner_size(LogicalSize::new(1280.0, 720.0))
         .with_min_inner_size(LogicalSize::new(64.0, 48.0));
-    // By this name a desktop finds the icon. On X11 the window has it by itself.
+    // A desktop finds the icon by this name. On X11, winit sets this name by itself.
     #[cfg(target_os = "linux")]
     let attributes = WindowAttributesExtWayland::with_name(attributes, "a3", "a3");
     attributes
 }
 
-/// Events that come from elsewhere: none.
+/// Events from outside the window: none.
 pub type Event = ();
 
-/// What the window has of the system.
+/// Services of the operating system for the window.
 #[derive(Default)]
-pub struct Outside {
-    /// The clipboard, once it was needed: what was copied is lost with it.
+pub struct Platform {
+    /// The clipboard, opened on first use. Its contents are lost when it is dropped.
     clipboard: Option<Clipboard>,
     pub films: Films,
-    /// The files of the scene, if they are watched.
+    /// Watch over the files of the scene, if it was requested.
     watch: Option<Watch>,
 }
 
-impl Outside {
-    /// When one of `files` changes, the scene is loaded again.
+impl Platform {
+    /// Creates the services, with a watch over `files`, if there are any.
     pub fn new(files: Vec<PathBuf>) -> Self {
         Self {
             watch: (!files.is_empty()).then(|| Watch::new(files)),
@@ -57,23 +57,23 @@ impl Outside {
         }
     }
 
-    /// Opens all that depends on the adapter, for the window that is there, or returns none where
-    /// an event will bring it.
+    /// Opens an adapter, and creates the graphics for the window. Returns `None` if there is no
+    /// window.
     pub fn open_graphics(
         &mut self,
         screen: &mut Screen,
         session: &mut Session,
     ) -> Option<Result<Graphics, GpuError>> {
         let window = screen.window.clone()?;
-        // What was filmed is drawn by the device that goes.
-        self.films.end(session);
-        // The old surface has to go before the window can have another.
+        // The recorder draws with the old device.
+        self.films.finish(session);
+        // The window cannot have two surfaces.
         screen.graphics = None;
         let opened = pollster::block_on(adapter::open(window.clone(), screen.display.clone()));
         Some(opened.and_then(|(gpu, surface)| Graphics::new(gpu, surface, window, session)))
     }
 
-    /// Saves a picture, and returns what is said of it.
+    /// Saves a picture, and returns a message about it.
     #[expect(clippy::unused_self, reason = "a page saves the next frame")]
     pub fn save_picture(&mut self, session: &mut Session, graphics: Option<&Graphics>) -> String {
         match write_picture(session, graphics) {
@@ -82,10 +82,9 @@ impl Outside {
         }
     }
 
-    /// Writes the command line of now to the terminal and to the clipboard, and returns what is
-    /// said of that.
+    /// Writes a command line to the terminal and the clipboard, and returns a message about it.
     pub fn copy(&mut self, line: &str) -> String {
-        // A closed terminal is no reason to lose the line.
+        // Copy the line even if the terminal is closed.
         let _ = terminal::say(&format!("{line}\n"));
         if self.clipboard.is_none() {
             self.clipboard = Clipboard::new().ok();
@@ -97,33 +96,33 @@ impl Outside {
         }
     }
 
-    /// Whether one of the files of the scene was saved since the last look.
+    /// Returns whether a file of the scene has changed since the last check.
     pub fn files_changed(&mut self) -> bool {
         self.watch.as_mut().is_some_and(Watch::changed)
     }
 
-    /// Time of the next look at the files that are watched.
-    pub fn next_look(&self) -> Option<Instant> {
+    /// Returns the time of the next check of the watched files, if there are any.
+    pub fn next_check(&self) -> Option<Instant> {
         self.watch.as_ref().map(Watch::next)
     }
 }
 
-/// Closes the window, or returns why it stays open.
+/// Closes the window, or returns the reason why it stays open.
 pub fn quit(event_loop: &ActiveEventLoop) -> Option<&'static str> {
     event_loop.exit();
     None
 }
 
-/// Opens the lessons. Returns the message to show.
+/// Opens the lessons, and returns a message.
 pub fn open_lessons() -> String {
     lessons::open().unwrap_or_else(|failure| failure.to_string())
 }
 
-/// Writes a picture under the first free name, and returns the name: one pane without text,
-/// several with the text that tells them apart.
+/// Writes a picture under the first free name, and returns its path. Several panes have their text,
+/// a single one has none. Fails if drawing or writing does.
 fn write_picture(session: &mut Session, graphics: Option<&Graphics>) -> Result<String, Failure> {
-    let lost = || Failure::run("the graphics adapter is not open");
-    let graphics = graphics.ok_or_else(lost)?;
+    let closed = || Failure::run("the graphics adapter is not open");
+    let graphics = graphics.ok_or_else(closed)?;
     let (gpu, size) = (graphics.gpu(), graphics.size());
     let offscreen = Offscreen::new(gpu, size).map_err(Failure::run)?;
     let readings = Readings {

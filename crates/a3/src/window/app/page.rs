@@ -1,5 +1,5 @@
-//! What the window does through a browser: the adapter that cannot be waited for, files that are
-//! dropped, downloads, and links in place of command lines.
+//! The browser's part of the window: an adapter that is opened asynchronously, downloads, and links
+//! in place of command lines.
 
 use std::cell::RefCell;
 use std::path::PathBuf;
@@ -18,26 +18,26 @@ use crate::base::terminal;
 use crate::window::session::{Action, Session};
 
 thread_local! {
-    /// The way to the event loop.
+    /// Sender of events to the window.
     static PROXY: RefCell<Option<EventLoopProxy<Event>>> = const { RefCell::new(None) };
 }
 
-/// The window is a canvas, as large as the page has it.
+/// Returns the attributes of the window: the canvas of the page.
 pub fn attributes() -> WindowAttributes {
     Window::default_attributes().with_canvas(browser::canvas())
 }
 
-/// Events that come from the page.
+/// Events from the page.
 pub enum Event {
-    /// An adapter was opened, or not.
+    /// An adapter was opened, or that failed.
     Opened(Result<(Gpu, wgpu::Surface<'static>), GpuError>),
-    /// A file of the page is to be shown.
+    /// A scene file was chosen on the page.
     Open(PathBuf),
     /// A button of the page was pressed.
     Act(Action),
 }
 
-/// Sends an event to the window, once it is there.
+/// Sends an event to the window, if it is connected.
 pub fn send(event: Event) {
     PROXY.with_borrow(|proxy| {
         if let Some(proxy) = proxy {
@@ -46,29 +46,28 @@ pub fn send(event: Event) {
     });
 }
 
-/// Makes [`send`] reach the window.
-pub fn reach(proxy: EventLoopProxy<Event>) {
+/// Connects [`send`] with the window.
+pub fn connect(proxy: EventLoopProxy<Event>) {
     PROXY.set(Some(proxy));
 }
 
-/// What the window has of the browser.
+/// Services of the browser for the window.
 #[derive(Default)]
-pub struct Outside {
+pub struct Platform {
     /// Whether an adapter is being opened.
     opening: bool,
     pub films: Films,
 }
 
-/// The frames that are saved: pictures. Films are for the program.
+/// The request for a picture. A page makes no films.
 #[derive(Default)]
 pub struct Films {
-    /// Whether the next frame is to be saved as a picture.
+    /// Whether the next frame will be saved as a picture.
     picture: bool,
 }
 
-impl Outside {
-    /// Opens all that depends on the adapter, for the window that is there: an event says that it
-    /// is open.
+impl Platform {
+    /// Starts to open an adapter for the window; an event brings the result. Always returns `None`.
     pub fn open_graphics(
         &mut self,
         screen: &mut Screen,
@@ -85,8 +84,9 @@ impl Outside {
         None
     }
 
-    /// Takes the adapter that was opened, for the window that is there.
-    pub fn opened(
+    /// Creates the graphics for the window from the opened adapter. Returns `None` if there is no
+    /// window.
+    pub fn finish_opening(
         &mut self,
         opened: Result<(Gpu, wgpu::Surface<'static>), GpuError>,
         screen: &Screen,
@@ -102,14 +102,13 @@ impl Outside {
         Some(graphics)
     }
 
-    /// Saves the next frame as a picture, and returns what is said of it.
+    /// Requests the next frame as a picture, and returns a message.
     pub fn save_picture(&mut self, _: &mut Session, _: Option<&Graphics>) -> String {
         self.films.picture = true;
         "The picture is in your downloads.".into()
     }
 
-    /// Puts the command line of now into the address, copies the address, and returns what is said
-    /// of that.
+    /// Puts a command line into the address, copies the address, and returns a message.
     pub fn copy(&mut self, line: &str) -> String {
         let words = line.strip_prefix("a3 ").unwrap_or(line);
         browser::set_words(words);
@@ -119,32 +118,32 @@ impl Outside {
         format!("copied: {link}")
     }
 
-    /// No files are watched.
+    /// Returns false: a page watches no files.
     pub fn files_changed(&mut self) -> bool {
         false
     }
 
-    /// No files are watched.
-    pub fn next_look(&self) -> Option<Instant> {
+    /// Returns `None`: a page watches no files.
+    pub fn next_check(&self) -> Option<Instant> {
         None
     }
 }
 
 impl Films {
-    /// Films are for the program.
+    /// Shows a message: a page makes no films.
     pub fn record(&mut self, session: &mut Session, _: Option<&Graphics>) {
         session
             .readings
-            .say("The program makes films: y copies the command line for it.");
+            .say("Only the program makes films: key y copies the command line for it.");
     }
 
-    /// Films are for the program.
+    /// Shows the message of [`Self::record`].
     pub fn record_last(&mut self, session: &mut Session, graphics: Option<&Graphics>) {
         self.record(session, graphics);
     }
 
-    /// Saves the picture that was just drawn, if that was asked for. Returns whether another frame
-    /// is needed for it.
+    /// Saves the frame that was just drawn, if that was requested. Returns false: no further frame
+    /// is needed.
     pub fn draw(&mut self, session: &mut Session, _: Option<&Graphics>) -> bool {
         if std::mem::take(&mut self.picture) {
             let scene = &session.runs.first().scene().name;
@@ -153,24 +152,24 @@ impl Films {
         false
     }
 
-    /// There are no films.
-    pub fn end_live(&mut self, _: &mut Session) {}
+    /// Does nothing: a page makes no films.
+    pub fn finish_live(&mut self, _: &mut Session) {}
 
-    /// There are no films.
+    /// Does nothing: a page makes no films.
     pub fn complete(&mut self, _: &mut Session, _: Option<&Graphics>) {}
 
-    /// Real time as it passes.
-    pub fn pace(&self, _: &Session, real: f64) -> f64 {
+    /// Returns `real`: a page has no films.
+    pub fn time_to_advance(&self, _: &Session, real: f64) -> f64 {
         real
     }
 }
 
-/// A page is closed by the browser.
+/// Returns the reason why the page stays open: only the browser closes it.
 pub fn quit(_: &ActiveEventLoop) -> Option<&'static str> {
     Some("The browser closes the page.")
 }
 
-/// Opens the lessons, which lie beside the page. Returns the message to show.
+/// Opens the lessons, which are beside the page, and returns a message.
 pub fn open_lessons() -> String {
     browser::open("lessons/README.md");
     "The lessons are open beside this page.".into()

@@ -1,5 +1,4 @@
-//! Picking: from a point of the picture to a particle or an obstacle, and back to a point of the
-//! scene.
+//! Picking the particle or obstacle at a point of the picture, and dragging it in the scene.
 
 use a3_core::contact::Shape;
 use a3_core::{Simulation, Vector3};
@@ -10,28 +9,28 @@ use crate::draw::show::{self, to_f32};
 use crate::draw::surfaces::tessellation::{self, Tessellation};
 use crate::draw::surfaces::whole_triangles;
 
-/// The hold on a particle or an obstacle that keeps it under the pointer.
+/// The geometry of a grab, which keeps a particle or obstacle under the pointer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Grip {
     /// Distance from the eye along the view (m).
     distance: f32,
-    /// Vector from the pointer to the particle, as shares of the picture.
+    /// Vector from the pointer to the particle or obstacle, in shares of the picture.
     offset: [f32; 2],
 }
 
 impl Grip {
-    /// The point (m) to which the particle goes with the pointer: on the camera's plane at its
-    /// depth.
+    /// Returns the point (m) to which the pointer drags: in the plane at the initial depth that is
+    /// parallel to the picture.
     pub fn target(&self, camera: &Camera, pointer: [f32; 2], aspect: f32) -> [f32; 3] {
         let at = [pointer[0] + self.offset[0], pointer[1] + self.offset[1]];
         camera.unproject(at, self.distance, aspect)
     }
 }
 
-/// The particle or the obstacle under the pointer, whichever is nearer to the eye. If a surface is
-/// hit, the particle is the closest corner of its nearest triangle, and on a rigid body the closest
-/// of its particles; otherwise it is the one that is nearest on the screen within `reach`, a share
-/// of the picture's height.
+/// Returns the particle or the sphere under the pointer, the nearer one to the eye. On a surface,
+/// the particle is the closest corner of the nearest triangle, and on a rigid body the closest of
+/// its particles. Elsewhere it is the closest one on the screen within `reach`, a share of the
+/// picture's height.
 pub fn pick(
     simulation: &Simulation,
     camera: &Camera,
@@ -75,7 +74,7 @@ pub fn pick(
             .min_by(|a, b| a.1.total_cmp(&b.1))
             .and_then(|(i, _)| Some((i, places[i]?.1)))
     };
-    // On a rigid body, the nearest of its particles is taken.
+    // On a rigid body, take the nearest of its particles.
     let on_body = tessellation::placed(network, simulation.state())
         .filter_map(|(k, part)| {
             let depth = depth_of(&part, camera, pointer, aspect)?;
@@ -116,7 +115,8 @@ pub fn pick(
     Some((target, Grip { distance, offset }))
 }
 
-/// The depth (m) at which the line of sight through the pointer first meets a part of a body.
+/// Returns the depth (m) at which the line of sight through the pointer first meets a part of a
+/// body.
 fn depth_of(part: &Tessellation, camera: &Camera, pointer: [f32; 2], aspect: f32) -> Option<f32> {
     let project = |p: &Vector3<f64>| camera.project(to_f32(*p), aspect);
     let places: Vec<_> = part.points.iter().map(project).collect();
@@ -127,13 +127,14 @@ fn depth_of(part: &Tessellation, camera: &Camera, pointer: [f32; 2], aspect: f32
     hits.min_by(f32::total_cmp)
 }
 
-/// The depth (m) of the pointer in a triangle of places and their depths, if it is inside.
+/// Returns the depth (m) of a triangle at the pointer, if that is inside. The triangle is given by
+/// the screen positions and depths of its corners.
 fn depth_in(pointer: [f32; 2], [a, b, c]: [([f32; 2], f32); 3]) -> Option<f32> {
     let [u, v, w] = weights(pointer, a.0, b.0, c.0)?;
     Some(u * a.1 + v * b.1 + w * c.1)
 }
 
-/// The first point (m) at which the line of sight through the pointer meets a ball.
+/// Returns the first point (m) at which the line of sight through the pointer meets a ball.
 fn ball_hit(
     camera: &Camera,
     pointer: [f32; 2],
@@ -145,12 +146,12 @@ fn ball_hit(
     let (way, from) = ((far - near).normalize(), near - Vector3::from(center));
     let b = from.dot(&way);
     let root = (b * b - from.norm_squared() + radius * radius).sqrt();
-    // A miss is NaN, and a ball behind the eye is below 0.
+    // The distance is NaN for a miss, and negative for a ball behind the eye.
     let share = Some(-b - root).filter(|share| *share > 0.0)?;
     Some((near + share * way).into())
 }
 
-/// Barycentric coordinates of p in the triangle abc, if it is inside.
+/// Returns the barycentric coordinates of p in the triangle abc, if it is inside.
 fn weights(p: [f32; 2], a: [f32; 2], b: [f32; 2], c: [f32; 2]) -> Option<[f32; 3]> {
     let cross = |a: [f32; 2], b: [f32; 2], c: [f32; 2]| {
         (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
@@ -194,9 +195,9 @@ mod tests {
         assert_eq!(pick(&simulation, &camera, [0.02, 0.02], 1.6, 0.03), None);
     }
 
-    /// The same particle is hit at the same place of every pane.
+    /// The same position in each pane picks the same particle.
     #[test]
-    fn panes_are_picked_in_alike() {
+    fn picking_is_the_same_in_every_pane() {
         let simulation = cloth();
         let camera = Camera::look_at([0.0, 3.0, 9.0], [0.0, 2.5, 0.0]);
         let p = simulation.position(210);
@@ -218,7 +219,7 @@ mod tests {
         }
     }
 
-    /// A body is picked by its sides, whatever lies behind it, and what is in front of it is not.
+    /// A side of a body hides the bodies and particles behind it.
     #[test]
     fn a_body_is_picked_by_its_sides() {
         let scene = a3_scenes::find("boxes").unwrap().build(None).unwrap().scene;
@@ -234,7 +235,7 @@ mod tests {
         }
     }
 
-    /// The nearer one is hit: the sphere from beside the cloth and below, the cloth in front of it.
+    /// The nearer one is picked: the sphere from below the cloth, and the cloth from above.
     #[test]
     fn a_sphere_is_picked_unless_cloth_is_in_front() {
         let scene = a3_scenes::find("mit-sphere")
@@ -252,7 +253,7 @@ mod tests {
         assert_eq!(target, Target::Obstacle(0));
         assert_eq!(grip.offset.map(|o| (1e4 * o).round() as i32), [0, 0]);
         assert!((grip.distance - 8.0).abs() < 1e-3);
-        // The line of sight meets the cloth first, which lies at a height of 0.
+        // The line of sight meets the cloth first, at height 0.
         let above = hit([1.0, 6.0, 2.0]).unwrap().0;
         assert!(matches!(above, Target::Particle(_)), "{above:?}");
     }

@@ -1,4 +1,4 @@
-//! The pointer of the mouse: its position, its pane, and whether a button clicks or drags.
+//! The mouse pointer: its position, what is under it, and whether a button clicks or drags.
 
 use web_time::{Duration, Instant};
 
@@ -8,12 +8,12 @@ use crate::draw::show::Target;
 use crate::window::hud::{layout, panel};
 use crate::window::session::Session;
 
-/// Distance from the pointer within which a particle is hit (points).
-const REACH: f32 = 18.0;
-/// The farthest that the pointer may move during a click (points).
-pub const CLICK: f32 = 4.0;
-/// The longest time between the two clicks of a double click.
-const DOUBLE_CLICK: Duration = Duration::from_millis(400);
+/// Distance from the pointer within which a particle is picked (points).
+const PICK_DISTANCE: f32 = 18.0;
+/// Largest motion of the pointer during a click (points).
+pub const MAX_CLICK_DISTANCE: f32 = 4.0;
+/// Longest time between the two presses of a double click.
+const MAX_DOUBLE_CLICK_TIME: Duration = Duration::from_millis(400);
 
 /// The pointer.
 pub struct Pointer {
@@ -25,7 +25,7 @@ pub struct Pointer {
     pressed_at: [f32; 2],
     /// Time when the button was pressed.
     pressed: Instant,
-    /// Whether the pointer has stayed near that position: it is a click, not a drag.
+    /// Whether the pointer has stayed near that position, as in a click.
     still: bool,
 }
 
@@ -41,41 +41,41 @@ impl Pointer {
         }
     }
 
-    /// Notes that a button was pressed, and returns whether that is the second of a double click.
+    /// Notes that a button was pressed, and returns whether this is a double click.
     pub fn press(&mut self) -> bool {
-        let double = self.still && self.pressed.elapsed() < DOUBLE_CLICK;
+        let double = self.still && self.pressed.elapsed() < MAX_DOUBLE_CLICK_TIME;
         (self.pressed_at, self.pressed, self.still) = (self.position, Instant::now(), true);
         double
     }
 
-    /// Notes where the pointer goes. Beyond the reach of a click from where the button was pressed,
-    /// the click becomes a drag. There are `scale` pixels per point.
-    pub fn approach(&mut self, position: [f32; 2], scale: f32) {
+    /// Makes the click a drag if `position` (px) is too far from where the button was pressed.
+    /// There are `scale` pixels per point.
+    pub fn update_click(&mut self, position: [f32; 2], scale: f32) {
         let [x, y] = [0, 1].map(|k| position[k] - self.pressed_at[k]);
-        self.still &= x.hypot(y) <= CLICK * scale;
+        self.still &= x.hypot(y) <= MAX_CLICK_DISTANCE * scale;
     }
 
-    /// Whether the pressed button clicks until now, and does not drag.
+    /// Returns whether the pressed button has not dragged so far.
     pub fn is_click(&self) -> bool {
         self.still
     }
 
-    /// The pane under the pointer, or else the first.
+    /// Returns the pane under the pointer, or else the first.
     pub fn pane(&self, session: &Session, screen: &Screen) -> usize {
         screen.pane_at(session, self.position).unwrap_or(0)
     }
 
-    /// The particle or the obstacle under the pointer in a pane. A lost run cannot be pulled.
+    /// Returns the particle or obstacle under the pointer in a pane; `None` in a diverged run.
     pub fn hit(&self, session: &Session, screen: &Screen, pane: usize) -> Option<(Target, Grip)> {
         let (tile, pane) = (screen.tile(session, pane), &session.runs.panes[pane]);
-        let reach = REACH * screen.scale() / tile.height as f32;
+        let reach = PICK_DISTANCE * screen.scale() / tile.height as f32;
         let place = tile.place(self.position);
         let run = Some(&pane.simulation).filter(|_| pane.alive())?;
         pick::pick(run, &session.view.camera, place, tile.aspect(), reach)
     }
 
-    /// The share of the timeline at which the pointer is, if the timeline is shown and the pointer
-    /// no farther from it than `margin` (points).
+    /// Returns the pointer's position as a share of the timeline, if that is shown and at most
+    /// `margin` (points) away.
     pub fn timeline_share(&self, session: &Session, screen: &Screen, margin: f32) -> Option<f32> {
         let graphics = screen.graphics.as_ref()?;
         session.readings.rewound?;
@@ -91,13 +91,13 @@ impl Pointer {
         inside.then_some(((x - from) / (to - from)).clamp(0.0, 1.0))
     }
 
-    /// Whether the pointer is over the picture, where presses act on the scene.
+    /// Returns whether the pointer is over the picture, where presses act on the scene.
     pub fn is_over_picture(&self, session: &Session, screen: &Screen) -> bool {
         let Some(graphics) = &screen.graphics else {
             return false;
         };
         let (size, [x, y]) = (graphics.size(), self.position);
-        let free = panel::leaves(session, size, graphics.scale());
+        let free = panel::picture_size(session, size, graphics.scale());
         let inside = (0.0..free.0 as f32).contains(&x) && (0.0..free.1 as f32).contains(&y);
         inside && self.inside && session.list.is_none() && !session.readings.help
     }

@@ -1,20 +1,20 @@
-//! What is remembered of a window when it closes.
+//! Saving the settings when the window closes.
 
 use super::screen::Screen;
 use crate::base::terminal;
 use crate::window::session::Session;
 use crate::window::settings::Settings;
 
-/// Writes the settings as they are now, if they have changed.
+/// Writes the present settings, if they have changed. Warns on the terminal if that fails.
 pub fn remember(before: &Settings, session: &Session, screen: &Screen) {
     let mut now = Settings {
         interface_scale: screen.zoom,
-        full_screen: screen.is_full(),
+        full_screen: screen.is_full_screen(),
         dark: session.runs.panes[0].show.dark,
         panel: session.panel.open,
         frame_limit: session.panel.frame_limit,
         film: session.panel.film,
-        film_seconds: session.panel.film_of,
+        film_seconds: session.panel.film_seconds,
         recent: before.recent.clone(),
     };
     now.remember(session.scenes.files());

@@ -11,21 +11,21 @@ use super::graphics::Graphics;
 use crate::window::session::Session;
 use crate::window::settings::SCALES;
 
-/// The window, once it is there, and what depends on the adapter, once that is open.
+/// The window and its graphics, once they are open.
 pub struct Screen {
     pub display: OwnedDisplayHandle,
     pub window: Option<Arc<Window>>,
     pub graphics: Option<Graphics>,
-    /// Size of text and panel over that of the screen's own scale.
+    /// Scale factor of text and panel, on top of the screen's own.
     pub zoom: f32,
-    /// Whether the window can be seen.
+    /// Whether the window is visible.
     pub visible: bool,
     /// Number of devices opened so far.
     pub devices: u32,
 }
 
 impl Screen {
-    /// A window that is yet to be opened.
+    /// Creates a screen whose window is not open yet.
     pub fn new(display: OwnedDisplayHandle, zoom: f32) -> Self {
         Self {
             display,
@@ -37,14 +37,14 @@ impl Screen {
         }
     }
 
-    /// Asks for another frame.
+    /// Requests another frame.
     pub fn redraw(&self) {
         if let Some(window) = &self.window {
             window.request_redraw();
         }
     }
 
-    /// Asks for a frame at that time, unless the window is hidden.
+    /// Requests a frame at a time, unless the window is hidden.
     pub fn wait_until(&self, event_loop: &ActiveEventLoop, when: Instant) {
         if !self.visible {
             event_loop.set_control_flow(ControlFlow::Wait);
@@ -55,9 +55,9 @@ impl Screen {
         }
     }
 
-    /// Time from one frame to the next, at most `limit` frames a second unless that is 0: a little
-    /// less than that of the monitor, because presenting a frame waits for the rest, where it waits
-    /// at all.
+    /// Returns the time between two frames: slightly less than that of the monitor, because
+    /// presenting waits for the rest, if it waits at all. `limit` is the largest frame rate (1/s),
+    /// 0 for none.
     pub fn frame_time(&self, limit: u32) -> Duration {
         let monitor = self
             .window
@@ -73,7 +73,7 @@ impl Screen {
         }
     }
 
-    /// The part of the window that pane k fills.
+    /// Returns the part of the window that pane k fills.
     pub fn tile(&self, session: &Session, k: usize) -> Tile {
         let tiles = self
             .graphics
@@ -82,18 +82,18 @@ impl Screen {
         tiles.map_or(Tile::whole((1, 1)), |tiles| tiles[k])
     }
 
-    /// The pane at a place (px), if there is one.
+    /// Returns the pane at a position (px), if there is one.
     pub fn pane_at(&self, session: &Session, place: [f32; 2]) -> Option<usize> {
         (0..session.runs.panes.len()).find(|k| self.tile(session, *k).contains(place))
     }
 
-    /// Pixels per point.
+    /// Returns the number of pixels per point.
     pub fn scale(&self) -> f32 {
         self.graphics.as_ref().map_or(1.0, Graphics::scale)
     }
 
-    /// Makes text and panel larger by a step, smaller if it is negative, or as at first if it is 0.
-    /// Returns the message to show.
+    /// Enlarges text and panel by a number of steps, shrinks them if it is negative, or resets
+    /// their size if it is 0. Returns a message.
     pub fn scale_interface(&mut self, by: isize) -> String {
         let now = SCALES.iter().position(|scale| *scale >= self.zoom);
         let next = now.unwrap_or(0).saturating_add_signed(by);
@@ -107,11 +107,11 @@ impl Screen {
         }
         self.redraw();
         let percent = (100.0 * self.zoom).round();
-        format!("Text and panel have {percent} % of their size.")
+        format!("Text and panel are at {percent} % of their usual size.")
     }
 
-    /// Takes the graphics that were opened for the window.
-    pub fn take_graphics(&mut self, graphics: Result<Graphics, GpuError>) -> Result<(), GpuError> {
+    /// Sets the graphics of the window. Fails if they could not be opened.
+    pub fn set_graphics(&mut self, graphics: Result<Graphics, GpuError>) -> Result<(), GpuError> {
         self.redraw();
         let mut graphics = graphics?;
         graphics.set_zoom(self.zoom);
@@ -120,21 +120,21 @@ impl Screen {
         Ok(())
     }
 
-    /// Whether the window fills the screen.
-    pub fn is_full(&self) -> bool {
+    /// Returns whether the window fills the screen.
+    pub fn is_full_screen(&self) -> bool {
         let window = self.window.as_ref();
         window.is_some_and(|window| window.fullscreen().is_some())
     }
 
-    /// Fills the screen, or a window again.
-    pub fn toggle_full(&self) {
+    /// Switches between full screen and a window.
+    pub fn toggle_full_screen(&self) {
         if let Some(window) = &self.window {
             let whole = window.fullscreen().is_none();
             window.set_fullscreen(whole.then_some(Fullscreen::Borderless(None)));
         }
     }
 
-    /// Shows another scene, with its name in the title of the window.
+    /// Uploads another scene, and puts its name into the title of the window.
     pub fn set_scene(&mut self, session: &Session) {
         if let Some(graphics) = &mut self.graphics {
             graphics.set_scene(session);

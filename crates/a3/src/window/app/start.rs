@@ -1,27 +1,28 @@
-//! Opening the window.
+//! Opening the window, in the system or in a page.
 
 #[cfg(not(target_arch = "wasm32"))]
 use std::path::PathBuf;
 
 use winit::event_loop::EventLoop;
 
-use super::platform::{Event, Outside};
+use super::platform::{Event, Platform};
 use super::state::App;
 use crate::base::failure::Failure;
 use crate::window::session::{Session, looks};
 use crate::window::settings::Settings;
 
-/// How the window ends.
+/// The outcome of opening the window.
 #[cfg(not(target_arch = "wasm32"))]
 pub enum End {
     /// The user closed the window.
     Closed,
-    /// No window could be opened, for this reason. The session is as it was.
+    /// No window could be opened, for this reason. The session has not advanced.
     NoWindow(String, Box<Session>),
 }
 
-/// Opens the window. With `status`, lines on stderr tell what is on the screen. When one of `files`
-/// changes, the scene is loaded again. The `settings` are written again when the window closes.
+/// Opens the window, and returns when it closes. With `status`, writes status lines to stderr.
+/// Reloads the scene when one of `files` changes. Writes the `settings` back at the end. Fails with
+/// the failure that closed the window.
 #[cfg(not(target_arch = "wasm32"))]
 pub fn open(
     mut session: Session,
@@ -35,7 +36,7 @@ pub fn open(
     };
     prepare(&mut session, settings.as_ref());
     let display = event_loop.owned_display_handle();
-    let mut app = App::new(session, display, status, Outside::new(files), settings);
+    let mut app = App::new(session, display, status, Platform::new(files), settings);
     event_loop.run_app(&mut app).map_err(Failure::run)?;
     match app.failure {
         None => Ok(End::Closed),
@@ -47,8 +48,8 @@ pub fn open(
     }
 }
 
-/// Opens the window in the page, which goes on by itself. With `status`, lines on the console tell
-/// what is on the screen.
+/// Opens the window in a page, and returns at once. With `status`, writes status lines to the
+/// console. Fails if there is no event loop.
 #[cfg(target_arch = "wasm32")]
 pub fn spawn(
     mut session: Session,
@@ -58,20 +59,20 @@ pub fn spawn(
     use winit::platform::web::EventLoopExtWebSys;
     let event_loop = EventLoop::<Event>::with_user_event().build();
     let event_loop = event_loop.map_err(Failure::run)?;
-    super::platform::reach(event_loop.create_proxy());
+    super::platform::connect(event_loop.create_proxy());
     prepare(&mut session, settings.as_ref());
     let display = event_loop.owned_display_handle();
     event_loop.spawn_app(App::new(
         session,
         display,
         status,
-        Outside::default(),
+        Platform::default(),
         settings,
     ));
     Ok(())
 }
 
-/// Gives a session in a window the settings that are remembered.
+/// Applies the saved settings to a session, and marks it as being in a window.
 fn prepare(session: &mut Session, settings: Option<&Settings>) {
     session.readings.in_window = true;
     if let Some(settings) = settings {
@@ -81,12 +82,12 @@ fn prepare(session: &mut Session, settings: Option<&Settings>) {
         }
         session.panel.film = settings.film;
         session.panel.frame_limit = settings.frame_limit;
-        session.panel.film_of = settings.film_seconds;
+        session.panel.film_seconds = settings.film_seconds;
         session.scenes.recent.clone_from(&settings.recent);
     }
 }
 
-/// The event loop, where there is a display and what is needed to talk to it.
+/// Creates the event loop. Fails if a display or a library is missing.
 #[cfg(not(target_arch = "wasm32"))]
 fn event_loop() -> Result<EventLoop<Event>, String> {
     #[cfg(all(unix, not(target_vendor = "apple")))]
@@ -100,8 +101,8 @@ fn event_loop() -> Result<EventLoop<Event>, String> {
     built.map_err(|_| "no display (DISPLAY and WAYLAND_DISPLAY are unset or lead nowhere)".into())
 }
 
-/// Whether a library is missing that winit reads the keys of a display with. Without it, winit
-/// panics, where it returns an error without others.
+/// Returns whether a library is missing with which winit reads the keyboard. Winit panics without
+/// it, instead of returning an error.
 #[cfg(all(unix, not(target_vendor = "apple")))]
 fn lacks_keyboard() -> bool {
     use xkbcommon_dl::{x11::xkbcommon_x11_option, xkbcommon_option};

@@ -1,4 +1,4 @@
-//! The window's state: its session, its screen and its mouse.
+//! The state of the window: its session, its screen and its mouse.
 
 use std::path::PathBuf;
 use web_time::Instant;
@@ -11,7 +11,7 @@ use winit::keyboard::{Key, ModifiersState, NamedKey};
 use super::graphics::Graphics;
 use super::keyboard;
 use super::mouse::Mouse;
-use super::platform::{self, Outside};
+use super::platform::{self, Platform};
 use super::remember::remember;
 use super::screen::Screen;
 use super::status::Status;
@@ -22,35 +22,35 @@ use crate::window::session::{Action, RunAction, Session, WindowAction};
 use crate::window::settings::Settings;
 use crate::window::{command_line, keep};
 
-/// The window, from the first event to the last.
+/// The window application.
 pub struct App {
-    /// The session that is shown.
+    /// The session.
     pub session: Session,
     /// The window on the screen.
     pub screen: Screen,
     /// The mouse.
     pub mouse: Mouse,
-    /// The keys that are held beside others.
-    pub held: ModifiersState,
-    /// Time when the simulation was last brought up to date.
-    pub last: Instant,
-    /// The settings as they were read, unless none are remembered.
+    /// The modifier keys that are held.
+    pub modifiers: ModifiersState,
+    /// Time when the session was last advanced.
+    pub last_tick: Instant,
+    /// The settings as they were read; `None` if they are not saved.
     pub settings: Option<Settings>,
-    /// What the window has of the system.
-    pub outside: Outside,
-    /// Lines for tests, if they are asked for.
+    /// Services of the operating system or the browser.
+    pub platform: Platform,
+    /// Writer of status lines, if they are enabled.
     pub status: Option<Status>,
     /// The failure that closed the window, if there was one.
     pub failure: Option<Failure>,
 }
 
 impl App {
-    /// A session in a window that is yet to be opened.
+    /// Creates an application whose window is not open yet.
     pub fn new(
         session: Session,
         display: OwnedDisplayHandle,
         status: bool,
-        outside: Outside,
+        platform: Platform,
         settings: Option<Settings>,
     ) -> Self {
         let zoom = settings.as_ref().map_or(1.0, |it| it.interface_scale);
@@ -58,10 +58,10 @@ impl App {
             session,
             screen: Screen::new(display, zoom),
             mouse: Mouse::new(),
-            held: ModifiersState::empty(),
-            last: Instant::now(),
+            modifiers: ModifiersState::empty(),
+            last_tick: Instant::now(),
             settings,
-            outside,
+            platform,
             status: status.then(Status::default),
             failure: None,
         }
@@ -73,28 +73,28 @@ impl App {
         event_loop.exit();
     }
 
-    /// Opens all that depends on the adapter.
+    /// Opens the graphics, or starts to.
     pub fn open_graphics(&mut self, event_loop: &ActiveEventLoop) {
         let opened = self
-            .outside
+            .platform
             .open_graphics(&mut self.screen, &mut self.session);
         if let Some(graphics) = opened {
-            self.take_graphics(event_loop, graphics);
+            self.set_graphics(event_loop, graphics);
         }
     }
 
-    /// Takes up all that depends on the adapter.
-    pub fn take_graphics(
+    /// Sets the graphics, or closes the window if they could not be opened.
+    pub fn set_graphics(
         &mut self,
         event_loop: &ActiveEventLoop,
         graphics: Result<Graphics, GpuError>,
     ) {
-        if let Err(why) = self.screen.take_graphics(graphics) {
+        if let Err(why) = self.screen.set_graphics(graphics) {
             self.fail(event_loop, why);
         }
     }
 
-    /// Does what a key is for: in the panel, or by the table of keys.
+    /// Handles a key: in an open list, for a typed value, in the panel, or by the table of keys.
     pub fn press_key(&mut self, event_loop: &ActiveEventLoop, event: &KeyEvent) {
         if let (Some(_), Some(graphics)) = (&self.status, &self.screen.graphics)
             && event.logical_key == Key::Named(NamedKey::F12)
@@ -102,7 +102,10 @@ impl App {
             graphics.lose_device();
             self.screen.redraw();
         }
-        if let (true, Some(by)) = (self.held.control_key(), keyboard::zoom(&event.logical_key)) {
+        if let (true, Some(by)) = (
+            self.modifiers.control_key(),
+            keyboard::zoom(&event.logical_key),
+        ) {
             let said = self.screen.scale_interface(by);
             return self.session.readings.say(said);
         }
@@ -119,7 +122,7 @@ impl App {
             return;
         }
         let key = keyboard::panel_key(&event.logical_key);
-        let shift = self.held.shift_key();
+        let shift = self.modifiers.shift_key();
         if key.is_some_and(|key| panel::press(&mut self.session, key, shift)) {
             self.screen.redraw();
             return;
@@ -141,14 +144,14 @@ impl App {
         }
     }
 
-    /// Does an action of the keys.
+    /// Performs an action.
     pub fn act(&mut self, event_loop: &ActiveEventLoop, action: Action) {
         let pane = self.mouse.pointer.pane(&self.session, &self.screen);
         match action {
             Action::Run(action) => {
-                // No steps are due for the time in which nothing moved.
+                // Do not simulate the time in which the runs stood still.
                 if !self.session.animated() {
-                    self.last = Instant::now();
+                    self.last_tick = Instant::now();
                 }
                 if self.session.act(action, pane) {
                     self.scene_changed();
@@ -159,7 +162,7 @@ impl App {
         self.screen.redraw();
     }
 
-    /// Does an action that needs the window. The pointer is over `pane`.
+    /// Performs an action that needs the window. The pointer is over `pane`.
     fn act_in_window(&mut self, event_loop: &ActiveEventLoop, action: WindowAction, pane: usize) {
         let (session, graphics) = (&mut self.session, self.screen.graphics.as_ref());
         let message = match action {
@@ -170,13 +173,13 @@ impl App {
                 }
                 stays.map(Into::into)
             }
-            WindowAction::Picture => Some(self.outside.save_picture(session, graphics)),
+            WindowAction::Picture => Some(self.platform.save_picture(session, graphics)),
             WindowAction::FullScreen => {
-                self.screen.toggle_full();
+                self.screen.toggle_full_screen();
                 None
             }
             WindowAction::Undo | WindowAction::Redo => {
-                let again = action == WindowAction::Redo || self.held.shift_key();
+                let again = action == WindowAction::Redo || self.modifiers.shift_key();
                 panel::undo(session, again);
                 None
             }
@@ -188,23 +191,23 @@ impl App {
             }
             WindowAction::WritePlots => Some(said("wrote", write_plots(session))),
             WindowAction::Record => {
-                self.outside.films.record(session, graphics);
+                self.platform.films.record(session, graphics);
                 None
             }
             WindowAction::FilmLast => {
-                self.outside.films.record_last(session, graphics);
+                self.platform.films.record_last(session, graphics);
                 None
             }
             WindowAction::CommandLine => Some(match command_line::of(session, pane) {
-                Ok(line) => self.outside.copy(&line),
+                Ok(line) => self.platform.copy(&line),
                 Err(failure) => failure.to_string(),
             }),
-            WindowAction::Keep => Some(said("kept in", keep::keep(session, pane))),
-            WindowAction::TakeUp => {
-                let loaded = match session.scenes.kept.clone() {
-                    None => "Nothing was kept: k keeps the run in a file.".into(),
+            WindowAction::SaveRun => Some(said("saved", keep::save(session, pane))),
+            WindowAction::LoadRun => {
+                let loaded = match session.scenes.checkpoint.clone() {
+                    None => "No run was saved yet: key k saves one.".into(),
                     Some(path) => {
-                        let taken = keep::take_up(session, &path);
+                        let taken = keep::load(session, &path);
                         said("loaded", taken.map(|()| path))
                     }
                 };
@@ -219,14 +222,14 @@ impl App {
         }
     }
 
-    /// Shows another scene.
+    /// Ends drags and live films, and shows another scene.
     pub fn scene_changed(&mut self) {
-        self.mouse.stop();
-        self.outside.films.end_live(&mut self.session);
+        self.mouse.abort();
+        self.platform.films.finish_live(&mut self.session);
         self.screen.set_scene(&self.session);
     }
 
-    /// Keeps the settings for the next window, if they are remembered.
+    /// Saves the settings for the next window, unless that is disabled.
     pub fn remember(&self) {
         if let Some(before) = &self.settings {
             remember(before, &self.session, &self.screen);
@@ -234,7 +237,7 @@ impl App {
     }
 }
 
-/// Message about a file that was written or read, or why it was not.
+/// Returns a message about a file that was written or read, or about the failure.
 fn said(done: &str, file: Result<PathBuf, Failure>) -> String {
     match file {
         Ok(path) => format!("{done} {}", path.display()),
@@ -242,7 +245,8 @@ fn said(done: &str, file: Result<PathBuf, Failure>) -> String {
     }
 }
 
-/// Writes the samples of all panes under the first name that is free.
+/// Writes the samples of all panes under the first free name, and returns the path. Fails if the
+/// file cannot be written.
 fn write_plots(session: &Session) -> Result<PathBuf, Failure> {
     let table = panel::csv(&session.runs.panes).map_err(Failure::run)?;
     let scene = &session.runs.first().scene().name;

@@ -1,4 +1,4 @@
-//! Status lines for tests: what is on the screen, as text on stderr.
+//! Status lines for tests: the state of the window, as text on stderr.
 
 use web_time::{Duration, Instant};
 
@@ -10,20 +10,20 @@ use crate::base::terminal;
 use crate::draw::show::{Arrows, Quantity};
 use crate::window::session::{Pane, Session};
 
-/// The lines of status so far.
+/// A writer of status lines.
 #[derive(Default)]
 pub struct Status {
     /// Number of frames drawn.
     pub frames: u64,
-    /// The last line, without what changes from frame to frame.
+    /// The last line, without the values that change in every frame.
     state: String,
     /// Time of the last line.
     said: Option<Instant>,
 }
 
 impl Status {
-    /// Writes a line once there are graphics, unless nothing has changed and the last one is too
-    /// recent.
+    /// Writes a line, once there are graphics. While the runs advance, an unchanged state is
+    /// written at most every 200 ms.
     pub fn say(&mut self, session: &Session, screen: &Screen, cursor: CursorIcon) {
         let Some(graphics) = &screen.graphics else {
             return;
@@ -89,7 +89,7 @@ impl Status {
         let quiet = self
             .said
             .is_some_and(|said| now.duration_since(said) < Duration::from_millis(200));
-        // While all stands still, no other line would follow.
+        // While the runs stand still, no other line would follow.
         let quiet = quiet && session.animated();
         if quiet && state == self.state {
             return;

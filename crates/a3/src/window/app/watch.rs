@@ -1,18 +1,17 @@
-//! Files that are checked now and then, to see whether they were saved.
+//! A watch over files, which checks periodically whether they have changed.
 
 use std::fs;
 use std::path::PathBuf;
 use std::time::{Duration, Instant, SystemTime};
 
-/// Time from one check to the next. Editors rename, truncate and write files: checking works with
-/// all of them.
-const INTERVAL: Duration = Duration::from_millis(200);
+/// Time between two checks. Checking works whether an editor renames, truncates or rewrites the
+/// file.
+const CHECK_INTERVAL: Duration = Duration::from_millis(200);
 
-/// Time of change and length, by which one version of a file differs from the next; `None` without
-/// a file.
+/// Modification time and length of a file, which identify its version; `None` if there is no file.
 type Stamp = Option<(SystemTime, u64)>;
 
-/// The files of a scene.
+/// A watch over the files of a scene.
 pub struct Watch {
     files: Vec<PathBuf>,
     seen: Vec<Stamp>,
@@ -20,28 +19,28 @@ pub struct Watch {
 }
 
 impl Watch {
-    /// Begins to watch files as they are now.
+    /// Starts to watch files in their present versions.
     pub fn new(files: Vec<PathBuf>) -> Self {
         Self {
             seen: files.iter().map(stamp).collect(),
             files,
-            next: Instant::now() + INTERVAL,
+            next: Instant::now() + CHECK_INTERVAL,
         }
     }
 
-    /// Time of the next check.
+    /// Returns the time of the next check.
     pub fn next(&self) -> Instant {
         self.next
     }
 
-    /// Whether a file was saved since the last check, and all of them are there.
+    /// Checks the files if that is due. Returns whether one has changed and all of them exist.
     pub fn changed(&mut self) -> bool {
         if Instant::now() < self.next {
             return false;
         }
-        self.next = Instant::now() + INTERVAL;
+        self.next = Instant::now() + CHECK_INTERVAL;
         let now: Vec<_> = self.files.iter().map(stamp).collect();
-        // A file that is being replaced is absent for a moment.
+        // A file that is being replaced does not exist for a moment.
         if now == self.seen || now.iter().any(Option::is_none) {
             return false;
         }
@@ -61,13 +60,13 @@ mod tests {
     use std::thread::sleep;
 
     #[test]
-    fn a_saved_file_is_seen_once_and_one_that_is_away_not() {
+    fn a_changed_file_is_reported_once_and_a_missing_one_is_not() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("scene.toml");
         fs::write(&path, "a").unwrap();
         let mut watch = Watch::new(vec![path.clone()]);
         let mut look = || {
-            sleep(INTERVAL + Duration::from_millis(20));
+            sleep(CHECK_INTERVAL + Duration::from_millis(20));
             watch.changed()
         };
         assert!(!look());

@@ -7,17 +7,18 @@ use super::style::{ALARM, text};
 use super::words::digits;
 use crate::window::session::Pane;
 
-/// Writes when the run blew up, which limit was passed, and which step would have held.
-pub fn blow_up(ui: &mut Ui, pane: &Pane, lost: &BlowUp) {
-    ui.label(ALARM.text(&format!("It {lost}.")).size(14.5).strong());
-    let method = lost.method;
+/// Writes when the run blew up, which limit the step exceeded, and which step would have been
+/// stable.
+pub fn explain(ui: &mut Ui, pane: &Pane, blow_up: &BlowUp) {
+    ui.label(ALARM.text(&format!("It {blow_up}.")).size(14.5).strong());
+    let method = blow_up.method;
     let same = method == pane.simulation.method().title;
     let limit = pane.limit.limit().map(|limit| limit.step);
-    ui.label(text(match (lost.control, pane.limit.would_hold()) {
-        _ if lost.cause == Cause::ReadsVelocity => format!("{method} does not serve such forces."),
-        _ if is_hopeless(lost) => "A shorter step does not help.".into(),
-        (Control::Tolerance(tolerance), _) if matches!(lost.cause, Cause::StepTooSmall { .. }) => {
-            format!("{method} found no step to a tolerance of {tolerance:e}: a larger one may do.")
+    ui.label(text(match (blow_up.control, pane.limit.would_hold()) {
+        _ if blow_up.cause == Cause::ReadsVelocity => format!("{method} cannot integrate forces that depend on velocity."),
+        _ if no_step_is_stable(blow_up) => "A shorter step does not help.".into(),
+        (Control::Tolerance(tolerance), _) if matches!(blow_up.cause, Cause::StepTooSmall { .. }) => {
+            format!("{method} found no step that meets a tolerance of {tolerance:e}. Try a larger one.")
         }
         (Control::Tolerance(tolerance), _) => {
             format!("A tolerance of {tolerance:e} was too large for {method}.")
@@ -36,22 +37,22 @@ pub fn blow_up(ui: &mut Ui, pane: &Pane, lost: &BlowUp) {
     }));
 }
 
-/// Whether surfaces that are led left no room, whatever the step.
-fn is_pinched(lost: &BlowUp) -> bool {
-    matches!(lost.cause, Cause::Pinched { .. })
+/// Returns whether pins or moving obstacles left no room between surfaces.
+fn is_pinched(blow_up: &BlowUp) -> bool {
+    matches!(blow_up.cause, Cause::Pinched { .. })
 }
 
-/// Whether no step would have held.
-fn is_hopeless(lost: &BlowUp) -> bool {
-    is_pinched(lost) || matches!(lost.cause, Cause::Contradiction(_))
+/// Returns whether no step would have been stable.
+fn no_step_is_stable(blow_up: &BlowUp) -> bool {
+    is_pinched(blow_up) || matches!(blow_up.cause, Cause::Contradiction(_))
 }
 
-/// The keys that lead out of a blow-up.
-pub fn way_out(lost: &BlowUp) -> String {
-    if is_pinched(lost) {
+/// Returns advice on the keys to press after a blow-up.
+pub fn advice(blow_up: &BlowUp) -> String {
+    if is_pinched(blow_up) {
         return "Press , to go back, or x to let surfaces pass through one another, then r.".into();
     }
-    "Press < to go back, - for a shorter step, or a digit for another solver; or r to begin anew."
+    "Press < to go back, - for a shorter step, or a digit for another solver; or r to start again."
         .into()
 }
 
@@ -79,7 +80,7 @@ mod tests {
     }
 
     #[test]
-    fn what_leaves_no_room_is_named() {
+    fn surfaces_without_room_are_named() {
         let pinched = "self_collision = true\n\
             [[cloth]]\ngrid = [3, 3]\nwidth = 1\nmass = 0.1\nstiffness = [40, 20, 1]\n\
             down = [0, 0, 1]\npin = [{ at = ['top', 'bottom'] }]\n\

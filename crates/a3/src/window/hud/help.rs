@@ -6,11 +6,10 @@ use egui::{Align2, Area, Context, Id, ScrollArea, Ui, vec2};
 use super::style::{MARGIN, sheet, text, title};
 use crate::window::session::{KEYS, MOUSE};
 
-/// Width of a window that has room for three columns (points).
-const WIDE: f32 = 800.0;
+/// Width of a window above which the help has three columns (points).
+const THREE_COLUMN_WIDTH: f32 = 800.0;
 
-/// Writes the help, for one pane or `several`. Where the window is too small for it, the wheel
-/// scrolls.
+/// Shows the help, for one pane or `several`. In a small window it scrolls by the wheel.
 pub fn help(ctx: &Context, several: bool) {
     let window = ctx.content_rect().shrink(MARGIN);
     Area::new(Id::unique("help"))
@@ -18,18 +17,20 @@ pub fn help(ctx: &Context, several: bool) {
         .show(ctx, |ui| {
             ui.style_mut().interaction.selectable_labels = false;
             sheet(ui, |ui| {
-                // What the sheet's own margins leave.
+                // The window less the margins of the sheet.
                 let room = window.size() - vec2(24.0, 18.0);
                 ScrollArea::vertical()
                     .max_width(room.x)
                     .max_height(room.y.max(40.0))
                     .min_scrolled_height(room.y.max(40.0))
-                    .show(ui, |ui| columns(ui, several, window.width() > WIDE));
+                    .show(ui, |ui| {
+                        columns(ui, several, window.width() > THREE_COLUMN_WIDTH);
+                    });
             });
         });
 }
 
-/// Writes keys, solvers and mouse beside one another, or below one another in a narrow window.
+/// Writes keys, solvers and mouse side by side, or below one another in a narrow window.
 fn columns(ui: &mut Ui, several: bool, wide: bool) {
     let rows = |ui: &mut Ui, heading: &str, rows: &[(String, &str)]| {
         ui.vertical(|ui| {
@@ -112,7 +113,7 @@ mod tests {
         );
     }
 
-    /// In small windows it is a sheet that scrolls: within the window, in one column.
+    /// In a small window the help has one column, stays within the window, and scrolls.
     #[test]
     fn the_help_fits_into_small_windows() {
         for size in [[320.0, 240.0], [640.0, 360.0], [1000.0, 300.0]] {
@@ -151,7 +152,7 @@ mod tests {
                 }
                 words
             };
-            let last = if size[0] > WIDE {
+            let last = if size[0] > THREE_COLUMN_WIDTH {
                 KEYS[KEYS.len() - 1].help
             } else {
                 integrators::METHODS[9].title

@@ -3,24 +3,24 @@
 use a3_render::Tile;
 
 /// Distance between panes (points).
-const GAP: f32 = 3.0;
+const PANE_GAP: f32 = 3.0;
 
-/// Height of the bar over several panes in a window of this width (points). In a narrow window the
-/// bar has two lines.
+/// Returns the height of the bar above several panes, in a window of a width (points). In a narrow
+/// window it has two lines.
 pub fn bar(width: f32) -> f32 {
     if width < 640.0 { 48.0 } else { 30.0 }
 }
 
-/// The parts of a target of `size` (px), at `scale` pixels per point, for so many panes. One pane
-/// fills the target; several stand below the bar in a row, in a column or in two rows of two,
-/// whichever makes them most like squares.
+/// Returns the parts of a target of `size` (px), at `scale` pixels per point, for a number of
+/// panes. One pane fills the target. Several are below the bar: in a row, a column, or two rows of
+/// two, whichever makes them closest to squares.
 pub fn tiles(panes: usize, size: (u32, u32), scale: f32) -> Vec<Tile> {
     if panes < 2 {
         return vec![Tile::whole(size)];
     }
-    let gap = (GAP * scale).round().max(1.0) as u32;
+    let gap = (PANE_GAP * scale).round().max(1.0) as u32;
     let bar = (bar(size.0 as f32 / scale) * scale).round() as u32;
-    // In the smallest windows the bar leaves room for the picture.
+    // In the smallest windows, the bar takes at most a third.
     let bar = (bar + gap).min(size.1 / 3);
     let room = (size.0, size.1 - bar);
     let part = |side: u32, count: u32| (side.saturating_sub(gap * (count - 1)) / count).max(1);
@@ -38,7 +38,7 @@ pub fn tiles(panes: usize, size: (u32, u32), scale: f32) -> Vec<Tile> {
         .unwrap_or((count, 1));
     let span = |k: u32, side: u32, count: u32| {
         let (from, to) = (k * (side + gap) / count, (k + 1) * (side + gap) / count);
-        // A pane is inside the target even if that is smaller than the gaps.
+        // Keep a pane inside the target even if that is smaller than the gaps.
         let from = from.min(side - 1);
         (from, to.saturating_sub(from + gap).clamp(1, side - from))
     };
@@ -56,14 +56,14 @@ pub fn tiles(panes: usize, size: (u32, u32), scale: f32) -> Vec<Tile> {
         .collect()
 }
 
-/// The timeline in a window of this size: left, top, width and height (points).
+/// Returns left, top, width and height of the timeline in a window of a size (points).
 pub fn timeline([width, height]: [f32; 2]) -> [f32; 4] {
     let wide = (width - 24.0).clamp(40.0, 560.0);
     let high = 42.0;
     [0.5 * (width - wide), height - 12.0 - high, wide, high]
 }
 
-/// Beginning and end of the timeline's track (points from the left of the window).
+/// Returns start and end of the timeline's track (points from the left of the window).
 pub fn track(left: f32, width: f32) -> (f32, f32) {
     (left + 18.0, left + width - 18.0)
 }
@@ -100,7 +100,7 @@ mod tests {
     }
 
     #[test]
-    fn tiles_lie_inside_fill_it_and_do_not_overlap() {
+    fn tiles_fill_the_target_and_do_not_overlap() {
         for panes in 2..=4 {
             for size in [
                 (1, 1),

@@ -5,24 +5,24 @@ use egui::{
     Align2, Color32, FontId, Mesh, Pos2, Rect, Sense, Shape, Stroke, Ui, epaint::Vertex, vec2,
 };
 
-use super::style::{FAINT, TEXT, exchanged};
+use super::style::{FAINT, TEXT, invert_lightness};
 use super::words::digits;
 use crate::draw::show::{self, Show};
 
-/// Width and height of the bar (points).
-const BAR: [f32; 2] = [200.0, 10.0];
-/// Number of pieces of the bar, between which its colours are mixed.
-const PIECES: u32 = 35;
+/// Width and height of the colour bar (points).
+const BAR_SIZE: [f32; 2] = [200.0, 10.0];
+/// Number of pieces of the colour bar, within which colours are interpolated.
+const BAR_PIECES: u32 = 35;
 
-/// Draws a bar of the colours with the ends of its scale and a mark at each tenth, as the surface
-/// has them, and says what arrows mean and which springs are which, where there are any.
+/// Draws the colour bar, with the ends of its scale and the same marks at tenths as on the surface.
+/// Also explains arrows and kinds of springs, if there are any.
 pub fn legend(ui: &mut Ui, show: &Show) {
     let (colouring, field) = (&show.colouring, &show.field);
     let coloured = colouring.shown();
     if let Some(quantity) = coloured {
-        let width = BAR[0].min(ui.available_width());
-        let (rect, _) = ui.allocate_exact_size(vec2(width, BAR[1] + 17.0), Sense::hover());
-        let bar = Rect::from_min_size(rect.min, vec2(width, BAR[1]));
+        let width = BAR_SIZE[0].min(ui.available_width());
+        let (rect, _) = ui.allocate_exact_size(vec2(width, BAR_SIZE[1] + 17.0), Sense::hover());
+        let bar = Rect::from_min_size(rect.min, vec2(width, BAR_SIZE[1]));
         draw(ui, bar, show.dark);
         let scale = &colouring.scale;
         let power = |end: f64| {
@@ -67,7 +67,7 @@ pub fn legend(ui: &mut Ui, show: &Show) {
     }
 }
 
-/// Draws a piece of each kind of springs, in its width and, if that is seen, in its colour.
+/// Draws a sample of each kind of springs, in its width, and in its colour if `in_colours`.
 fn springs(ui: &mut Ui, show: &Show, in_colours: bool) {
     for kind in show.kinds().iter().rev() {
         let ([r, g, b, _], width) = show::kind_look(*kind);
@@ -83,14 +83,15 @@ fn springs(ui: &mut Ui, show: &Show, in_colours: bool) {
     }
 }
 
+/// Draws the bar, for the dark theme or the light one.
 fn draw(ui: &Ui, bar: Rect, dark: bool) {
     let mut mesh = Mesh::default();
-    for k in 0..=PIECES {
-        let share = k as f32 / PIECES as f32;
+    for k in 0..=BAR_PIECES {
+        let share = k as f32 / BAR_PIECES as f32;
         let [r, g, b, _] = ramp(share);
         let color = Color32::from(egui::Rgba::from_rgb(r, g, b));
-        // The colours of values are the same in both themes.
-        let color = if dark { exchanged(color) } else { color };
+        // Colours of values are the same in both themes, so undo the inversion in advance.
+        let color = if dark { invert_lightness(color) } else { color };
         let x = bar.left() + share * bar.width();
         for y in [bar.top(), bar.bottom()] {
             mesh.vertices.push(Vertex {
@@ -120,7 +121,7 @@ mod tests {
     use crate::window::session::Readings;
     use a3_render::Style;
 
-    /// What is said of a scene that is drawn in a style and coloured by a quantity.
+    /// Returns the text over a scene that is drawn in a style and coloured by a quantity.
     fn said(scene: &str, style: Style, quantity: Option<Quantity>) -> String {
         let mut pane = pane(scene, "r", 1e-3);
         pane.show.style = style;
@@ -131,7 +132,7 @@ mod tests {
     }
 
     #[test]
-    fn it_says_what_is_seen_and_no_more() {
+    fn the_legend_explains_what_is_drawn_and_no_more() {
         let springs = said("mit", Style::Springs, None);
         assert!(springs.contains("structural\nshear\nbend\n"), "{springs}");
         let wires = said("mit", Style::Wireframe, Some(Quantity::Strain));

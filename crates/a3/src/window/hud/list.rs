@@ -1,4 +1,4 @@
-//! A list to choose from, over the picture.
+//! The open list, drawn over the picture.
 
 use egui::{
     Align, Align2, Area, Context, CornerRadius, FontId, Frame, Id, Margin, Order, ScrollArea,
@@ -9,14 +9,14 @@ use super::panel::PanelRequest;
 use super::style::{FAINT, MARGIN, PAPER, TEXT, faint, text, title};
 use crate::window::session::{Entry, Session, Topic};
 
-/// Width of the list in a window that is wide enough (points).
-const WIDTH: f32 = 560.0;
+/// Largest width of the list (points).
+const MAX_WIDTH: f32 = 560.0;
 /// Height of an entry (points).
-const HEIGHT: f32 = 22.0;
-/// Width of the names (points).
-const NAME: f32 = 136.0;
+const ENTRY_HEIGHT: f32 = 22.0;
+/// Smallest width of the names (points).
+const NAME_WIDTH: f32 = 136.0;
 
-/// Draws the list that is open, and returns what the mouse asks for.
+/// Draws the open list, and returns the request of the mouse.
 pub fn show(ctx: &Context, session: &Session) -> Option<PanelRequest> {
     let list = session.list.as_ref()?;
     let window = ctx.content_rect().shrink(MARGIN);
@@ -35,7 +35,7 @@ pub fn show(ctx: &Context, session: &Session) -> Option<PanelRequest> {
                 .inner_margin(Margin::symmetric(12, 10));
             ui.style_mut().interaction.selectable_labels = false;
             sheet.show(ui, |ui| {
-                ui.set_width(WIDTH.min(window.width() - 24.0));
+                ui.set_width(MAX_WIDTH.min(window.width() - 24.0));
                 ui.horizontal(|ui| {
                     ui.label(title(heading));
                     ui.with_layout(egui::Layout::right_to_left(Align::Center), |ui| {
@@ -43,27 +43,27 @@ pub fn show(ctx: &Context, session: &Session) -> Option<PanelRequest> {
                     });
                 });
                 let typed = if list.filter.is_empty() {
-                    faint("type to search; arrows and Enter, or a click, choose")
+                    faint("type to search; choose by arrows and Enter, or by a click")
                 } else {
                     text(format!("{}_", list.filter))
                 };
                 ui.label(typed);
                 ui.add_space(4.0);
                 ui.spacing_mut().item_spacing.y = 0.0;
-                let room = (window.height() - 90.0).max(HEIGHT);
+                let room = (window.height() - 90.0).max(ENTRY_HEIGHT);
                 ScrollArea::vertical()
                     .max_height(room)
-                    .min_scrolled_height(room.min(HEIGHT * list.entries().count() as f32))
+                    .min_scrolled_height(room.min(ENTRY_HEIGHT * list.entries().count() as f32))
                     .show(ui, |ui| {
                         let mut count = 0;
                         for (k, entry) in list.entries().enumerate() {
                             count += 1;
                             if row(ui, entry, k == list.chosen) {
-                                request = Some(PanelRequest::Take(entry.number));
+                                request = Some(PanelRequest::TakeEntry(entry.number));
                             }
                         }
                         if count == 0 {
-                            ui.label(faint("nothing has these words"));
+                            ui.label(faint("no entry has these words"));
                         }
                     });
             });
@@ -78,8 +78,8 @@ pub fn show(ctx: &Context, session: &Session) -> Option<PanelRequest> {
 /// Draws an entry, and returns whether it was clicked.
 fn row(ui: &mut Ui, entry: &Entry, chosen: bool) -> bool {
     let (rect, response) =
-        ui.allocate_exact_size(vec2(ui.available_width(), HEIGHT), Sense::click());
-    // It is scrolled to when another one is chosen, and left alone while the wheel turns.
+        ui.allocate_exact_size(vec2(ui.available_width(), ENTRY_HEIGHT), Sense::click());
+    // Scroll to the chosen entry only when it changes, so that the wheel can scroll.
     let was = Id::unique("chosen entry");
     if chosen && ui.data(|data| data.get_temp(was)) != Some(entry.number) {
         ui.data_mut(|data| data.insert_temp(was, entry.number));
@@ -106,7 +106,7 @@ fn row(ui: &mut Ui, entry: &Entry, chosen: bool) -> bool {
     };
     write(8.0, mark, 11.0, FAINT);
     let name = write(26.0, &entry.name, 13.5, ink);
-    let about = (name.right() - rect.left() + 14.0).max(26.0 + NAME);
+    let about = (name.right() - rect.left() + 14.0).max(26.0 + NAME_WIDTH);
     write(about, &entry.about, 12.5, FAINT);
     response.clicked()
 }
@@ -119,7 +119,7 @@ mod tests {
     use crate::window::hud::panel;
     use crate::window::session::{RunAction, session};
 
-    /// Draws the list, with the pointer at a place and perhaps pressed there.
+    /// Draws the list, with the pointer at a position, and a button pressed or released there.
     fn draw(
         ctx: &Context,
         session: &Session,
@@ -156,10 +156,10 @@ mod tests {
         }
         draw(&ctx, &session, middle, Some(true));
         let request = draw(&ctx, &session, middle, Some(false));
-        let Some(PanelRequest::Take(number)) = request else {
+        let Some(PanelRequest::TakeEntry(number)) = request else {
             panic!("{request:?}");
         };
-        assert!(panel::apply(&mut session, PanelRequest::Take(number)));
+        assert!(panel::apply(&mut session, PanelRequest::TakeEntry(number)));
         let name = a3_scenes::SCENES[number].name;
         assert_eq!(session.runs.first().scene().name, name);
         session.act(RunAction::Scenes, 0);

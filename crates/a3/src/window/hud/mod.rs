@@ -1,4 +1,5 @@
-//! The text over the picture, the timeline, and the panel of knobs and plots: all that egui draws.
+//! Everything that egui draws: the text over the picture, the timeline, lists, and the panel of
+//! knobs and plots.
 
 mod blow_up;
 mod help;
@@ -27,7 +28,7 @@ pub use tests::{pane, read};
 
 #[cfg(test)]
 mod tests {
-    //! Panes for tests, and a reader of what is written over them.
+    //! Panes for tests, and a reader of the text over them.
 
     use a3_core::{Simulation, integrators};
 
@@ -36,7 +37,8 @@ mod tests {
     use crate::draw::show::{Manner, Show};
     use crate::window::session::{Pane, Readings};
 
-    /// All that is written, in a window of that size, and the rectangles of the sheets.
+    /// Returns the text over panes in a window of a size (points), and the rectangles of the
+    /// sheets. Nothing may be cut off.
     pub fn read(panes: &[Pane], readings: &Readings, size: [f32; 2]) -> (String, Vec<egui::Rect>) {
         fn collect(shape: &egui::Shape, words: &mut String, sheets: &mut Vec<egui::Rect>) {
             match shape {
@@ -51,7 +53,7 @@ mod tests {
         let ctx = crate::window::hud::style::context();
         let screen = egui::Rect::from_min_size(egui::Pos2::ZERO, size.into());
         let mut output = egui::FullOutput::default();
-        // The first pass measures, the next ones draw.
+        // The first pass measures the layout, the next ones draw it.
         for pass in 0..3 {
             let input = egui::RawInput {
                 screen_rect: Some(screen),

@@ -1,24 +1,24 @@
-//! egui's text and shapes, drawn over a picture.
+//! Drawing of egui's text and shapes over a picture.
 
 use a3_render::{Gpu, Part};
 use egui::epaint::{ClippedShape, Primitive};
 use egui::{ClippedPrimitive, Pos2, Rect, vec2};
 
-use super::style::{context, exchanged};
+use super::style::{context, invert_lightness};
 
-/// egui's layout and its renderer.
+/// egui's context and its renderer.
 pub struct Overlay {
-    /// The layout.
+    /// egui's context.
     pub context: egui::Context,
-    /// Whether light and dark are exchanged.
+    /// Whether to invert the lightness of all colours, for the dark theme.
     pub dark: bool,
-    /// The parts of the view that the layout fills, which do not overlap.
+    /// The parts of the view that the last layout covers, which do not overlap.
     pub filled: Vec<Part>,
     renderer: egui_wgpu::Renderer,
 }
 
 impl Overlay {
-    /// An overlay for views of this format.
+    /// Creates an overlay for views of a format.
     pub fn new(gpu: &Gpu, format: wgpu::TextureFormat) -> Self {
         Self {
             context: context(),
@@ -32,7 +32,7 @@ impl Overlay {
         }
     }
 
-    /// Lays out what `contents` writes, and takes new textures to the GPU.
+    /// Lays out `contents`, and uploads new textures.
     pub fn lay_out(
         &mut self,
         gpu: &Gpu,
@@ -40,7 +40,7 @@ impl Overlay {
         mut contents: impl FnMut(&egui::Context),
     ) -> egui::FullOutput {
         let mut output = self.context.run_ui(input, |ui| contents(ui.ctx()));
-        // egui panics if a change of textures is dropped before it is drained.
+        // egui panics if texture changes are dropped without being drained.
         for (id, deltas) in output.textures_delta.set.drain() {
             for delta in deltas {
                 self.renderer
@@ -50,7 +50,7 @@ impl Overlay {
         output
     }
 
-    /// Draws the layout over a view of `size` (px), and over what is below in it, and returns the
+    /// Draws a layout to a view of `size` (px), over what `below` keeps of the view. Returns the
     /// commands to submit before those of the encoder.
     pub fn paint(
         &mut self,
@@ -95,7 +95,8 @@ impl Overlay {
         before
     }
 
-    /// Lays out and draws without a window, at `scale` pixels per point.
+    /// Lays out and draws `contents` without a window, on a view of `size` (px) at `scale` pixels
+    /// per point. Returns the commands to submit before those of the encoder.
     pub fn write(
         &mut self,
         gpu: &Gpu,
@@ -116,7 +117,7 @@ impl Overlay {
             root.native_pixels_per_point = Some(scale);
             input
         };
-        // The first pass measures; in the next ones the text fades in.
+        // The first pass measures the layout; in the next ones the text fades in.
         let mut output = self.lay_out(gpu, input(0.0), &mut contents);
         for pass in 1..3 {
             output.textures_delta.free.drain().for_each(drop);
@@ -126,7 +127,7 @@ impl Overlay {
     }
 }
 
-/// The parts of a view of `size` (px) that shapes fill.
+/// Returns rectangles that cover all shapes in a view of `size` (px) and do not overlap.
 fn filled(shapes: &[ClippedShape], pixels_per_point: f32, size: (u32, u32)) -> Vec<Part> {
     let view = Rect::from_min_size(Pos2::ZERO, vec2(size.0 as f32, size.1 as f32));
     let mut apart: Vec<Rect> = vec![];
@@ -139,7 +140,7 @@ fn filled(shapes: &[ClippedShape], pixels_per_point: f32, size: (u32, u32)) -> V
         let bounds = shape.visual_bounding_rect();
         let bounds = *moved * bounds;
         let bounds = bounds.intersect(*clip_rect) * pixels_per_point;
-        // Edges are smooth, a pixel wide.
+        // Smooth edges add a pixel.
         let (min, max) = (
             bounds.min.floor() - vec2(1.0, 1.0),
             bounds.max.ceil() + vec2(1.0, 1.0),
@@ -157,11 +158,11 @@ fn filled(shapes: &[ClippedShape], pixels_per_point: f32, size: (u32, u32)) -> V
     apart.into_iter().map(part).collect()
 }
 
-/// Exchanges light and dark in all colours of a shape.
+/// Inverts the lightness of all colours of a shape.
 fn darken(shape: &mut ClippedPrimitive) {
     if let Primitive::Mesh(mesh) = &mut shape.primitive {
         for vertex in &mut mesh.vertices {
-            vertex.color = exchanged(vertex.color);
+            vertex.color = invert_lightness(vertex.color);
         }
     }
 }
@@ -174,7 +175,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_filled_is_covered_once() {
+    fn shapes_are_covered_once() {
         let shape = |[left, top, right, bottom]: [f32; 4]| {
             let rect = Rect::from_min_max(pos2(left, top), pos2(right, bottom));
             ClippedShape {
@@ -184,12 +185,12 @@ mod tests {
             }
         };
         let two = [[2.0, 2.0, 8.0, 8.0], [50.0, 20.0, 90.0, 60.0]].map(shape);
-        // At two pixels a point, with a pixel around each.
+        // At two pixels per point, with a pixel around each.
         let apart = [[3, 3, 14, 14], [99, 39, 82, 22]];
         assert_eq!(filled(&two, 2.0, (200, 100)), apart);
         let bridged = [two.as_slice(), &[shape([7.0, 7.0, 51.0, 21.0])]].concat();
         assert_eq!(filled(&bridged, 2.0, (200, 100)), [[3, 3, 178, 58]]);
-        // What lies outside the view is left out.
+        // Shapes outside the view are left out.
         assert_eq!(filled(&two, 2.0, (40, 100)), [[3, 3, 14, 14]]);
         assert_eq!(filled(&[], 2.0, (40, 100)), [[0; 4]; 0]);
     }

@@ -1,21 +1,21 @@
-//! The text over several panes: a bar for what they share, and a sheet for each pane.
+//! The text over several panes: a bar with their common readings, and a sheet for each pane.
 
 use egui::{Area, Context, Frame, Id, Margin, Pos2, Rect, Ui};
 
-use super::blow_up::blow_up;
+use super::blow_up::explain;
 use super::layout;
 use super::legend::legend;
 use super::style::{PAPER, faint, sheet, text, title};
-use super::words::{self, digits, each, energy, frames, scene, speed, states, time};
+use super::words::{self, digits, energy, frame_cost, frames, scene, speed, states, time};
 use crate::window::session::{Pane, Readings};
 
 /// Distance of a sheet from the edge of its pane (points).
 const MARGIN: f32 = 8.0;
 
-/// Height below which a pane has room for fewer lines (points).
-const LOW: f32 = 230.0;
+/// Smallest height of a pane that has room for all lines (points).
+const MIN_FULL_HEIGHT: f32 = 230.0;
 
-/// Writes the bar, and a sheet in each pane unless the help is shown.
+/// Draws the bar, and a sheet in each pane unless the help is shown.
 pub fn show(ctx: &Context, panes: &[Pane], readings: &Readings) {
     let scale = ctx.pixels_per_point();
     let window = ctx.content_rect();
@@ -36,9 +36,9 @@ pub fn show(ctx: &Context, panes: &[Pane], readings: &Readings) {
     }
     for (k, (pane, rect)) in panes.iter().zip(rects).enumerate() {
         within(ctx, &format!("pane {k}"), rect, |ui| {
-            let low = rect.height() < LOW;
-            // The sheet is narrow, so that it hides little; in a low pane it is wide, so that it
-            // fits.
+            let low = rect.height() < MIN_FULL_HEIGHT;
+            // A narrow sheet hides little of the picture, but in a low pane the text needs a wide
+            // one.
             let narrow = (0.42 * rect.width()).max(210.0).min(rect.width());
             ui.set_max_width(if low { rect.width() } else { narrow });
             Frame::new()
@@ -48,7 +48,7 @@ pub fn show(ctx: &Context, panes: &[Pane], readings: &Readings) {
     }
 }
 
-/// Writes within a rectangle. What is outside is cut off, and clicks go through.
+/// Draws `contents` clipped to a rectangle, without taking clicks.
 fn within(ctx: &Context, name: &str, rect: Rect, contents: impl FnOnce(&mut Ui)) {
     Area::new(Id::unique(name))
         .fixed_pos(rect.min)
@@ -61,7 +61,7 @@ fn within(ctx: &Context, name: &str, rect: Rect, contents: impl FnOnce(&mut Ui))
         });
 }
 
-/// Writes what is the same in all panes, or a message.
+/// Draws the bar: scene and message, or the common readings of all panes.
 fn bar(ui: &mut Ui, panes: &[Pane], readings: &Readings) {
     let run = &panes[0].simulation;
     let (rect, width) = (ui.clip_rect(), ui.max_rect().width());
@@ -75,20 +75,20 @@ fn bar(ui: &mut Ui, panes: &[Pane], readings: &Readings) {
                 if let Some(film) = &readings.film {
                     words::film(ui, film);
                 }
-                // Words stay whole: they go to the next line if need be.
+                // Wrap between readings, not within them.
                 let mut say = |words| ui.add(egui::Label::new(words).extend());
                 say(title(scene(run)).size(15.0));
                 if let Some(message) = &readings.message {
                     ui.label(text(message));
                     return;
                 }
-                // The time of the run that is farthest: others may be lost.
+                // The latest time: some runs may have diverged.
                 let latest = panes
                     .iter()
                     .map(|pane| &pane.simulation)
                     .max_by(|a, b| a.time().total_cmp(&b.time()));
                 say(text(time(latest.unwrap_or(run))));
-                // The states say it where they have room.
+                // In a wide bar, the states below include the pause.
                 let stands = readings.paused && width > 600.0;
                 if (readings.rate > 0.0 || readings.paused) && !stands {
                     say(text(speed(readings)));
@@ -97,7 +97,11 @@ fn bar(ui: &mut Ui, panes: &[Pane], readings: &Readings) {
                     say(faint(format!("slow  {slow}")));
                 }
                 if readings.rate > 0.0 && !readings.paused && width > 900.0 {
-                    say(text(format!("{},  {}", frames(readings), each(readings))));
+                    say(text(format!(
+                        "{},  {}",
+                        frames(readings),
+                        frame_cost(readings)
+                    )));
                 }
                 if width > 600.0 {
                     say(states(run, readings));
@@ -109,13 +113,13 @@ fn bar(ui: &mut Ui, panes: &[Pane], readings: &Readings) {
         });
 }
 
-/// Writes the readings of a pane: each in its own line, or in a low pane the most important ones,
-/// some of them side by side.
+/// Writes the readings of a pane, a line for each. In a low pane, writes only the most important
+/// ones, some of them side by side.
 fn caption(ui: &mut Ui, pane: &Pane, readings: &Readings, low: bool) {
     let run = &pane.simulation;
     ui.label(title(run.method().title).size(14.0));
-    if let Some(lost) = run.blow_up() {
-        return blow_up(ui, pane, &lost);
+    if let Some(blow_up) = run.blow_up() {
+        return explain(ui, pane, &blow_up);
     }
     let cost = pane.cost.map_or("-".into(), |cost| {
         format!(
@@ -134,7 +138,7 @@ fn caption(ui: &mut Ui, pane: &Pane, readings: &Readings, low: bool) {
     let (name, value) = energy(pane);
     let energy = (name, text(value));
     let gained = words::gained(run).map(|words| ("gained", words));
-    let broken = words::broken(run).map(|words| ("constraint", words));
+    let broken = words::worst_constraint(run).map(|words| ("constraint", words));
     let contact = words::contact(run).map(|words| ("contact", text(words)));
     let cost = ("cost", text(cost));
     let lines = if low {
@@ -172,7 +176,7 @@ fn caption(ui: &mut Ui, pane: &Pane, readings: &Readings, low: bool) {
     }
 }
 
-/// The distance from the reference, or the reason why it is not known.
+/// Returns the distance from the reference, or the reason why it is unknown.
 fn error(pane: &Pane, readings: &Readings) -> String {
     let time = pane.simulation.time();
     let past = readings.predictable.filter(|until| time > *until);
@@ -251,7 +255,7 @@ mod tests {
     }
 
     #[test]
-    fn every_pane_says_its_own_and_nothing_overlaps() {
+    fn every_pane_shows_its_own_readings_and_nothing_overlaps() {
         let readings = Readings {
             rate: 59.6,
             factor: 0.98,
@@ -284,7 +288,7 @@ mod tests {
     }
 
     #[test]
-    fn an_error_past_the_horizon_is_said_to_say_little() {
+    fn an_error_past_the_horizon_has_a_warning() {
         let mut panes = panes(2);
         let until = panes[0].simulation.time();
         let later = &mut panes[1].simulation;
@@ -299,7 +303,7 @@ mod tests {
     }
 
     #[test]
-    fn a_pane_that_blew_up_says_so_and_the_others_go_on() {
+    fn a_pane_that_blew_up_says_so_and_the_others_are_unchanged() {
         let mut panes = panes(4);
         panes[1]
             .simulation

@@ -8,20 +8,20 @@ use super::text;
 use crate::base::failure::Failure;
 use crate::window::session::{Pane, Readings};
 
-/// Draws panes as often as needed.
+/// A renderer of panes without a window, for one picture or many.
 pub struct Studio {
     offscreen: Offscreen,
     renderer: Renderer,
-    /// Number of broken springs when the topology of each pane was made, if it has its own.
+    /// Number of torn springs in each pane's topology; `None` if it must be uploaded.
     tears: Vec<Option<usize>>,
 }
 
 impl Studio {
-    /// A studio for pictures of these panes, into this target.
+    /// Creates a studio for pictures of panes, into a target.
     pub fn new(gpu: &Gpu, offscreen: Offscreen, panes: &[Pane]) -> Self {
         let samples = gpu.samples(OFFSCREEN_FORMAT);
         let topology = panes[0].topology();
-        // Panes tear in their own ways: they share a topology where nothing is torn.
+        // Untorn panes share a topology.
         let whole = panes.iter().all(|pane| pane.simulation.tears() == 0);
         Self {
             renderer: Renderer::new(gpu, OFFSCREEN_FORMAT, samples, &topology),
@@ -30,13 +30,13 @@ impl Studio {
         }
     }
 
-    /// Size of the pictures (px).
+    /// Returns the size of the pictures (px).
     pub fn size(&self) -> (u32, u32) {
         self.offscreen.size()
     }
 
-    /// A picture of the panes as they are now, at `scale` pixels per point, with the text if there
-    /// are several: rows from the top, with four bytes for a pixel.
+    /// Draws the present state of the panes, at `scale` pixels per point, with text if there are
+    /// several. Returns rows from the top, four bytes per pixel. Fails if the device does.
     pub fn draw(
         &mut self,
         gpu: &Gpu,
@@ -52,7 +52,7 @@ impl Studio {
                 *tears = now;
                 self.renderer.set_topology_of(gpu, k, &pane.topology());
             }
-            // The pointer is not in the picture.
+            // A picture has no highlight under the pointer.
             let hovered = pane.show.hovered.take();
             pane.show.compose(&pane.simulation);
             pane.show.hovered = hovered;

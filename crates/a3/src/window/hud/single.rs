@@ -1,28 +1,28 @@
-//! The text over a single pane: its readings, and sheets for what has just happened.
+//! The text over a single pane: its readings, and sheets for a blow-up, a film, a message and
+//! springs.
 
 use a3_core::Simulation;
 use egui::{Align2, Context, RichText, Ui};
 
-use super::blow_up::{blow_up, way_out};
+use super::blow_up::{advice, explain};
 use super::legend::legend;
 use super::style::{MARGIN, column, faint, sheet, text, title};
 use super::words::{self, digits};
 use crate::draw::show;
 use crate::window::session::{Pane, Readings};
 
-/// The most springs that are listed.
-const LISTED: usize = 12;
+/// Largest number of springs that are listed.
+const MAX_LISTED_SPRINGS: usize = 12;
 
-/// Writes the readings, a blow-up, the message and the springs of a particle, and names the key for
-/// help.
+/// Draws all sheets, and the hint at the key for help.
 pub fn show(ctx: &Context, pane: &Pane, readings: &Readings) {
     column(ctx, "run", Align2::LEFT_TOP, [MARGIN, MARGIN], |ui| {
         ui.set_max_width(ui.available_width().min(460.0));
         sheet(ui, |ui| run(ui, pane, readings));
-        if let Some(lost) = pane.simulation.blow_up() {
+        if let Some(blow_up) = pane.simulation.blow_up() {
             sheet(ui, |ui| {
-                blow_up(ui, pane, &lost);
-                ui.label(text(way_out(&lost)));
+                explain(ui, pane, &blow_up);
+                ui.label(text(advice(&blow_up)));
             });
         }
         if let Some(film) = &readings.film {
@@ -78,7 +78,7 @@ fn run(ui: &mut Ui, pane: &Pane, readings: &Readings) {
             if let Some(gained) = words::gained(simulation) {
                 row("gained", gained);
             }
-            if let Some(broken) = words::broken(simulation) {
+            if let Some(broken) = words::worst_constraint(simulation) {
                 row("constraint", broken);
             }
             if let Some(stretch) = pane.stretch {
@@ -89,14 +89,14 @@ fn run(ui: &mut Ui, pane: &Pane, readings: &Readings) {
             }
             if !readings.paused {
                 row("frames", text(words::frames(readings)));
-                row("each", text(words::each(readings)));
+                row("each", text(words::frame_cost(readings)));
             }
         });
     ui.label(words::states(simulation, readings));
     legend(ui, &pane.show);
 }
 
-/// Lists the springs of a particle, and how far they are stretched now.
+/// Lists the springs of a particle and their present stretch.
 fn springs(ui: &mut Ui, simulation: &Simulation, i: usize) {
     let springs = show::springs_of(simulation, i);
     ui.label(title(format!("particle {i}: {} springs", springs.len())).size(14.0));
@@ -108,7 +108,7 @@ fn springs(ui: &mut Ui, simulation: &Simulation, i: usize) {
                 ui.label(faint(name));
             }
             ui.end_row();
-            for s in springs.iter().take(LISTED) {
+            for s in springs.iter().take(MAX_LISTED_SPRINGS) {
                 let other = s.i + s.j - i;
                 let length = (simulation.position(i) - simulation.position(other)).norm();
                 ui.label(text(show::kind_name(s.kind)));
@@ -122,8 +122,11 @@ fn springs(ui: &mut Ui, simulation: &Simulation, i: usize) {
                 ui.end_row();
             }
         });
-    if springs.len() > LISTED {
-        ui.label(faint(format!("and {} more", springs.len() - LISTED)));
+    if springs.len() > MAX_LISTED_SPRINGS {
+        ui.label(faint(format!(
+            "and {} more",
+            springs.len() - MAX_LISTED_SPRINGS
+        )));
     }
 }
 
@@ -133,7 +136,7 @@ mod tests {
     use crate::window::hud::{pane, read};
 
     #[test]
-    fn everything_is_said() {
+    fn all_readings_are_shown() {
         let mut pane = pane("cloth", "t", 0.01);
         (pane.energy, pane.stretch) = (Some(12.3456), Some(1.25));
         let run = &mut pane.simulation;
@@ -172,7 +175,7 @@ mod tests {
         };
         let (words, _) = read(&panes, &readings, [1280.0, 720.0]);
         assert!(words.contains("paused   wind"), "{words}");
-        // Rates are of what moves.
+        // A paused run shows no rates.
         assert_eq!(words.matches("paused").count(), 1, "{words}");
         assert!(!words.contains("per second") && !words.contains("drawing"));
         let circle = [crate::window::hud::pane("simple", "e", 1e-7)];

@@ -1,4 +1,4 @@
-//! Colours, sizes of text, and sheets of paper to write on.
+//! Colours, fonts, text styles, and the sheets behind the text.
 
 use std::sync::Arc;
 
@@ -10,16 +10,16 @@ use epaint_default_fonts::EMOJI_ICON;
 
 /// Colour of text.
 pub const TEXT: Color32 = Color32::from_rgb(24, 28, 40);
-/// Colour of names and remarks.
+/// Colour of names and notes.
 pub const FAINT: Color32 = Color32::from_rgb(92, 98, 114);
-/// Colour of sheets, a little transparent.
+/// Colour of sheets, slightly transparent.
 pub const PAPER: Color32 = Color32::from_rgba_premultiplied(216, 216, 214, 222);
 /// Mark of a step well within its limit.
 pub const SAFE: Mark = Mark {
     symbol: '✔',
     colour: Color32::from_rgb(12, 106, 52),
 };
-/// Mark of a step near its limit, and of energy from nowhere.
+/// Mark of a step near its limit, and of a spurious gain of energy.
 pub const WARNING: Mark = Mark {
     symbol: '⚠',
     colour: Color32::from_rgb(158, 84, 0),
@@ -32,33 +32,33 @@ pub const ALARM: Mark = Mark {
 /// Distance of sheets from the edge of the window (points).
 pub const MARGIN: f32 = 12.0;
 
-/// How good or bad something is: a colour, and a symbol for those who do not see it.
+/// A grade of safety: a colour, and a symbol for those who cannot distinguish colours.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Mark {
     symbol: char,
-    /// Colour of the symbol and of what stands beside it.
+    /// Colour of the symbol and of the text beside it.
     pub colour: Color32,
 }
 
 impl Mark {
-    /// Text of usual size, with this mark.
+    /// Returns text of normal size, with this mark.
     pub fn text(self, words: &str) -> RichText {
         text(format!("{} {words}", self.symbol)).color(self.colour)
     }
 }
 
-/// The colour of the dark theme for one of the light theme, or the other way round: of the same hue
-/// and opacity, as light as the other is dark.
-pub fn exchanged(color: Color32) -> Color32 {
+/// Returns a colour of the same hue and opacity with inverted lightness (1 minus it), which turns
+/// the light theme into the dark one and back.
+pub fn invert_lightness(color: Color32) -> Color32 {
     let [r, g, b, a] = color.to_srgba_unmultiplied();
     let (low, high) = (r.min(g).min(b), r.max(g).max(b));
-    // The sum of the least and the largest is twice the lightness; all move by the same.
+    // The smallest plus the largest channel is twice the lightness. Shift all channels alike.
     let shift = 255 - i16::from(low) - i16::from(high);
     let [r, g, b] = [r, g, b].map(|channel| (i16::from(channel) + shift).clamp(0, 255) as u8);
     Color32::from_rgba_unmultiplied(r, g, b, a)
 }
 
-/// A layout with its fonts: letters, and the symbols of the marks.
+/// Creates an egui context with two fonts: one for letters, one for the symbols of the marks.
 pub fn context() -> Context {
     let mut fonts = FontDefinitions::empty();
     for (name, bytes, scale) in [
@@ -80,7 +80,7 @@ pub fn context() -> Context {
     context
 }
 
-/// A column for sheets below one another. Clicks go through it.
+/// Draws a column of sheets, without taking clicks.
 pub fn column(
     ctx: &Context,
     name: &str,
@@ -98,7 +98,7 @@ pub fn column(
         });
 }
 
-/// A sheet of paper.
+/// Draws a sheet behind its contents.
 pub fn sheet(ui: &mut Ui, contents: impl FnOnce(&mut Ui)) {
     Frame::new()
         .fill(PAPER)
@@ -110,17 +110,17 @@ pub fn sheet(ui: &mut Ui, contents: impl FnOnce(&mut Ui)) {
         });
 }
 
-/// The title of a sheet.
+/// Returns the title of a sheet.
 pub fn title(words: impl Into<String>) -> RichText {
     RichText::new(words).color(TEXT).size(17.0).strong()
 }
 
-/// Text of usual size.
+/// Returns text of normal size.
 pub fn text(words: impl Into<String>) -> RichText {
     RichText::new(words).color(TEXT).size(13.5)
 }
 
-/// A name or a remark.
+/// Returns a name or a note, in small faint text.
 pub fn faint(words: impl Into<String>) -> RichText {
     RichText::new(words).color(FAINT).size(12.5)
 }
@@ -130,13 +130,13 @@ mod tests {
     use super::*;
 
     #[test]
-    fn light_and_dark_are_exchanged_and_back() {
-        assert_eq!(exchanged(Color32::WHITE), Color32::BLACK);
-        assert_eq!(exchanged(Color32::TRANSPARENT), Color32::TRANSPARENT);
+    fn lightness_is_inverted_and_back() {
+        assert_eq!(invert_lightness(Color32::WHITE), Color32::BLACK);
+        assert_eq!(invert_lightness(Color32::TRANSPARENT), Color32::TRANSPARENT);
         for color in [TEXT, FAINT, SAFE.colour, ALARM.colour] {
-            let other = exchanged(color);
+            let other = invert_lightness(color);
             assert!(other.intensity() > color.intensity() + 0.1, "{other:?}");
-            assert_eq!(exchanged(other), color);
+            assert_eq!(invert_lightness(other), color);
         }
     }
 

@@ -6,8 +6,8 @@ use super::help::help;
 use super::{panes, selection, single, timeline};
 use crate::window::session::{Pane, Readings};
 
-/// Writes all text over the picture. Sheets stand below one another, and the help stands alone, so
-/// that nothing overlaps in however small a window.
+/// Draws all text over the picture. Sheets are below one another, and the help hides them, so that
+/// nothing overlaps even in a small window.
 pub fn show(ctx: &Context, panes: &[Pane], readings: &Readings) {
     match panes {
         [pane] if !readings.help => single::show(ctx, pane, readings),

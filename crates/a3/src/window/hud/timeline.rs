@@ -6,10 +6,10 @@ use super::layout;
 use super::style::{FAINT, PAPER, TEXT};
 use crate::window::session::TimelinePosition;
 
-/// Colour of the time up to the moment that is shown.
-const DONE: Color32 = Color32::from_rgb(158, 22, 34);
+/// Colour of the track up to the chosen moment.
+const ELAPSED: Color32 = Color32::from_rgb(158, 22, 34);
 
-/// Draws the track, with a thumb at the moment that is shown.
+/// Draws the track, with a thumb at the chosen moment.
 pub fn show(ctx: &Context, position: &TimelinePosition) {
     let window = ctx.content_rect();
     let [left, top, width, height] = layout::timeline([window.width(), window.height()]);
@@ -29,8 +29,8 @@ pub fn show(ctx: &Context, position: &TimelinePosition) {
                 painter.hline(from..=to, y, Stroke::new(4.0, color));
             };
             line(from, to, FAINT.gamma_multiply(0.35));
-            line(from, at, DONE);
-            painter.circle_filled(Pos2::new(at, y), 7.0, DONE);
+            line(from, at, ELAPSED);
+            painter.circle_filled(Pos2::new(at, y), 7.0, ELAPSED);
             painter.circle_filled(Pos2::new(at, y), 2.5, PAPER);
             let say = |x, align, words: String, color| {
                 let place = Pos2::new(x, top + 6.0);
@@ -50,7 +50,7 @@ mod tests {
     use crate::window::session::Readings;
 
     #[test]
-    fn slow_motion_and_the_place_in_time_are_said() {
+    fn slow_motion_and_the_position_in_time_are_shown() {
         let position = TimelinePosition {
             share: 0.25,
             back: 1.5,

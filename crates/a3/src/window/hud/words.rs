@@ -7,7 +7,8 @@ use egui::{RichText, Sense, Ui, vec2};
 use super::style::{ALARM, Mark, SAFE, WARNING, faint, text};
 use crate::window::session::{FilmProgress, Pane, Readings};
 
-/// A number with three digits, however small it is.
+/// Formats a number that is not negative with three significant digits; without a fraction from 100
+/// on.
 pub fn digits(number: f64) -> String {
     match number {
         0.0 => "0".into(),
@@ -20,7 +21,7 @@ pub fn digits(number: f64) -> String {
     }
 }
 
-/// The scene's name, and its grid if it has one.
+/// Returns the scene's name, and its grid if it has one.
 pub fn scene(simulation: &Simulation) -> String {
     let scene = simulation.scene();
     let grid = scene.grid().map_or(String::new(), |grid| {
@@ -29,7 +30,7 @@ pub fn scene(simulation: &Simulation) -> String {
     format!("{}{grid}", scene.name)
 }
 
-/// The method, and its step or tolerance.
+/// Returns the method, and its step or tolerance.
 pub fn method(simulation: &Simulation) -> String {
     let control = match simulation.control() {
         Control::Step(step) => format!("step {} s", seconds(step)),
@@ -38,7 +39,7 @@ pub fn method(simulation: &Simulation) -> String {
     format!("{},  {control}", simulation.method().title)
 }
 
-/// A step (s) as one would type it: 1/60 rather than all of its digits.
+/// Formats a step (s) as a user would type it: 1/60 instead of all its digits.
 fn seconds(step: f64) -> String {
     let (decimal, rate) = (step.to_string(), 1.0 / step);
     if decimal.len() > 10 && (rate - rate.round()).abs() < 1e-9 * rate {
@@ -47,7 +48,7 @@ fn seconds(step: f64) -> String {
     decimal
 }
 
-/// The steps of an adaptive method: their length now, and how many were rejected.
+/// Returns the present step of an adaptive method, and the number of rejected ones.
 pub fn steps(simulation: &Simulation) -> Option<String> {
     let step = simulation.step_size()?;
     let rejections = simulation.work().rejections;
@@ -57,13 +58,12 @@ pub fn steps(simulation: &Simulation) -> Option<String> {
         .map(|_| format!("{} ms, {rejections} rejected", digits(1e3 * step)))
 }
 
-/// The largest step with which nothing grows and the share of it that the step is, marked as safe
-/// while there is room, with a warning near it and where motion grows slowly, and with an alarm
-/// where it grows fast.
+/// Returns the largest stable step, and the present step as a share of it. The mark is safe up to
+/// 80 %, a warning near the limit and where motion grows slowly, and an alarm where it grows fast.
 pub fn limit(pane: &Pane) -> Option<(String, Mark)> {
     let limit = pane.limit.limit()?;
-    // With constraints or rigid bodies, more than modes limits the step: they tell which steps are
-    // too long, and no more.
+    // With constraints or rigid bodies, modes show only which steps are too long, not which are
+    // stable.
     let network = pane.simulation.model().network();
     let modes_tell_all =
         network.is_none_or(|n| n.constraints().is_empty() && n.bodies().is_empty());
@@ -97,8 +97,8 @@ pub fn limit(pane: &Pane) -> Option<(String, Mark)> {
     Some((words, mark))
 }
 
-/// What the guard of surfaces did since the beginning, if it did anything: its impulses, and the
-/// ways of vertices that it cut with the momentum that this took.
+/// Returns the work of the collision safeguard since the start, if there was any: its impulses, the
+/// number of motions that it truncated, and the momentum that this removed.
 pub fn contact(simulation: &Simulation) -> Option<String> {
     let guarded = simulation.guarded();
     let count = |n: usize, what: &str| match n {
@@ -117,15 +117,15 @@ pub fn contact(simulation: &Simulation) -> Option<String> {
     }
 }
 
-/// The simulated time, with as many digits as tell one step from the next.
+/// Returns the simulated time, with enough digits to tell consecutive steps apart.
 pub fn time(simulation: &Simulation) -> String {
     let step = simulation.control().step().unwrap_or(1e-3);
     let digits = (-step.log10()).ceil().clamp(2.0, 7.0) as usize;
     format!("{:.digits$} s", simulation.time())
 }
 
-/// The reading that tells best whether the run holds: its energy, with its change where the forces
-/// keep it, or the radius of the circle.
+/// Returns the name and value of the reading that shows best whether the run is accurate: the
+/// energy, with its change if the forces conserve it, or else the radius of the circle.
 pub fn energy(pane: &Pane) -> (&'static str, String) {
     match pane.energy {
         Some(energy) => {
@@ -146,15 +146,15 @@ pub fn energy(pane: &Pane) -> (&'static str, String) {
     }
 }
 
-/// The energy that nothing put into the run, if it is much.
+/// Returns the spurious gain of energy, if it is large.
 pub fn gained(simulation: &Simulation) -> Option<RichText> {
     let gain = simulation.gained()?;
     let words = format!("{} J from nowhere: shorten the step", digits(gain.energy));
     Some(WARNING.text(&words))
 }
 
-/// The constraint that the run does not meet, if it is off by much.
-pub fn broken(simulation: &Simulation) -> Option<RichText> {
+/// Returns the largest violation of a constraint so far, if it is visible.
+pub fn worst_constraint(simulation: &Simulation) -> Option<RichText> {
     let unmet = simulation.worst_constraint()?;
     let words = format!(
         "{} was off by {:.1} %",
@@ -164,18 +164,18 @@ pub fn broken(simulation: &Simulation) -> Option<RichText> {
     unmet.is_visible().then(|| WARNING.text(&words))
 }
 
-/// The rate of frames.
+/// Returns the frame rate.
 pub fn frames(readings: &Readings) -> String {
     format!("{:.0} per second", readings.rate)
 }
 
-/// The time that a frame takes.
-pub fn each(readings: &Readings) -> String {
+/// Returns the time per frame.
+pub fn frame_cost(readings: &Readings) -> String {
     let (simulating, drawing) = (readings.simulating, readings.drawing);
     format!("{simulating:.1} ms steps + {drawing:.1} ms drawing")
 }
 
-/// What is said of a film that is being made, behind a red dot.
+/// Draws the progress of a film, after a red dot.
 pub fn film(ui: &mut Ui, film: &FilmProgress) {
     ui.horizontal(|ui| {
         let (rect, _) = ui.allocate_exact_size(vec2(10.0, 10.0), Sense::hover());
@@ -184,7 +184,7 @@ pub fn film(ui: &mut Ui, film: &FilmProgress) {
     });
 }
 
-/// The states that are on: pause, wind, swing, a hand.
+/// Returns the states that are on: paused, wind, swing, pulling.
 pub fn states(simulation: &Simulation, readings: &Readings) -> RichText {
     let states = [
         (readings.paused, "paused"),
@@ -207,7 +207,7 @@ pub fn states(simulation: &Simulation, readings: &Readings) -> RichText {
     }
 }
 
-/// Simulated time over real time.
+/// Returns simulated time over real time.
 pub fn speed(readings: &Readings) -> String {
     match readings.factor {
         _ if readings.paused => "paused".into(),
@@ -217,7 +217,7 @@ pub fn speed(readings: &Readings) -> String {
     }
 }
 
-/// The slow motion that was asked for, if any.
+/// Returns the chosen slow motion, if it is on.
 pub fn slow_motion(readings: &Readings) -> Option<String> {
     let slowness = Some(readings.slowness).filter(|slowness| *slowness > 0)?;
     Some(format!("1/{} of real time", 1 << slowness))
@@ -256,7 +256,7 @@ mod tests {
     }
 
     #[test]
-    fn what_held_a_run_is_said_where_it_was_held() {
+    fn impulses_of_contact_are_shown_where_there_are_any() {
         let said = |steps| {
             let mut pane = pane("jelly", "t", 0.005);
             pane.simulation.set_touching(true).unwrap();
@@ -278,7 +278,7 @@ mod tests {
     }
 
     #[test]
-    fn no_step_is_called_safe_where_modes_do_not_tell() {
+    fn no_step_is_called_safe_where_modes_do_not_decide() {
         for (method, value) in [("t", 0.1), ("t", 0.3), ("r", 0.005), ("r", 0.05)] {
             let mut pane = pane("double-pendulum", method, value);
             pane.simulation.take_steps(1).unwrap();
@@ -288,7 +288,7 @@ mod tests {
     }
 
     #[test]
-    fn the_limit_is_said_with_its_mark() {
+    fn the_limit_is_shown_with_its_mark() {
         let said = |scene: &str, method: &str, value: f64| {
             let mut pane = pane(scene, method, value);
             pane.simulation.take_steps(1).unwrap();
@@ -318,7 +318,7 @@ mod tests {
             );
             assert_eq!(found, mark);
         }
-        // With drag, the cloth grows from 0.37 ms on, and slowly at first.
+        // With drag, the motion of the cloth grows for steps above 0.37 ms, slowly at first.
         for (step, mark) in [(0.000_2, SAFE), (0.000_4, WARNING), (0.000_6, ALARM)] {
             let (words, found) = said("mit", "e", step);
             assert!(words.contains(" %), tenfold in 10 s at 0.4"), "{words}");

@@ -8,10 +8,10 @@ use std::thread::{self, JoinHandle};
 use crate::base::failure::Failure;
 use crate::files::film::Film;
 
-/// The most frames that wait to be encoded.
-const MOST: usize = 8;
+/// Largest number of frames that wait or are being encoded.
+const MAX_WAITING_FRAMES: usize = 8;
 
-/// Encodes frames in the order in which they come.
+/// An encoder of frames, on its own thread, in the order in which they are added.
 pub struct Encoder {
     frames: Sender<Vec<u8>>,
     /// Number of frames that wait or are being encoded.
@@ -38,23 +38,23 @@ impl Encoder {
         }
     }
 
-    /// Whether another frame may be added.
+    /// Returns whether fewer frames wait than the limit.
     pub fn has_room(&self) -> bool {
-        self.waiting.load(Ordering::Relaxed) < MOST
+        self.waiting.load(Ordering::Relaxed) < MAX_WAITING_FRAMES
     }
 
-    /// Adds a frame: rows from the top, four bytes a pixel. Frames after a failure are lost.
+    /// Adds a frame: rows from the top, four bytes per pixel. Frames after a failure are dropped.
     pub fn add(&self, pixels: Vec<u8>) {
         self.waiting.fetch_add(1, Ordering::Relaxed);
         let _ = self.frames.send(pixels);
     }
 
-    /// Whether the encoder has failed.
+    /// Returns whether the thread has ended, which it does early only after a failure.
     pub fn has_failed(&self) -> bool {
         self.thread.is_finished()
     }
 
-    /// Waits until all frames are encoded and the film is complete.
+    /// Waits until all frames are encoded and the film is complete. Fails if the encoder did.
     pub fn finish(self) -> Result<(), Failure> {
         drop(self.frames);
         let ended = self.thread.join();

@@ -1,5 +1,5 @@
-//! Films of what a window shows: of the seconds that it keeps, or from now on. The window draws the
-//! frames, one between two of its own, and a thread encodes them.
+//! Films of a session: of its last seconds, or live from now on. At most one film frame is drawn
+//! after each frame of the window, and a thread encodes the film frames.
 
 mod encoder;
 
@@ -29,12 +29,13 @@ pub struct Recorder {
     rate: f64,
 }
 
-/// What is filmed.
+/// The source of the frames.
 enum Source {
-    /// The session, at the time (s) on its clock that is next, and that far apart (s).
+    /// The session: `next` is the time of the next frame on its clock (s), `interval` the time
+    /// between two frames of the film (s).
     Session { next: f64, interval: f64 },
-    /// The moments that were kept, by runs of their own.
-    Kept {
+    /// Moments of the timeline, restored into copies of the runs.
+    Past {
         panes: Vec<Pane>,
         camera: Camera,
         moments: std::vec::IntoIter<Vec<Option<Checkpoint>>>,
@@ -42,7 +43,7 @@ enum Source {
     },
 }
 
-/// How a film is made.
+/// Format of a film.
 #[derive(Clone, Copy)]
 pub struct Format {
     pub ending: Ending,
@@ -53,29 +54,30 @@ pub struct Format {
 }
 
 impl Recorder {
-    /// Films the session from now on.
+    /// Creates a live film of the session. Fails if its file or its picture cannot be created.
     pub fn from_now(gpu: &Gpu, session: &Session, format: Format) -> Result<Self, Failure> {
         let interval = 1.0 / format.ending.rate();
         let next = session.runs.clock;
         Self::new(gpu, session, format, Source::Session { next, interval })
     }
 
-    /// Films the last seconds that the session has kept, as many as its panel says.
-    pub fn of_kept(gpu: &Gpu, session: &Session, format: Format) -> Result<Self, Failure> {
-        let (seconds, interval) = (session.panel.film_of, 1.0 / format.ending.rate());
+    /// Creates a film of the last seconds, as many as the panel sets. Fails if the timeline has
+    /// fewer than two moments, or as [`Self::from_now`] does.
+    pub fn of_past(gpu: &Gpu, session: &Session, format: Format) -> Result<Self, Failure> {
+        let (seconds, interval) = (session.panel.film_seconds, 1.0 / format.ending.rate());
         let moments = session.timeline.last(seconds, interval);
         if moments.len() < 2 {
-            return Err(Failure::run("Nothing is kept yet that could be filmed."));
+            return Err(Failure::run("There is nothing to film yet."));
         }
         let copy = |pane: &Pane| {
             let run = &pane.simulation;
             let mut copy = Simulation::new(run.scene().clone(), run.method(), run.control())?;
-            // A run that is lost has no moments: it stands as it was last.
+            // A diverged run has no moments: its copy shows its last state.
             copy.restore(&run.moment())?;
             Ok(Pane::new(copy, pane.show.clone()))
         };
         let panes: Result<_, a3_core::Error> = session.runs.panes.iter().map(copy).collect();
-        let source = Source::Kept {
+        let source = Source::Past {
             panes: panes.map_err(Failure::run)?,
             camera: session.view.camera,
             count: moments.len(),
@@ -104,26 +106,28 @@ impl Recorder {
         })
     }
 
-    /// Whether it films the session from now on.
+    /// Returns whether the film is live.
     pub fn is_live(&self) -> bool {
         matches!(self.source, Source::Session { .. })
     }
 
-    /// Real time (s) for which the session goes on in a frame of the window that takes `real`: not
-    /// past the next frame of the film, and not at all while the encoder has no room for one.
-    pub fn pace(&self, session: &Session, real: f64) -> f64 {
+    /// Returns the real time (s) by which the session may advance in a window frame of `real` (s):
+    /// a live film stops it at the next frame of the film, and does not advance it while the
+    /// encoder is full.
+    pub fn time_to_advance(&self, session: &Session, real: f64) -> f64 {
         match self.source {
             Source::Session { .. } if !self.encoder.has_room() => 0.0,
             Source::Session { next, .. } => {
                 let left = (next - session.runs.clock).max(0.0);
                 real.min(left * 2f64.powi(session.readings.slowness))
             }
-            Source::Kept { .. } => real,
+            Source::Past { .. } => real,
         }
     }
 
-    /// Draws the next frame if it is due, and returns whether more are to come.
-    pub fn go_on(&mut self, gpu: &Gpu, session: &mut Session) -> Result<bool, Failure> {
+    /// Draws the next frame if it is due and the encoder has room. Returns whether more frames
+    /// follow. Fails if the device cannot draw.
+    pub fn draw_next(&mut self, gpu: &Gpu, session: &mut Session) -> Result<bool, Failure> {
         if self.encoder.has_failed() {
             return Ok(false);
         }
@@ -134,7 +138,7 @@ impl Recorder {
         let pixels = match &mut self.source {
             Source::Session { next, interval } => {
                 let apart = *interval * 0.5f64.powi(session.readings.slowness);
-                // After going back or a reset, the next frame is the one that is shown.
+                // After going back or a reset, film the state that is shown.
                 if session.runs.clock < *next - apart - 1e-9 {
                     *next = session.runs.clock;
                 }
@@ -147,7 +151,7 @@ impl Recorder {
                 self.studio
                     .draw(gpu, panes, camera, self.scale, &readings)?
             }
-            Source::Kept {
+            Source::Past {
                 panes,
                 camera,
                 moments,
@@ -173,7 +177,7 @@ impl Recorder {
         Ok(true)
     }
 
-    /// What is said of the film while it is made.
+    /// Returns the progress of the film.
     pub fn progress(&self) -> FilmProgress {
         let path = self.path.display();
         let said = match &self.source {
@@ -181,7 +185,7 @@ impl Recorder {
                 let seconds = self.drawn as f64 / self.rate;
                 format!("recording {path}: {seconds:.1} s")
             }
-            Source::Kept { count, .. } => {
+            Source::Past { count, .. } => {
                 format!("writing {path}: {} %", 100 * self.drawn / count)
             }
         };
@@ -191,7 +195,7 @@ impl Recorder {
         }
     }
 
-    /// Completes the film, and returns what is said of it.
+    /// Completes the film, and returns a message about it. Fails if it could not be written.
     pub fn finish(self) -> Result<String, Failure> {
         let (path, seconds) = (self.path.display(), self.drawn as f64 / self.rate);
         if self.drawn == 0 {

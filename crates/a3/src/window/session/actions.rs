@@ -1,4 +1,4 @@
-//! What keys do.
+//! The actions of keys.
 
 /// An action of a key.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -7,7 +7,7 @@ pub enum Action {
     Window(WindowAction),
 }
 
-/// An action on the runs and on how they are seen.
+/// An action on the runs or on their view.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RunAction {
     NextScene,
@@ -18,14 +18,14 @@ pub enum RunAction {
     Solvers,
     Reset,
     Swing,
-    /// Draw the surface, the wireframe, or all springs.
+    /// Draw in the next style: surface, wireframe, or all springs.
     Wireframe,
     /// Colour by the next quantity, or by none.
     Colour,
     /// Draw the next arrows, or none.
     Arrows,
     Wind,
-    /// Let surfaces touch one another and themselves, or pass through.
+    /// Turn self-collision on or off.
     Touch,
     Pause,
     Step,
@@ -35,16 +35,17 @@ pub enum RunAction {
     ShorterStep,
     Slower,
     Faster,
-    /// Go so many kept frames on, or back if it is negative.
+    /// Go forward by a number of moments of the timeline, or back if it is negative.
     Scrub(isize),
+    /// Reset the camera.
     Camera,
-    /// Let go of all pins.
+    /// Release all pins.
     FreeAll,
-    /// Perspective or orthographic.
+    /// Switch between perspective and orthographic projection.
     Projection,
-    /// See all particles, from the same side.
+    /// Move the camera, without turning it, so that all particles are visible.
     SeeAll,
-    /// See from the front, from the side, or from above.
+    /// Look from the next direction: front, right, or above.
     NextView,
     Panel,
     WriteScene,
@@ -55,26 +56,23 @@ pub enum RunAction {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum WindowAction {
     Undo,
-    /// Do again what was undone.
     Redo,
-    /// Follow what is under the pointer.
+    /// Follow the particle under the pointer.
     Follow,
     Picture,
-    /// Write what the plots show as CSV.
+    /// Write the samples of the plots as CSV.
     WritePlots,
-    /// Film from now on, or complete that film.
+    /// Start a live film, or complete it.
     Record,
     /// Film the last seconds.
     FilmLast,
-    /// Copy the command line that makes what is shown.
+    /// Copy the command line that opens the present run and picture.
     CommandLine,
-    /// Keep the run in a file.
-    Keep,
-    /// Go on from the last such file.
-    TakeUp,
-    /// Fill the screen, or a window again.
+    /// Save the run as a checkpoint.
+    SaveRun,
+    /// Load the last checkpoint.
+    LoadRun,
     FullScreen,
-    /// Open the lessons.
     Lessons,
     Quit,
 }

@@ -1,4 +1,4 @@
-//! What the user does to a session: by keys, by the mouse, and by lists to choose from.
+//! Actions of the user on a session, by keys, mouse and lists.
 
 use std::path::Path;
 
@@ -15,12 +15,12 @@ use super::state::Session;
 use super::tuning::Tuning;
 use crate::draw::show;
 
-/// The slowest motion is 1 / 2^6 of real time.
-const SLOWEST: i32 = 6;
+/// Largest slowness: motion at 1 / 2^6 of real time.
+const MAX_SLOWNESS: i32 = 6;
 
 impl Session {
-    /// Does an action, and returns whether another scene is shown. A solver is for the pane `at`,
-    /// all else for every pane.
+    /// Performs an action, and returns whether it changed the scene. Solvers and scene files are
+    /// those of pane `at`; all other actions apply to every pane.
     pub fn act(&mut self, action: RunAction, at: usize) -> bool {
         match action {
             RunAction::NextScene | RunAction::PreviousScene => {
@@ -29,7 +29,7 @@ impl Session {
                 } else {
                     -1
                 };
-                self.show_scene(self.scenes.beside(by));
+                self.show_scene(self.scenes.neighbour(by));
                 return true;
             }
             RunAction::Scenes => self.toggle_list(Topic::Scenes),
@@ -53,24 +53,26 @@ impl Session {
             }
             RunAction::Touch => {
                 let done = self.runs.toggle_touch();
-                self.tell(done);
+                self.report(done);
             }
             RunAction::Wireframe => looks::next_style(&mut self.runs.panes),
             RunAction::Colour => self.readings.say(looks::next_colour(&mut self.runs.panes)),
             RunAction::Arrows => self.readings.say(looks::next_arrows(&mut self.runs.panes)),
             RunAction::Pause => {
                 self.readings.paused = !self.readings.paused;
-                self.start_anew();
+                self.restart_measuring();
             }
             RunAction::Step if self.readings.rewound.is_some() => self.scrub(1),
             RunAction::Scrub(by) => self.scrub(by),
-            RunAction::Slower => self.readings.slowness = (self.readings.slowness + 1).min(SLOWEST),
+            RunAction::Slower => {
+                self.readings.slowness = (self.readings.slowness + 1).min(MAX_SLOWNESS);
+            }
             RunAction::Faster => self.readings.slowness = (self.readings.slowness - 1).max(0),
             RunAction::Step => self.step(),
             RunAction::Solver(i) => match integrators::METHODS.get(i) {
                 Some(method) => {
                     let done = self.runs.set_method(method, at, &self.tuning.defaults);
-                    self.tell(done);
+                    self.report(done);
                 }
                 None => self
                     .readings
@@ -78,11 +80,11 @@ impl Session {
             },
             RunAction::LongerStep | RunAction::ShorterStep => {
                 let done = self.runs.set_steps(action == RunAction::LongerStep);
-                self.tell(done);
+                self.report(done);
             }
             RunAction::Camera => {
-                self.view.see_from(self.runs.panes[0].show.camera());
-                self.view.stay();
+                self.view.set_camera(self.runs.panes[0].show.camera());
+                self.view.stop_following();
             }
             RunAction::FreeAll => {
                 let all: Vec<_> = (0..self.runs.first().particles()).collect();
@@ -105,53 +107,53 @@ impl Session {
         false
     }
 
-    /// Takes all runs back to the beginning of their scene.
+    /// Resets all runs to the initial state of their scene.
     fn reset(&mut self) {
         let touching = self.runs.first().touching();
         self.runs.reset();
         if touching && !self.runs.first().touching() {
             self.readings
-                .say("Surfaces cross at the beginning, so they pass through one another again.");
+                .say("Surfaces cross in the initial state, so self-collision is off again.");
         }
         self.readings.read_reference(self.runs.reference.as_ref());
-        self.another_run();
+        self.begin_new_run();
     }
 
-    /// Pauses, and takes the longest step, and as many of the shorter ones as fit.
+    /// Pauses, and advances all runs by the longest step among them.
     fn step(&mut self) {
         self.readings.paused = true;
-        self.runs.settle();
+        self.runs.drop_due_steps();
         self.advance(self.runs.longest_step(), KEY_BUDGET, KEY_BUDGET);
     }
 
-    /// Says why something was refused, if it was.
-    fn tell(&mut self, done: Result<(), impl ToString>) {
+    /// Shows the error of a refused request.
+    fn report(&mut self, done: Result<(), impl ToString>) {
         if let Err(why) = done {
             self.readings.say(why.to_string());
         }
     }
 
-    /// Sets the step (s) or the tolerance of one pane.
+    /// Sets the step (s) or the tolerance of one pane, or shows why that is refused.
     pub fn set_step_of(&mut self, at: usize, value: f64) {
         let done = self.runs.set_step_of(at, value);
-        self.tell(done);
+        self.report(done);
     }
 
-    /// Changes the model of every run. A reset keeps the change. Where surfaces touch and would
-    /// cross then, a message names what does, and nothing is changed.
+    /// Changes the model of every run; a reset keeps the change. If self-collision is on and
+    /// surfaces would cross, changes nothing and shows which would.
     pub fn adjust(&mut self, change: impl Fn(&mut Network)) {
         let done = self.runs.adjust(change);
-        self.tell(done);
+        self.report(done);
     }
 
-    /// Lets go of the held particle or sphere.
+    /// Releases the grabbed particle or sphere.
     pub fn release(&mut self) {
         if let Some(push) = self.runs.release() {
-            self.history.note(push);
+            self.history.record(push);
         }
     }
 
-    /// Pins particle i where it is in every run, or frees it if the first run has it pinned.
+    /// Pins particle i at its position in every run, or frees it if it is pinned in the first run.
     pub fn toggle_pin(&mut self, i: usize) {
         let pinned = !self.runs.is_pinned(i);
         if self.pin(&[i], pinned) > 0 {
@@ -160,7 +162,7 @@ impl Session {
         }
     }
 
-    /// Pins particles where they are in every run, or lets go of them, and says how many.
+    /// Pins particles at their positions in every run, or frees them, and shows how many.
     pub fn pin_all(&mut self, particles: &[usize], pinned: bool) {
         let count = self.pin(particles, pinned);
         self.readings.say(match (count, pinned) {
@@ -173,13 +175,13 @@ impl Session {
         });
     }
 
-    /// Pins or frees particles, notes what can be undone of that, and returns how many were
+    /// Pins or frees particles, records the change in the history, and returns how many particles
     /// changed in the first run.
     fn pin(&mut self, particles: &[usize], pinned: bool) -> usize {
         let particles = self.runs.pin(particles, pinned);
         let count = particles.len();
         if count > 0 {
-            self.history.note(Change::Pins { particles, pinned });
+            self.history.record(Change::Pins { particles, pinned });
         }
         count
     }
@@ -198,20 +200,21 @@ impl Session {
         self.list = Some(List::new(topic, entries));
     }
 
-    /// Does what a key means in the list that is open, and returns whether another scene is shown.
+    /// Passes a key to the open list, and returns whether that changed the scene.
     pub fn press_list(&mut self, key: TextKey) -> bool {
         let Some(list) = &mut self.list else {
             return false;
         };
-        if key == TextKey::Close {
+        if key == TextKey::Cancel {
             self.list = None;
             return false;
         }
-        list.press(key).is_some_and(|number| self.take(number))
+        list.press(key)
+            .is_some_and(|number| self.take_entry(number))
     }
 
-    /// Takes an entry by its number, closes the list, and returns whether another scene is shown.
-    pub fn take(&mut self, number: usize) -> bool {
+    /// Applies an entry by its number, closes the list, and returns whether that changed the scene.
+    pub fn take_entry(&mut self, number: usize) -> bool {
         match self.list.take().map(|list| list.topic) {
             Some(Topic::Scenes) => {
                 if let Some(file) = self.scenes.earlier_file(number) {
@@ -225,20 +228,19 @@ impl Session {
         }
     }
 
-    /// Shows the scene of this number among all names. Where that is not possible, a message says
-    /// why.
+    /// Shows the scene of this number, or a message that says why it cannot be built.
     fn show_scene(&mut self, number: usize) {
         match self.scenes.show(number) {
             Ok(setup) => {
-                self.see_scene(&setup);
+                self.reset_camera(&setup);
                 self.set_scene(&setup);
             }
             Err(error) => self.readings.warn(error.to_string()),
         }
     }
 
-    /// Shows the scene of a file, with the same solvers and steps where they serve it, and returns
-    /// whether that was possible; if not, a message says why, and all goes on.
+    /// Shows the scene of a file, and keeps solvers and steps that can integrate it. If the file
+    /// cannot be opened, shows why and returns false; the runs continue.
     pub fn open(&mut self, file: &Path) -> bool {
         match self.scenes.open(file) {
             Ok(setup) => {
@@ -246,7 +248,7 @@ impl Session {
                 let summary = source.description.summary.as_deref();
                 let what = summary.map_or(String::new(), |what| format!(": {what}"));
                 self.readings.say(format!("opened {}{what}", source.typed));
-                self.see_scene(&setup);
+                self.reset_camera(&setup);
                 self.set_scene(&setup);
                 true
             }
@@ -257,9 +259,8 @@ impl Session {
         }
     }
 
-    /// Loads the scene again from its file, and returns whether that was possible; if not, a
-    /// message says why, and all goes on. Camera, solvers and steps stay as they are, unless the
-    /// file says others than before.
+    /// Reloads the scene from its file. Camera, solvers and steps change only if the file's did. If
+    /// the file cannot be loaded, shows why and returns false; the runs continue.
     pub fn reload(&mut self) -> bool {
         let reloaded = match self.scenes.reload() {
             Ok(Some(reloaded)) => reloaded,
@@ -271,7 +272,7 @@ impl Session {
         };
         let setup = &reloaded.setup;
         if reloaded.camera {
-            self.see_scene(setup);
+            self.reset_camera(setup);
         }
         let typed = &self.scenes.shown.source.typed;
         self.readings.say(format!("loaded {typed} again"));
@@ -282,7 +283,7 @@ impl Session {
         for run in self.runs.all_mut() {
             run.set_wind(windy);
             run.set_swinging(swinging);
-            // What crosses in the file as it is now begins as the file has it.
+            // If surfaces cross in the new file, its own setting of self-collision stays.
             let _ = run.set_touching(touching);
         }
         if let Some(method) = reloaded.method {
@@ -293,25 +294,25 @@ impl Session {
                 }
                 pane.wanted = method;
             }
-            self.runs.adapt();
+            self.runs.adapt_reference();
         }
         true
     }
 
-    /// Sees a scene as it is first seen.
-    fn see_scene(&mut self, setup: &Setup) {
-        self.view.see_from(show::camera(&setup.presentation));
+    /// Moves the camera to its initial position in a scene.
+    fn reset_camera(&mut self, setup: &Setup) {
+        self.view.set_camera(show::camera(&setup.presentation));
     }
 
-    /// Begins another scene, with the same solvers and steps where they serve it.
+    /// Starts another scene, and keeps solvers and steps that can integrate it.
     fn set_scene(&mut self, setup: &Setup) {
         let said = match self.runs.set_scene(setup) {
             Ok(said) => {
                 self.tuning = Tuning::of(setup);
-                self.view.stay();
+                self.view.stop_following();
                 self.history.clear();
                 self.readings.read_reference(self.runs.reference.as_ref());
-                self.another_run();
+                self.begin_new_run();
                 said
             }
             Err(why) => Some(why.to_string()),

@@ -1,4 +1,5 @@
-//! Hands that change all runs of a session at the same time.
+//! Interaction with all runs of a session at the same simulated time: pulls, pushes, pins, and
+//! changes of the model.
 
 use a3_core::{Network, Path, Simulation, Vector3};
 
@@ -7,15 +8,15 @@ use super::reference::ReferenceRun;
 use super::runs::{KEY_BUDGET, Runs};
 
 impl Runs {
-    /// The runs that go on, the reference included.
-    fn going(&mut self) -> impl Iterator<Item = &mut Simulation> {
+    /// Returns the runs that have not diverged, and the reference unless it was stopped.
+    fn running(&mut self) -> impl Iterator<Item = &mut Simulation> {
         let alive = self.panes.iter_mut().filter(|pane| pane.alive());
         let reference = self.reference.as_mut().and_then(ReferenceRun::run);
         alive.map(|pane| &mut pane.simulation).chain(reference)
     }
 
-    /// Changes something in every run at the same simulated time, also in a lost one: what is on
-    /// stays on after a reset.
+    /// Changes every run at the same simulated time, including diverged ones, which keep the change
+    /// after a reset.
     pub fn change_all(&mut self, change: impl FnMut(&mut Simulation)) {
         self.align();
         self.all_mut().for_each(change);
@@ -25,14 +26,16 @@ impl Runs {
         self.read = None;
     }
 
-    /// Changes the model of every run. A reset keeps the change. Fails, and changes nothing, where
-    /// surfaces touch and would cross then.
+    /// Changes the model of every run; a reset keeps the change. Fails, and changes nothing, if
+    /// self-collision is on and surfaces would cross.
     pub fn adjust(&mut self, change: impl Fn(&mut Network)) -> Result<(), String> {
-        self.change_apart(&change, |run| run.adjust(&change))
+        self.change_unless_crossing(&change, |run| run.adjust(&change))
     }
 
-    /// Applies a change to every run. Fails where surfaces touch and would cross with it.
-    fn change_apart(
+    /// Applies a change to every run. `change` changes a copy of the network, which is checked
+    /// before `apply` changes the runs. Fails, and changes nothing, if self-collision is on and
+    /// surfaces would cross.
+    fn change_unless_crossing(
         &mut self,
         change: impl Fn(&mut Network),
         apply: impl FnMut(&mut Simulation),
@@ -56,13 +59,13 @@ impl Runs {
         Ok(())
     }
 
-    /// Brings several panes to the same time exactly, by a shorter step where need be, so that a
-    /// hand acts on all of them at once.
+    /// Advances several panes to exactly the same time, by a shortened step if need be, so that an
+    /// interaction starts at the same time in all.
     pub(super) fn align(&mut self) {
         if self.panes.len() < 2 {
             return;
         }
-        self.settle();
+        self.drop_due_steps();
         let clock = self.clock;
         if let Some(reference) = &mut self.reference
             && reference.run().is_some()
@@ -70,14 +73,14 @@ impl Runs {
         {
             reference.stop("the reference is too slow");
         }
-        for run in self.going() {
-            // A blow-up is shown from now on.
+        for run in self.running() {
+            // A blow-up is stored in the run, and shown from now on.
             let _ = run.advance_to(clock);
         }
     }
 
-    /// Lets surfaces touch in every run, or pass through one another. Fails, and changes nothing,
-    /// where the scene has no surfaces or where they cross in a run.
+    /// Turns self-collision on or off in every run. Fails, and changes nothing, if the scene has no
+    /// surfaces or they cross in a run.
     pub(super) fn toggle_touch(&mut self) -> Result<(), String> {
         if self.first().scene().touch.is_none() {
             return Err("There are no surfaces here that could touch.".into());
@@ -91,31 +94,31 @@ impl Runs {
         });
         if refused.is_err() {
             self.change_all(|run| {
-                // To let surfaces pass is never refused.
+                // Turning self-collision off does not fail.
                 let _ = run.set_touching(!on);
             });
         }
         refused.map_err(|why| why.to_string())
     }
 
-    /// Takes hold of particle i in every run, and returns whether any run holds it.
+    /// Grabs particle i in every run, and returns whether any run allowed it.
     pub fn grab(&mut self, i: usize) -> bool {
         self.align();
-        self.going()
+        self.running()
             .fold(false, |held, run| held | run.grab(i).is_ok())
     }
 
-    /// Takes hold of sphere k in every run, and returns whether any run holds it.
+    /// Grabs the sphere that is obstacle k in every run, and returns whether any run allowed it.
     pub fn grab_obstacle(&mut self, k: usize) -> bool {
         self.align();
         self.pushed = self.obstacle_path(k).map(|path| (k, path));
-        self.going()
+        self.running()
             .fold(false, |held, run| held | run.grab_obstacle(k).is_ok())
     }
 
-    /// Pulls the held particle or sphere to the same point (m) in every run.
+    /// Pulls the grabbed particle or sphere towards the same point (m) in every run.
     pub fn pull(&mut self, target: Vector3<f64>) {
-        self.going().for_each(|run| {
+        self.running().for_each(|run| {
             run.pull(target);
             run.pull_obstacle(target);
         });
@@ -124,11 +127,10 @@ impl Runs {
         }
     }
 
-    /// Lets go of the held particle or sphere, and returns the push that has ended, if it led
-    /// anywhere.
+    /// Releases the grabbed particle or sphere. Returns the push of a sphere, if it moved it.
     pub(super) fn release(&mut self) -> Option<Change> {
         let held = |run: &Simulation| run.grabbed().is_some() || run.grabbed_obstacle().is_some();
-        if self.going().any(|run| held(run)) {
+        if self.running().any(|run| held(run)) {
             self.align();
         }
         for run in self.all_mut() {
@@ -145,32 +147,32 @@ impl Runs {
         })
     }
 
-    /// The path of obstacle k in the first run.
+    /// Returns the path of obstacle k in the first run.
     fn obstacle_path(&self, k: usize) -> Option<Path> {
         let network = self.first().model().network()?;
         Some(network.obstacles().get(k)?.path)
     }
 
-    /// Puts an obstacle back on a path in every run. Fails, and changes nothing, where surfaces
-    /// touch and would cross then.
-    pub fn put_back(&mut self, obstacle: usize, path: Path) -> Result<(), String> {
+    /// Moves an obstacle to a path in every run. Fails, and changes nothing, if self-collision is
+    /// on and surfaces would cross.
+    pub fn set_obstacle_path(&mut self, obstacle: usize, path: Path) -> Result<(), String> {
         let lead = |network: &mut Network| {
-            // It is there: it was pushed.
+            // The obstacle exists, because it was pushed.
             let _ = network.lead_obstacle(obstacle, path);
         };
-        self.change_apart(lead, |run| {
+        self.change_unless_crossing(lead, |run| {
             let _ = run.set_obstacle_path(obstacle, path);
         })
     }
 
-    /// Whether the first run has particle i pinned.
+    /// Returns whether particle i is pinned in the first run.
     pub(super) fn is_pinned(&self, i: usize) -> bool {
         let network = self.first().model().network();
         network.is_some_and(|network| network.is_pinned(i))
     }
 
-    /// Pins particles where they are in every run, or lets go of them, and returns those that
-    /// were changed in the first run.
+    /// Pins particles at their positions in every run, or frees them. Returns those that changed in
+    /// the first run.
     pub(super) fn pin(&mut self, particles: &[usize], pinned: bool) -> Vec<usize> {
         let before = particles.iter().copied();
         let other: Vec<_> = before.filter(|i| self.is_pinned(*i) != pinned).collect();
@@ -179,18 +181,18 @@ impl Runs {
         now.filter(|i| self.is_pinned(*i) == pinned).collect()
     }
 
-    /// Pins particles where they are in every run, or lets go of them.
+    /// Pins particles at their positions in every run, or frees them.
     pub fn set_pins(&mut self, particles: &[usize], pinned: bool) {
         self.align();
         for run in self.all_mut() {
             let mut set = |i: usize| {
                 let network = run.model().network();
                 if network.is_some_and(|network| network.is_pinned(i) != pinned) {
-                    // One that a rigid body carries stays free.
+                    // A particle of a rigid body cannot be pinned.
                     let _ = run.toggle_pin(i);
                 }
             };
-            // Pins are kept in order: few are moved when the last ones are removed first.
+            // Pins are a sorted array: removing the last ones first moves few others.
             for k in 0..particles.len() {
                 let at = if pinned { k } else { particles.len() - 1 - k };
                 set(particles[at]);
@@ -198,7 +200,7 @@ impl Runs {
         }
     }
 
-    /// Stops drawing the hand.
+    /// Hides the line from a grabbed particle to the pointer.
     pub(super) fn hide_hand(&mut self) {
         for pane in &mut self.panes {
             pane.show.hand = None;
@@ -214,7 +216,7 @@ mod tests {
     use a3_core::contact::Shape;
 
     #[test]
-    fn a_sphere_is_let_go_of_where_it_was_pushed() {
+    fn a_released_sphere_stays_where_it_was_pushed() {
         let mut session = session(&["r", "0.005", "--scene", "mit-sphere"]);
         let place = |session: &Session| {
             let run = session.runs.first();
@@ -240,13 +242,19 @@ mod tests {
         let touching = |session: &Session| {
             let panes = session.runs.panes.iter();
             let mut touching: Vec<_> = panes.map(|pane| pane.simulation.touching()).collect();
-            touching.extend(session.runs.reference.as_ref().map(|r| r.any().touching()));
+            touching.extend(
+                session
+                    .runs
+                    .reference
+                    .as_ref()
+                    .map(|r| r.simulation().touching()),
+            );
             touching
         };
         session.act(RunAction::Touch, 0);
         assert_eq!(touching(&session), [true; 3]);
         assert_eq!(session.readings.message, None);
-        // A sphere that would reach into the cloth stays as it is.
+        // A sphere is not enlarged into the cloth.
         let radius = |session: &Session| {
             let network = session.runs.first().model().network().unwrap();
             network.obstacles()[0].shape.clone()
@@ -262,7 +270,7 @@ mod tests {
         assert_eq!(radius(&session), own);
         session.act(RunAction::Touch, 0);
         assert_eq!(touching(&session), [false; 3]);
-        // Where one crosses, all stay as they are.
+        // If surfaces cross in one run, self-collision changes in none.
         let shape = Shape::Sphere { radius: 4.5 };
         let last = &mut session.runs.panes[1].simulation;
         last.adjust(|network| network.reshape_obstacle(0, shape.clone()).unwrap());
@@ -306,9 +314,9 @@ mod tests {
         assert_eq!(pinned(&session), [false, false]);
     }
 
-    /// All that a hand does to the panes, it does to the reference, at the same time.
+    /// Every interaction with the panes acts on the reference too, at the same time.
     #[test]
-    fn the_reference_gets_the_same_hands() {
+    fn the_reference_gets_the_same_interaction() {
         let mut session = compared(&["r:0.013", "r:0.005", "--scene", "cloth"], 0.5);
         let small = |session: &Session, what: &str| {
             let errors: Vec<_> = session.runs.panes.iter().map(|pane| pane.error).collect();
@@ -343,7 +351,7 @@ mod tests {
         );
         session.release();
         frames(&mut session, 0.2);
-        // Each was pulled from its own place in its own time.
+        // Each run pulled its particle from another position.
         assert!(
             session
                 .runs

@@ -1,18 +1,18 @@
-//! What the user changed, to be undone and done again.
+//! The history of the user's changes, for undo and redo.
 
 use web_time::{Duration, Instant};
 
 use a3_core::Path;
 
-/// The most changes that are kept.
-const MOST: usize = 200;
-/// Turns of the same knob by keys within this time of one another are one change.
-const ONE: Duration = Duration::from_millis(800);
+/// Largest number of changes in the history.
+const MAX_CHANGES: usize = 200;
+/// Longest time between two turns of a knob by keys that count as one change.
+const MERGE_TIME: Duration = Duration::from_millis(800);
 
-/// A change, which can be undone.
+/// A change that can be undone.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Change {
-    /// Particles were pinned, or let go of.
+    /// Particles were pinned or freed.
     Pins { particles: Vec<usize>, pinned: bool },
     /// An obstacle was pushed: its paths before and after.
     Push {
@@ -28,23 +28,24 @@ pub enum Change {
     },
 }
 
-/// Changes that were made, and those that were undone.
+/// Changes that were made, and those that were undone, the latest last.
 #[derive(Default)]
 pub struct History {
     done: Vec<Change>,
     undone: Vec<Change>,
-    /// Time of the last change since a button was pressed.
+    /// Time of the last change, `None` after a button was pressed or a change undone.
     last: Option<Instant>,
-    /// Whether a button is held.
+    /// Whether a mouse button is pressed.
     held: bool,
 }
 
 impl History {
-    /// Notes a change. What was undone before cannot be done again.
-    pub fn note(&mut self, change: Change) {
+    /// Records a change, and drops the undone ones. A turn of a knob extends the last change if it
+    /// follows soon, or in the same drag.
+    pub fn record(&mut self, change: Change) {
         let soon = self
             .last
-            .is_some_and(|last| self.held || last.elapsed() < ONE);
+            .is_some_and(|last| self.held || last.elapsed() < MERGE_TIME);
         self.last = Some(Instant::now());
         self.undone.clear();
         if let Change::Knob { row, pane, to, .. } = change
@@ -61,23 +62,23 @@ impl History {
             return;
         }
         self.done.push(change);
-        if self.done.len() > MOST {
+        if self.done.len() > MAX_CHANGES {
             self.done.remove(0);
         }
     }
 
-    /// Notes that a button of the mouse was pressed or let go of: a slider that is dragged is one
+    /// Records that a mouse button was pressed or released. All turns of a knob in one drag are one
     /// change.
-    pub fn hold(&mut self, held: bool) {
+    pub fn set_button_held(&mut self, held: bool) {
         if held {
             self.last = None;
         }
         self.held = held;
     }
 
-    /// The change that is undone now, or with `again` done again.
-    pub fn step(&mut self, again: bool) -> Option<Change> {
-        let (from, to) = if again {
+    /// Returns the change to undo, or with `redo` the change to redo.
+    pub fn step(&mut self, redo: bool) -> Option<Change> {
+        let (from, to) = if redo {
             (&mut self.undone, &mut self.done)
         } else {
             (&mut self.done, &mut self.undone)
@@ -88,7 +89,7 @@ impl History {
         Some(change)
     }
 
-    /// Forgets all changes.
+    /// Clears the history.
     pub fn clear(&mut self) {
         *self = Self::default();
     }
@@ -101,7 +102,7 @@ mod tests {
     use crate::window::session::{RunAction, compared, frames, session};
 
     #[test]
-    fn a_drag_is_one_change_and_a_new_change_ends_what_was_undone() {
+    fn a_drag_is_one_change_and_a_new_change_drops_the_undone_ones() {
         let knob = |row, from: f64, to: f64| Change::Knob {
             row,
             pane: 0,
@@ -110,32 +111,32 @@ mod tests {
         };
         let mut history = History::default();
         for (from, to) in [(1.0, 2.0), (2.0, 3.0), (3.0, 4.0)] {
-            history.note(knob(5, from, to));
+            history.record(knob(5, from, to));
         }
-        // Another drag of the same knob is another change, however soon.
-        history.hold(true);
-        history.note(knob(5, 4.0, 5.0));
-        history.note(knob(5, 5.0, 6.0));
-        history.hold(false);
+        // Another drag of the same knob is another change, even right after the first.
+        history.set_button_held(true);
+        history.record(knob(5, 4.0, 5.0));
+        history.record(knob(5, 5.0, 6.0));
+        history.set_button_held(false);
         assert_eq!(history.step(false), Some(knob(5, 4.0, 6.0)));
-        history.note(knob(6, 0.0, 1.0));
+        history.record(knob(6, 0.0, 1.0));
         assert_eq!(history.step(false), Some(knob(6, 0.0, 1.0)));
         assert_eq!(history.step(false), Some(knob(5, 1.0, 4.0)));
         assert_eq!(history.step(false), None);
         assert_eq!(history.step(true), Some(knob(5, 1.0, 4.0)));
-        history.note(knob(7, 0.0, 1.0));
+        history.record(knob(7, 0.0, 1.0));
         assert_eq!(history.step(true), None);
         for k in 0..300 {
-            history.note(Change::Pins {
+            history.record(Change::Pins {
                 particles: vec![k],
                 pinned: true,
             });
         }
-        assert_eq!(history.done.len(), MOST);
+        assert_eq!(history.done.len(), MAX_CHANGES);
     }
 
     #[test]
-    fn pins_are_undone_and_done_again_in_every_run() {
+    fn pins_are_undone_and_redone_in_every_run() {
         let mut session = compared(&["t:0.01", "r:0.01", "--scene", "mit"], 0.2);
         let pins = |session: &crate::window::session::Session| {
             let runs = session.runs.panes.iter().map(|pane| &pane.simulation);
@@ -163,7 +164,7 @@ mod tests {
         );
         panel::undo(&mut session, true);
         assert_eq!(pins(&session), [5, 5]);
-        // Another scene knows of none of that.
+        // Another scene starts with an empty history.
         session.act(RunAction::NextScene, 0);
         panel::undo(&mut session, false);
         assert_eq!(
@@ -173,7 +174,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_pinned_is_said() {
+    fn a_message_says_that_nothing_can_be_pinned() {
         let mut circle = session(&["t", "0.01", "--scene", "simple"]);
         circle.pin_all(&[0], true);
         assert_eq!(
@@ -207,7 +208,7 @@ mod tests {
         assert_eq!(place(&session), before);
         panel::undo(&mut session, true);
         assert_eq!(place(&session), pushed);
-        // What was held and not moved is no change.
+        // A grab without a motion is not a change.
         assert!(session.runs.grab_obstacle(0));
         session.release();
         panel::undo(&mut session, false);

@@ -1,8 +1,8 @@
-//! The keys, in one table from which the help is made too.
+//! The table of keys, from which the help is made.
 
 use super::actions::{Action, RunAction, WindowAction};
 
-/// A row of the table: keys, their action, and its name in the help.
+/// A row of the table: keys, their action, and its description in the help.
 pub struct Binding {
     pub keys: &'static [&'static str],
     pub action: Action,
@@ -23,7 +23,7 @@ const fn window(
     Binding { keys, action, help }
 }
 
-/// All keys but the digits, which stand for the solvers in the order of their table.
+/// All keys except the digits, which choose solvers in the order of their table.
 pub static KEYS: &[Binding] = &[
     run(&["t", "PgDn"], RunAction::NextScene, "next scene"),
     run(&["PgUp"], RunAction::PreviousScene, "previous scene"),
@@ -37,7 +37,7 @@ pub static KEYS: &[Binding] = &[
     run(&["d"], RunAction::Wind, "wind"),
     run(&["x"], RunAction::Touch, "self-collision"),
     run(&["Space"], RunAction::Pause, "pause"),
-    run(&["."], RunAction::Step, "one step, one frame on"),
+    run(&["."], RunAction::Step, "one step, or one frame on"),
     run(&[","], RunAction::Scrub(-1), "one frame back"),
     run(&["<"], RunAction::Scrub(-10), "ten frames back"),
     run(&[">"], RunAction::Scrub(10), "ten frames on"),
@@ -45,11 +45,11 @@ pub static KEYS: &[Binding] = &[
     run(&["]", ")"], RunAction::Faster, "faster again"),
     run(&["+", "="], RunAction::LongerStep, "longer step"),
     run(&["-"], RunAction::ShorterStep, "shorter step"),
-    run(&["c"], RunAction::Camera, "camera home"),
+    run(&["c"], RunAction::Camera, "reset the camera"),
     run(&["g"], RunAction::SeeAll, "see all"),
     run(&["b"], RunAction::NextView, "front, side, top"),
-    window(&["z"], WindowAction::Undo, "undo; Shift: redo"),
-    run(&["Del"], RunAction::FreeAll, "let go of all pins"),
+    window(&["z"], WindowAction::Undo, "undo; with Shift, redo"),
+    run(&["Del"], RunAction::FreeAll, "release all pins"),
     run(&["i"], RunAction::Projection, "perspective or parallel"),
     window(&["j"], WindowAction::Follow, "follow a particle"),
     window(&["p"], WindowAction::Picture, "save a picture"),
@@ -59,34 +59,34 @@ pub static KEYS: &[Binding] = &[
     window(&["m"], WindowAction::Record, "record, or stop"),
     window(&["n"], WindowAction::FilmLast, "film the last seconds"),
     window(&["y"], WindowAction::CommandLine, "copy the command line"),
-    window(&["k"], WindowAction::Keep, "keep the run in a file"),
-    window(&["l"], WindowAction::TakeUp, "load what was kept"),
+    window(&["k"], WindowAction::SaveRun, "save the run"),
+    window(&["l"], WindowAction::LoadRun, "load the saved run"),
     window(&["F11"], WindowAction::FullScreen, "full screen"),
     run(&["h", "?"], RunAction::Help, "this help"),
     window(&["F1"], WindowAction::Lessons, "lessons"),
     window(&["Esc"], WindowAction::Quit, "quit"),
 ];
 
-/// Actions of the mouse, for the help.
+/// Actions of the mouse, for the help: a gesture, and its effect.
 pub static MOUSE: &[(&str, &str)] = &[
     ("left, on the scene", "pull"),
     ("left, elsewhere", "turn"),
     ("right or middle", "move"),
-    ("right click", "pin, or let go"),
+    ("right click", "pin, or release"),
     ("Shift and left", "pin all in a box"),
-    ("Shift and right", "let go of them"),
+    ("Shift and right", "release all in a box"),
     ("double click", "list springs"),
     ("wheel", "zoom to the pointer"),
 ];
 
-/// The action of a key by its name, if it has one. Letters mean the same in either case.
+/// Returns the action of a key by its name. Upper and lower case are the same.
 pub fn action(name: &str) -> Option<Action> {
     let mut letters = name.chars();
     let name = match (letters.next(), letters.next()) {
         (Some(letter), None) => letter.to_lowercase().collect(),
         _ => name.to_owned(),
     };
-    // 1 to 9 and 0, as they lie on the keyboard.
+    // 1 to 9, then 0, as on the keyboard.
     if let Ok(digit @ 0..=9) = name.parse::<usize>() {
         return Some(Action::Run(RunAction::Solver((digit + 9) % 10)));
     }

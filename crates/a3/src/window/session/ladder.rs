@@ -1,14 +1,13 @@
-//! The ladder of steps and tolerances that keys climb.
+//! The steps and tolerances that the keys + and - choose.
 
-/// Steps and tolerances of the keys + and -, in each decade.
+/// Steps (s) and tolerances, over the power of ten below them.
 const LADDER: [f64; 10] = [1.0, 1.2, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0];
 
-/// The next larger or smaller step or tolerance of the ladder.
+/// Returns the next larger or smaller step or tolerance of the ladder.
 pub fn next_step(step: f64, longer: bool) -> f64 {
     let decade = step.log10().floor() as i32;
     let rungs = (decade - 1..=decade + 1).flat_map(|d| {
-        // Dividing by a power of ten is exact to the last digit where multiplying by its inverse is
-        // not.
+        // Dividing by 10^n rounds correctly; multiplying by 10^-n, which is not exact, does not.
         LADDER.iter().map(move |rung| {
             if d < 0 {
                 rung / 10f64.powi(-d)

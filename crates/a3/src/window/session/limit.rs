@@ -1,4 +1,4 @@
-//! The largest stable step of a run, as the run goes on.
+//! The largest stable step of a run, updated as it advances.
 
 use web_time::{Duration, Instant};
 
@@ -7,18 +7,18 @@ use a3_core::{Mechanics, Method, Simulation};
 
 use crate::base::holding::would_hold;
 
-/// The least time from one estimate to the next.
-const INTERVAL: Duration = Duration::from_millis(250);
-/// The least time from one estimate to the next, over the time that the estimate took: estimates
-/// take two percent of the time at most.
-const IDLE: u32 = 50;
-/// Most numbers in a state for all of its modes to be computed while it runs: that takes two
-/// evaluations for each number.
-const MOST_NUMBERS: usize = 300;
-/// Rate at which a mode grows by itself, over its frequency, twice: less is that of rounding.
-const GROWS: f64 = 0.01;
+/// Shortest time between two estimates.
+const MIN_INTERVAL: Duration = Duration::from_millis(250);
+/// Shortest time between two estimates, over the time that one takes: estimates use at most 2 % of
+/// the time.
+const MIN_IDLE_RATIO: u32 = 50;
+/// Longest state of which all modes are computed during a run, at two evaluations per number.
+const MAX_STATE_LENGTH: usize = 300;
+/// Twice the growth rate of a mode over its frequency, above which it is unstable by itself. Below,
+/// the growth is attributed to rounding.
+const MIN_GROWTH_RATIO: f64 = 0.01;
 
-/// The largest stable step for the fastest motion of a run, estimated every now and then.
+/// Periodic estimates of the largest stable step of a run.
 #[derive(Default)]
 pub struct LimitWatch {
     fastest: LargestMode,
@@ -26,60 +26,62 @@ pub struct LimitWatch {
     limit: Option<Limit>,
     next: Option<Instant>,
     would_hold: Option<f64>,
-    /// Whether such a step was looked for.
-    tried: bool,
+    /// Whether a stable step was searched for after the blow-up.
+    searched: bool,
 }
 
 impl LimitWatch {
-    /// The limit of the run's method for the fastest motion, as it was last estimated.
+    /// Returns the latest estimate of the limit, if there is one.
     pub fn limit(&self) -> Option<Limit> {
         self.limit
     }
 
-    /// A step (s) with which a lost run would have held.
+    /// Returns a step (s) with which the diverged run would have been stable, if one was found.
     pub fn would_hold(&self) -> Option<f64> {
         self.would_hold
     }
 
-    /// Estimates again if the last estimate is old enough, or if the run was just lost.
-    pub fn look(&mut self, run: &Simulation) {
+    /// Updates the estimate if it is old enough, or if the run has just diverged.
+    pub fn update(&mut self, run: &Simulation) {
         let begun = Instant::now();
-        let lost = run.blow_up();
-        let wait = if lost.is_some() {
-            self.tried
+        let blow_up = run.blow_up();
+        let wait = if blow_up.is_some() {
+            self.searched
         } else {
             self.next.is_some_and(|next| begun < next)
         };
         if wait {
             return;
         }
-        if let Some(lost) = lost {
-            // The state of a lost run is crumpled: the limits that count are those of the scene.
+        if let Some(blow_up) = blow_up {
+            // The state of a diverged run is meaningless, so use the modes of the scene's initial
+            // state.
             let scene = run.scene();
             let modes = spectrum(scene.model.system(), 0.0, &scene.state);
             self.modes.clone_from(&modes);
-            self.ask(run.method());
-            self.would_hold = would_hold(run, lost.time, &modes);
-            self.tried = true;
+            self.set_method(run.method());
+            self.would_hold = would_hold(run, blow_up.time, &modes);
+            self.searched = true;
             return;
         }
         self.modes = self.modes_of(run);
-        self.ask(run.method());
+        self.set_method(run.method());
         let after = Instant::now();
-        self.next = Some(after + INTERVAL.max(IDLE * after.duration_since(begun)));
+        self.next = Some(after + MIN_INTERVAL.max(MIN_IDLE_RATIO * after.duration_since(begun)));
     }
 
-    /// The modes that set the limit: the fastest, or all of them where damping mixes modes, and
-    /// where rods, wires or rigid bodies are. Such a scene has none if its state is too large for
-    /// that, or if a mode grows by itself: then the modes set no limit.
+    /// Returns the modes that set the limit. With rods, wires or rigid bodies these are all modes,
+    /// or none if the state is too long or a mode is unstable by itself. Otherwise they are all
+    /// modes if damping couples them and the state is short enough, or else the fastest mode.
     fn modes_of(&mut self, run: &Simulation) -> Vec<Mode> {
         let (system, y) = (run.model().system(), run.state());
-        let small = y.len() <= MOST_NUMBERS;
+        let small = y.len() <= MAX_STATE_LENGTH;
         let all = || spectrum(system, run.time(), y);
         let linearized = system.mechanics().and_then(Mechanics::linearized);
         let Some(free) = linearized.filter(|m| m.baumgarte_frequency().is_none()) else {
             let modes = if small { all() } else { vec![] };
-            let grows = |mode: &Mode| mode.drag + mode.damping < -GROWS * mode.frequency();
+            let grows =
+                |mode: &Mode| mode.drag + mode.damping < -MIN_GROWTH_RATIO * mode.frequency();
             return if modes.iter().any(grows) {
                 vec![]
             } else {
@@ -94,16 +96,16 @@ impl LimitWatch {
         }
     }
 
-    /// Makes the next look estimate again: the forces have changed.
-    pub fn hurry(&mut self) {
+    /// Makes the next update estimate again, because the forces have changed.
+    pub fn expire(&mut self) {
         self.next = None;
     }
 
-    /// Finds the limit of another method, for the motion that was seen last.
-    pub fn ask(&mut self, method: &Method) {
-        // Fails for a method that does not serve damped springs, on a mode that they damp.
+    /// Computes the limit of another method from the last modes.
+    pub fn set_method(&mut self, method: &Method) {
+        // Fails for a damped mode if the method cannot integrate damped springs.
         self.limit = largest_step(method, &self.modes).ok().flatten();
-        (self.would_hold, self.tried) = (None, false);
+        (self.would_hold, self.searched) = (None, false);
     }
 }
 
@@ -113,19 +115,18 @@ mod tests {
     use a3_core::{Control, integrators};
 
     #[test]
-    fn a_step_that_would_have_held_is_that_of_the_scene() {
-        // Euler's method is limited by slow motion without damping, of which the fastest motion
-        // knows nothing.
+    fn the_suggested_step_depends_on_the_scene_alone() {
+        // Explicit Euler is limited by slow undamped modes, not by the fastest one.
         let scene = a3_scenes::find("cloth").unwrap().build(None).unwrap().scene;
         let euler = integrators::find("euler").unwrap();
         let named = [0.02, 0.01, 0.007].map(|step| {
             let mut run = Simulation::new(scene.clone(), euler, Control::Step(step)).unwrap();
             assert!(run.advance_to(10.0).is_err());
             let mut watch = LimitWatch::default();
-            watch.look(&run);
+            watch.update(&run);
             watch.would_hold().unwrap()
         });
-        // Whatever step was too long, the step that would have held is the same.
+        // The suggested step does not depend on the step that was too long.
         let step = named[0];
         assert_eq!(named, [step; 3]);
         assert_eq!(step, 0.003);
@@ -140,25 +141,25 @@ mod tests {
         let mut run = Simulation::new(scene, method("rk4"), Control::Step(0.01)).unwrap();
         let mut watch = LimitWatch::default();
         assert_eq!(watch.limit(), None);
-        watch.look(&run);
+        watch.update(&run);
         let flat = watch.limit().unwrap().step;
         assert!((flat - 0.0349).abs() < 0.001, "{flat}");
         run.advance_to(1.5).unwrap();
-        // Not yet time to look.
-        watch.look(&run);
+        // Too early for another estimate.
+        watch.update(&run);
         assert_eq!(watch.limit().unwrap().step, flat);
         for _ in 0..8 {
             watch.next = None;
-            watch.look(&run);
+            watch.update(&run);
         }
         let stretched = watch.limit().unwrap().step;
         assert!(
             stretched < 0.985 * flat && stretched > 0.9 * flat,
             "{stretched}"
         );
-        watch.ask(method("implicit"));
+        watch.set_method(method("implicit"));
         assert!(watch.limit().unwrap().step.is_infinite());
-        watch.ask(method("trapezoid"));
+        watch.set_method(method("trapezoid"));
         assert!(watch.limit().unwrap().step < 0.3 * flat);
     }
 }

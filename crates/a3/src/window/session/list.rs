@@ -1,8 +1,8 @@
-//! A list to choose from: its entries, and what was typed.
+//! A list to choose from: its entries, and the typed filter.
 
 use a3_core::{Simulation, integrators};
 
-/// What a list offers.
+/// The kind of entries in a list.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Topic {
     /// Scenes, for all panes.
@@ -11,12 +11,12 @@ pub enum Topic {
     Solvers { pane: usize },
 }
 
-/// A list that is open.
+/// An open list.
 pub struct List {
     pub topic: Topic,
-    /// What was typed: entries without it are left out.
+    /// The typed words: entries without them are hidden.
     pub filter: String,
-    /// The entry that Enter takes, by its place among those that are left.
+    /// Index of the highlighted entry among the visible ones.
     pub chosen: usize,
     all: Vec<Entry>,
 }
@@ -24,30 +24,30 @@ pub struct List {
 /// An entry of a list.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Entry {
-    /// Its number among all entries.
+    /// Number among all entries.
     pub number: usize,
-    /// The key that chooses it without the list, if there is one.
+    /// The key that chooses the entry without the list; empty if there is none.
     pub key: String,
     pub name: String,
-    /// What it is, in a line.
+    /// A description of one line.
     pub about: String,
-    /// Whether it is what is shown now.
+    /// Whether the entry is the present scene or solver.
     pub current: bool,
 }
 
-/// A key with a meaning where something is typed: in a list that is open, or for a value.
+/// A key while text is typed: the filter of an open list, or a value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TextKey {
-    /// Goes so many entries down, or up if it is negative.
+    /// Move down by a number of entries, or up if it is negative.
     Move(isize),
     Type(char),
     Erase,
-    Take,
-    Close,
+    Accept,
+    Cancel,
 }
 
 impl List {
-    /// A list of these entries.
+    /// Creates a list, with the current entry highlighted.
     pub fn new(topic: Topic, all: Vec<Entry>) -> Self {
         let mut list = Self {
             topic,
@@ -59,7 +59,7 @@ impl List {
         list
     }
 
-    /// The entries that have all typed words in their names or in what is said of them.
+    /// Returns the entries whose names and descriptions contain all typed words.
     pub fn entries(&self) -> impl Iterator<Item = &Entry> {
         let words = self.filter.to_lowercase();
         let words: Vec<_> = words.split_whitespace().map(str::to_owned).collect();
@@ -69,7 +69,7 @@ impl List {
         })
     }
 
-    /// Does what a key means, and returns the number of the entry that it takes.
+    /// Handles a key, and returns the number of the entry that it accepts.
     pub fn press(&mut self, key: TextKey) -> Option<usize> {
         match key {
             TextKey::Move(by) => {
@@ -78,13 +78,13 @@ impl List {
             }
             TextKey::Type(letter) => self.edit(Some(letter)),
             TextKey::Erase => self.edit(None),
-            TextKey::Take => return self.entries().nth(self.chosen).map(|entry| entry.number),
-            TextKey::Close => {}
+            TextKey::Accept => return self.entries().nth(self.chosen).map(|entry| entry.number),
+            TextKey::Cancel => {}
         }
         None
     }
 
-    /// Takes or leaves a letter, `None`, at the end of what was typed.
+    /// Appends a letter to the filter, or removes the last one if `None`.
     fn edit(&mut self, letter: Option<char>) {
         match letter {
             Some(letter) => self.filter.push(letter),
@@ -93,8 +93,8 @@ impl List {
         self.choose_first();
     }
 
-    /// Chooses the current entry, or the first one with what was typed in its name, or else the
-    /// first.
+    /// Highlights the current entry if nothing is typed; otherwise the first whose name contains
+    /// the filter, or else the first visible one.
     fn choose_first(&mut self) {
         let typed = self.filter.trim().to_lowercase();
         let best = self.entries().position(|entry| {
@@ -108,7 +108,7 @@ impl List {
     }
 }
 
-/// The solvers that serve the scene of a run, as entries of a list.
+/// Returns the solvers that can integrate the scene of a run, as entries of a list.
 pub fn solvers(run: &Simulation) -> Vec<Entry> {
     let system = run.model().system();
     let methods = integrators::METHODS.iter().enumerate();
@@ -152,28 +152,28 @@ mod tests {
         let name = |session: &Session| session.runs.first().scene().name.clone();
         session.act(RunAction::Scenes, 0);
         type_words(&mut session, "Jel");
-        assert!(keys(&mut session, &[TextKey::Take]));
+        assert!(keys(&mut session, &[TextKey::Accept]));
         assert!(session.list.is_none());
         assert_eq!(name(&session), "jelly");
-        // The list begins at what is shown.
+        // The present scene is highlighted first.
         session.act(RunAction::Scenes, 0);
-        assert!(keys(&mut session, &[TextKey::Move(1), TextKey::Take]));
+        assert!(keys(&mut session, &[TextKey::Move(1), TextKey::Accept]));
         assert_eq!(name(&session), a3_scenes::SCENES[9].name);
         session.act(RunAction::PreviousScene, 0);
         assert_eq!(name(&session), "jelly");
         session.act(RunAction::Scenes, 0);
-        assert!(keys(&mut session, &[TextKey::Move(-99), TextKey::Take]));
+        assert!(keys(&mut session, &[TextKey::Move(-99), TextKey::Accept]));
         assert_eq!(name(&session), "cloth");
-        // Before the first comes the last.
+        // The scene before the first is the last.
         session.act(RunAction::PreviousScene, 0);
         assert_eq!(name(&session), a3_scenes::SCENES.last().unwrap().name);
         // Nothing matches: Enter does nothing, and Esc closes the list.
         session.act(RunAction::Scenes, 0);
         type_words(&mut session, "zz");
-        assert!(!keys(&mut session, &[TextKey::Take]) && session.list.is_some());
+        assert!(!keys(&mut session, &[TextKey::Accept]) && session.list.is_some());
         keys(&mut session, &[TextKey::Erase, TextKey::Erase]);
         assert!(session.list.as_ref().unwrap().entries().count() > 10);
-        keys(&mut session, &[TextKey::Close]);
+        keys(&mut session, &[TextKey::Cancel]);
         assert!(session.list.is_none());
     }
 
@@ -200,10 +200,10 @@ mod tests {
         type_words(&mut session, "strip.toml");
         let list = session.list.as_ref().unwrap();
         assert_eq!(list.entries().count(), 1);
-        assert!(keys(&mut session, &[TextKey::Take]));
+        assert!(keys(&mut session, &[TextKey::Accept]));
         let shown = session.scenes.shown.source.typed.clone();
         assert!(shown.ends_with("strip.toml"), "{shown}");
-        // It is one of the files of this window now.
+        // The file now belongs to this window.
         let entries = session.scenes.entries();
         assert_eq!(
             entries.iter().filter(|it| it.name == "strip.toml").count(),
@@ -212,11 +212,11 @@ mod tests {
     }
 
     #[test]
-    fn every_solver_that_serves_can_be_had() {
+    fn every_solver_that_fits_the_scene_can_be_chosen() {
         let mut session = compared(&["e:0.01", "r:0.01", "--scene", "chain"], 0.1);
         session.act(RunAction::Solvers, 1);
         type_words(&mut session, "dop853");
-        keys(&mut session, &[TextKey::Take]);
+        keys(&mut session, &[TextKey::Accept]);
         let names: Vec<_> = session
             .runs
             .panes
@@ -230,7 +230,7 @@ mod tests {
         // The same key again closes it.
         session.act(RunAction::Solvers, 0);
         assert!(session.list.is_none());
-        // The circle is no system of masses.
+        // The scene simple has no masses.
         let mut circle = crate::window::session::session(&["t", "0.01", "--scene", "simple"]);
         circle.act(RunAction::Solvers, 0);
         let list = circle.list.as_ref().unwrap();

@@ -1,41 +1,41 @@
-//! How all panes are drawn: their styles, colours by a quantity, and arrows.
+//! The appearance of all panes: styles, colours by a quantity, and arrows.
 
 use a3_render::Style;
 
 use super::pane::Pane;
 use crate::draw::show::{Arrows, Quantity, Show};
 
-/// Draws light things on a dark background, or the other way round.
+/// Sets the dark or the light theme.
 pub fn set_dark(panes: &mut [Pane], dark: bool) {
     for pane in panes {
         pane.show.dark = dark;
     }
 }
 
-/// Highlights and lists the springs of a particle, or of none.
+/// Highlights and lists the springs of a particle; `None` ends that.
 pub fn show_springs_of(panes: &mut [Pane], particle: Option<usize>) {
     for pane in panes {
         pane.show.springs_of = particle;
     }
 }
 
-/// Draws the runs in the next style in which they look different.
+/// Draws all panes in the next style that differs for their scene.
 pub fn next_style(panes: &mut [Pane]) {
     let styles = Show::styles(&panes[0].simulation);
-    let next = after(styles, Some(panes[0].show.style));
+    let next = next_after(styles, Some(panes[0].show.style));
     set_style(panes, next.unwrap_or_default());
 }
 
-/// Whether the runs can be coloured by a quantity.
-pub fn has(panes: &[Pane], quantity: Quantity) -> bool {
+/// Returns whether the runs can be coloured by a quantity.
+pub fn has_quantity(panes: &[Pane], quantity: Quantity) -> bool {
     quantity.is_in(&panes[0].simulation, panes.len() > 1)
 }
 
-/// Colours by the next quantity that the runs have, and after the last by none.
+/// Colours by the next quantity that the runs have, or by none after the last. Returns a message.
 pub fn next_colour(panes: &mut [Pane]) -> String {
-    let has = |quantity: &Quantity| has(panes, *quantity);
+    let has = |quantity: &Quantity| has_quantity(panes, *quantity);
     let all: Vec<_> = Quantity::ALL.into_iter().filter(has).collect();
-    let next = after(&all, panes[0].show.colouring.quantity);
+    let next = next_after(&all, panes[0].show.colouring.quantity);
     set_colour(panes, next);
     match next {
         Some(quantity) => format!("colours show the {}", quantity.name()),
@@ -43,12 +43,12 @@ pub fn next_colour(panes: &mut [Pane]) -> String {
     }
 }
 
-/// Draws the next arrows that the scene has, and after the last none.
+/// Draws the next kind of arrows that the scene has, or none after the last. Returns a message.
 pub fn next_arrows(panes: &mut [Pane]) -> String {
     let run = &panes[0].simulation;
     let has = |arrows: &Arrows| arrows.is_in(run);
     let all: Vec<_> = Arrows::ALL.into_iter().filter(has).collect();
-    let next = after(&all, panes[0].show.field.arrows);
+    let next = next_after(&all, panes[0].show.field.arrows);
     set_arrows(panes, next);
     match next {
         Some(arrows) => format!("arrows show the {}", arrows.name()),
@@ -77,15 +77,16 @@ pub fn set_arrows(panes: &mut [Pane], arrows: Option<Arrows>) {
     }
 }
 
-/// Fixes the end of the scale of colours in all panes, or lets it follow the values.
+/// Fixes the upper end of the colour scale in all panes; `None` lets it follow the values.
 pub fn fix_scale(panes: &mut [Pane], end: Option<f64>) {
     for pane in panes {
         pane.show.colouring.scale.fixed = end;
     }
 }
 
-/// The one after this one; none after the last, and the first after none.
-fn after<T: Copy + PartialEq>(all: &[T], now: Option<T>) -> Option<T> {
+/// Returns the item after `now`: `None` after the last, and the first after `None` or an unknown
+/// one.
+fn next_after<T: Copy + PartialEq>(all: &[T], now: Option<T>) -> Option<T> {
     let place = now.and_then(|now| all.iter().position(|one| *one == now));
     all.get(place.map_or(0, |place| place + 1)).copied()
 }
@@ -121,10 +122,11 @@ mod tests {
     fn contact_is_there_where_something_touches_and_errors_where_there_is_a_reference() {
         let mut flag = session(&["v", "0.005", "--scene", "mit"]);
         assert!(
-            !has(&flag.runs.panes, Quantity::Contact) && !has(&flag.runs.panes, Quantity::Error)
+            !has_quantity(&flag.runs.panes, Quantity::Contact)
+                && !has_quantity(&flag.runs.panes, Quantity::Error)
         );
         flag.act(RunAction::Touch, 0);
-        assert!(has(&flag.runs.panes, Quantity::Contact));
+        assert!(has_quantity(&flag.runs.panes, Quantity::Contact));
         let mut two = compared(&["e:0.0005", "r:0.01", "--scene", "mit"], 0.0);
         for _ in 0..4 {
             two.act(RunAction::Colour, 0);
@@ -140,8 +142,9 @@ mod tests {
             assert_eq!(pane.show.colouring.shown(), Some(Quantity::Error));
             pane.show.colouring.scale.end()
         });
-        // One scale, to the power of ten above the errors of the worse run. The largest of these is
-        // above their root mean square, and below what all make together.
+        // Both panes share a scale that ends at the power of ten above the largest error. That
+        // error is at least the root mean square of the worse run, and at most this times the
+        // square root of the number of particles.
         let [worse, better] = [0, 1].map(|k| two.runs.panes[k].error.unwrap());
         let most = worse * (two.runs.panes[0].simulation.particles() as f64).sqrt();
         assert!(worse > 100.0 * better);

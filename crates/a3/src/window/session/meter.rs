@@ -1,23 +1,23 @@
-//! Real time that frames take, and simulated time that they show.
+//! A meter of the frame rate, the time per frame, and the speed of the simulation.
 
 use web_time::{Duration, Instant};
 
 /// Real time between two readings (s).
-const INTERVAL: f32 = 0.5;
+const READING_SECONDS: f32 = 0.5;
 
-/// Frames and their time since the last reading.
+/// Frames and times since the last reading.
 pub struct Meter {
     begun: Instant,
     frames: u32,
     /// Simulated time (s).
     simulated: f64,
-    /// Real time spent on steps.
+    /// Computing time of steps.
     simulating: Duration,
-    /// Real time spent on drawing.
+    /// Time spent on drawing.
     drawing: Duration,
 }
 
-/// Means over the frames since the reading before.
+/// Means over the frames since the last reading.
 pub struct Rates {
     /// Frames per second.
     pub rate: f32,
@@ -30,7 +30,7 @@ pub struct Rates {
 }
 
 impl Meter {
-    /// A meter that begins now.
+    /// Creates a meter that starts now.
     pub fn new() -> Self {
         Self {
             begun: Instant::now(),
@@ -41,7 +41,7 @@ impl Meter {
         }
     }
 
-    /// Counts steps that took `simulating` and brought the runs on by `simulated` (s).
+    /// Counts steps that took `simulating` and advanced the runs by `simulated` (s).
     pub fn count_steps(&mut self, simulated: f64, simulating: Duration) {
         self.simulated += simulated;
         self.simulating += simulating;
@@ -52,7 +52,7 @@ impl Meter {
         self.frames += 1;
         self.drawing += drawing;
         let elapsed = self.begun.elapsed().as_secs_f32();
-        if elapsed < INTERVAL {
+        if elapsed < READING_SECONDS {
             return None;
         }
         let done = std::mem::replace(self, Self::new());

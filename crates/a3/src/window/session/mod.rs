@@ -1,5 +1,5 @@
-//! Runs that keep up with real time, without a window: one run or several side by side, their
-//! common time, the hands that pull at them, the reference, the timeline, and the actions of keys.
+//! A session, independent of a window: one run or several side by side in real time, the
+//! interaction with them, their reference, the timeline, and the actions of keys.
 
 mod actions;
 mod acts;
@@ -36,7 +36,7 @@ pub use samples::{SPAN, Sample, Samples};
 pub use save::write_scene;
 pub use state::{Beginning, Session};
 pub use timeline::TimelinePosition;
-pub use tuning::{FILM_OF, Tuning};
+pub use tuning::{DEFAULT_FILM_SECONDS, Tuning};
 
 #[cfg(test)]
 pub use pane::Cost;
@@ -53,7 +53,7 @@ mod tests {
     use crate::cli;
     use crate::window::begin;
 
-    /// The session that a command line asks for.
+    /// Creates the session of a command line.
     pub fn session(words: &[&str]) -> Session {
         let words = ["a3"].iter().chain(words);
         let options = cli::Cli::try_parse_from(words).unwrap();
@@ -64,21 +64,21 @@ mod tests {
         session.unwrap()
     }
 
-    /// Several panes, brought to a time (s) in frames of 60 Hz.
+    /// Creates a comparison, advanced to a time (s) in frames of 60 Hz.
     pub fn compared(words: &[&str], time: f64) -> Session {
         let mut session = session(&[&["compare"], words].concat());
         frames(&mut session, time);
         session
     }
 
-    /// Goes on by a time (s) in frames of 60 Hz.
+    /// Advances a session by a time (s) in frames of 60 Hz.
     pub fn frames(session: &mut Session, time: f64) {
         for _ in 0..(60.0 * time).round() as u32 {
             session.tick(1.0 / 60.0);
         }
     }
 
-    /// The time of each run (s).
+    /// Returns the simulated time of each run (s).
     pub fn times(session: &Session) -> Vec<f64> {
         let times = session.runs.panes.iter().map(|pane| pane.simulation.time());
         times.collect()

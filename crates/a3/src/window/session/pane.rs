@@ -1,4 +1,4 @@
-//! A pane: one run of the session, and what is known of it.
+//! A pane: one run of the session, its appearance, and its readings.
 
 use std::sync::Arc;
 use web_time::{Duration, Instant};
@@ -12,8 +12,8 @@ use super::samples::Samples;
 use crate::base::progress;
 use crate::draw::show::Show;
 
-/// Simulated time by which an adaptive method goes on at once (s).
-pub const PORTION: f64 = 1.0 / 240.0;
+/// Simulated time that an adaptive method advances at a time (s).
+pub const ADAPTIVE_SLICE: f64 = 1.0 / 240.0;
 
 /// A run on the screen.
 pub struct Pane {
@@ -21,39 +21,40 @@ pub struct Pane {
     pub simulation: Simulation,
     /// How the run is drawn.
     pub show: Show,
-    /// The solver that was asked for, also while a scene is shown that it cannot serve.
+    /// The solver that the user chose, even if another one integrates the present scene.
     pub wanted: &'static Method,
-    /// The step (s) that was asked for, while a scene is shown that it does not hold.
+    /// The step (s) that the user chose, if a shorter one is in use because the scene would blow
+    /// up.
     pub wanted_step: Option<f64>,
     /// Total energy (J), if the scene has any.
     pub energy: Option<f64>,
     /// The largest length over rest length, if the scene has springs.
     pub stretch: Option<f64>,
-    /// The largest stable step, as it changes.
+    /// Estimates of the largest stable step.
     pub limit: LimitWatch,
     /// Root mean square distance of the particles from the reference (m), if there is one.
     pub error: Option<f64>,
-    /// Cost of the run, once it is known.
+    /// Cost of the run, once it was measured.
     pub cost: Option<Cost>,
     /// Samples for the plots.
     pub samples: Samples,
-    /// Real time spent on steps.
+    /// Computing time of steps.
     computing: Duration,
-    /// Simulated time (s), evaluations and computing time when the cost was last taken.
+    /// Simulated time (s), evaluations and computing time when the cost was last measured.
     counted: (f64, f64, Duration),
 }
 
 /// Cost of a simulated second.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cost {
-    /// Evaluations, with linear algebra counted in evaluations.
+    /// Evaluations, plus linear algebra in equivalent evaluations.
     pub evaluations: f64,
     /// Computing time (ms).
     pub computing: f64,
 }
 
 impl Pane {
-    /// A pane that begins with this run.
+    /// Creates a pane for a run.
     pub fn new(simulation: Simulation, show: Show) -> Self {
         Self {
             wanted: simulation.method(),
@@ -71,36 +72,37 @@ impl Pane {
         }
     }
 
-    /// The triangles and wires of the surface.
+    /// Returns the triangles and wires of the surface.
     pub fn topology(&self) -> Topology {
         self.show.topology(&self.simulation)
     }
 
-    /// Whether the run goes on: it is not lost.
+    /// Returns whether the run has not diverged.
     pub fn alive(&self) -> bool {
         self.simulation.blow_up().is_none()
     }
 
-    /// Takes the steps that end by `time` (s). A blow-up is shown from then on.
+    /// Takes the steps that end by `time` (s), or advances an adaptive method to `time`. A blow-up
+    /// is stored in the run.
     pub fn take_due_steps(&mut self, time: f64) {
         let begun = Instant::now();
         let adaptive = self.simulation.control().step().is_none();
-        let step = self.pace();
+        let step = self.slice();
         let due = ((time - self.simulation.time()) / step + 1e-9).floor() as u64;
         if !self.alive() {
         } else if adaptive && !self.show.has_trail() {
-            // The state is read off between two steps.
+            // The state at `time` is interpolated within the last step.
             let _ = self.simulation.advance_to(time);
         } else if adaptive {
             while self.alive() && self.simulation.time() < time {
-                let next = (self.simulation.time() + PORTION).min(time);
+                let next = (self.simulation.time() + ADAPTIVE_SLICE).min(time);
                 let _ = self.simulation.advance_to(next);
                 self.follow();
             }
         } else if due > 0 {
-            // A trail has a point for each step, or for as many as make a portion.
+            // A trail has a point per slice, or per step if steps are longer.
             let at_once = if self.show.has_trail() {
-                ((PORTION / step) as u64).max(1)
+                ((ADAPTIVE_SLICE / step) as u64).max(1)
             } else {
                 due
             };
@@ -114,14 +116,14 @@ impl Pane {
         self.computing += begun.elapsed();
     }
 
-    /// Simulated time by which the run goes on at once (s): its step, or a portion for a run to a
-    /// tolerance, whose state can be read off anywhere.
-    pub fn pace(&self) -> f64 {
-        self.simulation.control().step().unwrap_or(PORTION)
+    /// Returns the simulated time that the run advances at a time (s): its step, or
+    /// `ADAPTIVE_SLICE` for an adaptive method, whose state can be interpolated at any time.
+    pub fn slice(&self) -> f64 {
+        self.simulation.control().step().unwrap_or(ADAPTIVE_SLICE)
     }
 
-    /// Brings the run to `time` (s) exactly, however long that takes. A blow-up is shown from then
-    /// on.
+    /// Advances the run to exactly `time` (s), however long that takes, and takes its readings. A
+    /// blow-up is stored in the run.
     pub fn run_to(&mut self, time: f64) {
         let (begun, mut aside) = (Instant::now(), Duration::ZERO);
         let show = &mut self.show;
@@ -136,15 +138,15 @@ impl Pane {
         self.read_cost();
     }
 
-    /// Continues the trail, unless the run is lost: its state is then no longer that of the motion.
+    /// Adds the present position to the trail, unless the run has diverged.
     pub fn follow(&mut self) {
         if self.alive() {
             self.show.follow(&self.simulation);
         }
     }
 
-    /// Takes the ways to the particles from where the reference has them (m), n x 3; none where
-    /// they are not known.
+    /// Sets the displacements of the particles from the reference (m), n x 3; empty if they are not
+    /// known.
     pub fn set_errors(&mut self, errors: Vec<f64>) {
         let sum = errors.iter().map(|part| part * part).sum::<f64>();
         let mean = sum / self.simulation.particles() as f64;
@@ -152,7 +154,7 @@ impl Pane {
         self.show.colouring.errors = errors;
     }
 
-    /// Takes energy, stretch, a sample and the stable step of the state as it is now.
+    /// Updates energy, stretch, samples and the stable step from the present state.
     pub fn read_state(&mut self) {
         let energy = self.simulation.energy();
         self.energy = energy.map(|energy| energy.total());
@@ -160,10 +162,10 @@ impl Pane {
         let computing = self.computing.as_secs_f64();
         self.samples
             .take(&self.simulation, energy, self.stretch, computing);
-        self.limit.look(&self.simulation);
+        self.limit.update(&self.simulation);
     }
 
-    /// Takes the cost since it was last taken, if any time was simulated.
+    /// Updates the cost to that since the last measurement, if any time was simulated.
     pub fn read_cost(&mut self) {
         let (time, evaluations, computing) = self.counted;
         let simulated = self.simulation.time() - time;
@@ -178,21 +180,22 @@ impl Pane {
         }
     }
 
-    /// Counts the cost from here on: of another method, or of another step.
+    /// Restarts the measurement of cost, and sets the method of the stable step, after a change of
+    /// method or step.
     pub fn restart_cost(&mut self) {
-        self.limit.ask(self.simulation.method());
+        self.limit.set_method(self.simulation.method());
         let evaluations = self.simulation.work().total();
         self.counted = (self.simulation.time(), evaluations, self.computing);
     }
 
-    /// Notes that the forces of the scene have changed.
+    /// Restarts all measurements, because the forces of the scene have changed.
     pub fn forces_changed(&mut self) {
-        self.limit.hurry();
+        self.limit.expire();
         self.restart_cost();
     }
 
-    /// Goes on with another solver, with the same step or tolerance if it has one of that kind.
-    /// Fails if the solver does not serve the scene.
+    /// Changes the solver, and keeps the step or tolerance if the new one takes the same kind.
+    /// Fails if the solver cannot integrate the scene.
     pub fn set_method(
         &mut self,
         method: &'static Method,
@@ -211,7 +214,7 @@ impl Pane {
         Ok(())
     }
 
-    /// Goes on with another step (s) or tolerance. Fails if it is refused.
+    /// Changes the step (s) or tolerance. Fails if it is out of range.
     pub fn set_step(&mut self, value: f64) -> Result<(), Error> {
         self.wanted_step = None;
         let control = self.simulation.control().with_value(value);
@@ -220,9 +223,9 @@ impl Pane {
         Ok(())
     }
 
-    /// Goes on where a run was kept in a checkpoint. A hand lets go. Fails if the checkpoint is not
-    /// of such a run.
-    pub fn take_up(&mut self, checkpoint: &Checkpoint) -> Result<(), Error> {
+    /// Restores the run from a checkpoint, and releases the grabbed particle or sphere. Fails if
+    /// the checkpoint is of another scene.
+    pub fn restore(&mut self, checkpoint: &Checkpoint) -> Result<(), Error> {
         self.simulation.restore(checkpoint)?;
         self.simulation.release();
         self.simulation.release_obstacle();
@@ -232,7 +235,7 @@ impl Pane {
         Ok(())
     }
 
-    /// Goes back to the beginning.
+    /// Resets the run to the initial state.
     pub fn reset(&mut self) {
         self.simulation.reset();
         self.show.clear_trail();
@@ -240,7 +243,7 @@ impl Pane {
         self.restart_cost();
     }
 
-    /// Goes on with another scene.
+    /// Replaces the run by one of another scene.
     pub fn set_simulation(&mut self, simulation: Simulation, presentation: Arc<Presentation>) {
         self.simulation = simulation;
         self.show.set_presentation(presentation);

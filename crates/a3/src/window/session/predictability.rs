@@ -1,4 +1,4 @@
-//! How long the errors of a comparison mean something, found beside the runs.
+//! The time until which the errors of a comparison are meaningful, found in the background.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, OnceLock};
@@ -7,17 +7,18 @@ use std::thread::{self, JoinHandle};
 use a3_core::Scene;
 use a3_core::accuracy::horizon;
 
-/// Search, on a thread of its own, for the time past which errors say little.
+/// A search, on its own thread, for the time past which errors say little: small differences have
+/// grown 10,000 times by then.
 #[derive(Default)]
 pub struct Predictability {
-    /// The time (s), infinite where there is none, once it is known.
+    /// The time (s) once it is known; infinite if the scene is not chaotic.
     until: Arc<OnceLock<f64>>,
     ended: Arc<AtomicBool>,
     search: Option<JoinHandle<()>>,
 }
 
 impl Predictability {
-    /// Begins to search in a scene. Where there are no threads, nothing is found.
+    /// Starts the search in a scene. Without threads, nothing is found.
     pub fn new(scene: Scene) -> Self {
         let mut this = Self::default();
         let (until, ended) = (this.until.clone(), this.ended.clone());
@@ -36,12 +37,13 @@ impl Predictability {
         this
     }
 
-    /// The time past which errors say little (s), if there is one and it is known by now.
+    /// Returns the time past which errors say little (s), if the scene is chaotic and the search
+    /// has ended.
     pub fn until(&self) -> Option<f64> {
         self.until.get().copied().filter(|until| until.is_finite())
     }
 
-    /// Waits until the search has ended.
+    /// Waits for the end of the search.
     pub fn wait(&mut self) {
         if let Some(search) = self.search.take() {
             let _ = search.join();

@@ -1,34 +1,34 @@
-//! Readings for the text over the picture, beside those of the runs themselves.
+//! Readings for the text over the picture, besides those of each run.
 
 use web_time::{Duration, Instant};
 
 use super::reference::ReferenceRun;
 use super::timeline::TimelinePosition;
 
-/// Time that a message stays.
-const MESSAGE_TIME: Duration = Duration::from_secs(4);
+/// Time for which a message is shown.
+const MESSAGE_DURATION: Duration = Duration::from_secs(4);
 
-/// What is said of a film that is being made.
+/// Progress of a film that is being made.
 #[derive(Clone, Debug)]
 pub struct FilmProgress {
-    /// Whether it is of the session from now on, until it is stopped.
+    /// Whether the film is live: it records until it is stopped.
     pub live: bool,
-    /// What is said of it.
+    /// The progress in words.
     pub said: String,
 }
 
-/// A box that is drawn to pin what is in it, or to let go of it.
+/// A box drawn with the mouse, whose particles will be pinned or freed.
 #[derive(Clone, Copy, Debug)]
 pub struct Selection {
     /// Opposite corners (points).
     pub corners: [[f32; 2]; 2],
-    /// Number of particles in it.
+    /// Number of particles in the box.
     pub count: usize,
-    /// Whether they will be pinned, or free.
+    /// Whether the particles will be pinned.
     pub pinned: bool,
 }
 
-/// Values that the text shows, taken twice a second or when something happens.
+/// Values that the text shows.
 #[derive(Clone, Debug, Default)]
 pub struct Readings {
     /// Whether the runs are paused.
@@ -39,27 +39,27 @@ pub struct Readings {
     pub factor: f32,
     /// Frames per second.
     pub rate: f32,
-    /// Time a frame spends on steps (ms).
+    /// Computing time of the steps of a frame (ms).
     pub simulating: f32,
-    /// Time a frame spends on drawing and on waiting for the screen (ms).
+    /// Time for drawing a frame, and waiting for the screen (ms).
     pub drawing: f32,
-    /// Message about what just happened, shown for a few seconds.
+    /// Message that is shown.
     pub message: Option<String>,
-    /// End of the message that is shown, unless it stays.
+    /// Time when the message disappears; `None` if it stays.
     pub message_ends: Option<Instant>,
     /// The box that is being drawn.
     pub selection: Option<Selection>,
-    /// A film that is being made.
+    /// Progress of the film, if one is being made.
     pub film: Option<FilmProgress>,
     /// Whether there is a window, with keys to press.
     pub in_window: bool,
-    /// Reason why the panes' errors are not known, if they are not.
+    /// Reason why the errors of the panes are unknown, if they are.
     pub no_error: Option<&'static str>,
-    /// Time past which they say little (s), where small differences grow by themselves.
+    /// Time past which the errors say little (s), if the scene is known to be chaotic.
     pub predictable: Option<f64>,
-    /// Slow motion: simulated time goes by at 1 / 2^slowness of real time.
+    /// Slow motion: simulated time advances at 1 / 2^slowness of real time.
     pub slowness: i32,
-    /// Position on the timeline after going back, unless it is the newest moment.
+    /// Position on the timeline; `None` at the newest moment.
     pub rewound: Option<TimelinePosition>,
 }
 
@@ -67,16 +67,16 @@ impl Readings {
     /// Shows a message for a few seconds.
     pub fn say(&mut self, message: impl Into<String>) {
         self.message = Some(message.into());
-        self.message_ends = Some(Instant::now() + MESSAGE_TIME);
+        self.message_ends = Some(Instant::now() + MESSAGE_DURATION);
     }
 
-    /// Shows a message until there is another one.
+    /// Shows a message until the next one.
     pub fn warn(&mut self, message: impl Into<String>) {
         self.message = Some(message.into());
         self.message_ends = None;
     }
 
-    /// Takes down a message whose time is over, and returns when the one that is shown ends.
+    /// Removes an expired message, and returns when the shown one expires.
     pub fn message_ends(&mut self) -> Option<Instant> {
         if self.message_ends.is_some_and(|end| end <= Instant::now()) {
             self.message_ends = None;
@@ -85,7 +85,7 @@ impl Readings {
         self.message_ends
     }
 
-    /// Takes what the reference, if there is one, tells of the panes' errors.
+    /// Updates what is known about the errors from the reference, if there is one.
     pub(super) fn read_reference(&mut self, reference: Option<&ReferenceRun>) {
         self.no_error = reference.and_then(ReferenceRun::stopped);
         self.predictable = reference.and_then(ReferenceRun::predictable);

@@ -1,30 +1,31 @@
-//! The reference: a hidden run from which the errors of the panes are taken.
+//! The reference: a hidden, more accurate run, from which the errors of the panes are measured.
 
 use web_time::{Duration, Instant};
 
 use a3_core::{Control, Method, Simulation, integrators};
 
-use super::pane::{PORTION, Pane};
+use super::pane::{ADAPTIVE_SLICE, Pane};
 use super::predictability::Predictability;
 use crate::base::failure::Failure;
 use crate::base::progress;
 
-/// Frames in a row that the reference may be late before it is stopped.
-const PATIENCE: u32 = 30;
+/// Largest number of consecutive frames for which the reference may be late; then it is stopped.
+const MAX_LATE_FRAMES: u32 = 30;
 
-/// A run of the panes' scene that is much more exact than they are and gets the same hands.
+/// A run of the panes' scene that is much more accurate, with the same interaction.
 pub struct ReferenceRun {
     simulation: Simulation,
-    /// How long errors mean something in the scene as it starts.
+    /// Search for the time until which errors are meaningful, from the initial state of the scene.
     predictability: Predictability,
-    /// Frames in a row that it did not keep up with the panes.
+    /// Number of consecutive frames in which the reference was late.
     late: u32,
-    /// Reason why it was stopped, if it was.
+    /// Reason why the reference was stopped, if it was.
     stopped: Option<&'static str>,
 }
 
-/// Method and tolerance of the reference: tight, and tighter still beside adaptive panes.
-fn choose(panes: &[Pane]) -> (&'static Method, Control) {
+/// Returns the method and tolerance of the reference: 1e-10, or 1e-4 times the tightest tolerance
+/// of the panes if that is less.
+fn method_and_control(panes: &[Pane]) -> (&'static Method, Control) {
     let method = integrators::find("dop853").unwrap_or(&integrators::METHODS[0]);
     let tolerances = panes
         .iter()
@@ -34,12 +35,13 @@ fn choose(panes: &[Pane]) -> (&'static Method, Control) {
 }
 
 impl ReferenceRun {
-    /// A reference for several panes at the beginning of their scene; `None` for a single one.
+    /// Creates a reference for several panes in their initial state; `None` for a single pane.
+    /// Fails if the scene cannot be simulated.
     pub fn new(panes: &[Pane]) -> Result<Option<Self>, Failure> {
         let [first, _, ..] = panes else {
             return Ok(None);
         };
-        let (method, control) = choose(panes);
+        let (method, control) = method_and_control(panes);
         let run = &first.simulation;
         let mut scene = run.scene().clone();
         scene.limits.absolute = None;
@@ -58,47 +60,47 @@ impl ReferenceRun {
         }))
     }
 
-    /// Fits the tolerance to panes that have other methods or steps.
+    /// Adapts the tolerance to changed methods or steps of the panes.
     pub fn adapt(&mut self, panes: &[Pane]) {
-        let (method, control) = choose(panes);
-        // The method serves every scene, so it is not refused.
+        let (method, control) = method_and_control(panes);
+        // The method can integrate every scene, so this does not fail.
         if self.simulation.control() != control {
             let _ = self.simulation.set_method(method, control);
         }
     }
 
-    /// The run, unless it was stopped.
+    /// Returns the run, unless it was stopped.
     pub fn run(&mut self) -> Option<&mut Simulation> {
         Some(&mut self.simulation).filter(|_| self.stopped.is_none())
     }
 
-    /// The run to look at, stopped or not.
-    pub fn any(&self) -> &Simulation {
+    /// Returns the run, even if it was stopped.
+    pub fn simulation(&self) -> &Simulation {
         &self.simulation
     }
 
-    /// The run to change, stopped or not.
-    pub fn any_run(&mut self) -> &mut Simulation {
+    /// Returns the run for a change, even if it was stopped.
+    pub fn simulation_mut(&mut self) -> &mut Simulation {
         &mut self.simulation
     }
 
-    /// Reason why there are no errors, if there are none.
+    /// Returns the reason why the reference was stopped, if it was.
     pub fn stopped(&self) -> Option<&'static str> {
         self.stopped
     }
 
-    /// The time past which errors say little (s), as far as it is known.
+    /// Returns the time past which errors say little (s), if one is known.
     pub fn predictable(&self) -> Option<f64> {
         self.predictability.until()
     }
 
-    /// Goes back to the beginning, and goes on if it was stopped.
+    /// Resets the run to the initial state, and restarts it if it was stopped.
     pub fn reset(&mut self) {
         self.simulation.reset();
         (self.late, self.stopped) = (0, None);
     }
 
-    /// Goes on to `time` (s) exactly, within `budget` of real time, and returns whether it got
+    /// Advances to exactly `time` (s) within `budget` of real time, and returns whether it got
     /// there.
     pub fn reach(&mut self, time: f64, budget: Duration) -> bool {
         let begun = Instant::now();
@@ -108,7 +110,7 @@ impl ReferenceRun {
             if begun.elapsed() >= budget {
                 return false;
             }
-            result = run.advance_to((run.time() + PORTION).min(time));
+            result = run.advance_to((run.time() + ADAPTIVE_SLICE).min(time));
         }
         if result.is_err() {
             self.stop("the reference blew up");
@@ -116,14 +118,14 @@ impl ReferenceRun {
         self.stopped.is_none()
     }
 
-    /// Stops the run: there are no errors from here on.
+    /// Stops the run: errors are unknown from now on.
     pub fn stop(&mut self, why: &'static str) {
         self.stopped = Some(why);
     }
 
-    /// Catches up with the panes one after the other within `budget` of real time, and takes their
-    /// errors. What does not fit is left for the next frame; a reference that is late for too many
-    /// frames is stopped.
+    /// Catches up with the panes in the order of their times, within `budget` of real time, and
+    /// measures their errors. The rest is left for the next frame; a reference that is late for too
+    /// many frames is stopped.
     pub fn follow(&mut self, panes: &mut [Pane], budget: Duration) {
         if self.stopped.is_none() {
             let begun = Instant::now();
@@ -132,8 +134,8 @@ impl ReferenceRun {
             let mut kept_up = true;
             for pane in runs {
                 let time = pane.simulation.time();
-                // A run with long steps may stand where the reference has been before: its error is
-                // known.
+                // A pane with long steps may be behind the reference: its error was measured
+                // before.
                 if time < self.simulation.time() - 1e-9 {
                     continue;
                 }
@@ -144,7 +146,7 @@ impl ReferenceRun {
                 pane.set_errors(differences(&pane.simulation, &self.simulation));
             }
             self.late = if kept_up { 0 } else { self.late + 1 };
-            if self.late > PATIENCE {
+            if self.late > MAX_LATE_FRAMES {
                 self.stop("the reference is too slow");
             }
         }
@@ -153,7 +155,7 @@ impl ReferenceRun {
                 pane.set_errors(vec![]);
             }
         }
-        // Colours of one scale can be compared.
+        // A common scale makes the colours of the panes comparable.
         let errors = panes.iter().map(|pane| pane.show.colouring.largest_error());
         let largest = errors.fold(0.0, f64::max);
         for pane in panes {
@@ -161,17 +163,17 @@ impl ReferenceRun {
         }
     }
 
-    /// Goes on to `time` (s) exactly, however long that takes, and takes the errors of the panes at
-    /// that time.
+    /// Advances to exactly `time` (s), however long that takes, and measures the errors of the
+    /// panes there.
     pub fn run_to(&mut self, time: f64, panes: &mut [Pane]) {
-        // A blow-up is found by `reach`, through `follow`.
+        // `follow` handles a blow-up, by calling `reach`.
         let _ = progress::advance(&mut self.simulation, time, |_| {});
         self.follow(panes, Duration::MAX);
         self.predictability.wait();
     }
 }
 
-/// The ways to the particles of one run from those of another (m), n x 3.
+/// Returns the displacements of the particles of `a` from those of `b` (m), n x 3.
 fn differences(a: &Simulation, b: &Simulation) -> Vec<f64> {
     let all = a.state().iter().zip(b.state());
     all.take(3 * a.particles()).map(|(a, b)| a - b).collect()
@@ -183,7 +185,7 @@ mod tests {
     use crate::draw::show::{Manner, Show};
 
     #[test]
-    fn one_that_never_keeps_up_is_stopped_until_the_next_reset() {
+    fn a_reference_that_never_keeps_up_is_stopped_until_the_next_reset() {
         let setup = a3_scenes::find("chain").unwrap().build(None).unwrap();
         let pane = |method: &str| {
             let method = integrators::find(method).unwrap();
@@ -202,13 +204,13 @@ mod tests {
         };
         let mut panes = [pane("t"), pane("r")];
         let mut reference = ReferenceRun::new(&panes).ok().flatten().unwrap();
-        // A frame that is late is made up for.
+        // A single late frame does no harm.
         go(&mut panes, 0.5);
         reference.follow(&mut panes, Duration::ZERO);
         assert_eq!(panes[0].error, None);
         reference.follow(&mut panes, Duration::MAX);
         assert!(panes[0].error.unwrap() > panes[1].error.unwrap());
-        for late in 1..=PATIENCE + 1 {
+        for late in 1..=MAX_LATE_FRAMES + 1 {
             go(&mut panes, 0.5 + 0.01 * f64::from(late));
             assert_eq!(reference.stopped(), None);
             reference.follow(&mut panes, Duration::ZERO);

@@ -1,4 +1,4 @@
-//! The runs of a session and their common time: panes, and the reference beside them.
+//! The runs of a session and their common time: the panes and the reference.
 
 use web_time::{Duration, Instant};
 
@@ -6,33 +6,34 @@ use a3_core::{Control, Error, Method, Path, Simulation, integrators};
 use a3_scenes::{Defaults, Setup};
 
 use super::ladder::next_step;
-use super::pane::{PORTION, Pane};
+use super::pane::{ADAPTIVE_SLICE, Pane};
 use super::reference::ReferenceRun;
 use crate::base::bounds;
 use crate::base::failure::Failure;
 use crate::base::holding::shorter_step;
 
-/// Real time that a key may take.
+/// Longest real time of the steps that a key causes.
 pub(super) const KEY_BUDGET: Duration = Duration::from_millis(200);
-/// Real time between two looks at the states while they move.
+/// Real time between two readings of the states while they move.
 const READING_INTERVAL: Duration = Duration::from_millis(100);
 
-/// The runs of one scene: those that are shown, and the reference.
+/// The runs of one scene: the panes and the reference.
 pub struct Runs {
-    /// The runs that are shown, at least one.
+    /// The visible runs, at least one.
     pub panes: Vec<Pane>,
-    /// The run that the errors are taken from, if there are several panes.
+    /// The run from which errors are measured, if there are several panes.
     pub(super) reference: Option<ReferenceRun>,
-    /// Simulated time that the panes have been brought to (s): each is less than a step behind.
+    /// Simulated time of the panes (s): each is less than a step behind.
     pub clock: f64,
-    /// Number of steps and real time when the states were last read.
+    /// Number of steps and real time when the states were last read; `None` if they must be read
+    /// again.
     pub(super) read: Option<(u64, Instant)>,
-    /// Number and path of the obstacle that is being pushed, before the push.
+    /// Index of the obstacle that is being pushed, and its path before the push.
     pub(super) pushed: Option<(usize, Path)>,
 }
 
 impl Runs {
-    /// Runs at the beginning of their scene.
+    /// Creates the runs from panes in their initial state. Fails if there can be no reference.
     pub fn new(panes: Vec<Pane>) -> Result<Self, Failure> {
         Ok(Self {
             reference: ReferenceRun::new(&panes)?,
@@ -43,33 +44,33 @@ impl Runs {
         })
     }
 
-    /// The first run, for what is the same in all of them.
+    /// Returns the first run, for what all of them share.
     pub fn first(&self) -> &Simulation {
         &self.panes[0].simulation
     }
 
-    /// Whether any pane is not lost.
+    /// Returns whether any pane has not diverged.
     pub fn any_alive(&self) -> bool {
         self.panes.iter().any(Pane::alive)
     }
 
-    /// All runs, the reference last.
+    /// Returns all runs, the reference last.
     pub(super) fn all(&self) -> impl Iterator<Item = &Simulation> {
         let panes = self.panes.iter().map(|pane| &pane.simulation);
-        panes.chain(self.reference.as_ref().map(ReferenceRun::any))
+        panes.chain(self.reference.as_ref().map(ReferenceRun::simulation))
     }
 
-    /// All runs to change, lost and stopped ones too, the reference last.
+    /// Returns all runs for a change, including diverged and stopped ones, the reference last.
     pub(super) fn all_mut(&mut self) -> impl Iterator<Item = &mut Simulation> {
         let panes = self.panes.iter_mut().map(|pane| &mut pane.simulation);
-        panes.chain(self.reference.as_mut().map(ReferenceRun::any_run))
+        panes.chain(self.reference.as_mut().map(ReferenceRun::simulation_mut))
     }
 
-    /// Brings all panes to a simulated time (s) in short slices, so that none is ahead of the
-    /// others when the budget of real time is over before.
+    /// Advances all panes to a simulated time (s) in short slices, so that none is ahead of the
+    /// others if the budget of real time runs out.
     pub(super) fn advance(&mut self, until: f64, budget: Duration, reference_budget: Duration) {
         let begun = Instant::now();
-        let steps = self.panes.iter().map(Pane::pace);
+        let steps = self.panes.iter().map(Pane::slice);
         let mut slice = steps.fold(f64::INFINITY, f64::min);
         while self.clock < until && begun.elapsed() < budget && self.any_alive() {
             self.clock = (self.clock + slice).min(until);
@@ -88,14 +89,14 @@ impl Runs {
         }
     }
 
-    /// The longest step of the runs that go on (s).
+    /// Returns the longest step of the panes that have not diverged (s).
     pub(super) fn longest_step(&self) -> f64 {
         let alive = self.panes.iter().filter(|pane| pane.alive());
-        let step = alive.map(|pane| pane.simulation.step_size().unwrap_or(PORTION));
+        let step = alive.map(|pane| pane.simulation.step_size().unwrap_or(ADAPTIVE_SLICE));
         step.fold(0.0, f64::max)
     }
 
-    /// Brings all runs to `time` (s) exactly, however long that takes.
+    /// Advances all runs to exactly `time` (s), however long that takes.
     pub(super) fn run_to(&mut self, time: f64) {
         for pane in &mut self.panes {
             pane.run_to(time);
@@ -103,25 +104,23 @@ impl Runs {
         if let Some(reference) = &mut self.reference {
             reference.run_to(time, &mut self.panes);
         }
-        self.settle();
+        self.drop_due_steps();
     }
 
-    /// Sets the clock to the time of the pane that is farthest, so that no steps are due.
-    pub(super) fn settle(&mut self) {
+    /// Sets the clock back to the latest time of a pane, so that no steps are due.
+    pub(super) fn drop_due_steps(&mut self) {
         let alive = self.panes.iter().filter(|pane| pane.alive());
         let times = alive.map(|pane| pane.simulation.time());
         self.clock = times.reduce(f64::max).unwrap_or(self.clock);
     }
 
-    /// Begins to read the states again, with no steps due: after a time in which nothing was
-    /// simulated.
-    pub(super) fn start_anew(&mut self) {
-        self.settle();
+    /// Drops due steps and reads the states again, after a time in which nothing was simulated.
+    pub(super) fn restart_measuring(&mut self) {
+        self.drop_due_steps();
         self.read = None;
     }
 
-    /// Takes readings of the states: ten times a second while they move, and once when they stand
-    /// still.
+    /// Reads the states, ten times a second while they move, and once after they have stopped.
     pub(super) fn read_state(&mut self, moving: bool) {
         let steps = self.panes.iter().map(|pane| pane.simulation.steps()).sum();
         let due = self.read.is_none_or(|(before, when)| {
@@ -133,15 +132,15 @@ impl Runs {
         }
     }
 
-    /// Begins another scene, with the same solvers and steps where they serve it, and returns what
-    /// is to be said of that. Fails, and goes on, if no solver serves it.
+    /// Starts another scene, and keeps solvers and steps that can integrate it. Returns a message
+    /// if a solver or step had to be replaced. Fails, and changes nothing, if no solver can.
     pub(super) fn set_scene(&mut self, setup: &Setup) -> Result<Option<String>, Error> {
         let mut said = None;
         let mut start = |pane: &Pane| {
             let own = pane.simulation.control();
             let control = pane.wanted_step.map_or(own, Control::Step);
             let start = |method| Simulation::new(setup.scene.clone(), method, control);
-            // Heun serves every scene.
+            // The explicit trapezoid can integrate every scene.
             start(pane.wanted).or_else(|why| {
                 said = Some(format!("{why}: the explicit trapezoid steps in"));
                 start(integrators::find("trapezoid").unwrap_or(pane.wanted))
@@ -161,12 +160,12 @@ impl Runs {
             }
             pane.set_simulation(simulation, setup.presentation.clone());
         }
-        // The panes could be built, so the reference can.
+        // The reference does not fail where the panes did not.
         self.reference = ReferenceRun::new(&self.panes).ok().flatten();
         Ok(said)
     }
 
-    /// Takes the runs back to the beginning of their scene.
+    /// Resets the runs to the initial state of their scene.
     pub(super) fn reset(&mut self) {
         self.panes.iter_mut().for_each(Pane::reset);
         if let Some(reference) = &mut self.reference {
@@ -174,7 +173,7 @@ impl Runs {
         }
     }
 
-    /// Measures errors and costs again, after the runs were given other states.
+    /// Restarts the measurement of errors and costs, after the states of the runs were replaced.
     pub(super) fn states_changed(&mut self) {
         for pane in &mut self.panes {
             pane.set_errors(vec![]);
@@ -185,7 +184,7 @@ impl Runs {
         }
     }
 
-    /// Gives pane `at` another solver. Fails if that does not serve the scene.
+    /// Sets the solver of pane `at`. Fails if it cannot integrate the scene.
     pub(super) fn set_method(
         &mut self,
         method: &'static Method,
@@ -194,11 +193,12 @@ impl Runs {
     ) -> Result<(), Error> {
         let at = at.min(self.panes.len() - 1);
         let set = self.panes[at].set_method(method, defaults);
-        self.adapt();
+        self.adapt_reference();
         set
     }
 
-    /// Gives every pane the next longer or shorter step or tolerance. Fails with the last refusal.
+    /// Sets the next longer or shorter step, or tolerance, in every pane. Fails with the error of
+    /// the last pane that refuses it.
     pub(super) fn set_steps(&mut self, longer: bool) -> Result<(), Error> {
         let mut all = Ok(());
         for pane in &mut self.panes {
@@ -207,19 +207,19 @@ impl Runs {
             let next = next_step(control.value(), longer).clamp(*range.start(), *range.end());
             all = pane.set_step(next).and(all);
         }
-        self.adapt();
+        self.adapt_reference();
         all
     }
 
-    /// Sets the step (s) or the tolerance of one pane. Fails if it is refused.
+    /// Sets the step (s) or the tolerance of one pane. Fails if it is out of range.
     pub(super) fn set_step_of(&mut self, at: usize, value: f64) -> Result<(), Error> {
         let set = self.panes[at].set_step(value);
-        self.adapt();
+        self.adapt_reference();
         set
     }
 
-    /// Fits the reference to the solvers and steps of the panes.
-    pub(super) fn adapt(&mut self) {
+    /// Adapts the reference to the solvers and steps of the panes.
+    pub(super) fn adapt_reference(&mut self) {
         if let Some(reference) = &mut self.reference {
             reference.adapt(&self.panes);
         }
@@ -251,7 +251,7 @@ mod tests {
                 ("trapezoid", Control::Step(0.012))
             ]
         );
-        // One step of the longest.
+        // One step of the pane with the longest one.
         session.act(RunAction::Reset, 0);
         session.act(RunAction::Step, 0);
         let steps: Vec<_> = session
@@ -267,7 +267,7 @@ mod tests {
     fn panes_keep_the_same_time() {
         let session = compared(&["t:0.03", "r:0.07", "v", "--scene", "chain"], 2.0);
         for pane in &session.runs.panes {
-            let (run, step) = (&pane.simulation, pane.pace());
+            let (run, step) = (&pane.simulation, pane.slice());
             assert!(
                 run.time() < session.runs.clock + 1e-9
                     && run.time() > session.runs.clock - step - 1e-9,
@@ -312,7 +312,7 @@ mod tests {
     }
 
     #[test]
-    fn when_one_is_slow_all_are() {
+    fn a_slow_pane_slows_all_others() {
         let mut session = session(&["compare", "e:0.0000001", "r:0.0001"]);
         for _ in 0..4 {
             session.tick(0.1);

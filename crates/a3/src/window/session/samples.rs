@@ -4,11 +4,11 @@ use std::collections::VecDeque;
 
 use a3_core::{Energy, Simulation};
 
-/// Simulated time that is kept (s).
+/// Simulated time that samples cover (s).
 pub const SPAN: f64 = 20.0;
-/// The least simulated time between two samples (s): a little less than a tenth, so that rounding
-/// leaves ten a second.
-const INTERVAL: f64 = 0.09;
+/// Shortest simulated time between two samples (s): slightly below 0.1, so that rounding does not
+/// reduce their rate of ten per second.
+const MIN_INTERVAL: f64 = 0.09;
 
 /// Values of a run at one time.
 #[derive(Clone, Copy, Debug)]
@@ -19,9 +19,9 @@ pub struct Sample {
     pub energy: Option<Energy>,
     /// The largest length over rest length, if the scene has springs.
     pub stretch: Option<f64>,
-    /// Evaluations and computing time (ms) per simulated second, since the sample before.
+    /// Evaluations and computing time (ms) per simulated second, since the previous sample.
     pub cost: Option<[f64; 2]>,
-    /// Evaluations and computing time (s) since the beginning.
+    /// Evaluations and computing time (s) since the run started.
     total: [f64; 2],
 }
 
@@ -32,8 +32,8 @@ pub struct Samples {
 }
 
 impl Samples {
-    /// Takes a sample if the last one is old enough. Samples of a later time are dropped: time may
-    /// go back.
+    /// Takes a sample if the last one is old enough. Drops samples of later times first, because
+    /// time may go back. `computing` is the total computing time (s).
     pub fn take(
         &mut self,
         run: &Simulation,
@@ -46,7 +46,7 @@ impl Samples {
             self.samples.pop_back();
         }
         let before = self.samples.back();
-        if before.is_some_and(|last| time - last.time < INTERVAL) {
+        if before.is_some_and(|last| time - last.time < MIN_INTERVAL) {
             return;
         }
         let total = [run.work().total(), computing];
@@ -74,17 +74,17 @@ impl Samples {
         self.samples.clear();
     }
 
-    /// The sample nearest to a time (s), if it is within a few of their intervals.
+    /// Returns the sample nearest to a time (s), if it is within five intervals.
     pub fn nearest(&self, time: f64) -> Option<&Sample> {
         let distance = |sample: &&Sample| (sample.time - time).abs();
         let nearest = self
             .samples
             .iter()
             .min_by(|a, b| distance(a).total_cmp(&distance(b)));
-        nearest.filter(|sample| distance(sample) < 5.0 * INTERVAL)
+        nearest.filter(|sample| distance(sample) < 5.0 * MIN_INTERVAL)
     }
 
-    /// The samples, the oldest first.
+    /// Returns the samples, the oldest first.
     pub fn iter(&self) -> impl Iterator<Item = &Sample> {
         self.samples.iter()
     }
@@ -119,7 +119,7 @@ mod tests {
             assert!((evaluations - 400.0).abs() < 1e-6 && (computing - 20.0).abs() < 1e-6);
         }
         assert!(samples[0].time >= 29.9 - SPAN && samples[0].energy.is_some());
-        // From the beginning again.
+        // A reset drops the later samples.
         run.reset();
         kept.take(&run, run.energy(), None, computing);
         assert_eq!(kept.iter().count(), 1);

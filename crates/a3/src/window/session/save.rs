@@ -1,4 +1,4 @@
-//! A run as it is now, written as a scene file.
+//! Writing the present state of a run as a scene file.
 
 use std::fmt::{Debug, Write};
 use std::path::{Path, PathBuf};
@@ -11,16 +11,17 @@ use super::state::Session;
 use crate::base::failure::Failure;
 use crate::files::output;
 
-/// The most particles of a scene file that can be read again.
-const MOST: usize = 60_000;
+/// Largest number of particles of a scene file that can be read again.
+const MAX_PARTICLES: usize = 60_000;
 
-/// Writes a run of the scene that a session shows under the first free name, beside the file of
-/// that scene if there is one, and returns that name.
+/// Writes a run of the session's scene under the first free name, in the folder of its scene file
+/// if it has one, and returns the path. Fails if there are too many particles, or if the file
+/// cannot be written.
 pub fn write_scene(session: &Session, run: &Simulation) -> Result<String, String> {
     let particles = run.particles();
-    if particles > MOST {
+    if particles > MAX_PARTICLES {
         return Err(format!(
-            "a scene file has at most {MOST} particles, but this run has {particles}"
+            "a scene file has at most {MAX_PARTICLES} particles, but this run has {particles}"
         ));
     }
     let folder = session
@@ -41,7 +42,7 @@ pub fn write_scene(session: &Session, run: &Simulation) -> Result<String, String
         .map_err(|failure| failure.to_string())
 }
 
-/// The text of the scene file.
+/// Returns the text of the scene file.
 fn scene_text(session: &Session, run: &Simulation) -> Result<String, a3_core::Error> {
     let mut description = description(session, run);
     let state = description.state.take();
@@ -63,7 +64,7 @@ fn scene_text(session: &Session, run: &Simulation) -> Result<String, a3_core::Er
     Ok(text)
 }
 
-/// The description of the run: the scene as it is tuned, and the state as it is now.
+/// Returns the description of the tuned scene with the present state.
 fn description(session: &Session, run: &Simulation) -> Description {
     let Origin { source, grid, .. } = &session.scenes.shown;
     let mut description = Description::clone(&source.description);
@@ -85,7 +86,7 @@ fn description(session: &Session, run: &Simulation) -> Description {
     description
 }
 
-/// Writes a list of rows of numbers, with as many digits as they need.
+/// Writes an array of rows; their numbers are read back exactly.
 fn write_rows(text: &mut String, key: &str, rows: &[impl Debug]) {
     // Writing to a string does not fail.
     let _ = writeln!(text, "{key} = [");
@@ -111,7 +112,7 @@ mod tests {
         f
     }
 
-    /// What was written, read again: the same state to the last digit, and the same forces.
+    /// Checks that a written file gives the same state to the last bit, and the same forces.
     fn check(session: &Session, path: &Path) {
         let source = Source::find(path.to_str().unwrap()).unwrap();
         let run = session.runs.first();
@@ -126,7 +127,7 @@ mod tests {
         assert_eq!(defaults.control, Some(run.control()));
         let again = Simulation::new(scene, run.method(), run.control()).unwrap();
         assert_eq!(again.state(), run.state(), "{name}");
-        // Where surfaces touch, their skins are made anew for springs that were tuned.
+        // With self-collision, skins are built for the tuned springs, so forces differ.
         let touches = |network: &Network| network.contact_layer().is_some();
         if !run.model().network().is_some_and(touches) {
             for (a, b) in forces(run).into_iter().zip(forces(&again)) {
@@ -144,7 +145,7 @@ mod tests {
         assert_eq!(pins(&again), pins(run), "{name}");
     }
 
-    /// Runs for a second of simulated time, in frames.
+    /// Advances by a second of simulated time, in frames of 60 Hz.
     fn run_on(session: &mut Session) {
         for _ in 0..60 {
             session.tick(1.0 / 60.0);
@@ -158,7 +159,7 @@ mod tests {
     }
 
     #[test]
-    fn every_scene_goes_on_where_it_was_written() {
+    fn every_scene_continues_where_it_was_written() {
         let folder = tempfile::tempdir().unwrap();
         let mut session = session(&["r", "0.005"]);
         for entry in a3_scenes::SCENES {
@@ -190,7 +191,7 @@ mod tests {
             session.view.camera.orbit(0.4, 0.2);
             run_on(&mut session);
             check(&session, &written(&session, folder.path()));
-            // In the hand, of which the file knows nothing: what is free stays free.
+            // A grabbed particle is not written as pinned.
             let run = session.runs.first();
             let walls = run.model().network();
             let in_wall = |i: &usize| walls.is_some_and(|network| network.is_wall(*i));
@@ -210,7 +211,7 @@ mod tests {
     }
 
     #[test]
-    fn a_grid_of_ones_own_is_written_too() {
+    fn a_grid_from_the_command_line_is_written_too() {
         let folder = tempfile::tempdir().unwrap();
         let mut session = session(&["r", "0.002", "--grid", "12x9"]);
         session.tick(0.1);
@@ -218,7 +219,7 @@ mod tests {
     }
 
     #[test]
-    fn what_has_broken_stays_broken() {
+    fn torn_springs_stay_torn() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("rag.toml");
         let rag = "tear = 1.3\n\
@@ -246,7 +247,7 @@ mod tests {
     }
 
     #[test]
-    fn it_is_written_beside_its_scene_and_finds_the_mesh() {
+    fn the_file_is_beside_its_scene_and_finds_the_mesh() {
         let folder = tempfile::tempdir().unwrap();
         std::fs::write(
             folder.path().join("leaf.obj"),

@@ -12,31 +12,31 @@ use crate::files::scene_file::Source;
 
 /// The scenes that a session can show, and the one that it shows.
 pub struct Scenes {
-    /// The scenes that were asked for or opened, to come back to, the last one first.
+    /// The scenes of the command line and the opened files, the most recent first.
     asked: Vec<Origin>,
-    /// The name or the file that the session began with.
+    /// The name or file of the first scene.
     begun: String,
-    /// The scene that is shown.
+    /// The present scene.
     pub shown: Origin,
-    /// Number of the scene that is shown: the user's files come first, then those of the table.
+    /// Number of the present scene: first the user's files, then the built-in scenes.
     number: usize,
-    /// Files that were opened in earlier windows, the last one first.
+    /// Files that were opened in earlier windows, the most recent first.
     pub recent: Vec<PathBuf>,
-    /// The checkpoint that was written or opened last.
-    pub kept: Option<PathBuf>,
+    /// The checkpoint that was last saved or loaded.
+    pub checkpoint: Option<PathBuf>,
 }
 
-/// A scene that was loaded again, and what is new in its file.
+/// A reloaded scene, and the changes in its file.
 pub struct Reloaded {
     pub setup: Setup,
-    /// Whether the file has another camera than before.
+    /// Whether the camera in the file has changed.
     pub camera: bool,
-    /// The solver of the file, if solver or step are others than before.
+    /// The solver of the file, if the file's solver or step has changed.
     pub method: Option<&'static Method>,
 }
 
 impl Scenes {
-    /// Creates the list of the built-in scenes and of the scene that is shown first.
+    /// Creates the list of the built-in scenes and the first scene of the session.
     pub fn new(origin: Origin) -> Self {
         Self {
             begun: origin.source.typed.clone(),
@@ -47,11 +47,11 @@ impl Scenes {
             shown: origin.clone(),
             asked: vec![origin],
             recent: vec![],
-            kept: None,
+            checkpoint: None,
         }
     }
 
-    /// The names of all scenes: the files that were asked for or opened, then those of the table.
+    /// Returns the names of all scenes: first the user's files, then the built-in scenes.
     fn names(&self) -> Vec<String> {
         let files = self.asked.iter().map(|origin| &origin.source);
         let files = files.filter(|source| source.path.is_some());
@@ -62,12 +62,12 @@ impl Scenes {
             .collect()
     }
 
-    /// The scene that was asked for by a name.
+    /// Returns the scene of the command line or the opened file with this name.
     fn asked(&self, name: &str) -> Option<&Origin> {
         self.asked.iter().find(|it| it.source.typed == name)
     }
 
-    /// The files that were asked for or opened, the last one first.
+    /// Returns the absolute paths of the user's files, the most recent first.
     pub fn files(&self) -> impl Iterator<Item = PathBuf> {
         let sources = self.asked.iter().map(|origin| &origin.source);
         let files = sources.filter(|source| !source.is_input());
@@ -75,7 +75,7 @@ impl Scenes {
         paths.filter_map(|path| std::path::absolute(path).ok())
     }
 
-    /// Files that were opened in earlier windows and are there still.
+    /// Returns the files of earlier windows that still exist and were not opened in this one.
     fn earlier_files(&self) -> Vec<PathBuf> {
         let now: Vec<_> = self.files().collect();
         let earlier = self
@@ -85,7 +85,7 @@ impl Scenes {
         earlier.cloned().collect()
     }
 
-    /// All scenes, and then the files that were opened in earlier windows, as entries of a list.
+    /// Returns all scenes, then the files of earlier windows, as entries of a list.
     pub fn entries(&self) -> Vec<Entry> {
         let names = self.names();
         let count = names.len();
@@ -122,20 +122,20 @@ impl Scenes {
             .collect()
     }
 
-    /// The earlier file that has this number in the list of scenes.
+    /// Returns the file of an earlier window that has this number in the list.
     pub fn earlier_file(&self, number: usize) -> Option<PathBuf> {
         let k = number.checked_sub(self.names().len())?;
         self.earlier_files().into_iter().nth(k)
     }
 
-    /// The number of the scene `by` places after the one that is shown, or before it if that is
+    /// Returns the number of the scene `by` places after the present one, or before it if `by` is
     /// negative.
-    pub fn beside(&self, by: isize) -> usize {
+    pub fn neighbour(&self, by: isize) -> usize {
         let count = self.names().len() as isize;
         (self.number as isize + by).rem_euclid(count) as usize
     }
 
-    /// Builds the scene of this number among all names, and takes it as the one that is shown.
+    /// Builds the scene of this number, and makes it the present one. Fails if it cannot be built.
     pub fn show(&mut self, number: usize) -> Result<Setup, InputError> {
         let names = self.names();
         let unknown = || InputError::Unknown("There is no such scene.".into());
@@ -148,7 +148,8 @@ impl Scenes {
         Ok(setup)
     }
 
-    /// Builds the scene of a file, and takes it as the one that is shown.
+    /// Builds the scene of a file, and makes it the present one. Fails if the file cannot be read
+    /// or built.
     pub fn open(&mut self, file: &Path) -> Result<Setup, InputError> {
         let source = Source::find(&file.to_string_lossy())?;
         let setup = source.build(None)?;
@@ -159,8 +160,8 @@ impl Scenes {
         Ok(setup)
     }
 
-    /// Builds the scene that the session began with again from its file, and takes it as the one
-    /// that is shown; `None` if it was not of a file.
+    /// Reloads the first scene of the session, and makes it the present one; `None` if it is not in
+    /// the list. Fails if it cannot be read or built.
     pub fn reload(&mut self) -> Result<Option<Reloaded>, InputError> {
         let begun = |origin: &Origin| origin.source.typed == self.begun;
         let Some(number) = self.asked.iter().position(begun) else {
@@ -211,7 +212,7 @@ mod tests {
                 .collect::<Vec<_>>(),
             expected
         );
-        // Verlet cannot serve the circle, and serves the others again.
+        // Verlet cannot integrate the scene simple, and returns with the next one.
         let solvers: Vec<_> = seen.iter().map(|(_, solver)| *solver).collect();
         for (scene, solver) in expected.iter().zip(solvers) {
             assert_eq!(
@@ -227,7 +228,7 @@ mod tests {
     }
 
     #[test]
-    fn the_grid_asked_for_comes_back() {
+    fn the_grid_of_the_command_line_comes_back() {
         let mut session = session(&["t", "0.005", "--grid", "30x25"]);
         for _ in 0..a3_scenes::SCENES.len() {
             session.act(RunAction::NextScene, 0);
@@ -238,7 +239,7 @@ mod tests {
     const FLAG: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/scenes/strip.toml");
 
     #[test]
-    fn a_step_that_a_scene_does_not_hold_is_shortened_and_comes_back() {
+    fn an_unstable_step_is_shortened_for_a_scene_and_comes_back() {
         let mut session = compared(&["t:0.02", "i:0.02", "--scene", "pendulum"], 0.1);
         let (mut shortened, mut kept) = (0, 0);
         for _ in 0..a3_scenes::SCENES.len() {
@@ -267,7 +268,7 @@ mod tests {
             }
         }
         assert!(shortened > 2 && kept > 2, "{shortened} {kept}");
-        // A step that is set by hand is wanted from then on.
+        // A step that the user sets replaces the remembered one.
         while session.runs.panes[0].wanted_step.is_none() {
             session.act(RunAction::NextScene, 0);
         }
@@ -276,7 +277,7 @@ mod tests {
     }
 
     #[test]
-    fn a_file_is_opened_and_one_that_is_none_is_refused() {
+    fn a_file_is_opened_and_a_missing_one_is_refused() {
         let mut session = session(&["v", "0.001"]);
         assert!(session.open(Path::new(FLAG)));
         let name = session.runs.first().scene().name.clone();
@@ -298,7 +299,7 @@ mod tests {
                 .contains("/nowhere/flag.toml")
         );
         assert_eq!(session.runs.first().scene().name, name);
-        // It is one of the scenes from now on.
+        // The file is one of the scenes from now on.
         session.act(RunAction::NextScene, 0);
         assert_eq!(session.runs.first().scene().name, a3_scenes::SCENES[0].name);
         for _ in 0..a3_scenes::SCENES.len() {

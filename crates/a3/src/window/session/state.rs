@@ -1,4 +1,4 @@
-//! A session: its parts, and the time that goes by for all of them.
+//! A session: its parts, and their common advance in time.
 
 use web_time::{Duration, Instant};
 
@@ -19,57 +19,57 @@ use super::view::View;
 use crate::base::failure::Failure;
 use crate::draw::show::{Manner, Show};
 
-/// Real time that a frame may spend on steps: at least so much, and at least this share of the real
-/// time that the frame stands for, so that steps may take as long as a slow display. Steps that do
-/// not fit are left out: all runs are then slower than real time. Tests run several at a time and
-/// must not depend on it.
-const BUDGET: (Duration, f64) = (
+/// Computing time of the steps of a frame: the larger of a fixed time and a share of the frame's
+/// real time, so that steps may take as long as a slow display. Steps beyond it are dropped, and
+/// the runs are then slower than real time. It is longer in tests, which run in parallel and must
+/// not depend on it.
+const STEP_BUDGET: (Duration, f64) = (
     Duration::from_millis(if cfg!(test) { 400 } else { 12 }),
     0.5,
 );
-/// Real time that a frame may spend on the reference: at least so much, and at least this share of
-/// the real time that the frame stands for. Tests run several at a time and must not depend on it.
+/// Computing time of the reference in a frame: the larger of a fixed time and a share of the
+/// frame's real time. It is longer in tests, which run in parallel and must not depend on it.
 const REFERENCE_BUDGET: (Duration, f64) =
     (Duration::from_millis(if cfg!(test) { 400 } else { 4 }), 0.1);
-/// The most real time (s) that a frame makes up for, however long the last one took.
-const LONGEST_FRAME: f64 = 0.3;
+/// Longest real time (s) that a frame simulates, even if the last one took longer.
+const MAX_FRAME_TIME: f64 = 0.3;
 
-/// How a session begins.
+/// Initial settings of a session.
 #[derive(Clone, Copy, Default)]
 pub struct Beginning {
-    /// How the runs are shown.
+    /// How the runs are drawn.
     pub manner: Manner,
-    /// Whether they are paused.
+    /// Whether the runs are paused.
     pub paused: bool,
 }
 
-/// One run on the screen, or several of one scene side by side.
+/// One visible run, or several of one scene side by side.
 pub struct Session {
     /// The runs and their time.
     pub runs: Runs,
-    /// From where they are seen.
+    /// The camera.
     pub view: View,
     /// The scenes that can be shown.
     pub scenes: Scenes,
-    /// The last seconds of all runs, to go back to.
+    /// The last seconds of all runs.
     pub timeline: Timeline,
-    /// What can be undone.
+    /// Changes for undo and redo.
     pub history: History,
     /// Changes that the panel made to the scene.
     pub tuning: Tuning,
     /// State of the panel.
     pub panel: PanelState,
-    /// The list that is open to choose from.
+    /// The open list, if there is one.
     pub list: Option<List>,
     /// Values for the text over the picture.
     pub readings: Readings,
-    /// Time spent since the readings were last taken.
+    /// Frames and times since the last reading of rates.
     meter: Meter,
 }
 
 impl Session {
-    /// A session on these runs, at least one, of the scene from `origin`, which was built as
-    /// `setup`.
+    /// Creates a session on at least one run of the scene from `origin`, which was built as
+    /// `setup`. Fails if there can be no reference.
     pub fn new(
         origin: Origin,
         setup: &Setup,
@@ -101,63 +101,63 @@ impl Session {
         })
     }
 
-    /// Whether the next frame will look different by itself.
+    /// Returns whether the runs advance: the next frame will differ.
     pub fn animated(&self) -> bool {
         !self.readings.paused && self.runs.any_alive()
     }
 
-    /// Brings the runs on by `real` seconds of real time, in steps of exactly the lengths that were
-    /// asked for.
+    /// Advances the runs by `real` seconds of real time, in steps of exactly the chosen lengths.
     pub fn tick(&mut self, real: f64) {
         if self.animated() {
-            let real = real.min(LONGEST_FRAME);
+            let real = real.min(MAX_FRAME_TIME);
             let budget = |(least, share): (Duration, f64)| {
                 let share = Duration::from_secs_f64(share * real);
                 share.max(least)
             };
             let simulated = real * 0.5f64.powi(self.readings.slowness);
-            self.advance(simulated, budget(BUDGET), budget(REFERENCE_BUDGET));
+            self.advance(simulated, budget(STEP_BUDGET), budget(REFERENCE_BUDGET));
         } else {
-            self.runs.settle();
+            self.runs.drop_due_steps();
         }
     }
 
-    /// Brings the runs on by so much simulated time (s), as far as the budgets of real time
-    /// suffice, and keeps their states on the timeline.
+    /// Advances the runs by `simulated` (s), as far as the budgets of real time allow, and records
+    /// their states on the timeline.
     pub(super) fn advance(&mut self, simulated: f64, budget: Duration, reference_budget: Duration) {
-        self.keep(false);
+        self.record(false);
         let (begun, start) = (Instant::now(), self.runs.clock);
         self.runs
             .advance(start + simulated, budget, reference_budget);
         self.meter
             .count_steps(self.runs.clock - start, begun.elapsed());
         self.readings.read_reference(self.runs.reference.as_ref());
-        self.keep(false);
+        self.record(false);
     }
 
-    /// Keeps the states on the timeline if the last ones are old enough, or at once with `now`.
-    fn keep(&mut self, now: bool) {
+    /// Records the states on the timeline if the last moment is old enough, or with `now` if it is
+    /// older at all.
+    fn record(&mut self, now: bool) {
         if self.readings.in_window {
             let runs = &self.runs;
-            self.timeline.keep(runs.clock, now, runs.all());
+            self.timeline.record(runs.clock, now, runs.all());
         }
         self.readings.rewound = self.timeline.position();
     }
 
-    /// Brings all runs to `time` (s) exactly, however long that takes: without a window.
+    /// Advances all runs to exactly `time` (s), however long that takes.
     pub fn run_to(&mut self, time: f64) {
         self.runs.run_to(time);
         self.readings.read_reference(self.runs.reference.as_ref());
     }
 
-    /// Takes readings of the states, if they are due.
+    /// Reads the states, if that is due.
     pub fn read_state(&mut self) {
         self.runs.read_state(self.animated());
     }
 
-    /// Counts a frame that took `drawing` to draw. Twice a second the rates are taken, unless all
-    /// runs stand still.
-    pub fn drawn(&mut self, drawing: Duration) {
+    /// Counts a frame that took `drawing` to draw, and updates the rates twice a second while a run
+    /// advances.
+    pub fn count_frame(&mut self, drawing: Duration) {
         if !self.animated() {
             self.readings.factor = 0.0;
             self.meter = Meter::new();
@@ -173,14 +173,14 @@ impl Session {
         self.runs.panes.iter_mut().for_each(Pane::read_cost);
     }
 
-    /// Begins to measure again, with no steps due: after a time in which nothing was simulated.
-    pub fn start_anew(&mut self) {
-        self.runs.start_anew();
+    /// Restarts all measurements and drops due steps, after a time in which nothing was simulated.
+    pub fn restart_measuring(&mut self) {
+        self.runs.restart_measuring();
         self.meter = Meter::new();
     }
 
-    /// Pauses and goes `by` kept moments on, or back if it is negative. The runs go on from the
-    /// moment that is shown.
+    /// Pauses and goes `by` moments forward on the timeline, or back if it is negative. The runs
+    /// then continue from there.
     pub fn scrub(&mut self, by: isize) {
         self.pause_to_scrub();
         if self.timeline.go(by) {
@@ -190,7 +190,7 @@ impl Session {
         }
     }
 
-    /// Pauses and goes to a share of the kept time: 0 is the oldest moment, 1 the newest.
+    /// Pauses and goes to a share of the timeline: 0 is the oldest moment, 1 the newest.
     pub fn scrub_to(&mut self, share: f32) {
         self.pause_to_scrub();
         if self.timeline.go_to(share) {
@@ -198,37 +198,38 @@ impl Session {
         }
     }
 
-    /// Pauses, and keeps the newest states to come back to.
+    /// Pauses, and records the newest states so that the user can return to them.
     fn pause_to_scrub(&mut self) {
         self.readings.paused = true;
         if self.readings.rewound.is_none() {
-            self.runs.settle();
-            self.keep(true);
+            self.runs.drop_due_steps();
+            self.record(true);
         }
     }
 
-    /// Gives all runs the states of the moment that is shown.
+    /// Restores all runs to the chosen moment of the timeline.
     fn show_moment(&mut self) {
         self.timeline.show(self.runs.all_mut());
         self.runs.states_changed();
         self.readings.rewound = self.timeline.position();
         self.runs.hide_hand();
-        self.start_anew();
+        self.restart_measuring();
     }
 
-    /// Takes the first run up where it was kept in a checkpoint. A hand lets go.
-    pub fn take_up(&mut self, checkpoint: &Checkpoint) -> Result<(), Error> {
-        self.runs.panes[0].take_up(checkpoint)?;
-        self.another_run();
+    /// Restores the first run from a checkpoint, and releases the grabbed particle or sphere. Fails
+    /// if the checkpoint is of another scene.
+    pub fn restore(&mut self, checkpoint: &Checkpoint) -> Result<(), Error> {
+        self.runs.panes[0].restore(checkpoint)?;
+        self.begin_new_run();
         Ok(())
     }
 
-    /// Clears the timeline and begins to measure again, because another run begins.
-    pub(super) fn another_run(&mut self) {
+    /// Clears the timeline and restarts all measurements, because a new run begins.
+    pub(super) fn begin_new_run(&mut self) {
         self.timeline.clear();
         self.readings.rewound = None;
         self.runs.hide_hand();
-        self.start_anew();
+        self.restart_measuring();
     }
 }
 
@@ -237,7 +238,7 @@ mod tests {
     use super::*;
     use crate::window::session::{RunAction, compared, frames, session, times};
     #[test]
-    fn time_keeps_up_whatever_the_frame_rate() {
+    fn time_keeps_up_at_any_frame_rate() {
         for rate in [17.0, 60.0, 144.0] {
             let mut session = session(&["t", "0.01", "--scene", "chain"]);
             for _ in 0..(3.0 * rate) as u32 {
@@ -252,10 +253,10 @@ mod tests {
     }
 
     #[test]
-    fn a_frame_of_minutes_is_no_huge_step() {
+    fn a_frame_of_minutes_advances_by_the_longest_frame_time() {
         let mut session = session(&["t", "0.01", "--scene", "chain"]);
         session.tick(300.0);
-        assert!(session.runs.panes[0].simulation.time() <= LONGEST_FRAME + 1e-9);
+        assert!(session.runs.panes[0].simulation.time() <= MAX_FRAME_TIME + 1e-9);
         assert!(session.runs.panes[0].simulation.steps() <= 30);
     }
 
@@ -281,7 +282,7 @@ mod tests {
     }
 
     #[test]
-    fn a_lost_run_leaves_no_line_across_the_picture() {
+    fn a_diverged_run_leaves_no_line_across_the_picture() {
         let mut session = session(&["e", "2", "--scene", "simple"]);
         while session.runs.panes[0].simulation.blow_up().is_none() {
             session.act(RunAction::Step, 0);
@@ -320,7 +321,7 @@ mod tests {
     }
 
     #[test]
-    fn one_that_is_lost_leaves_the_others_alone() {
+    fn a_diverged_pane_leaves_the_others_alone() {
         let mut session = compared(&["e:0.05", "r:0.01", "--scene", "mit"], 2.0);
         assert!(!session.runs.panes[0].alive() && session.runs.panes[0].error.is_none());
         assert!(session.animated() && session.runs.panes[1].error.unwrap() < 1e-3);

@@ -1,4 +1,4 @@
-//! The timeline: the last seconds of all runs, to go back to.
+//! The timeline: moments of the last seconds, to which all runs can return.
 
 use std::collections::VecDeque;
 
@@ -6,29 +6,29 @@ use a3_core::{Checkpoint, Simulation};
 
 /// Simulated time between two moments (s).
 const INTERVAL: f64 = 1.0 / 60.0;
-/// Simulated time from the oldest to the newest moment (s).
+/// Longest simulated time from the oldest to the newest moment (s).
 const SPAN: f64 = 20.0;
-/// Memory that all moments together may take (bytes).
-const MEMORY: usize = 64 << 20;
+/// Largest memory of all moments together (bytes).
+const MAX_MEMORY: usize = 64 << 20;
 
-/// Kept moments, the oldest first.
+/// Recorded moments, the oldest first.
 #[derive(Default)]
 pub struct Timeline {
     moments: VecDeque<Entry>,
-    /// Number of the moment that is shown, unless it is the newest.
+    /// Index of the chosen moment; `None` for the newest.
     shown: Option<usize>,
 }
 
-/// All runs at one time.
+/// A moment: the states of all runs at one time.
 struct Entry {
     /// Simulated time (s).
     clock: f64,
-    /// A checkpoint of each run, unless the run was lost.
+    /// A checkpoint of each run; `None` if the run had diverged.
     moments: Vec<Option<Checkpoint>>,
 }
 
 impl Entry {
-    /// Memory (bytes).
+    /// Returns the memory of the checkpoints (bytes).
     fn size(&self) -> usize {
         self.moments.iter().flatten().map(Checkpoint::size).sum()
     }
@@ -37,7 +37,7 @@ impl Entry {
 /// Position of a moment on the timeline.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TimelinePosition {
-    /// Share of the kept time: 0 at the oldest moment, 1 at the newest.
+    /// Share of the timeline: 0 at the oldest moment, 1 at the newest.
     pub share: f32,
     /// Time before the newest moment (s).
     pub back: f64,
@@ -46,15 +46,20 @@ pub struct TimelinePosition {
 }
 
 impl Timeline {
-    /// Forgets all moments.
+    /// Clears the timeline.
     pub fn clear(&mut self) {
         self.moments.clear();
         self.shown = None;
     }
 
-    /// Keeps the states at `clock` (s) if the last ones are old enough, or at once with `now`.
-    /// Moments after the one that is shown are dropped.
-    pub fn keep<'r>(&mut self, clock: f64, now: bool, runs: impl Iterator<Item = &'r Simulation>) {
+    /// Records the states at `clock` (s) if the last moment is old enough, or with `now` if it is
+    /// older at all. Drops the moments after the chosen one first.
+    pub fn record<'r>(
+        &mut self,
+        clock: f64,
+        now: bool,
+        runs: impl Iterator<Item = &'r Simulation>,
+    ) {
         if let Some(k) = self.shown.take() {
             self.moments.truncate(k + 1);
         }
@@ -66,8 +71,8 @@ impl Timeline {
         let size: usize = self.moments.iter().map(Entry::size).sum();
         let next = self.moments.back().map_or(0, Entry::size);
         let old = |entry: &Entry| entry.clock < clock - SPAN;
-        let full = self.moments.len() > 1 && size + next > MEMORY;
-        // The memory of the oldest moment is used again.
+        let full = self.moments.len() > 1 && size + next > MAX_MEMORY;
+        // Reuse the memory of the oldest moment.
         let spare = if full || self.moments.front().is_some_and(old) {
             self.moments.pop_front()
         } else {
@@ -89,7 +94,8 @@ impl Timeline {
         self.moments.push_back(Entry { clock, moments });
     }
 
-    /// Goes `by` moments on, or back if it is negative, and returns whether another one is shown.
+    /// Goes `by` moments forward, or back if it is negative, and returns whether that changed the
+    /// moment.
     pub fn go(&mut self, by: isize) -> bool {
         let newest = self.moments.len().saturating_sub(1);
         let from = self.shown.unwrap_or(newest);
@@ -98,15 +104,16 @@ impl Timeline {
         to != from
     }
 
-    /// Goes to a share of the kept time: 0 is the oldest moment, 1 the newest.
+    /// Goes to a share of the timeline, from 0 for the oldest moment to 1 for the newest, and
+    /// returns whether that changed the moment.
     pub fn go_to(&mut self, share: f32) -> bool {
         let newest = self.moments.len().saturating_sub(1);
         let to = (share.clamp(0.0, 1.0) * newest as f32).round() as isize;
         self.go(to - self.shown.unwrap_or(newest) as isize)
     }
 
-    /// The moments nearest to times that are `interval` (s) apart, over the last `seconds` before
-    /// the moment that is shown, the oldest first: those of each run that is not lost.
+    /// Returns the moments nearest to times that are `interval` (s) apart, over the last `seconds`
+    /// (s) before the chosen moment, the oldest first. A run that had diverged has `None`.
     pub fn last(&self, seconds: f64, interval: f64) -> Vec<Vec<Option<Checkpoint>>> {
         let count = self.shown.map_or(self.moments.len(), |k| k + 1);
         let moments: Vec<_> = self.moments.iter().take(count).collect();
@@ -129,7 +136,7 @@ impl Timeline {
             .collect()
     }
 
-    /// Gives the runs the states of the moment that is shown.
+    /// Restores the runs to the chosen moment.
     pub fn show<'r>(&self, runs: impl Iterator<Item = &'r mut Simulation>) {
         let newest = self.moments.len().saturating_sub(1);
         let Some(entry) = self.moments.get(self.shown.unwrap_or(newest)) else {
@@ -141,7 +148,7 @@ impl Timeline {
         }
     }
 
-    /// Position of the moment that is shown, unless it is the newest.
+    /// Returns the position of the chosen moment; `None` for the newest.
     pub fn position(&self) -> Option<TimelinePosition> {
         let (k, newest) = (self.shown?, self.moments.len() - 1);
         let clock = |k: usize| self.moments[k].clock;
@@ -171,26 +178,26 @@ mod tests {
         let (small, large) = (run(3), run(200));
         let mut timeline = Timeline::default();
         for k in 0..3000 {
-            timeline.keep(f64::from(k) / 120.0, false, [&small].into_iter());
+            timeline.record(f64::from(k) / 120.0, false, [&small].into_iter());
         }
-        // Every other one is kept.
+        // Every second state is recorded.
         assert!(timeline.moments.len().abs_diff(1201) <= 1);
         timeline.clear();
         for k in 0..50 {
-            timeline.keep(f64::from(k), false, [&large, &large].into_iter());
+            timeline.record(f64::from(k), false, [&large, &large].into_iter());
         }
         let size = 2 * large.moment().size();
-        assert_eq!(timeline.moments.len(), (MEMORY / size).min(21));
+        assert_eq!(timeline.moments.len(), (MAX_MEMORY / size).min(21));
     }
 
     #[test]
-    fn what_came_after_the_moment_shown_did_not_happen() {
+    fn moments_after_the_chosen_one_are_dropped() {
         let (run, mut timeline) = (run(3), Timeline::default());
         for k in 0..5 {
-            timeline.keep(f64::from(k), false, [&run].into_iter());
+            timeline.record(f64::from(k), false, [&run].into_iter());
         }
         assert!(timeline.go(-3));
-        timeline.keep(1.5, false, [&run].into_iter());
+        timeline.record(1.5, false, [&run].into_iter());
         let clocks: Vec<_> = timeline.moments.iter().map(|entry| entry.clock).collect();
         assert_eq!(clocks, [0.0, 1.0, 1.5]);
     }
@@ -198,10 +205,10 @@ mod tests {
     #[test]
     fn the_last_seconds_are_evenly_spaced() {
         let (mut run, mut timeline) = (run(3), Timeline::default());
-        // Every 10 ms, but for a time in which the display stood still.
+        // Every 20 ms, with a gap from 0.78 to 1.2 s.
         for k in (0..=100).filter(|k| !(40..60).contains(k)) {
             run.advance_to(0.02 * f64::from(k)).unwrap();
-            timeline.keep(run.time(), false, [&run].into_iter());
+            timeline.record(run.time(), false, [&run].into_iter());
         }
         let times = |seconds, interval| -> Vec<f64> {
             let moments = timeline.last(seconds, interval).into_iter();
@@ -219,7 +226,7 @@ mod tests {
         near(&times(1.3, 0.26), &[0.7, 0.78, 1.22, 1.48, 1.74, 2.0]);
         assert_eq!(times(99.0, 0.5).len(), 5);
         assert_eq!(Timeline::default().last(1.0, 0.1).len(), 0);
-        // What was gone back to is the end.
+        // After going back, the moments end at the chosen one.
         assert!(timeline.go(-1));
         near(
             &timeline
@@ -232,14 +239,14 @@ mod tests {
     }
 
     #[test]
-    fn what_is_lost_has_no_moment() {
+    fn a_diverged_run_has_no_moment() {
         let scene = a3_scenes::find("mit").unwrap().build(None).unwrap().scene;
         let mut run =
             Simulation::new(scene, integrators::find("e").unwrap(), Control::Step(0.05)).unwrap();
         let mut timeline = Timeline::default();
-        timeline.keep(0.0, false, [&run].into_iter());
+        timeline.record(0.0, false, [&run].into_iter());
         while run.take_steps(1).is_ok() {}
-        timeline.keep(1.0, false, [&run].into_iter());
+        timeline.record(1.0, false, [&run].into_iter());
         let kept = timeline.moments.iter().map(|e| e.moments[0].is_some());
         assert_eq!(kept.collect::<Vec<_>>(), [true, false]);
     }
@@ -249,7 +256,7 @@ mod tests {
         let mut timeline = Timeline::default();
         assert!(!timeline.go(-1) && !timeline.go_to(0.0) && timeline.position().is_none());
         for k in 0..5 {
-            timeline.keep(f64::from(k), false, [&run(3)].into_iter());
+            timeline.record(f64::from(k), false, [&run(3)].into_iter());
         }
         assert!(timeline.go(-3) && timeline.go(-3) && !timeline.go(-1));
         let position = timeline.position().unwrap();
@@ -262,9 +269,10 @@ mod tests {
         assert!(timeline.go(10) && timeline.position().is_none());
     }
 
-    /// Back, on again to where it was, and from the middle a second time: the same to the bit.
+    /// Goes back and forward again, then back and on by simulating: the states are equal to the
+    /// bit.
     #[test]
-    fn what_was_comes_back_to_the_bit_and_goes_on_from_there() {
+    fn moments_come_back_to_the_bit_and_runs_continue_from_them() {
         let mut session = session(&["t", "0.01", "--scene", "cloth"]);
         session.readings.in_window = true;
         frames(&mut session, 1.0);
@@ -281,7 +289,7 @@ mod tests {
         let (time, steps) = (session.runs.first().time(), session.runs.first().steps());
         assert!(time < newest.0 && (time - 0.01 * steps as f64).abs() < 1e-9);
         let then = session.runs.first().state().to_vec();
-        // Nothing goes on by itself.
+        // The session is paused.
         session.tick(0.1);
         assert_eq!(session.runs.first().state(), then);
         session.act(RunAction::Step, 0);

@@ -1,27 +1,27 @@
-//! The panel's part of a session: the tuning of the scene, and the chosen row.
+//! The panel's part of a session: the tuning of the scene, and the state of the panel.
 
 use a3_core::Scene;
 use a3_scenes::{Defaults, Setup};
 
 use crate::files::ending::Ending;
 
-/// Changes to a scene that cannot be read off its model.
+/// The original scene, and the factors that the panel applies to it.
 #[derive(Clone)]
 pub struct Tuning {
-    /// The scene as it was built.
+    /// The untuned scene.
     pub own: Scene,
-    /// How the scene is run unless one says otherwise.
+    /// Default solver and step of the scene.
     pub defaults: Defaults,
-    /// Factor of the springs' stiffness over the scene's own.
+    /// Factor on the stiffness of the scene's springs.
     pub stiffness: f64,
-    /// Factor of the springs' damping over the scene's own.
+    /// Factor on the damping of the scene's springs.
     pub damping: f64,
-    /// Factor of the wind's velocity over the scene's own.
+    /// Factor on the force or velocity of the scene's wind.
     pub gusts: f64,
 }
 
 impl Tuning {
-    /// An untuned scene.
+    /// Creates the tuning of an untuned scene.
     pub fn of(setup: &Setup) -> Self {
         Self {
             own: setup.scene.clone(),
@@ -33,24 +33,24 @@ impl Tuning {
     }
 }
 
-/// Simulated time that a film of what was kept covers, if nothing else was chosen (s).
-pub const FILM_OF: f64 = 5.0;
+/// Default simulated time that a film of the last seconds covers (s).
+pub const DEFAULT_FILM_SECONDS: f64 = 5.0;
 
-/// The panel beside the picture, as far as it is no setting of a run.
+/// State of the panel, except the settings of runs.
 pub struct PanelState {
     /// Whether the panel is open.
     pub open: bool,
-    /// The chosen row, as its number in the table of knobs: keys turn it.
+    /// Number of the chosen row in the table of knobs, which keys turn.
     pub row: usize,
-    /// What was typed so far for the value of the chosen row, while one is typed.
+    /// Text typed so far for the value of the chosen row; `None` while none is typed.
     pub typed: Option<String>,
-    /// The most frames a second, or 0 for as many as the screen shows.
+    /// Largest frame rate (1/s), or 0 for that of the screen.
     pub frame_limit: u32,
     /// The format of films.
     pub film: Ending,
-    /// Simulated time that a film of what was kept covers (s).
-    pub film_of: f64,
-    /// The pane that the panel is about: the last that the pointer was over.
+    /// Simulated time that a film of the last seconds covers (s).
+    pub film_seconds: f64,
+    /// The pane whose settings the panel shows: the last one under the pointer.
     pub pane: usize,
 }
 
@@ -62,7 +62,7 @@ impl Default for PanelState {
             typed: None,
             frame_limit: 0,
             film: Ending::default(),
-            film_of: FILM_OF,
+            film_seconds: DEFAULT_FILM_SECONDS,
             pane: 0,
         }
     }

@@ -1,4 +1,4 @@
-//! From where the runs are seen.
+//! The camera of all runs.
 
 use std::f32::consts::FRAC_PI_2;
 
@@ -7,11 +7,11 @@ use a3_render::Camera;
 use super::pane::Pane;
 use crate::draw::show;
 
-/// Yaw and pitch (rad) of the views of a key, and their names.
+/// Yaw and pitch (rad) of the views that a key cycles through, and their names.
 const VIEWS: [([f32; 2], &str); 3] = [
     ([0.0, 0.0], "from the front"),
     ([FRAC_PI_2, 0.0], "from the right"),
-    // Almost: the camera does not pass over the poles.
+    // The camera stops just before the pole.
     ([0.0, FRAC_PI_2], "from above"),
 ];
 
@@ -25,15 +25,15 @@ pub struct View {
 /// A particle that the camera follows.
 #[derive(Clone, Copy)]
 struct Followed {
-    /// Number of its pane.
+    /// Index of the particle's pane.
     pane: usize,
     particle: usize,
-    /// Its last seen position (m).
+    /// Position of the particle when the camera was last moved (m).
     at: [f32; 3],
 }
 
 impl View {
-    /// A view by a camera that follows nothing.
+    /// Creates a view whose camera follows nothing.
     pub fn new(camera: Camera) -> Self {
         Self {
             camera,
@@ -41,14 +41,14 @@ impl View {
         }
     }
 
-    /// Sees from another camera, in the same projection.
-    pub fn see_from(&mut self, camera: Camera) {
+    /// Replaces the camera, and keeps the projection.
+    pub fn set_camera(&mut self, camera: Camera) {
         let parallel = self.camera.is_parallel();
         self.camera = camera;
         self.camera.set_parallel(parallel);
     }
 
-    /// Goes from perspective to an orthographic projection, or back, and says so.
+    /// Switches between perspective and orthographic projection, and returns a message.
     pub fn toggle_projection(&mut self) -> &'static str {
         let parallel = !self.camera.is_parallel();
         self.camera.set_parallel(parallel);
@@ -59,14 +59,15 @@ impl View {
         }
     }
 
-    /// Follows a particle of a pane, or stops if it is already followed or `None`. Says which.
+    /// Follows a particle of a pane, or stops if it is already followed or `None`. Returns a
+    /// message.
     pub fn follow(&mut self, panes: &[Pane], pane: usize, particle: Option<usize>) -> String {
         let before = self.followed.take();
         let again = |i: &usize| before.is_some_and(|it| (it.pane, it.particle) == (pane, *i));
         let Some(particle) = particle.filter(|i| !again(i)) else {
             return match before {
-                Some(_) => "The camera stays where it is.".into(),
-                None => "Nothing is there that the camera could follow.".into(),
+                Some(_) => "The camera follows no particle now.".into(),
+                None => "There is no particle under the pointer to follow.".into(),
             };
         };
         let at = show::to_f32(panes[pane].simulation.position(particle));
@@ -74,18 +75,18 @@ impl View {
         format!("The camera follows particle {particle}.")
     }
 
-    /// Follows nothing.
-    pub fn stay(&mut self) {
+    /// Stops following a particle.
+    pub fn stop_following(&mut self) {
         self.followed = None;
     }
 
-    /// The particle that the camera follows.
+    /// Returns the particle that the camera follows.
     pub fn followed(&self) -> Option<usize> {
         self.followed.map(|followed| followed.particle)
     }
 
-    /// Moves the camera as the particle that it follows has moved.
-    pub fn go_along(&mut self, panes: &[Pane]) {
+    /// Moves the camera by the motion of the followed particle.
+    pub fn track_followed(&mut self, panes: &[Pane]) {
         if let Some(followed) = &mut self.followed {
             let run = &panes[followed.pane].simulation;
             let now = show::to_f32(run.position(followed.particle));
@@ -95,7 +96,7 @@ impl View {
         }
     }
 
-    /// Moves the camera so that all particles of all panes are seen, from the same side.
+    /// Moves the camera, without turning it, so that all particles of all panes are visible.
     pub fn see_all(&mut self, panes: &[Pane]) {
         let (mut low, mut high) = ([f32::INFINITY; 3], [f32::NEG_INFINITY; 3]);
         for pane in panes {
@@ -109,13 +110,13 @@ impl View {
         }
         let middle = [0, 1, 2].map(|axis| 0.5 * (low[axis] + high[axis]));
         let [x, y, z] = [0, 1, 2].map(|axis| 0.5 * (high[axis] - low[axis]));
-        // What is drawn around particles is seen too.
+        // Leave room for what is drawn around particles.
         let radius = x.hypot(y).hypot(z) + 0.1;
         self.camera.see(middle, radius);
     }
 
     /// Turns the camera to the next view (from the front, from the right, or from above), and
-    /// returns its name.
+    /// returns the view's name.
     pub fn next_view(&mut self) -> &'static str {
         let seen = |[yaw, pitch]: [f32; 2]| {
             let mut turned = self.camera;
@@ -148,14 +149,14 @@ mod tests {
         session.view.follow(&session.runs.panes, 0, Some(last));
         let begun = session.view.camera.target();
         frames(&mut session, 0.7);
-        session.view.go_along(&session.runs.panes);
+        session.view.track_followed(&session.runs.panes);
         assert!(
             near(offset(&session), before) && (session.view.camera.target() - begun).norm() > 0.1
         );
         session.act(RunAction::Scrub(-20), 0);
-        session.view.go_along(&session.runs.panes);
+        session.view.track_followed(&session.runs.panes);
         assert!(near(offset(&session), before));
-        // The same particle again, or none, ends it; and so does another scene.
+        // Following the same particle again, or another scene, ends following.
         session.view.follow(&session.runs.panes, 0, Some(last));
         assert_eq!(session.view.followed(), None);
         session.view.follow(&session.runs.panes, 0, Some(0));
@@ -195,7 +196,7 @@ mod tests {
                 );
             }
         }
-        // From the front again, after the right and the top.
+        // The fourth view is from the front again.
         let (_, _, towards) = session.view.camera.axes();
         assert!(towards.z > 0.999);
     }

@@ -1,17 +1,17 @@
-//! The dial of a knob: a value on a scale, and how it is turned.
+//! The dial of a knob: a value on a scale, and its turns.
 
 use crate::base::rounding::short;
 
-/// The values that a knob may have.
+/// The values that a knob can have.
 #[derive(Clone, Debug, PartialEq)]
 pub enum DialScale {
-    /// Values with equal steps between them.
+    /// Values at equal steps.
     Linear { from: f64, to: f64, step: f64 },
-    /// Values of which ten steps make a factor of ten.
+    /// Values at ten steps per decade.
     Log { from: f64, to: f64 },
     /// Whole numbers.
     Whole { from: f64, to: f64 },
-    /// These values, and after the last one the first again.
+    /// A cycle of values.
     Choice(Vec<f64>),
     /// 0 (off) or 1 (on).
     Switch,
@@ -19,34 +19,34 @@ pub enum DialScale {
 
 /// The value that a knob shows, and its scale.
 pub struct Dial {
-    /// The value now.
+    /// Present value.
     pub value: f64,
-    /// The value of the scene as it was built.
+    /// Value in the untuned scene.
     pub own: f64,
-    /// The values that it may have.
+    /// The possible values.
     pub scale: DialScale,
-    /// The value in words.
+    /// The present value in words.
     pub words: String,
 }
 
 /// A turn of a knob.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Turn {
-    /// To the nearest value of the scale.
+    /// Turns to the nearest value of the scale.
     To(f64),
-    /// Up or down by a step of the scale. With `other` the step is ten times finer, or for whole
+    /// Turns by a step of the scale. With `other`, the step is ten times finer, or for whole
     /// numbers ten times coarser.
     By { up: bool, other: bool },
-    /// The other way for a switch; to the scene's own value for all else.
+    /// Toggles a switch; turns any other knob to the scene's own value.
     Toggle,
-    /// To the scene's own value.
+    /// Turns to the scene's own value.
     Own,
-    /// To a value that was typed, and is within the scale.
+    /// Turns to exactly this value, which must be within the scale.
     Exactly(f64),
 }
 
 impl DialScale {
-    /// The share of the scale at which a value is: from 0 to 1.
+    /// Returns the position of a value on the scale, from 0 to 1.
     pub fn share(&self, value: f64) -> f64 {
         let share = match self {
             Self::Linear { from, to, .. } | Self::Whole { from, to } => {
@@ -62,7 +62,7 @@ impl DialScale {
         share.clamp(0.0, 1.0)
     }
 
-    /// The value at a share of the scale.
+    /// Returns the value at a position on the scale, from 0 to 1.
     pub fn at(&self, share: f64) -> f64 {
         let share = share.clamp(0.0, 1.0);
         match self {
@@ -75,7 +75,7 @@ impl DialScale {
         }
     }
 
-    /// The value of the scale that is nearest, as one would type it.
+    /// Rounds a value to the nearest one of the scale, with few digits.
     pub fn nearest(&self, value: f64) -> f64 {
         match self {
             Self::Linear { from, to, step } => {
@@ -87,7 +87,7 @@ impl DialScale {
         }
     }
 
-    /// The ends of the scale, if it has numbers between them.
+    /// Returns the ends of a scale of numbers; `None` for a choice or a switch.
     pub fn ends(&self) -> Option<[f64; 2]> {
         match self {
             Self::Linear { from, to, .. } | Self::Log { from, to } | Self::Whole { from, to } => {
@@ -97,7 +97,7 @@ impl DialScale {
         }
     }
 
-    /// The value, or the end of the scale that it is beyond.
+    /// Clamps a value to the scale.
     pub fn within(&self, value: f64) -> f64 {
         match self {
             Self::Linear { from, to, .. } | Self::Log { from, to } | Self::Whole { from, to } => {
@@ -107,9 +107,10 @@ impl DialScale {
         }
     }
 
-    /// The next value up or down, one of those that are a step apart.
+    /// Returns the next value up or down, at a multiple of the step. `other` is that of
+    /// [`Turn::By`].
     pub fn next(&self, value: f64, up: bool, other: bool) -> f64 {
-        // A value that is off a rung by rounding is on it.
+        // `hair` is the distance within which a value counts as on a rung, despite rounding.
         let rung = |x: f64, hair: f64| {
             if up {
                 (x + hair).floor() + 1.0
@@ -123,8 +124,7 @@ impl DialScale {
                 short((rung(value / step, 1e-3) * step).clamp(*from, *to), 6)
             }
             Self::Log { from, to } => {
-                // Rounding to three digits moves a value by up to a fifth of a hundredth of a
-                // decade.
+                // Rounding to three digits moves a value by up to 0.002 decades.
                 let (rungs, hair) = if other { (100.0, 0.25) } else { (10.0, 0.025) };
                 let next = 10_f64.powf(rung(value.log10() * rungs, hair) / rungs);
                 short(next, 3).clamp(*from, *to)
@@ -143,7 +143,7 @@ impl DialScale {
     }
 }
 
-/// The multiple of a step that is nearest to a value.
+/// Returns the multiple of a step that is nearest to a value.
 fn multiple(value: f64, step: f64) -> f64 {
     (value / step).round() * step
 }

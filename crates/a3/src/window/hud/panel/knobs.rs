@@ -1,10 +1,10 @@
-//! Knobs: all that can be tuned while a scene runs, in one table for the mouse and the keys.
+//! The table of knobs: everything that can be tuned during a run, by mouse or keys.
 
 use a3_core::contact::Shape;
 use a3_core::{Network, Vector3};
 
 use super::dial::{Dial, DialScale, Turn};
-use super::seen::{arrows, colour, film, film_of, frame_limit, full_colour, style};
+use super::seen::{arrows, colour, film, film_seconds, frame_limit, full_colour, style};
 use super::values::{
     damping, drag, floor, gravity, gusts, network, own, radii, solver, sphere, springs_of, step,
     stiffness, strain_limit, strain_limits, switch,
@@ -16,20 +16,21 @@ use crate::window::session::{Change, RunAction, Session, Tuning, looks};
 /// A knob: a row of the table.
 #[derive(Clone, Copy)]
 pub struct Knob {
-    /// The name of its row.
+    /// Name of the row.
     pub name: &'static str,
-    /// What it is, and its unit.
+    /// Description for the tooltip, with the unit.
     pub about: &'static str,
-    /// Whether its row stands apart from the one above it.
-    pub apart: bool,
-    /// Whether it tunes the scene itself, of which a checkpoint knows nothing.
-    pub tunes: bool,
-    /// The dial for a session and the number of a pane, if the knob has a meaning there.
+    /// Whether the row starts a group.
+    pub starts_group: bool,
+    /// Whether the knob tunes the scene, so that a checkpoint must store its value separately.
+    pub tunes_scene: bool,
+    /// Returns the dial for a session and a pane, if the knob applies to them.
     pub read: fn(&Session, usize) -> Option<Dial>,
-    /// Sets its value in a session and the pane of that number.
+    /// Sets the value in a session and a pane.
     pub(super) set: fn(&mut Session, usize, f64),
 }
 
+/// Creates a knob that starts no group and does not tune the scene.
 const fn knob(
     name: &'static str,
     about: &'static str,
@@ -39,25 +40,25 @@ const fn knob(
     Knob {
         name,
         about,
-        apart: false,
-        tunes: false,
+        starts_group: false,
+        tunes_scene: false,
         read,
         set,
     }
 }
 
-/// The knob, apart from the one above it.
-const fn apart(knob: Knob) -> Knob {
+/// Makes a knob start a group.
+const fn starts_group(knob: Knob) -> Knob {
     Knob {
-        apart: true,
+        starts_group: true,
         ..knob
     }
 }
 
-/// The knob, as one that tunes the scene itself.
-const fn tunes(knob: Knob) -> Knob {
+/// Marks a knob as one that tunes the scene.
+const fn tunes_scene(knob: Knob) -> Knob {
     Knob {
-        tunes: true,
+        tunes_scene: true,
         ..knob
     }
 }
@@ -75,7 +76,7 @@ pub static KNOBS: &[Knob] = &[
             session.set_step_of(at, value);
         },
     ),
-    apart(tunes(knob(
+    starts_group(tunes_scene(knob(
         "stiffness",
         "Stiffness of all springs, as a multiple of the scene's own.",
         stiffness,
@@ -84,7 +85,7 @@ pub static KNOBS: &[Knob] = &[
             set_springs(session);
         },
     ))),
-    tunes(knob(
+    tunes_scene(knob(
         "damping",
         "Damping of all springs, as a multiple of the scene's own.",
         damping,
@@ -93,9 +94,9 @@ pub static KNOBS: &[Knob] = &[
             set_springs(session);
         },
     )),
-    tunes(knob(
+    tunes_scene(knob(
         "strain limit",
-        "Springs that a step leaves longer than so many rest lengths are shortened to that.",
+        "Largest length of a spring over its rest length. Longer ones are shortened after each step.",
         strain_limit,
         |session, _, value| {
             let limits: Vec<_> = own(session).into_iter().flat_map(strain_limits).collect();
@@ -104,7 +105,7 @@ pub static KNOBS: &[Knob] = &[
             };
             session.adjust(|network| {
                 for (particles, own) in &limits {
-                    // Each is as far above 1 in proportion to its own as the first is.
+                    // Scale all limits above 1 in proportion to that of the first body.
                     let limit = match (first, own) {
                         (Some(first), Some(own)) => {
                             1.0 + (own - 1.0) * (value - 1.0) / (first - 1.0)
@@ -112,26 +113,26 @@ pub static KNOBS: &[Knob] = &[
                         _ => value,
                     };
                     let limit = (value > 1.0).then_some(limit);
-                    // The value is within its scale, so it is not refused.
+                    // The value is within its scale, so this does not fail.
                     let _ = network.set_strain_limit(particles.clone(), limit);
                 }
             });
         },
     )),
-    tunes(knob(
+    tunes_scene(knob(
         "drag",
-        "Drag of the air on each particle over its velocity, in kg/s.",
+        "Air drag on each particle over its velocity, in kg/s.",
         drag,
         |session, _, drag| {
             session.adjust(|network| {
-                // The value is within its scale, so it is not refused.
+                // The value is within its scale, so this does not fail.
                 let _ = network.set_drag(drag);
             });
         },
     )),
-    tunes(knob(
+    tunes_scene(knob(
         "gravity",
-        "Acceleration downwards, in m/s².",
+        "Downward acceleration, in m/s².",
         gravity,
         |session, _, g| {
             session.adjust(|network| {
@@ -140,7 +141,7 @@ pub static KNOBS: &[Knob] = &[
             });
         },
     )),
-    apart(knob(
+    starts_group(knob(
         "wind",
         "Whether the wind blows.",
         |session, _| {
@@ -151,7 +152,7 @@ pub static KNOBS: &[Knob] = &[
             session.act(RunAction::Wind, at);
         },
     )),
-    tunes(knob(
+    tunes_scene(knob(
         "gusts",
         "Force or velocity of the wind, as a multiple of the scene's own.",
         gusts,
@@ -197,7 +198,7 @@ pub static KNOBS: &[Knob] = &[
             session.act(RunAction::Touch, at);
         },
     ),
-    tunes(knob(
+    tunes_scene(knob(
         "sphere",
         "Radius of the sphere, in m. Other spheres grow in proportion.",
         sphere,
@@ -214,7 +215,7 @@ pub static KNOBS: &[Knob] = &[
             });
         },
     )),
-    tunes(knob(
+    tunes_scene(knob(
         "floor",
         "Whether there is a floor.",
         |session, _| {
@@ -235,7 +236,7 @@ pub static KNOBS: &[Knob] = &[
             });
         },
     )),
-    apart(knob(
+    starts_group(knob(
         "springs of",
         "The particle whose springs are listed and highlighted, by its number.",
         springs_of,
@@ -258,7 +259,7 @@ pub static KNOBS: &[Knob] = &[
     ),
     knob(
         "full colour",
-        "The value at the end of the scale of colours. It fits the largest value until it is set.",
+        "Upper end of the colour scale. It follows the largest value until it is set.",
         full_colour,
         |session, at, end| {
             let fits = end == session.runs.panes[at].show.colouring.scale.fitting;
@@ -288,21 +289,21 @@ pub static KNOBS: &[Knob] = &[
             );
         },
     ),
-    apart(knob(
+    starts_group(knob(
         "dark",
-        "Whether light things are drawn on a dark background.",
+        "Whether the dark theme is on.",
         |session, _| Some(switch(session.runs.panes[0].show.dark, false)),
         |session, _, on| looks::set_dark(&mut session.runs.panes, on != 0.0),
     )),
     knob(
         "frames",
-        "The most frames a second, to spare the processor. Simulated time stays real time.",
+        "Largest frame rate, to spare the processor. The simulation still keeps up with real time.",
         frame_limit,
         |session, _, limit| session.panel.frame_limit = limit as u32,
     ),
     knob(
         "film as",
-        "The format of films by the keys n and m.",
+        "Format of the films that keys n and m make.",
         film,
         |session, _, k| {
             session.panel.film = Ending::ALL.get(k as usize).copied().unwrap_or_default();
@@ -311,16 +312,16 @@ pub static KNOBS: &[Knob] = &[
     knob(
         "film of",
         "Simulated time that key n films, in s.",
-        |session, _| Some(film_of(session)),
+        |session, _| Some(film_seconds(session)),
         |session, _, seconds| {
-            session.panel.film_of = seconds;
+            session.panel.film_seconds = seconds;
         },
     ),
 ];
 
-/// What is tuned other than the scene has it, by the names of its rows.
+/// Returns the names and values of all knobs that tune the scene and differ from its own values.
 pub fn tuned(session: &Session) -> Vec<(String, f64)> {
-    let tuning = KNOBS.iter().filter(|knob| knob.tunes);
+    let tuning = KNOBS.iter().filter(|knob| knob.tunes_scene);
     let dials = tuning.filter_map(|knob| Some((knob.name, (knob.read)(session, 0)?)));
     let other = dials.filter(|(_, dial)| dial.value != dial.own);
     other
@@ -328,9 +329,10 @@ pub fn tuned(session: &Session) -> Vec<(String, f64)> {
         .collect()
 }
 
-/// Tunes a session so, and all else as the scene has it.
+/// Tunes the scene of a session to `tuned`, by names and values, and resets all other knobs that
+/// tune it.
 pub fn tune(session: &mut Session, tuned: &[(String, f64)]) {
-    for knob in KNOBS.iter().filter(|knob| knob.tunes) {
+    for knob in KNOBS.iter().filter(|knob| knob.tunes_scene) {
         let Some(dial) = (knob.read)(session, 0) else {
             continue;
         };
@@ -343,7 +345,7 @@ pub fn tune(session: &mut Session, tuned: &[(String, f64)]) {
 }
 
 impl Knob {
-    /// Turns the knob, if it has a meaning.
+    /// Turns the knob, if it applies, and records the change in the history.
     pub fn turn(&self, session: &mut Session, at: usize, turn: Turn) {
         let Some(dial) = (self.read)(session, at) else {
             return;
@@ -358,7 +360,7 @@ impl Knob {
         if to != dial.value {
             (self.set)(session, at, to);
             let row = KNOBS.iter().position(|knob| knob.name == self.name);
-            session.history.note(Change::Knob {
+            session.history.record(Change::Knob {
                 row: row.unwrap_or(0),
                 pane: at,
                 from: dial.value,
@@ -368,7 +370,7 @@ impl Knob {
     }
 }
 
-/// Gives the springs the stiffness and the damping that they are tuned to.
+/// Scales the springs of the scene to the tuned stiffness and damping.
 fn set_springs(session: &mut Session) {
     let Tuning {
         own,
@@ -380,7 +382,8 @@ fn set_springs(session: &mut Session) {
         return;
     };
     session.adjust(|network| {
-        // The springs are those of the same scene, and the factors within their scales.
+        // The springs are of the same scene and the factors within their scales, so this does not
+        // fail.
         let _ = network
             .copy_springs(own)
             .and_then(|()| network.scale_springs(stiffness, damping));

@@ -1,4 +1,4 @@
-//! The panel beside the picture: knobs, and plots of what they do. Key Tab.
+//! The panel beside the picture, with knobs and plots (key Tab).
 
 mod dial;
 mod knobs;
@@ -14,7 +14,7 @@ pub use knobs::{tune, tuned};
 pub use plots::csv;
 pub use request::{PanelKey, PanelRequest, Request, apply, press, press_text};
 pub use undo::undo;
-pub use view::{inset, leaves, show};
+pub use view::{inset, picture_size, show};
 
 #[cfg(test)]
 mod tests;

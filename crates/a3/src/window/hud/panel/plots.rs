@@ -7,20 +7,20 @@ use super::super::style::{FAINT, TEXT};
 use super::super::words::digits;
 use crate::window::session::{Pane, SPAN, Sample, Samples};
 
-/// Least height of a plot (points).
-const LEAST: f32 = 56.0;
+/// Smallest height of a plot (points).
+const MIN_HEIGHT: f32 = 56.0;
 /// Largest height of a plot over its width.
-const MOST: f32 = 0.6;
-/// Height of the line with the title (points).
-const HEAD: f32 = 17.0;
+const MAX_HEIGHT_PER_WIDTH: f32 = 0.6;
+/// Height of the title line (points).
+const TITLE_HEIGHT: f32 = 17.0;
 /// Height of the numbers below the last plot (points).
-const FOOT: f32 = 15.0;
+const TICK_LABEL_HEIGHT: f32 = 15.0;
 /// Width of the numbers on the left (points).
-const NUMBERS: f32 = 40.0;
+const TICK_LABEL_WIDTH: f32 = 40.0;
 /// Size of the numbers (points).
-const SMALL: f32 = 10.5;
-/// Length of the piece of a curve before its name (points).
-const SAMPLE: f32 = 14.0;
+const TICK_LABEL_SIZE: f32 = 10.5;
+/// Length of the sample of a curve before its name (points).
+const LEGEND_LINE_LENGTH: f32 = 14.0;
 
 const TEAL: Color32 = Color32::from_rgb(0, 122, 128);
 const AMBER: Color32 = Color32::from_rgb(190, 106, 0);
@@ -31,15 +31,16 @@ const GRID: Color32 = Color32::from_rgb(196, 197, 200);
 #[derive(Clone, Copy)]
 struct Curve {
     name: &'static str,
-    /// Its name in a file, with its unit.
+    /// Name of the column in a file, with the unit.
     column: &'static str,
     colour: Color32,
-    /// Lengths of its dashes and of the gaps after them (points); empty for a whole line.
+    /// Lengths of dashes and gaps in turn (points); empty for a solid line.
     dashes: &'static [f32],
+    /// Returns the value of a sample.
     of: fn(&Sample) -> Option<f64>,
 }
 
-/// A plot, whose title has the unit.
+/// A plot, whose title includes the unit.
 struct Plot {
     title: &'static str,
     curves: &'static [Curve],
@@ -60,7 +61,7 @@ const fn curve(
     }
 }
 
-/// The curve, in dashes: curves of one plot differ in more than their colours.
+/// Makes a curve dashed, so that the curves of a plot differ not only in colour.
 const fn dashed(dashes: &'static [f32], curve: Curve) -> Curve {
     Curve { dashes, ..curve }
 }
@@ -110,7 +111,7 @@ static PLOTS: &[Plot] = &[
     },
 ];
 
-/// The samples of all panes as CSV: a row for each sample.
+/// Returns the samples of all panes as CSV, a row per sample. Fails if the CSV cannot be encoded.
 pub fn csv(panes: &[Pane]) -> Result<Vec<u8>, csv::Error> {
     let curves = || PLOTS.iter().flat_map(|plot| plot.curves);
     let mut writer = csv::Writer::from_writer(vec![]);
@@ -128,8 +129,8 @@ pub fn csv(panes: &[Pane]) -> Result<Vec<u8>, csv::Error> {
     writer.into_inner().map_err(|e| e.into_error().into())
 }
 
-/// Draws the plots that have something to show, as many as there is room for. Where the pointer is
-/// over them, they say the values there.
+/// Draws the plots that have at least two values, as many as fit. At the pointer, they show the
+/// time and the values.
 pub fn draw(painter: &Painter, room: Rect, samples: &Samples, pointer: Option<Pos2>) {
     let Some(last) = samples.iter().last() else {
         return;
@@ -141,19 +142,22 @@ pub fn draw(painter: &Painter, room: Rect, samples: &Samples, pointer: Option<Po
         samples.iter().filter_map(of).count() > 1
     });
     let shown: Vec<_> = shown.collect();
-    let high = room.height() - FOOT;
-    let count = shown.len().min((high / LEAST).max(0.0) as usize);
+    let high = room.height() - TICK_LABEL_HEIGHT;
+    let count = shown.len().min((high / MIN_HEIGHT).max(0.0) as usize);
     if count == 0 {
         return;
     }
-    let plots = Rect::from_x_y_ranges(room.left() + NUMBERS..=room.right() - 2.0, room.y_range());
+    let plots = Rect::from_x_y_ranges(
+        room.left() + TICK_LABEL_WIDTH..=room.right() - 2.0,
+        room.y_range(),
+    );
     let pointed = pointer
         .filter(|pointer| plots.contains(*pointer))
         .and_then(|pointer| {
             let share = (pointer.x - plots.left()) / plots.width();
             samples.nearest(time[0] + f64::from(share) * SPAN)
         });
-    let height = (high / count as f32).min(MOST * room.width());
+    let height = (high / count as f32).min(MAX_HEIGHT_PER_WIDTH * room.width());
     for (k, plot) in shown[..count].iter().enumerate() {
         let top = room.top() + k as f32 * height;
         let rect = Rect::from_min_max(pos2(room.left(), top), pos2(room.right(), top + height));
@@ -174,7 +178,7 @@ impl Plot {
         let words = |at: Pos2, anchor, words: &str, size, colour| {
             painter.text(at, anchor, words, FontId::proportional(size), colour)
         };
-        // The values where the pointer is take the places of the names.
+        // Values at the pointer replace the names of the curves.
         let title = match pointed {
             Some(sample) => format!("at {:.2} s", sample.time),
             None => self.title.into(),
@@ -190,13 +194,13 @@ impl Plot {
             let at = pos2(right, rect.top());
             right = words(at, Align2::RIGHT_TOP, &said, 11.5, curve.colour).left() - 7.0;
             if !curve.name.is_empty() {
-                let ends = [right + 4.0 - SAMPLE, right + 4.0];
+                let ends = [right + 4.0 - LEGEND_LINE_LENGTH, right + 4.0];
                 curve.draw(painter, &ends.map(|x| pos2(x, rect.top() + 7.5)));
                 right = ends[0] - 5.0;
             }
         }
         let area = Rect::from_min_max(
-            rect.left_top() + egui::vec2(NUMBERS, HEAD),
+            rect.left_top() + egui::vec2(TICK_LABEL_WIDTH, TITLE_HEIGHT),
             rect.right_bottom() - egui::vec2(2.0, 5.0),
         );
         let values = || {
@@ -212,7 +216,7 @@ impl Plot {
             painter.hline(area.x_range(), at, rule);
             let place = pos2(area.left() - 5.0, at);
             let label = label(tick.value, tick.label);
-            words(place, Align2::RIGHT_CENTER, &label, SMALL, FAINT);
+            words(place, Align2::RIGHT_CENTER, &label, TICK_LABEL_SIZE, FAINT);
         }
         for tick in x.ticks(44.0) {
             let at = x.at(tick.value) as f32;
@@ -228,7 +232,7 @@ impl Plot {
                     )
                 };
                 let label = format!("{}{unit}", tick.label);
-                words(place, anchor, &label, SMALL, FAINT);
+                words(place, anchor, &label, TICK_LABEL_SIZE, FAINT);
             }
         }
         if let Some(sample) = pointed {
@@ -265,7 +269,7 @@ impl Curve {
     }
 }
 
-/// The ends of an axis around all values, with some room.
+/// Returns the ends of an axis around all values, with a margin.
 fn ends(values: impl Iterator<Item = f64>) -> [f64; 2] {
     let finite = values.filter(|v| v.is_finite());
     let [low, high] = finite.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], v| {
@@ -274,14 +278,14 @@ fn ends(values: impl Iterator<Item = f64>) -> [f64; 2] {
     if low > high {
         return [0.0, 1.0];
     }
-    // A value that hardly changes is shown as a level line, not as a magnified rounding error.
+    // Show a nearly constant value as a level line, not as magnified rounding errors.
     let gap = (0.08 * (high - low))
         .max(0.02 * high.abs().max(low.abs()))
         .max(1e-9);
     [low - gap, high + gap]
 }
 
-/// The label of a tick, short enough to stand beside a plot.
+/// Returns the label of a tick, in exponential notation if it is too long for the margin.
 fn label(value: f64, label: String) -> String {
     if label.chars().count() > 6 {
         format!("{value:.1e}")

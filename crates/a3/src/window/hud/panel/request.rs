@@ -1,4 +1,4 @@
-//! Requests of keys and mouse to the panel.
+//! Requests of keys and mouse to the panel and to the open list.
 
 use super::dial::{Dial, Turn};
 use super::knobs::{KNOBS, Knob};
@@ -7,28 +7,28 @@ use crate::window::session::{Action, Session, TextKey};
 /// A request of the mouse.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Request {
-    /// Do what a key does.
+    /// Perform the action of a key.
     Act(Action),
-    /// Change the panel, what it tunes, or the list that is open.
+    /// Change the panel, a knob, or the open list.
     Change(PanelRequest),
 }
 
-/// A request of the mouse to the panel, or to the list that is open.
+/// A request of the mouse to the panel or to the open list.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum PanelRequest {
     /// Choose a row, by its number in the table of knobs.
-    Choose(usize),
-    /// Type a value for the knob of that number.
+    ChooseRow(usize),
+    /// Start to type a value for the knob of a number.
     Type(usize),
-    /// Turn the knob of that number.
+    /// Turn the knob of a number.
     Turn(usize, Turn),
-    /// Take the entry of this number from the list that is open.
-    Take(usize),
-    /// Close that list.
+    /// Accept the entry of a number in the open list.
+    TakeEntry(usize),
+    /// Close the list.
     CloseList,
 }
 
-/// A key with a meaning in the panel.
+/// A key of the panel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PanelKey {
     /// Chooses the row above.
@@ -43,12 +43,12 @@ pub enum PanelKey {
     Toggle,
 }
 
-/// Whether the panel is seen: the help hides it.
+/// Returns whether the panel is visible: it is open, and the help does not hide it.
 pub fn is_shown(session: &Session) -> bool {
     session.panel.open && !session.readings.help
 }
 
-/// The rows that have a meaning for the chosen pane, by their numbers in the table.
+/// Returns the knobs that apply to the panel's pane, with their numbers in the table.
 pub fn rows(session: &Session) -> Vec<(usize, &'static Knob, Dial)> {
     let at = pane(session);
     let rows = KNOBS.iter().enumerate();
@@ -56,19 +56,19 @@ pub fn rows(session: &Session) -> Vec<(usize, &'static Knob, Dial)> {
         .collect()
 }
 
-/// The number of the pane that the panel is about.
+/// Returns the index of the panel's pane.
 pub fn pane(session: &Session) -> usize {
     session.panel.pane.min(session.runs.panes.len() - 1)
 }
 
-/// Does what a key means while the panel is seen, and says whether it means something there. With
-/// `other` a knob turns in the other steps of its scale.
+/// Handles a key, and returns whether the panel is visible. With `other`, a knob turns by the other
+/// step of its scale.
 pub fn press(session: &mut Session, key: PanelKey, other: bool) -> bool {
     if !is_shown(session) {
         return false;
     }
     let rows: Vec<_> = rows(session).iter().map(|(k, ..)| *k).collect();
-    // In another scene the row may be gone: then the nearest one above it is chosen.
+    // If the present scene lacks the chosen row, use the nearest one above it.
     let chosen = session.panel.row;
     let at = rows.iter().rposition(|k| *k <= chosen).unwrap_or(0);
     let turn = match key {
@@ -88,28 +88,28 @@ pub fn press(session: &mut Session, key: PanelKey, other: bool) -> bool {
     true
 }
 
-/// Makes the change that was asked for, and returns whether another scene is shown.
+/// Carries out a request, and returns whether that changed the scene.
 pub fn apply(session: &mut Session, request: PanelRequest) -> bool {
     let at = pane(session);
-    // What was typed and not taken is given up.
+    // Discard a value that was typed but not accepted.
     session.panel.typed = None;
     match request {
         PanelRequest::Type(row) => {
             session.panel.row = row;
             session.panel.typed = Some(String::new());
         }
-        PanelRequest::Choose(row) => session.panel.row = row,
+        PanelRequest::ChooseRow(row) => session.panel.row = row,
         PanelRequest::Turn(row, turn) => {
             session.panel.row = row;
             KNOBS[row].turn(session, at, turn);
         }
-        PanelRequest::Take(number) => return session.take(number),
+        PanelRequest::TakeEntry(number) => return session.take_entry(number),
         PanelRequest::CloseList => session.list = None,
     }
     false
 }
 
-/// Does what a key means while a value is typed for the chosen row, and says whether one is.
+/// Handles a key while a value is typed for the chosen row, and returns whether one is.
 pub fn press_text(session: &mut Session, key: TextKey) -> bool {
     if !is_shown(session) {
         session.panel.typed = None;
@@ -120,9 +120,9 @@ pub fn press_text(session: &mut Session, key: TextKey) -> bool {
     match key {
         TextKey::Type(letter) => typed.push(letter),
         TextKey::Erase => drop(typed.pop()),
-        TextKey::Close => session.panel.typed = None,
+        TextKey::Cancel => session.panel.typed = None,
         TextKey::Move(_) => {}
-        TextKey::Take => {
+        TextKey::Accept => {
             let (typed, row) = (typed.clone(), session.panel.row);
             match value(session, row, &typed) {
                 Ok(value) => {
@@ -135,10 +135,13 @@ pub fn press_text(session: &mut Session, key: TextKey) -> bool {
     true
 }
 
-/// The value that was typed for a knob: a number, or a fraction such as 1/60.
+/// Parses a typed value: a number, or a fraction such as 1/60. Fails if it is neither, or outside
+/// the scale.
 fn value(session: &Session, row: usize, typed: &str) -> Result<f64, String> {
     let dial = (KNOBS[row].read)(session, pane(session));
-    let [from, to] = dial.and_then(|dial| dial.scale.ends()).ok_or("gone")?;
+    let [from, to] = dial
+        .and_then(|dial| dial.scale.ends())
+        .ok_or("this scene has no such value")?;
     if typed.contains(',') {
         let point = typed.replace(',', ".");
         return Err(format!("use a decimal point: {point}"));

@@ -1,4 +1,4 @@
-//! A row of the panel: a name, a slider, a switch or a choice, and the value.
+//! A row of the panel: a name, a value, and a slider, switch or choice.
 
 use egui::{
     Align2, Color32, CursorIcon, FontId, Id, Rect, Response, Sense, Stroke, Ui, pos2, vec2,
@@ -16,9 +16,9 @@ pub const HEIGHT: f32 = 23.0;
 pub const SHEET: Color32 = Color32::from_rgb(226, 226, 224);
 /// Colour of the panel's edge.
 pub const EDGE: Color32 = Color32::from_rgb(188, 189, 192);
-/// Colour of values that differ from the scene's own, and of what can be moved.
+/// Colour of values that differ from the scene's own, and of controls.
 const INK: Color32 = Color32::from_rgb(38, 84, 132);
-/// Colour of a track that is empty, and of a switch that is off.
+/// Colour of the empty part of a track, and of a switch that is off.
 const TRACK: Color32 = Color32::from_rgb(186, 188, 194);
 /// Colour of the chosen row.
 const CHOSEN: Color32 = Color32::from_rgb(207, 211, 218);
@@ -26,23 +26,23 @@ const CHOSEN: Color32 = Color32::from_rgb(207, 211, 218);
 const HOVERED: Color32 = Color32::from_rgb(217, 218, 220);
 
 /// Width of the name (points).
-const NAME: f32 = 76.0;
+const NAME_WIDTH: f32 = 76.0;
 /// Width of the value (points).
-const VALUE: f32 = 76.0;
+const VALUE_WIDTH: f32 = 76.0;
 
 /// A row: a knob with its number in the table, and its dial.
 pub struct Row<'a> {
     pub number: usize,
     pub knob: &'a Knob,
     pub dial: &'a Dial,
-    /// Whether keys turn it.
+    /// Whether keys turn the knob.
     pub chosen: bool,
-    /// What was typed for its value so far.
+    /// Text typed so far for the value.
     pub typed: Option<&'a str>,
 }
 
 impl Row<'_> {
-    /// Draws the row, and returns what the mouse asks for.
+    /// Draws the row, and returns the request of the mouse.
     pub fn show(&self, ui: &Ui, rect: Rect) -> Option<PanelRequest> {
         let Self { number, dial, .. } = *self;
         let id = |part| Id::unique((part, number));
@@ -57,15 +57,16 @@ impl Row<'_> {
         let at = pos2(rect.left(), middle);
         let font = FontId::proportional(12.5);
         painter.text(at, Align2::LEFT_CENTER, self.knob.name, font, colour);
-        let whole = whole.on_hover_text(self.about());
+        let whole = whole.on_hover_text(self.tooltip());
         let mut request = None;
         if let DialScale::Choice(_) = dial.scale {
-            let left = rect.left() + NAME - 18.0;
+            let left = rect.left() + NAME_WIDTH - 18.0;
             let room = Rect::from_x_y_ranges(left..=rect.right(), rect.y_range());
             request = choice(ui, room, id, dial).map(|turn| PanelRequest::Turn(number, turn));
         } else {
-            let value = Rect::from_x_y_ranges(rect.right() - VALUE..=rect.right(), rect.y_range());
-            let left = rect.left() + NAME;
+            let value =
+                Rect::from_x_y_ranges(rect.right() - VALUE_WIDTH..=rect.right(), rect.y_range());
+            let left = rect.left() + NAME_WIDTH;
             let room = Rect::from_x_y_ranges(left..=value.left() - 4.0, rect.y_range());
             let set = if dial.scale == DialScale::Switch {
                 switch(ui, room, id("dial"), dial)
@@ -75,11 +76,11 @@ impl Row<'_> {
             let set = set.map(|turn| PanelRequest::Turn(number, turn));
             request = set.or(self.value(ui, value, id("value"))).or(request);
         }
-        request.or_else(|| whole.clicked().then_some(PanelRequest::Choose(number)))
+        request.or_else(|| whole.clicked().then_some(PanelRequest::ChooseRow(number)))
     }
 
-    /// Draws the value, or what is typed for it. A click begins to type, and a double click brings
-    /// back the scene's own.
+    /// Draws the value, or the text typed for it. A click starts typing, and a double click
+    /// restores the scene's own value.
     fn value(&self, ui: &Ui, rect: Rect, id: Id) -> Option<PanelRequest> {
         let dial = self.dial;
         let response = ui.interact(rect, id, Sense::click());
@@ -102,29 +103,29 @@ impl Row<'_> {
         } else {
             write(&dial.words, colour);
         }
-        let response = response.on_hover_text(self.about());
+        let response = response.on_hover_text(self.tooltip());
         if response.double_clicked() {
             return Some(PanelRequest::Turn(self.number, Turn::Own));
         }
         (typeable && response.clicked()).then_some(PanelRequest::Type(self.number))
     }
 
-    /// What the knob is, and how it is set.
-    fn about(&self) -> String {
+    /// Returns the tooltip: the knob's description, range and use.
+    fn tooltip(&self) -> String {
         let dial = self.dial;
         let Some([from, to]) = dial.scale.ends() else {
             return self.knob.about.into();
         };
         let [from, to, own] = [from, to, dial.own].map(|value| short(value, 4));
         format!(
-            "{}\nFrom {from} to {to}; at first {own}.\nA click on the value types another, a double click brings back \
-             the first.",
+            "{}\nFrom {from} to {to}; initially {own}.\nClick the value to type another, double-click it to restore \
+             the initial one.",
             self.knob.about
         )
     }
 }
 
-/// Draws a track with a thumb, and a mark at the scene's own value.
+/// Draws a track with a thumb, and a mark at the scene's own value. Returns the turn by the mouse.
 fn slider(ui: &Ui, room: Rect, id: Id, dial: &Dial) -> Option<Turn> {
     let response = ui.interact(room, id, Sense::click_and_drag());
     if response.hovered() || response.dragged() {
@@ -154,7 +155,7 @@ fn slider(ui: &Ui, room: Rect, id: Id, dial: &Dial) -> Option<Turn> {
     Some(Turn::To(dial.scale.at(share.into())))
 }
 
-/// Draws a switch.
+/// Draws a switch. Returns the turn by the mouse.
 fn switch(ui: &Ui, room: Rect, id: Id, dial: &Dial) -> Option<Turn> {
     let size = vec2(28.0, 15.0);
     let rect = Rect::from_min_size(
@@ -174,7 +175,8 @@ fn switch(ui: &Ui, room: Rect, id: Id, dial: &Dial) -> Option<Turn> {
     response.clicked().then_some(Turn::Toggle)
 }
 
-/// Draws the chosen value between arrows to the one before and the one after it.
+/// Draws the chosen value between arrows to the previous and the next one. Returns the turn by the
+/// mouse.
 fn choice(ui: &Ui, room: Rect, id: impl Fn(&'static str) -> Id, dial: &Dial) -> Option<Turn> {
     let mut turn = None;
     for (part, x, way, up) in [
@@ -203,7 +205,7 @@ fn choice(ui: &Ui, room: Rect, id: impl Fn(&'static str) -> Id, dial: &Dial) -> 
     turn
 }
 
-/// Draws a button with its key.
+/// Draws a button with its label and key.
 pub fn button(ui: &Ui, rect: Rect, response: &Response, words: &str, key: &str) {
     let painter = ui.painter();
     let fill = if response.is_pointer_button_down_on() {

@@ -1,4 +1,4 @@
-//! The values of the knobs for what is seen.
+//! The dials of the knobs for drawing, frames and films.
 
 use a3_render::Style;
 
@@ -6,9 +6,9 @@ use super::dial::{Dial, DialScale};
 use crate::base::rounding::short;
 use crate::draw::show::{Arrows, Quantity, Show};
 use crate::files::ending::Ending;
-use crate::window::session::{FILM_OF, SPAN, Session, looks};
+use crate::window::session::{DEFAULT_FILM_SECONDS, SPAN, Session, looks};
 
-/// A choice among what has a name, or none of it.
+/// Creates a dial that chooses one of the available items or none; `None` if no item is available.
 fn one_of<T: Copy + PartialEq>(
     all: &[T],
     chosen: Option<T>,
@@ -34,7 +34,7 @@ fn one_of<T: Copy + PartialEq>(
 pub fn colour(session: &Session, at: usize) -> Option<Dial> {
     let chosen = session.runs.panes.get(at)?.show.colouring.quantity;
     let panes = &session.runs.panes;
-    let has = |quantity| looks::has(panes, quantity);
+    let has = |quantity| looks::has_quantity(panes, quantity);
     one_of(&Quantity::ALL, chosen, has, Quantity::name)
 }
 
@@ -58,20 +58,20 @@ pub fn full_colour(session: &Session, at: usize) -> Option<Dial> {
         words: if scale.fixed.is_some() {
             words
         } else {
-            format!("fits, {words}")
+            format!("auto, {words}")
         },
     })
 }
 
-/// Frames a second that may be chosen as the most; 0 for as many as the screen shows.
-const LIMITS: [u32; 5] = [0, 60, 30, 15, 5];
+/// Frame rates (1/s) that can be chosen as the largest; 0 for that of the screen.
+const FRAME_LIMITS: [u32; 5] = [0, 60, 30, 15, 5];
 
 pub fn frame_limit(session: &Session, _: usize) -> Option<Dial> {
     session.readings.in_window.then(|| {
         let limit = session.panel.frame_limit;
-        let mut values: Vec<f64> = LIMITS.map(f64::from).to_vec();
-        // One that was written into the settings by hand is kept.
-        if !LIMITS.contains(&limit) {
+        let mut values: Vec<f64> = FRAME_LIMITS.map(f64::from).to_vec();
+        // Keep another value from the settings file.
+        if !FRAME_LIMITS.contains(&limit) {
             values.push(limit.into());
         }
         Dial {
@@ -96,15 +96,15 @@ pub fn film(session: &Session, _: usize) -> Option<Dial> {
     })
 }
 
-pub fn film_of(session: &Session) -> Dial {
+pub fn film_seconds(session: &Session) -> Dial {
     Dial {
-        value: session.panel.film_of,
-        own: FILM_OF,
+        value: session.panel.film_seconds,
+        own: DEFAULT_FILM_SECONDS,
         scale: DialScale::Whole {
             from: 1.0,
             to: SPAN,
         },
-        words: format!("last {} s", session.panel.film_of),
+        words: format!("last {} s", session.panel.film_seconds),
     }
 }
 
@@ -114,7 +114,7 @@ pub fn arrows(session: &Session, at: usize) -> Option<Dial> {
     one_of(&Arrows::ALL, chosen, has, Arrows::name)
 }
 
-/// The names of the styles.
+/// Returns the name of a style.
 fn style_name(style: Style) -> &'static str {
     match style {
         Style::Shaded => "surface",

@@ -1,27 +1,30 @@
-//! Undoing what the user changed.
+//! Undo and redo of the user's changes.
 
 use super::knobs::KNOBS;
 use crate::window::session::{Change, Session};
 
-/// Undoes the last change, or with `again` does again what was undone last, and says so.
-pub fn undo(session: &mut Session, again: bool) {
-    let Some(change) = session.history.step(again) else {
-        let what = if again { "do again" } else { "undo" };
+/// Undoes the last change, or with `redo` redoes the one undone last, and shows a message.
+pub fn undo(session: &mut Session, redo: bool) {
+    let Some(change) = session.history.step(redo) else {
+        let what = if redo { "redo" } else { "undo" };
         return session.readings.say(format!("There is nothing to {what}."));
     };
     let what = match change {
         Change::Pins { particles, pinned } => {
-            session.runs.set_pins(&particles, pinned == again);
+            session.runs.set_pins(&particles, pinned == redo);
             match (particles.len(), pinned) {
                 (1, true) => format!("pin of particle {}", particles[0]),
-                (1, false) => format!("letting go of particle {}", particles[0]),
+                (1, false) => format!("release of particle {}", particles[0]),
                 (n, true) => format!("{n} pins"),
-                (n, false) => format!("letting go of {n} pins"),
+                (n, false) => format!("release of {n} pins"),
             }
         }
         Change::Push { obstacle, paths } => {
-            // Where surfaces would cross, the obstacle stays where it is.
-            if let Err(why) = session.runs.put_back(obstacle, paths[usize::from(again)]) {
+            // If surfaces would cross, the obstacle does not move.
+            if let Err(why) = session
+                .runs
+                .set_obstacle_path(obstacle, paths[usize::from(redo)])
+            {
                 return session.readings.say(why);
             }
             "push".into()
@@ -32,9 +35,9 @@ pub fn undo(session: &mut Session, again: bool) {
             from,
             to,
         } => {
-            let value = if again { to } else { from };
+            let value = if redo { to } else { from };
             let now = (KNOBS[row].read)(session, pane);
-            // A key may have changed it meanwhile.
+            // A key may have changed the value in the meantime.
             if now.is_some_and(|dial| dial.value != value) {
                 (KNOBS[row].set)(session, pane, value);
             }
@@ -43,6 +46,6 @@ pub fn undo(session: &mut Session, again: bool) {
             format!("{} {words}", KNOBS[row].name)
         }
     };
-    let did = if again { "done again" } else { "undone" };
+    let did = if redo { "redone" } else { "undone" };
     session.readings.say(format!("{did}: {what}"));
 }

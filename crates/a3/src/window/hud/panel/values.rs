@@ -1,4 +1,4 @@
-//! The values that the knobs show.
+//! The dials of the knobs for solver, step and scene.
 
 use std::ops::Range;
 
@@ -10,17 +10,17 @@ use crate::base::bounds;
 use crate::base::rounding::{FEW, round_up, short};
 use crate::window::session::Session;
 
-/// The network of the first run, if its scene has one.
+/// Returns the network of the first run, if its scene has one.
 pub fn network(session: &Session) -> Option<&Network> {
     session.runs.first().model().network()
 }
 
-/// The network of the scene as it was built.
+/// Returns the network of the untuned scene, if it has one.
 pub fn own(session: &Session) -> Option<&Network> {
     session.tuning.own.model.network()
 }
 
-/// A switch that is on or off.
+/// Creates the dial of a switch. `own` is the scene's own position.
 pub fn switch(on: bool, own: bool) -> Dial {
     Dial {
         value: f64::from(u8::from(on)),
@@ -55,7 +55,7 @@ pub fn solver(session: &Session, at: usize) -> Option<Dial> {
 pub fn step(session: &Session, at: usize) -> Option<Dial> {
     let run = &session.runs.panes.get(at)?.simulation;
     let (from, to, words) = match run.control() {
-        // Steps beyond these ends are typed, not turned to.
+        // The dial covers common steps, and more if the present step is beyond them.
         Control::Step(step) => (
             step.min(1e-5),
             step.max(1.0),
@@ -74,7 +74,7 @@ pub fn step(session: &Session, at: usize) -> Option<Dial> {
     })
 }
 
-/// A factor of the scene's own value.
+/// Creates the dial of a factor on the scene's own value.
 fn factor(value: f64, scale: DialScale) -> Dial {
     Dial {
         value,
@@ -120,7 +120,7 @@ pub fn drag(session: &Session, _: usize) -> Option<Dial> {
     let (own, now) = (own(session)?, network(session)?);
     let mean = own.masses().iter().sum::<f64>() / own.particles() as f64;
     let (own, value) = (own.drag().unwrap_or(0.0), now.drag().unwrap_or(0.0));
-    // From none to a drag that ends motion within a fifth of a second.
+    // Up to a drag that damps motion with a time constant of 0.2 s, or four times the scene's own.
     let to = round_up((5.0 * mean).max(4.0 * own), FEW);
     Some(Dial {
         value,
@@ -134,8 +134,8 @@ pub fn drag(session: &Session, _: usize) -> Option<Dial> {
     })
 }
 
-/// Bodies of a network whose strain can be limited, and their limits: those that have one, or else
-/// the sheets.
+/// Returns the particles and limits of all bodies with a strain limit, or else the sheets without
+/// one.
 pub fn strain_limits(network: &Network) -> Vec<(Range<usize>, Option<f64>)> {
     let limited = network.strain_limits().iter().cloned();
     let limited: Vec<_> = limited.map(|(body, limit)| (body, Some(limit))).collect();
@@ -146,8 +146,8 @@ pub fn strain_limits(network: &Network) -> Vec<(Range<usize>, Option<f64>)> {
     limited
 }
 
-/// The limit of strain, 1 for none. A scene whose springs break has no such knob: limited springs
-/// would not.
+/// Returns the dial of the strain limit, 1 for none. A scene whose springs tear has none, because
+/// limited springs never would.
 pub fn strain_limit(session: &Session, _: usize) -> Option<Dial> {
     let own = own(session)?;
     if own.tear_limit().is_some() {
@@ -176,7 +176,7 @@ pub fn gravity(session: &Session, _: usize) -> Option<Dial> {
         own,
         scale: DialScale::Linear {
             from: own.min(0.0),
-            // That of Jupiter.
+            // The gravity of Jupiter.
             to: own.max(25.0),
             step: 0.5,
         },
@@ -184,7 +184,7 @@ pub fn gravity(session: &Session, _: usize) -> Option<Dial> {
     })
 }
 
-/// Spheres among the obstacles of a network: their numbers and radii (m).
+/// Returns the indices and radii (m) of the spheres among the obstacles of a network.
 pub fn radii(network: &Network) -> impl Iterator<Item = (usize, f64)> {
     let obstacles = network.obstacles().iter().enumerate();
     obstacles.filter_map(|(k, obstacle)| match obstacle.shape {
@@ -193,7 +193,7 @@ pub fn radii(network: &Network) -> impl Iterator<Item = (usize, f64)> {
     })
 }
 
-/// Floor of a network, and its number among the obstacles: the last of them.
+/// Returns the last floor among the obstacles of a network, with its index.
 pub fn floor(network: &Network) -> Option<(usize, &Obstacle)> {
     let obstacles = network.obstacles().iter().enumerate();
     obstacles

@@ -1,4 +1,4 @@
-//! The panel as egui draws it: a row for each knob, a button, and plots where there is room.
+//! Drawing of the panel: a row for each knob, plots if they fit, and buttons.
 
 use egui::{Align2, Area, Context, FontId, Id, Rect, Sense, Stroke, pos2, vec2};
 
@@ -8,49 +8,51 @@ use super::request::{self, Request, is_shown, rows};
 use super::row::{self, Row};
 use crate::window::session::{Action, RunAction, Session, WindowAction};
 
-/// Least and largest width of the panel (points), and the share of a window's width between them.
+/// Smallest and largest width of the panel (points), and its share of the window's width between
+/// them.
 const WIDTH: (f32, f32, f32) = (304.0, 460.0, 0.2);
-/// Width of a window that has room for a picture beside the panel (points). In a narrower one the
-/// panel covers the picture, until it is closed.
-const BESIDE: f32 = 480.0;
+/// Smallest width of a window with the panel beside the picture (points). In a narrower one, the
+/// panel covers the picture.
+const MIN_WIDTH_BESIDE: f32 = 480.0;
 /// Distance of the rows from the edges of the panel (points).
 pub(super) const MARGIN: f32 = 14.0;
 /// Height of the title (points).
-const HEAD: f32 = 36.0;
-/// Height of the button and its margins (points).
-const FOOT: f32 = 46.0;
+const TITLE_HEIGHT: f32 = 36.0;
+/// Height of the buttons and their margins (points).
+const BUTTONS_HEIGHT: f32 = 46.0;
 /// Distance between groups of rows (points).
-const GAP: f32 = 7.0;
+const GROUP_GAP: f32 = 7.0;
 
-/// Width of the panel in a window of that width (points).
+/// Returns the width of the panel in a window of a width (points).
 pub(super) fn width(window: f32) -> f32 {
     let (least, most, share) = WIDTH;
-    if window < BESIDE {
+    if window < MIN_WIDTH_BESIDE {
         window
     } else {
         (share * window).round().clamp(least, most)
     }
 }
 
-/// Size that the panel leaves of a window of `size` (px) at `scale` pixels per point.
-pub fn leaves(session: &Session, size: (u32, u32), scale: f32) -> (u32, u32) {
+/// Returns the size (px) of the picture beside the panel, in a window of `size` (px) at `scale`
+/// pixels per point.
+pub fn picture_size(session: &Session, size: (u32, u32), scale: f32) -> (u32, u32) {
     if !is_shown(session) {
         return size;
     }
     let window = size.0 as f32 / scale;
-    if window < BESIDE {
+    if window < MIN_WIDTH_BESIDE {
         return size;
     }
     let taken = (width(window) * scale).round() as u32;
     (size.0.saturating_sub(taken).max(1), size.1)
 }
 
-/// Width on the right that text must keep clear of (points).
+/// Returns the width on the right that is not available to text (points).
 pub fn inset(session: &Session, size: (u32, u32), scale: f32) -> f32 {
-    (size.0 - leaves(session, size, scale).0) as f32 / scale
+    (size.0 - picture_size(session, size, scale).0) as f32 / scale
 }
 
-/// Draws the panel, if it is shown, and returns what the mouse asks for.
+/// Draws the panel, if it is visible, and returns the request of the mouse.
 pub fn show(ctx: &Context, session: &Session) -> Option<Request> {
     if !is_shown(session) {
         return None;
@@ -71,18 +73,18 @@ pub fn show(ctx: &Context, session: &Session) -> Option<Request> {
             ui.painter()
                 .vline(rect.left(), rect.y_range(), Stroke::new(1.0, row::EDGE));
             let inner = rect.shrink2(vec2(MARGIN, 0.0));
-            head(ui, inner, session);
+            title(ui, inner, session);
             let rows = rows(session);
             let chosen = rows.iter().rposition(|(k, ..)| *k <= session.panel.row);
             let chosen = chosen.unwrap_or(0);
-            // In a low window there are as many rows as fit, the chosen one among them.
-            let room = inner.bottom() - FOOT - (inner.top() + HEAD);
+            // In a low window, draw as many rows as fit, including the chosen one.
+            let room = inner.bottom() - BUTTONS_HEIGHT - (inner.top() + TITLE_HEIGHT);
             let fit = ((room / row::HEIGHT) as usize).max(1);
-            let gap = if fit > rows.len() { GAP } else { 0.0 };
+            let gap = if fit > rows.len() { GROUP_GAP } else { 0.0 };
             let first = (chosen + 1).saturating_sub(fit);
-            let mut top = inner.top() + HEAD;
+            let mut top = inner.top() + TITLE_HEIGHT;
             for (n, (k, knob, dial)) in rows.iter().enumerate().skip(first).take(fit) {
-                if knob.apart && n > first {
+                if knob.starts_group && n > first {
                     top += gap;
                 }
                 let place =
@@ -97,10 +99,10 @@ pub fn show(ctx: &Context, session: &Session) -> Option<Request> {
                 request = row.show(ui, place).map(Request::Change).or(request);
                 top += row::HEIGHT;
             }
-            request = foot(ui, inner, session).or(request);
+            request = buttons(ui, inner, session).or(request);
             let room = Rect::from_min_max(
                 pos2(inner.left(), top + 12.0),
-                pos2(inner.right(), inner.bottom() - FOOT),
+                pos2(inner.right(), inner.bottom() - BUTTONS_HEIGHT),
             );
             let pane = &session.runs.panes[request::pane(session)];
             let pointer = ui.ctx().pointer_latest_pos();
@@ -110,7 +112,7 @@ pub fn show(ctx: &Context, session: &Session) -> Option<Request> {
 }
 
 /// Draws the title.
-fn head(ui: &egui::Ui, inner: Rect, session: &Session) {
+fn title(ui: &egui::Ui, inner: Rect, session: &Session) {
     let painter = ui.painter();
     let line = inner.top() + 19.0;
     let words = match session.runs.panes.len() {
@@ -138,10 +140,10 @@ fn head(ui: &egui::Ui, inner: Rect, session: &Session) {
     );
 }
 
-/// Draws the buttons: they write a scene file and the plots, film from now on, and film the last
-/// seconds.
-fn foot(ui: &egui::Ui, inner: Rect, session: &Session) -> Option<Request> {
-    let last = format!("last {} s", session.panel.film_of);
+/// Draws the buttons: write a scene file, write the plots, start or stop a live film, and film the
+/// last seconds.
+fn buttons(ui: &egui::Ui, inner: Rect, session: &Session) -> Option<Request> {
+    let last = format!("last {} s", session.panel.film_seconds);
     let live = session.readings.film.as_ref().is_some_and(|film| film.live);
     let record = if live { "stop" } else { "film" };
     let buttons = [
@@ -156,7 +158,7 @@ fn foot(ui: &egui::Ui, inner: Rect, session: &Session) -> Option<Request> {
     for (k, (words, key, action)) in buttons.into_iter().enumerate() {
         let left = inner.left() + k as f32 * (width + gap);
         let rect = Rect::from_min_max(
-            pos2(left, inner.bottom() - FOOT + 8.0),
+            pos2(left, inner.bottom() - BUTTONS_HEIGHT + 8.0),
             pos2(left + width, inner.bottom() - 10.0),
         );
         let response = ui.interact(rect, Id::unique(("button", k)), Sense::click());

@@ -1,4 +1,4 @@
-//! The drawing of the panel: which rows the mouse turns.
+//! Drawing of the panel, and turning its rows with the mouse.
 
 use egui::vec2;
 
@@ -6,13 +6,13 @@ use super::opened::{changed, dials, every_scene, opened};
 use super::screen::Screen;
 use crate::window::hud::panel::dial::DialScale;
 use crate::window::hud::panel::request::rows;
-use crate::window::hud::panel::view::{leaves, width};
+use crate::window::hud::panel::view::{picture_size, width};
 use crate::window::session::RunAction;
 
 const SIZES: [[f32; 2]; 2] = [[1280.0, 720.0], [800.0, 600.0]];
 
 #[test]
-fn the_mouse_turns_every_row_and_that_only() {
+fn the_mouse_turns_every_row_and_only_that() {
     for mut session in every_scene() {
         let name = session.runs.first().scene().name.clone();
         let mut screen = Screen::new(SIZES[0]);
@@ -27,7 +27,7 @@ fn the_mouse_turns_every_row_and_that_only() {
                     let now = (knob.read)(&session, 0).unwrap();
                     let share = now.scale.share(now.value);
                     let expected = f64::from(80.0 / (high.x - low.x));
-                    // From the middle of the thumb, and to a whole number.
+                    // The drag starts at the middle of the thumb, and values are rounded.
                     assert!(
                         (share - expected).abs() < 0.3,
                         "{} of {name}: {share}",
@@ -39,7 +39,7 @@ fn the_mouse_turns_every_row_and_that_only() {
             now.retain(|other| knob.name != "solver" || *other != "step");
             assert_eq!(now, [knob.name], "of {name}");
             assert_eq!(session.panel.row, k);
-            // Twice on the value brings the scene's own back.
+            // A double click on the value restores the scene's own.
             if !matches!(dial.scale, DialScale::Choice(_)) {
                 screen.time += 1.0;
                 screen.click(&mut session, value, value);
@@ -51,9 +51,9 @@ fn the_mouse_turns_every_row_and_that_only() {
     }
 }
 
-/// With all its plots, beside one pane and beside four.
+/// The panel has all its plots, beside one pane and beside four.
 #[test]
-fn nothing_is_cut_or_overlaps() {
+fn nothing_is_cut_off_or_overlaps() {
     let compared = |scene| opened(&["compare", "e:0.0005", "x", "b", "n", "--scene", scene]);
     let several = ["mit-sphere", "simple"].map(compared);
     let mut screens = SIZES.map(Screen::new);
@@ -85,9 +85,9 @@ fn nothing_is_cut_or_overlaps() {
     }
 }
 
-/// However low the window, the row that keys turn is seen.
+/// The chosen row is visible in a low window.
 #[test]
-fn the_chosen_row_is_seen() {
+fn the_chosen_row_is_visible() {
     let mut session = opened(&["r", "0.005"]);
     let mut screen = Screen::new([500.0, 200.0]);
     for (k, knob, _) in rows(&session) {
@@ -104,12 +104,12 @@ fn the_chosen_row_is_seen() {
 }
 
 #[test]
-fn the_help_stands_alone() {
+fn the_help_hides_the_panel() {
     let mut session = opened(&["r", "0.005"]);
-    assert_eq!(leaves(&session, (1280, 720), 1.0), (976, 720));
-    assert_eq!(leaves(&session, (2560, 1440), 2.0), (1952, 1440));
+    assert_eq!(picture_size(&session, (1280, 720), 1.0), (976, 720));
+    assert_eq!(picture_size(&session, (2560, 1440), 2.0), (1952, 1440));
     session.act(RunAction::Help, 0);
-    assert_eq!(leaves(&session, (1280, 720), 1.0), (1280, 720));
+    assert_eq!(picture_size(&session, (1280, 720), 1.0), (1280, 720));
     assert!(
         !Screen::new(SIZES[0])
             .read(&session)

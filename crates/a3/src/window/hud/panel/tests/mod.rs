@@ -1,4 +1,4 @@
-//! Tests of the panel, by keys and by the mouse in a window without a screen.
+//! Tests of the panel by keys and mouse, without a display.
 
 mod drawing;
 mod opened;

@@ -1,4 +1,4 @@
-//! Sessions whose panel is open, and what its rows say.
+//! Sessions with an open panel, and the values of its rows.
 
 use crate::window::hud::panel::request::{PanelKey, press, rows};
 use crate::window::session::{RunAction, Session, session};
@@ -9,7 +9,7 @@ pub fn opened(words: &[&str]) -> Session {
     session
 }
 
-/// Every scene of the table, in a window with its panel.
+/// Returns a session with an open panel for every built-in scene.
 pub fn every_scene() -> impl Iterator<Item = Session> {
     let names = a3_scenes::SCENES.iter().map(|entry| entry.name);
     names.map(|name| opened(&["r", "0.005", "--scene", name]))
@@ -19,14 +19,15 @@ pub fn type_key(session: &mut Session, key: PanelKey, shift: bool) {
     assert!(press(session, key, shift), "{key:?}");
 }
 
-/// What all rows say.
+/// Returns the names and values of all rows.
 pub fn dials(session: &Session) -> Vec<(&'static str, f64)> {
     let rows = rows(session).into_iter();
     rows.map(|(_, knob, dial)| (knob.name, dial.value))
         .collect()
 }
 
-/// Those that differ. The scale of colours is there while there are colours.
+/// Returns the names of the rows that differ, except the colour scale, which exists only with
+/// colours.
 pub fn changed(before: &[(&'static str, f64)], session: &Session) -> Vec<&'static str> {
     let always = |row: &&(&'static str, f64)| row.0 != "full colour";
     let after = dials(session);

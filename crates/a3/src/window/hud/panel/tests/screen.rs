@@ -1,4 +1,4 @@
-//! A window as egui sees it.
+//! A window of egui without a display.
 
 use egui::{Context, Event, PointerButton, Pos2, RawInput, Rect, Shape, pos2};
 
@@ -7,7 +7,7 @@ use crate::window::hud::panel::view::{MARGIN, inset, show, width};
 use crate::window::hud::{style, text};
 use crate::window::session::Session;
 
-/// A window, as egui sees it.
+/// A window of egui without a display.
 pub struct Screen {
     ctx: Context,
     pub size: [f32; 2],
@@ -23,7 +23,7 @@ impl Screen {
         }
     }
 
-    /// A frame: what was drawn, and what the hand in the panel wants.
+    /// Runs a frame, and returns the drawing and the request of the mouse.
     pub fn frame(
         &mut self,
         session: &Session,
@@ -52,7 +52,7 @@ impl Screen {
         (output, request)
     }
 
-    /// All that is written, where, and what is seen of it.
+    /// Returns all text, with its rectangle and the visible part of the screen.
     pub fn written(&mut self, session: &Session) -> Vec<(String, Rect, Rect)> {
         self.frame(session, vec![]);
         self.time += 10.0;
@@ -69,7 +69,7 @@ impl Screen {
         output.shapes.iter().filter_map(text).collect()
     }
 
-    /// All that is written, and where. Nothing may be cut off.
+    /// Returns all text with its rectangles. Nothing may be cut off.
     pub fn read(&mut self, session: &Session) -> Vec<(String, Rect)> {
         let all = self.written(session).into_iter();
         all.map(|(words, rect, seen)| {
@@ -79,8 +79,8 @@ impl Screen {
         .collect()
     }
 
-    /// Presses and lets go of the left button at one place, or from one to another: what that does
-    /// to the session.
+    /// Drags the left button from one position to another, or clicks if they are the same, and
+    /// applies the requests to the session.
     pub fn click(&mut self, session: &mut Session, from: Pos2, to: Pos2) {
         let button = |pos, pressed| Event::PointerButton {
             pos,
@@ -101,7 +101,7 @@ impl Screen {
         }
     }
 
-    /// Where a row's value is, and its slider's ends.
+    /// Returns the position of a row's value, and the ends of its slider.
     pub fn place(&mut self, session: &Session, name: &str) -> (Pos2, [Pos2; 2]) {
         let texts = self.read(session);
         let left = self.size[0] - width(self.size[0]);

@@ -1,4 +1,4 @@
-//! Turning knobs by keys and typed numbers, and undoing it.
+//! Turning knobs by keys and typed numbers, with undo and redo.
 
 use a3_core::contact::Shape;
 use a3_core::{Control, Network, Path, Vector3};
@@ -12,7 +12,7 @@ use crate::window::hud::panel::undo;
 use crate::window::session::{RunAction, Session, TextKey, compared};
 
 #[test]
-fn keys_reach_every_row_and_turn_that_only() {
+fn keys_reach_every_row_and_turn_only_that() {
     for mut session in every_scene() {
         let name = session.runs.first().scene().name.clone();
         let count = dials(&session).len();
@@ -21,11 +21,11 @@ fn keys_reach_every_row_and_turn_that_only() {
             type_key(&mut session, PanelKey::Right, false);
             let mut now = changed(&before, &session);
             if now.is_empty() {
-                // It was at its end.
+                // The value was at the end of its scale.
                 type_key(&mut session, PanelKey::Left, false);
                 now = changed(&before, &session);
             }
-            // Another solver may take a tolerance.
+            // Another solver may take a tolerance instead of a step.
             now.retain(|other| row != "solver" || *other != "step");
             assert_eq!(now, [row], "row {k} of {name}");
             type_key(&mut session, PanelKey::Toggle, false);
@@ -41,15 +41,15 @@ fn keys_reach_every_row_and_turn_that_only() {
         );
         type_key(&mut session, PanelKey::Up, false);
         assert_eq!(rows(&session)[count - 1].0, session.panel.row);
-        // A closed panel takes no keys.
+        // A closed panel ignores keys.
         session.act(RunAction::Panel, 0);
         assert!(!press(&mut session, PanelKey::Up, false));
     }
 }
 
-/// Turned away and back, the forces are the same bits as before; turned away they are others.
+/// A turned knob changes the forces; turned back, they are the same to the bit.
 #[test]
-fn what_is_turned_acts_and_what_is_turned_back_leaves_no_trace() {
+fn a_turn_changes_forces_and_turning_back_restores_them() {
     let forces = |session: &Session| {
         let run = session.runs.first();
         let mut f = vec![0.0; run.state().len()];
@@ -71,7 +71,7 @@ fn what_is_turned_acts_and_what_is_turned_back_leaves_no_trace() {
     ] {
         turn(&mut session, name, Turn::To(value));
         assert_ne!(forces(&session), before, "{name}");
-        // What a reset goes back to is tuned too.
+        // A reset keeps the tuning.
         session.act(RunAction::Reset, 0);
         let k = KNOBS.iter().find(|knob| knob.name == name).unwrap();
         assert_eq!((k.read)(&session, 0).unwrap().value, value);
@@ -167,7 +167,7 @@ fn every_pane_and_the_reference_are_tuned_alike() {
         let error = pane.error.unwrap();
         assert!(error < 1e-3, "{error}");
     }
-    // The step is that of one pane.
+    // The step belongs to one pane.
     session.panel.pane = 1;
     apply(&mut session, PanelRequest::Turn(1, Turn::To(0.002)));
     assert_eq!(session.runs.first().control(), Control::Step(0.005));
@@ -178,7 +178,7 @@ fn every_pane_and_the_reference_are_tuned_alike() {
 }
 
 #[test]
-fn turning_goes_by_rungs_and_stays_within() {
+fn turning_goes_by_steps_within_the_scale() {
     let mut session = opened(&["r", "0.01", "--scene", "cloth"]);
     let value = |session: &Session, name: &str| {
         let all = dials(session);
@@ -220,9 +220,9 @@ fn values_are_typed() {
         for letter in words.chars() {
             assert!(press_text(session, TextKey::Type(letter)));
         }
-        press_text(session, TextKey::Take);
+        press_text(session, TextKey::Accept);
         let typing = session.panel.typed.is_some();
-        press_text(session, TextKey::Close);
+        press_text(session, TextKey::Cancel);
         assert!(!press_text(session, TextKey::Type('1')));
         typing
     };
@@ -236,7 +236,7 @@ fn values_are_typed() {
     assert_eq!(gravity.unwrap().y, -3.21);
     assert!(!type_value(&mut session, "step", "1/120"));
     assert_eq!(session.runs.first().control(), Control::Step(1.0 / 120.0));
-    // Numbers that cannot be are refused, and may be mended.
+    // Invalid values are refused, and can be corrected.
     for (words, why) in [
         ("1,5", "stiffness: use a decimal point: 1.5"),
         ("much", "stiffness: must be a number from 0.1 to 10"),
@@ -251,11 +251,11 @@ fn values_are_typed() {
 }
 
 #[test]
-fn turns_are_undone_and_done_again() {
+fn turns_are_undone_and_redone() {
     for mut session in every_scene() {
         let name = session.runs.first().scene().name.clone();
         for (row, _, dial) in rows(&session) {
-            // A solver that takes a tolerance has another step.
+            // Another solver may take a tolerance instead of a step, and does not restore it.
             if ["solver", "step"].contains(&KNOBS[row].name) {
                 continue;
             }
