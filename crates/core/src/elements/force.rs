@@ -1,7 +1,5 @@
 //! The interface of the forces of a network.
 
-use std::any::Any;
-
 use nalgebra::Vector3;
 
 use crate::coupling::{Coupling, Diagonal, Matrix};
@@ -60,7 +58,7 @@ pub(crate) const ASSEMBLY: f64 = 4.0;
 
 /// A force of a network: its values, its differential, and its properties. Matrices of positions,
 /// velocities and forces are n x 3, column-major; forces are in N.
-pub(crate) trait Force: Any {
+pub(crate) trait Force {
     /// Returns the name in lists of forces.
     fn name(&self) -> &'static str;
 

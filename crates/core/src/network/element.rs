@@ -33,6 +33,21 @@ macro_rules! elements {
                 }
             }
 
+            /// Returns the force as one of type T, if it is one: a comparison of variants, once
+            /// compiled.
+            pub(crate) fn get<T: Any>(&self) -> Option<&T> {
+                match self {
+                    $(Self::$name(element) => (element as &dyn Any).downcast_ref(),)*
+                }
+            }
+
+            /// Returns the force as one of type T, to be changed, if it is one.
+            pub(crate) fn get_mut<T: Any>(&mut self) -> Option<&mut T> {
+                match self {
+                    $(Self::$name(element) => (element as &mut dyn Any).downcast_mut(),)*
+                }
+            }
+
             /// Returns the position of the element's type in the table, which is the order of
             /// summation.
             pub(crate) fn rank(&self) -> u8 {
@@ -80,18 +95,6 @@ elements! {
 }
 
 impl Element {
-    /// Returns the force as one of type T, if it is one.
-    pub(crate) fn get<T: Force>(&self) -> Option<&T> {
-        let force: &dyn Any = self.force();
-        force.downcast_ref()
-    }
-
-    /// Returns the force as one of type T, to be changed, if it is one.
-    pub(crate) fn get_mut<T: Force>(&mut self) -> Option<&mut T> {
-        let force: &mut dyn Any = self.force_mut();
-        force.downcast_mut()
-    }
-
     /// Whether the force is elastic: springs or a solid.
     pub(crate) fn is_elastic(&self) -> bool {
         matches!(

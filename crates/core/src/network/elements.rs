@@ -1,5 +1,6 @@
 //! Elements of a network: the forces that a scene asks for, in the order of the table.
 
+use std::any::Any;
 use std::ops::Range;
 
 use nalgebra::Vector3;
@@ -89,7 +90,7 @@ impl Elements {
     }
 
     /// Removes all elements of type T, and adds one in their place.
-    pub fn replace_all<T: Force + Into<Element>>(&mut self, by: Option<T>) {
+    pub fn replace_all<T: Any + Into<Element>>(&mut self, by: Option<T>) {
         let is = |element: &Element| element.get::<T>().is_some();
         self.replace(is, by.map(Into::into));
     }
@@ -124,12 +125,12 @@ impl Elements {
     }
 
     /// Returns the elements of type T.
-    pub fn of<T: Force>(&self) -> impl Iterator<Item = &T> + Clone {
+    pub fn of<T: Any>(&self) -> impl Iterator<Item = &T> + Clone {
         self.all.iter().filter_map(Element::get)
     }
 
     /// Returns the first element of type T, to be changed.
-    pub fn first_mut<T: Force>(&mut self) -> Option<&mut T> {
+    pub fn first_mut<T: Any>(&mut self) -> Option<&mut T> {
         self.all.iter_mut().find_map(Element::get_mut)
     }
 
@@ -288,7 +289,7 @@ impl Elements {
     pub fn assembly(&self) -> f64 {
         let price = self.sum_of(|force| force.cost().price);
         if price > 0.0 {
-            self.sum_of(Force::assembly) / price
+            self.sum_of(|force| force.assembly()) / price
         } else {
             ASSEMBLY
         }
