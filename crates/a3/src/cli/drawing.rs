@@ -19,7 +19,7 @@ pub struct Drawing {
     /// Draw in parallel projection instead of perspective
     #[arg(long)]
     pub orthographic: bool,
-    /// Draw light things on a dark background
+    /// Draw light objects on a dark background
     #[arg(long)]
     pub dark: bool,
     /// Colour each particle by a quantity
@@ -31,7 +31,7 @@ pub struct Drawing {
 }
 
 impl Drawing {
-    /// With the springs of one particle highlighted, or of none.
+    /// Returns the look of a picture, with the springs of a particle highlighted, if one is given.
     pub fn of(self, springs_of: Option<usize>) -> Manner {
         Manner {
             style: match (self.wireframe, self.springs) {

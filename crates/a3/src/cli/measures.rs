@@ -23,13 +23,13 @@ pub enum ErrorMeasure {
     Impact,
 }
 
-/// Where errors are taken.
+/// Particles and times at which errors are taken.
 #[derive(Args)]
 pub struct ErrorScope {
     /// Take the errors of position and phase from particle I alone
     #[arg(long, value_name = "I", value_parser = particle, allow_negative_numbers = true)]
     pub particle: Option<usize>,
-    /// Take the error at the end, instead of the largest one on the way
+    /// Take the error at the end, instead of the largest one during the run
     #[arg(long)]
     pub at_end: bool,
 }

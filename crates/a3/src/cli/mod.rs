@@ -22,7 +22,9 @@ mod window;
 
 pub use chart::Chart;
 pub use choose::Choose;
-pub use command::{Cli, Command, LESSONS};
+#[cfg(test)]
+pub use command::LESSONS;
+pub use command::{Cli, Command};
 #[cfg(feature = "window")]
 pub use drawing::Drawing;
 pub use explain::explain;
