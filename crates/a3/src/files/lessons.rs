@@ -1,4 +1,4 @@
-//! The lessons of the folder `lessons`, carried in the program, so that they can be read wherever
+//! The lessons of the folder `lessons`, embedded in the program, so that they can be read wherever
 //! it is installed: opened from the window, or printed.
 
 use std::path::{Path, PathBuf};
@@ -35,7 +35,7 @@ static FILES: &[(&str, &[u8])] = carried![
     "pictures/stiff.png",
 ];
 
-/// What opens a file with the program that the user has chosen for it.
+/// Command that opens a file with the user's program for it.
 const OPENER: &str = if cfg!(target_os = "macos") {
     "open"
 } else if cfg!(windows) {
@@ -50,14 +50,15 @@ pub fn print(lesson: Option<u8>) -> Result<(), Failure> {
     terminal::send(&String::from_utf8_lossy(text))
 }
 
-/// Writes the lessons where the user's programs find them, opens the index, and says so.
+/// Writes the lessons to the user's cache folder, opens the index, and returns a message that says
+/// so.
 pub fn open() -> Result<String, Failure> {
     let folder = folder();
     write(&folder)?;
     Ok(open_with(OPENER, &folder.join(FILES[0].0)))
 }
 
-/// The user's folder for files that can be made again.
+/// Returns the folder of the lessons in the user's cache folder.
 fn folder() -> PathBuf {
     let named = |name| env::var_os(name).map(PathBuf::from);
     let absolute = |path: &PathBuf| path.is_absolute();
@@ -74,7 +75,7 @@ fn folder() -> PathBuf {
         .join("lessons")
 }
 
-/// Writes those files that are not there as they should be.
+/// Writes the files that are missing or differ.
 fn write(folder: &Path) -> Result<(), Failure> {
     for (name, bytes) in FILES {
         let path = folder.join(name);
@@ -90,7 +91,8 @@ fn write(folder: &Path) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Opens a file with a program that is not waited for, and says what was opened or where it is.
+/// Opens a file with a program, without waiting for it, and returns a message that says what was
+/// opened, or where the file is.
 fn open_with(opener: &str, path: &Path) -> String {
     let child = Command::new(opener)
         .arg(path)
@@ -101,7 +103,7 @@ fn open_with(opener: &str, path: &Path) -> String {
     let path = path.display();
     match child {
         Ok(mut child) => {
-            // Whoever starts a program has to ask how it ended.
+            // A child process stays as a zombie until it is waited for.
             thread::spawn(move || child.wait());
             format!("opened {path}")
         }
