@@ -121,7 +121,9 @@ fn the_map_of_the_architecture_is_the_territory() {
         named.extend(paths.map(|path| PathBuf::from(path.trim_end_matches('/'))));
     }
     let root = Path::new(ROOT).canonicalize().unwrap();
-    let strangers: Vec<_> = named.iter().filter(|path| !root.join(path).is_dir())
+    let strangers: Vec<_> = named
+        .iter()
+        .filter(|path| !root.join(path).is_dir())
         .collect();
     assert!(
         strangers.is_empty(),

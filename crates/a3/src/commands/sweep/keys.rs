@@ -7,8 +7,8 @@ use serde_json::{Map, Value};
 
 use super::values::is_range;
 
-/// The paths of tables of keys, with what they are to be: a table that is no range is a part of a
-/// path.
+/// Returns the paths of all keys in nested tables, with their values. A table is a range if it has
+/// the keys of one; the name of any other table is a part of the path.
 pub fn flat(keys: &BTreeMap<String, Value>) -> Vec<(String, Value)> {
     let mut all = vec![];
     for (name, value) in keys {
@@ -28,7 +28,7 @@ fn flatten(path: String, value: &Value, all: &mut Vec<(String, Value)>) {
     }
 }
 
-/// Gives the key at a path a value.
+/// Sets the value of the key at a path.
 pub fn set(at: &mut Value, path: &str, value: &Value) -> Result<(), String> {
     let (first, rest) = match path.split_once('.') {
         Some((first, rest)) => (first, Some(rest)),
