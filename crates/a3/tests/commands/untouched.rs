@@ -1,4 +1,5 @@
-//! What is not the program's own is left alone, and what it cannot read is refused by its name.
+//! Files that are not the program's own are left alone, and files that it cannot read are refused
+//! by name.
 
 use std::fs::{self, File};
 use std::io::Write;
@@ -19,7 +20,7 @@ fn write(folder: &Path, name: &str, content: impl AsRef<[u8]>) {
     fs::write(folder.join(name), content).unwrap();
 }
 
-/// The file of a run that is a link is not followed.
+/// A link in the place of a run's file is not followed.
 #[test]
 fn runs_of_a_sweep_replace_no_end_of_a_link() {
     let folder = tempfile::tempdir().unwrap();
@@ -43,7 +44,7 @@ fn runs_of_a_sweep_replace_no_end_of_a_link() {
     }
 }
 
-/// Names show all their signs in a plan, and each run has one line.
+/// A plan shows names with escapes, and has one line for each run.
 #[test]
 fn names_in_a_plan_move_no_cursor() {
     let folder = tempfile::tempdir().unwrap();

@@ -1,4 +1,4 @@
-//! The program as it is typed, in a folder of its own.
+//! Runs of the program in a folder of their own.
 
 #![allow(dead_code, reason = "not every test needs all of it")]
 
@@ -32,7 +32,7 @@ pin = [
 ]
 "#;
 
-/// Without a display.
+/// Returns the command of the program without a display.
 pub fn command(folder: &Path, words: &[&str]) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_a3"));
     command
@@ -44,7 +44,7 @@ pub fn command(folder: &Path, words: &[&str]) -> Command {
         .env_remove("DISPLAY")
         .env_remove("WAYLAND_DISPLAY")
         .env_remove("WAYLAND_SOCKET")
-        // A folder for the libraries that complain when there is none.
+        // Some libraries print a warning without this folder.
         .env("XDG_RUNTIME_DIR", folder);
     command
 }
@@ -57,7 +57,7 @@ pub fn text(bytes: &[u8]) -> &str {
     std::str::from_utf8(bytes).unwrap()
 }
 
-/// The state that the program writes to standard output.
+/// Returns the state that the program writes to standard output.
 pub fn simulate(folder: &Path, words: &[&str]) -> Value {
     let words = [&["simulate"], words, &["--output", "-"]].concat();
     let output = a3(folder, &words);
@@ -65,7 +65,7 @@ pub fn simulate(folder: &Path, words: &[&str]) -> Value {
     serde_json::from_slice(&output.stdout).unwrap()
 }
 
-/// The line on stderr, of a program that left with `code` and said nothing else.
+/// Returns the line on stderr of a program that ended with `code` and printed nothing else.
 pub fn complaint(output: &Output, code: i32) -> String {
     let stderr = text(&output.stderr);
     assert_eq!(output.status.code(), Some(code), "{stderr}");
@@ -74,17 +74,17 @@ pub fn complaint(output: &Output, code: i32) -> String {
     stderr.trim_end().to_owned()
 }
 
-/// Says loudly what is not tested, unless that variable says that it has to be.
+/// Reports a test that is skipped; fails if an environment variable demands it.
 pub fn skip(why: &str, required: &str) {
     assert!(
         std::env::var_os(required).is_none(),
         "{required} is set: {why}"
     );
-    // Past the test runner, which keeps what a passing test prints.
+    // Written directly, because the test runner hides the output of passing tests.
     let _ = writeln!(std::io::stderr(), "SKIPPED, NOT TESTED: {why}");
 }
 
-/// Whether there is no adapter to draw with.
+/// Returns whether there is no adapter to draw with.
 pub fn gpu_is_missing(output: &Output) -> bool {
     let stderr = text(&output.stderr);
     let missing = stderr.contains("mesa-vulkan-drivers");
@@ -94,7 +94,7 @@ pub fn gpu_is_missing(output: &Output) -> bool {
     missing
 }
 
-/// Whether that program is not here: one of those that check what others wrote.
+/// Returns whether an external program that checks files is not installed.
 pub fn is_missing(program: &str) -> bool {
     let found = Command::new(program)
         .arg("-version")
@@ -109,7 +109,7 @@ pub fn is_missing(program: &str) -> bool {
     missing
 }
 
-/// What another program says of a file, which it must find well.
+/// Returns the output of an external program about a file, which it must accept.
 pub fn asked(folder: &Path, program: &str, words: &[&str]) -> String {
     let output = Command::new(program)
         .args(words)
