@@ -42,7 +42,7 @@ const EXAMPLES: &str = "Examples:
 This a3 was built without its window and without the commands that draw scenes.";
 
 /// Simulate cloth and other mass-spring systems, and measure how fast and how accurate each
-/// integrator is.
+/// solver is.
 #[derive(Parser)]
 #[command(name = "a3", version, max_term_width = 100)]
 #[cfg_attr(feature = "window", command(args_conflicts_with_subcommands = true))]
