@@ -135,7 +135,7 @@ impl<'a> Trials<'a> {
 /// Rounds a number down to one digit.
 fn rounded(most: f64) -> f64 {
     let unit = 10f64.powi(most.log10().floor() as i32);
-    // The shortest decimal that gives the number.
+    // Printing and reading removes the rounding error.
     let digits = (most / unit + 1e-9).floor() * unit;
     format!("{digits:.0e}").parse().unwrap_or(digits)
 }

@@ -1,11 +1,11 @@
-//! The options for how a scene is drawn.
+//! The options for the look of a picture.
 
 use a3_render::Style;
 use clap::Args;
 
 use crate::draw::show::{Arrows, Manner, Quantity};
 
-/// How a scene is drawn.
+/// Options for the look of a picture.
 #[expect(clippy::struct_excessive_bools, reason = "each is an option")]
 #[derive(Args, Clone, Copy)]
 pub struct Drawing {

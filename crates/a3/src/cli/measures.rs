@@ -1,10 +1,10 @@
-//! What counts as the error and as the cost of a run.
+//! The measures of the error and of the cost of a run.
 
 use clap::{Args, ValueEnum};
 
 use super::values::particle;
 
-/// What counts as the error.
+/// Measure of the error.
 #[derive(Clone, Copy, ValueEnum, PartialEq)]
 pub enum ErrorMeasure {
     /// Positions, root mean square over the particles (m)
@@ -34,7 +34,7 @@ pub struct ErrorScope {
     pub at_end: bool,
 }
 
-/// What counts as the cost.
+/// Measure of the cost.
 #[derive(Clone, Copy, ValueEnum, PartialEq)]
 pub enum WorkMeasure {
     /// Computing time on this machine

@@ -36,7 +36,7 @@ pub struct WindowOptions {
     pub resume: Option<PathBuf>,
 }
 
-/// The first state of a window.
+/// Options for the start of a window.
 #[derive(Args)]
 pub struct Look {
     #[command(flatten)]

@@ -108,7 +108,7 @@ fn open_with(opener: &str, path: &Path) -> String {
             format!("opened {path}")
         }
         Err(_) => {
-            format!("The lessons are in {path}; {opener}, which would open them, is not here.")
+            format!("The lessons are in {path}; {opener}, which would open them, is not installed.")
         }
     }
 }
@@ -153,7 +153,7 @@ mod tests {
     #[test]
     fn where_nothing_opens_them_it_says_where_they_are() {
         let said = open_with("no-such-opener", Path::new("/some/README.md"));
-        for word in ["/some/README.md", "no-such-opener", "not here"] {
+        for word in ["/some/README.md", "no-such-opener", "not installed"] {
             assert!(said.contains(word), "{said}");
         }
     }

@@ -55,7 +55,8 @@ fn pictures_without_a_window() {
     assert!(text(&output.stderr).contains("99999x99999"));
 }
 
-/// The panes of a picture that differ from the first, pixel by pixel, below the text.
+/// Solvers are compared in panes side by side, with their errors as text and the trails of their
+/// particles.
 #[test]
 fn methods_side_by_side() {
     let folder = tempfile::tempdir().unwrap();

@@ -144,7 +144,7 @@ fn a_run_is_ended_within_a_long_step() {
     assert_eq!(names(folder.path()), [""; 0]);
 }
 
-/// What `kill -9` leaves behind is deleted by the next run, and only that.
+/// The next run deletes the temporary file of a run that `kill -9` ended, and nothing else.
 #[test]
 fn the_next_run_sweeps_what_a_killed_one_left() {
     let folder = tempfile::tempdir().unwrap();

@@ -104,11 +104,11 @@ impl Folder {
         match (others.len(), version) {
             (0, _) => {}
             (count, Some(version)) => terminal::warn(&format!(
-                "warning: {folder} has {count} other runs, of a3 {version}, which this a3 {VERSION} leaves as they are: \
+                "warning: {folder} has {count} other runs, of a3 {version}, which this a3 {VERSION} leaves alone: \
                  give another --output to keep them apart"
             )),
             (count, None) => terminal::warn(&format!(
-                "warning: {folder} has {count} other runs, which the sweep as it is now leaves as they are"
+                "warning: {folder} has {count} other runs, which do not belong to the present sweep and are left alone"
             )),
         }
     }

@@ -65,7 +65,7 @@ impl Parts {
         &self.kinds
     }
 
-    /// Gives each particle of a body its look.
+    /// Sets the look of each particle of a body.
     pub fn paint(&self, points: &mut [[f32; 4]]) {
         let mut start = 0;
         for (look, &end) in self.looks.iter().zip(&self.presentation.surface.bodies) {

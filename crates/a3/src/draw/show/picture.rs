@@ -23,7 +23,7 @@ use super::{bodies, obstacles, view, wires};
 /// of them are drawn as lines and small balls, because a coil has 170 lines.
 const MAX_COILS: usize = 60;
 
-/// How a run is shown, and the buffers of its picture.
+/// The view of a run: its options, and the buffers of its picture.
 #[derive(Clone)]
 pub struct Show {
     /// Presentation of the scene: its surface, camera and trail.
@@ -38,7 +38,7 @@ pub struct Show {
     pub field: Field,
     /// Whether floor and background are left out.
     pub transparent: bool,
-    /// Whether the background is dark, and text light.
+    /// Whether the background is dark and text is light.
     pub dark: bool,
     /// Whether the scene is first seen in an orthographic projection.
     orthographic: bool,

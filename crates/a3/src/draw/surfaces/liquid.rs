@@ -1,7 +1,7 @@
-//! The surface of a fluid: where a field that is the sum of a bump around each particle has a fixed
-//! value. It is meshed by naive surface nets: a vertex in each cell of a grid through which the
-//! surface passes, and two triangles across each edge of the grid that it cuts (Gibson,
-//! *Constrained elastic surface nets*, 1998).
+//! The surface of a fluid: an isosurface of a field, the sum of a bump around each particle. It is
+//! meshed by naive surface nets: a vertex in each cell of a grid through which the surface passes,
+//! and two triangles across each edge of the grid that it cuts (Gibson, *Constrained elastic
+//! surface nets*, 1998).
 
 use a3_core::Simulation;
 

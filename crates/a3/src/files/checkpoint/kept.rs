@@ -1,5 +1,7 @@
-//! A run as it is saved in a file. The file consists of a line with the version of the program, the
-//! run in the format of `postcard`, and the CRC-32 of both.
+//! A run as it is saved in a file.
+//!
+//! The file consists of a line with the version of the program, the run in the format of
+//! `postcard`, and the CRC-32 of both.
 
 use std::fmt::Write;
 use std::path::Path;
@@ -26,7 +28,7 @@ pub const TITLE: &[u8] = b"a3 checkpoint, version ";
 /// Version of the program that reads and writes the files: no other one promises the same bits.
 const VERSION: &str = env!("CARGO_PKG_VERSION");
 
-/// A run as it is saved in a file.
+/// A saved run: its checkpoint, with the identity of its scene.
 #[derive(Serialize, Deserialize)]
 pub struct Kept {
     /// Name of the scene.

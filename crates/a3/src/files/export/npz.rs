@@ -1,7 +1,9 @@
-//! `.npz`: an array of doubles for each quantity, for `numpy.load`. It is a ZIP archive of files
-//! `NAME.npy` that are stored without compression (PKWARE, *APPNOTE*). Each has a header that is a
-//! Python literal, and the numbers after it in row-major order (Kern, *NEP 1*, 2007). The frames of
-//! an array follow one another, so each array is written to a temporary file until the run is over.
+//! `.npz`: an array of doubles for each quantity, for `numpy.load`.
+//!
+//! It is a ZIP archive of files `NAME.npy` that are stored without compression (PKWARE, *APPNOTE*).
+//! Each has a header that is a Python literal, and the numbers after it in row-major order (Kern,
+//! *NEP 1*, 2007). The frames of an array follow one another, so each array is written to a
+//! temporary file until the run is over.
 
 use std::io::{self, BufWriter, Write};
 use std::path::Path;

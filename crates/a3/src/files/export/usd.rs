@@ -2,8 +2,10 @@
 //! linear curves of the springs of particles without one, these particles as points, and the
 //! surface of a fluid as a mesh of its own. Points, normals and extents are time samples, whose
 //! times are the numbers of the frames. The mesh stays whole when something tears; the fluid has
-//! different triangles in each frame. The samples of an attribute follow one another, so each
-//! attribute is written to a temporary file until the run is over.
+//! different triangles in each frame.
+//!
+//! The samples of an attribute follow one another, so each attribute is written to a temporary file
+//! until the run is over.
 
 use std::collections::BTreeMap;
 use std::fmt::{Display, Write as _};

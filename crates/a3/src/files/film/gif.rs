@@ -12,7 +12,7 @@ use super::palette::Palette;
 use crate::base::failure::Failure;
 use crate::files::output::{Draft, not_written};
 
-/// The shortest delay that players obey (1/100 s).
+/// Shortest delay that players obey (1/100 s).
 const MIN_DELAY: f64 = 2.0;
 
 /// Largest difference of a channel, of 255 levels, at which a pixel counts as unchanged.
@@ -161,7 +161,7 @@ fn cause(error: EncodingError) -> io::Error {
 mod tests {
     use super::*;
 
-    /// A frame is the smallest rectangle around what changed, or one pixel if nothing did.
+    /// A frame is the smallest rectangle around the changed pixels, or one pixel if none changed.
     #[test]
     fn only_what_changed_is_sent() {
         let folder = tempfile::tempdir().ok().unwrap();

@@ -75,7 +75,7 @@ impl Mp4 {
         let spawned = interrupt::temporary(|| command.spawn(), |it| Cleanup::Program(it.id()));
         let (ffmpeg, running) = spawned.map_err(|e| match e.kind() {
             io::ErrorKind::NotFound => Failure::run(
-                "an MP4 is written by ffmpeg, which is not here: install it (apt install ffmpeg), or write a .gif or a \
+                "an MP4 is written by ffmpeg, which is not installed: install it (apt install ffmpeg), or write a .gif or a \
                  sequence such as film-####.png",
             ),
             _ => Failure::run(format!("ffmpeg could not be started: {}", terminal::reason(&e))),

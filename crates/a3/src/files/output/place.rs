@@ -1,4 +1,4 @@
-//! The place of an output: the end of all links, in a folder that exists, and not protected.
+//! The path of the file that an output goes to: links are followed, and protected files refused.
 
 use std::fs::{self, Metadata};
 use std::io;

@@ -1,4 +1,5 @@
 //! Files for other programs, read back by independent readers, and compared with their run.
+//!
 //! Khronos' own validator checks them too if it is installed: `npm install gltf-validator`, and
 //! `A3_GLTF_VALIDATOR` set to that `node_modules`.
 
