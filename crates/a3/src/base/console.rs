@@ -17,7 +17,7 @@ pub fn send(data: &str) -> Result<(), Failure> {
 }
 
 /// Converts the result of a write to the console.
-pub fn said(written: io::Result<()>) -> Result<(), Failure> {
+pub fn check_write(written: io::Result<()>) -> Result<(), Failure> {
     written.map_err(Failure::run)
 }
 

@@ -40,7 +40,7 @@ pub fn start() {
     let _ = ends.thread_block();
     let wait = move || {
         while let Ok(signal) = ends.wait() {
-            request(signal as u8);
+            on_signal(signal as u8);
         }
     };
     if thread::Builder::new().spawn(wait).is_err() {
@@ -53,7 +53,7 @@ pub fn start() {
 #[cfg(not(unix))]
 pub fn start() {
     // Where no handler can be set, Ctrl-C has its default effect: it ends the program.
-    let _ = ctrlc::set_handler(|| request(INTERRUPT));
+    let _ = ctrlc::set_handler(|| on_signal(INTERRUPT));
 }
 
 /// Returns whether SIGHUP is ignored, as after `nohup`, so that the program continues when the
@@ -91,7 +91,7 @@ pub fn exit_code() -> u8 {
 }
 
 /// Ends the program, or gives a command that listens some time to stop by itself.
-fn request(signal: u8) {
+fn on_signal(signal: u8) {
     let first = SIGNAL.swap(signal, Ordering::SeqCst) == 0;
     if !first || !LISTENING.load(Ordering::SeqCst) {
         end();

@@ -12,7 +12,7 @@ const MAX_WORD_CHARS: usize = 160;
 
 /// Writes text to standard output.
 pub fn say(text: &str) -> Result<(), Failure> {
-    put(&printable(text))
+    print(&printable(text))
 }
 
 /// Writes data to standard output: unchanged, unless it is a terminal.
@@ -20,13 +20,13 @@ pub fn send(data: &str) -> Result<(), Failure> {
     if io::stdout().is_terminal() {
         say(data)
     } else {
-        put(data)
+        print(data)
     }
 }
 
-fn put(text: &str) -> Result<(), Failure> {
+fn print(text: &str) -> Result<(), Failure> {
     let mut stdout = io::stdout().lock();
-    said(
+    check_write(
         super::fault::point()
             .and_then(|()| stdout.write_all(text.as_bytes()))
             .and_then(|()| stdout.flush()),
@@ -35,7 +35,7 @@ fn put(text: &str) -> Result<(), Failure> {
 
 /// Converts the result of a write to standard output. It is no failure if the reader closes the
 /// pipe early, as `head` does.
-pub fn said(written: io::Result<()>) -> Result<(), Failure> {
+pub fn check_write(written: io::Result<()>) -> Result<(), Failure> {
     match written {
         Err(e) if e.kind() != io::ErrorKind::BrokenPipe => Err(Failure::run(format!(
             "standard output could not be written: {}",

@@ -17,7 +17,7 @@ pub fn explain(error: &clap::Error) -> Result<(), Failure> {
         error.kind(),
         ErrorKind::DisplayHelp | ErrorKind::DisplayVersion
     ) {
-        return terminal::said(error.print());
+        return terminal::check_write(error.print());
     }
     Err(Failure::Usage(mistake(error)))
 }
@@ -39,7 +39,11 @@ fn mistake(error: &clap::Error) -> String {
             format!("{typed}: {why}")
         }
         ErrorKind::InvalidValue if value.is_empty() => {
-            let needed = format!("{} needs a value: {}", quoted(option), spelt(&arg));
+            let needed = format!(
+                "{} needs a value: {}",
+                quoted(option),
+                without_brackets(&arg)
+            );
             if choices.is_empty() {
                 needed
             } else {
@@ -68,7 +72,7 @@ fn mistake(error: &clap::Error) -> String {
         }
         ErrorKind::MissingRequiredArgument => {
             let missing = list(error, ContextKind::InvalidArg);
-            let missing: Vec<_> = missing.iter().map(|arg| spelt(arg)).collect();
+            let missing: Vec<_> = missing.iter().map(|arg| without_brackets(arg)).collect();
             if missing.iter().any(|arg| arg.contains("--error")) {
                 return either_error_or_budget();
             }
@@ -119,9 +123,9 @@ fn conflict(error: &clap::Error, arg: &str) -> String {
             .into();
     }
     if both[0] == both[1] {
-        return format!("{} is there twice: give it once", spelt(arg));
+        return format!("{} is there twice: give it once", without_brackets(arg));
     }
-    let both: Vec<_> = both.iter().map(|arg| spelt(arg)).collect();
+    let both: Vec<_> = both.iter().map(|arg| without_brackets(arg)).collect();
     format!("give either {}, not both", both.join(" or "))
 }
 
@@ -130,7 +134,7 @@ fn either_error_or_budget() -> String {
 }
 
 /// An argument as it is typed, without clap's brackets.
-fn spelt(arg: &str) -> String {
+fn without_brackets(arg: &str) -> String {
     quoted(&arg.replace(['<', '>', '[', ']'], ""))
 }
 

@@ -22,12 +22,12 @@ fn number(text: &str) -> Option<f64> {
 fn within(text: &str, range: RangeInclusive<f64>, right: &str) -> Result<f64, String> {
     match number(text) {
         Some(number) if range.contains(&number) => Ok(number),
-        _ => Err(pointed(text).unwrap_or_else(|| right.into())),
+        _ => Err(decimal_point_advice(text).unwrap_or_else(|| right.into())),
     }
 }
 
 /// Message for a number with a decimal comma.
-fn pointed(text: &str) -> Option<String> {
+fn decimal_point_advice(text: &str) -> Option<String> {
     let point = text.replacen(',', ".", 1);
     (point != text && number(&point).is_some()).then(|| format!("use a decimal point: {point}"))
 }

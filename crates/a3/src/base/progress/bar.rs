@@ -48,12 +48,12 @@ impl Bar {
 
     /// Adds work that was done.
     pub fn advance(&self, work: f64) {
-        self.0.inc(parts(work));
+        self.0.inc(to_units(work));
     }
 
     /// Starts again at zero, with a new amount of expected work.
     pub fn expect(&self, work: f64) {
-        self.0.set_length(parts(work));
+        self.0.set_length(to_units(work));
         self.0.set_position(0);
     }
 
@@ -84,7 +84,7 @@ impl Bar {
 }
 
 /// Converts work to the integer units of a bar, millionths.
-fn parts(work: f64) -> u64 {
+fn to_units(work: f64) -> u64 {
     (1e6 * work) as u64
 }
 

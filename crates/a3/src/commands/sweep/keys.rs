@@ -43,12 +43,12 @@ pub fn set(at: &mut Value, path: &str, value: &Value) -> Result<(), String> {
                     count.max(1) - 1
                 )
             })?;
-            put(item, rest, value)
+            set_in(item, rest, value)
         }
         (Value::Array(list), Err(_)) => list.iter_mut().try_for_each(|item| set(item, path, value)),
         (Value::Object(table), _) => {
             let empty = || Value::Object(Map::new());
-            put(table.entry(first).or_insert_with(empty), rest, value)
+            set_in(table.entry(first).or_insert_with(empty), rest, value)
         }
         _ => Err(format!(
             "there is no key `{first}` in a value that is not a table"
@@ -56,7 +56,7 @@ pub fn set(at: &mut Value, path: &str, value: &Value) -> Result<(), String> {
     }
 }
 
-fn put(at: &mut Value, rest: Option<&str>, value: &Value) -> Result<(), String> {
+fn set_in(at: &mut Value, rest: Option<&str>, value: &Value) -> Result<(), String> {
     if let Some(rest) = rest {
         return set(at, rest, value);
     }

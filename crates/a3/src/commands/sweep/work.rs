@@ -32,7 +32,7 @@ pub fn run(sweep: &Sweep, plan: &Plan, share: &[usize], folder: &Folder) -> Resu
     let groups: Vec<&[&Run]> = missing.chunk_by(|a, b| a.variant == b.variant).collect();
     let done = groups.into_par_iter().try_for_each(|runs| {
         let variant = &plan.variants[runs[0].variant];
-        together(sweep, variant, runs, folder, &|| {
+        run_variant(sweep, variant, runs, folder, &|| {
             left.fetch_sub(1, Ordering::Relaxed);
             bar.advance(1.0);
         })
@@ -42,7 +42,7 @@ pub fn run(sweep: &Sweep, plan: &Plan, share: &[usize], folder: &Folder) -> Resu
 }
 
 /// Makes runs of one scene, which share a reference.
-fn together(
+fn run_variant(
     sweep: &Sweep,
     variant: &Variant,
     runs: &[&Run],

@@ -179,18 +179,18 @@ fn add_springs(
 ) {
     let edges = topology.wires[structural..].iter();
     topology.springs = edges
-        .map(|ends| drawn(*ends, (INK, 1.35)))
+        .map(|ends| line_of(*ends, (INK, 1.35)))
         .chain(KINDS.into_iter().flat_map(|kind| {
             let of_kind = move |s: &Spring| s.kind == kind && body(surface, s).is_some();
             springs(simulation)
                 .filter(of_kind)
-                .map(move |s| drawn([s.i as u32, s.j as u32], kind_look(kind)))
+                .map(move |s| line_of([s.i as u32, s.j as u32], kind_look(kind)))
         }))
         .collect();
 }
 
 /// Returns a spring or an edge with a colour and width (points).
-fn drawn(ends: [u32; 2], ([r, g, b, _], width): ([f32; 4], f32)) -> Drawn {
+fn line_of(ends: [u32; 2], ([r, g, b, _], width): ([f32; 4], f32)) -> Drawn {
     Drawn {
         ends,
         width,

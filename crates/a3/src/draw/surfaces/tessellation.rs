@@ -21,8 +21,8 @@ pub struct Tessellation {
 impl Tessellation {
     fn of(shape: &Shape) -> Self {
         match shape {
-            Shape::Sphere { radius } => round([Vector3::zeros(); 2], *radius),
-            Shape::Capsule { ends, radius } => round(*ends, *radius),
+            Shape::Sphere { radius } => capsule([Vector3::zeros(); 2], *radius),
+            Shape::Capsule { ends, radius } => capsule(*ends, *radius),
             Shape::Mesh(mesh) => Self {
                 points: mesh.points().to_vec(),
                 triangles: mesh.triangles().to_vec(),
@@ -43,7 +43,7 @@ impl Tessellation {
 
 /// Tessellates a capsule, the points within a radius (m) of a line segment: parallels around its
 /// axis, half of them at either end.
-fn round([low, high]: [Vector3<f64>; 2], radius: f64) -> Tessellation {
+fn capsule([low, high]: [Vector3<f64>; 2], radius: f64) -> Tessellation {
     let axis = (high - low).try_normalize(0.0).unwrap_or(Vector3::y());
     let side = axis.cross(&if axis.x.abs() < 0.5 {
         Vector3::x()

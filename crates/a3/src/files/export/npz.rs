@@ -168,13 +168,18 @@ fn archive(file: &mut dyn Write, arrays: impl Iterator<Item = Array>) -> io::Res
             bytes: length(array.bytes)?,
             offset: length(offset)?,
         };
-        let head = [&b"PK\x03\x04"[..], &entry.common(), entry.name.as_bytes()].concat();
+        let head = [
+            &b"PK\x03\x04"[..],
+            &entry.shared_fields(),
+            entry.name.as_bytes(),
+        ]
+        .concat();
         file.write_all(&head)?;
         io::copy(&mut array.file.get_ref().reader()?, file)?;
         offset += head.len() + array.bytes;
         entries.push(entry);
     }
-    let directory: Vec<u8> = entries.iter().flat_map(Entry::listed).collect();
+    let directory: Vec<u8> = entries.iter().flat_map(Entry::directory_entry).collect();
     file.write_all(&directory)?;
     let count = (entries.len() as u16).to_le_bytes();
     let size = length(directory.len())?.to_le_bytes();
@@ -194,7 +199,7 @@ fn archive(file: &mut dyn Write, arrays: impl Iterator<Item = Array>) -> io::Res
 
 impl Entry {
     /// Returns the fields that stand both before the array and in the directory.
-    fn common(&self) -> Vec<u8> {
+    fn shared_fields(&self) -> Vec<u8> {
         let name = self.name.len() as u16;
         // The flags, the method (stored) and the time of day are 0, and so is the length of extras.
         let [version, date, name] = [VERSION, DATE, name].map(u16::to_le_bytes);
@@ -213,13 +218,13 @@ impl Entry {
     }
 
     /// Returns the entry of the directory.
-    fn listed(&self) -> Vec<u8> {
+    fn directory_entry(&self) -> Vec<u8> {
         let (version, offset) = (VERSION.to_le_bytes(), self.offset.to_le_bytes());
         // The length of a comment, the disk and the attributes are 0.
         let parts = [
             &b"PK\x01\x02"[..],
             &version,
-            &self.common(),
+            &self.shared_fields(),
             &[0; 10],
             &offset,
             self.name.as_bytes(),

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use tempfile::NamedTempFile;
 
-use super::place::{folder, not_written, resolve, there, writable};
+use super::place::{folder, metadata, not_written, resolve, writable};
 use super::{apart, leftovers};
 use crate::base::failure::Failure;
 use crate::base::fault;
@@ -76,15 +76,15 @@ impl Draft {
 
     /// Renames the complete file to its path.
     pub fn place(self) -> Result<(), Failure> {
-        self.put(NamedTempFile::persist).map(drop)
+        self.rename_by(NamedTempFile::persist).map(drop)
     }
 
     /// Renames the complete file to its path if nothing is there. Returns whether it did.
     pub fn place_new(self) -> Result<bool, Failure> {
-        self.put(NamedTempFile::persist_noclobber)
+        self.rename_by(NamedTempFile::persist_noclobber)
     }
 
-    fn put(self, rename: Rename) -> Result<bool, Failure> {
+    fn rename_by(self, rename: Rename) -> Result<bool, Failure> {
         let sink = self.file.into_inner();
         match sink
             .map_err(io::IntoInnerError::into_error)
@@ -116,7 +116,7 @@ impl Sink {
     /// Opens the file of this path, or a temporary one beside it.
     fn new(path: &Path) -> io::Result<Self> {
         let target = resolve(path)?;
-        let there = there(&target)?;
+        let there = metadata(&target)?;
         fault::point()?;
         if there.as_ref().is_some_and(|there| !there.is_file()) {
             return File::options().write(true).open(&target).map(Self::Direct);

@@ -36,7 +36,7 @@ pub fn resolve(path: &Path) -> io::Result<PathBuf> {
 }
 
 /// Returns the metadata of a path; `None` if nothing is there.
-pub fn there(place: &Path) -> io::Result<Option<Metadata>> {
+pub fn metadata(place: &Path) -> io::Result<Option<Metadata>> {
     match fs::metadata(place) {
         Err(e) if e.kind() == io::ErrorKind::NotFound => Ok(None),
         there => there.map(Some),
@@ -57,7 +57,7 @@ pub fn check(path: &Path) -> Result<(), Failure> {
         }
         place => place.map_err(failed)?,
     };
-    let there = there(&place).map_err(failed)?;
+    let there = metadata(&place).map_err(failed)?;
     there.as_ref().map_or(Ok(()), writable).map_err(failed)
 }
 
