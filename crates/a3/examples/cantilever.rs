@@ -1,6 +1,6 @@
-//! Chart of how far a bar bends under its weight, as solids of several Poisson's ratios and as a
-//! jelly, against Timoshenko's beam: linear tetrahedra are too stiff, and less so the finer they
-//! are.
+//! Chart of the deflection of a bar under its weight, as solids of several Poisson's ratios and as
+//! a jelly, compared with Timoshenko's beam: linear tetrahedra are too stiff, and less so the finer
+//! they are.
 //!
 //! `cargo run -p a3-simulator --example cantilever -- docs/pictures/cantilever.svg`
 
@@ -15,15 +15,15 @@ use a3_scenes::Description;
 const SIZE: [f64; 3] = [1.0, 0.1, 0.1];
 const DENSITY: f64 = 1000.0;
 const YOUNG: f64 = 1e5;
-/// Weight of a mass (m/s2), so small that the bar hardly bends.
+/// Acceleration of gravity (m/s2), so small that the bar hardly bends.
 const GRAVITY: f64 = 1e-4;
 /// Evaluations of a single spring in the time of one tetrahedron.
-const TETRAHEDRON: f64 = 3.7;
+const TETRAHEDRON_COST: f64 = 3.7;
 
-/// A body that the bar is made of.
+/// Model of the bar.
 #[derive(Clone, Copy)]
 enum Made {
-    /// Tetrahedra of that Poisson's ratio.
+    /// Tetrahedra, with their Poisson's ratio.
     Solid(f64),
     /// Springs.
     Jelly,
@@ -38,7 +38,7 @@ struct Bar {
     cost: f64,
 }
 
-/// The bar with so many cells across, twice as long as they are high.
+/// Makes the bar with a number of cells across, each twice as long as it is high.
 fn bar(made: Made, across: usize) -> Result<Bar, Box<dyn Error>> {
     let grid = [5 * across + 1, across + 1, across + 1];
     let body = match made {
@@ -69,7 +69,7 @@ fn bar(made: Made, across: usize) -> Result<Bar, Box<dyn Error>> {
     let mut cost = own.springs().count() as f64;
     for element in own.elements() {
         if let Element::Solid(solid) = element {
-            cost += TETRAHEDRON * Solid::volumes(solid).count() as f64;
+            cost += TETRAHEDRON_COST * Solid::volumes(solid).count() as f64;
             network.add(element.clone())?;
         }
     }
@@ -86,8 +86,8 @@ fn bar(made: Made, across: usize) -> Result<Bar, Box<dyn Error>> {
 }
 
 impl Bar {
-    /// Displacement of the tip (m) where gravity along an axis is balanced: one step of implicit
-    /// Euler, so long that inertia counts for nothing, solves the linear equations.
+    /// Returns the displacement of the tip (m) at rest with gravity along an axis: one step of
+    /// implicit Euler, so long that inertia is negligible, solves the linear equations.
     fn displacement(&mut self, axis: usize) -> Result<f64, Box<dyn Error>> {
         let n = self.network.particles();
         let mut gravity = Vector3::zeros();
@@ -103,8 +103,8 @@ impl Bar {
     }
 }
 
-/// Deflection (m) of Timoshenko's beam of a square section under its weight, by bending and by
-/// shear (Cowper, 1966).
+/// Returns the deflection (m) of Timoshenko's beam of a square section under its weight, by bending
+/// and by shear (Cowper, 1966).
 fn deflection(young: f64, poisson: f64) -> f64 {
     let [length, height, width] = SIZE;
     let (area, inertia) = (height * width, width * height.powi(3) / 12.0);
@@ -115,11 +115,12 @@ fn deflection(young: f64, poisson: f64) -> f64 {
         + load * length.powi(2) / (2.0 * share * shear * area)
 }
 
-/// Error of the deflection over that of the beam.
+/// Returns the error of the deflection, over the deflection of the beam.
 fn error(made: Made, bar: &mut Bar) -> Result<f64, Box<dyn Error>> {
     let (young, poisson) = match made {
         Made::Solid(poisson) => (YOUNG, poisson),
-        // By its own stretch under its weight. Springs in all directions have a ratio of 1/4.
+        // Young's modulus is that of its own stretch under its weight. Springs in all directions
+        // have Poisson's ratio 1/4.
         Made::Jelly => {
             let stretch = bar.displacement(0)?;
             (DENSITY * GRAVITY * SIZE[0].powi(2) / (2.0 * stretch), 0.25)

@@ -1,4 +1,4 @@
-//! Command lines and data that nobody would write: each is taken or refused, without a panic.
+//! Mutated command lines and data of charts: each is accepted or refused, without a panic.
 
 #[path = "../../scenes/tests/hostile/mutation.rs"]
 mod mutation;
@@ -13,7 +13,7 @@ use mutation::{Random, seeds};
 /// Number of inputs of each kind.
 const INPUTS: usize = 10_000;
 
-/// Gives mutated seeds to a reader. How many it took.
+/// Gives mutated seeds to a reader, and returns how many it accepted.
 fn feed(seeds: &[Vec<u8>], mut takes: impl FnMut(&str) -> bool) -> usize {
     let mut random = Random(1);
     let taken = (0..INPUTS).filter(|_| takes(&String::from_utf8_lossy(&random.mutated(seeds))));
@@ -51,7 +51,7 @@ fn data_of_charts_are_taken_or_refused() {
             let Ok(records) = read(text, is_json) else {
                 return false;
             };
-            // Runs are compared with one another.
+            // These comparisons of runs must not panic either.
             let same = records
                 .iter()
                 .filter(|r| r.same_run(&records[0]) && !r.is_held());

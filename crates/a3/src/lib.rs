@@ -2,13 +2,13 @@
 //! films are the feature `window`.
 
 #![forbid(unsafe_code)]
-// Parts of modules that several builds share are for one of them alone; the program with its
-// window finds what is dead.
+// Some builds leave parts of shared modules unused; the native build with the window reports dead
+// code.
 #![cfg_attr(
     any(not(feature = "window"), target_arch = "wasm32"),
     allow(dead_code, unused_imports)
 )]
-// What a page does at once has the form of what may fail elsewhere.
+// Functions that cannot fail on a page have the signatures of the native ones, which can.
 #![cfg_attr(
     target_arch = "wasm32",
     allow(clippy::unused_self, clippy::unnecessary_wraps)

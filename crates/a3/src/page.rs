@@ -1,5 +1,5 @@
-//! The program as a page of the web: the window in a canvas. What comes after the question mark of
-//! the address is a command line without the program's name, so that a link shows a run.
+//! The program as a web page: the window in a canvas. The query of the address (after its question
+//! mark) is a command line without the program's name, so that a link shows a run.
 
 use std::panic;
 use std::path::Path;
@@ -18,7 +18,7 @@ use crate::window::begin;
 use crate::window::session::{Action, RunAction};
 use crate::window::settings::Settings;
 
-/// Begins what the address asks for; where that is not possible, the page says why.
+/// Starts the run that the address describes, or shows on the page why that is not possible.
 pub fn start() {
     panic::set_hook(Box::new(|panic| {
         browser::log(&panic.to_string());
@@ -40,7 +40,7 @@ fn begin() -> Result<(), Failure> {
         Some(Command::Compare(options)) => (begin::comparison(&options)?, options.look),
         Some(_) => {
             return Err(Failure::usage(
-                "a page has no commands but compare: the program has them",
+                "a page has no command except compare: the other commands need the program",
             ));
         }
     };
@@ -52,8 +52,9 @@ fn begin() -> Result<(), Failure> {
     app::spawn(session, look.status, settings)
 }
 
-/// Takes steps of what a command line asks for, as fast as possible. Returns a hash (FNV-1a) of the
-/// bits of positions and velocities, and the time of a step (µs), or why there are none.
+/// Takes steps of the run that a command line describes, as fast as possible. Returns a hash
+/// (FNV-1a) of the bits of positions and velocities, and the time of a step (µs), or an error
+/// message.
 #[must_use]
 pub fn run_steps(words: &str, steps: u32) -> String {
     let words = ["a3"].into_iter().chain(words.split_whitespace());
@@ -87,7 +88,7 @@ pub fn run_steps(words: &str, steps: u32) -> String {
     }
 }
 
-/// Does what key Tab does, which leaves a page.
+/// Opens or closes the panel, as key Tab does in a window; in a browser that key leaves the canvas.
 pub fn toggle_panel() {
     app::send(app::Event::Act(Action::Run(RunAction::Panel)));
 }

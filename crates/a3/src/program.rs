@@ -1,4 +1,4 @@
-//! The program: from the command line to the command that does what it asks for.
+//! The program: reads the command line and runs the command.
 
 use std::process::ExitCode;
 
@@ -14,7 +14,7 @@ use crate::files::lessons;
 #[cfg(feature = "window")]
 use crate::window::{self, compare};
 
-/// Does what the command line asks for, and returns the exit code of the program.
+/// Runs the command of the command line, and returns the exit code of the program.
 #[must_use]
 pub fn main() -> ExitCode {
     interrupt::start();

@@ -1,7 +1,6 @@
-//! Hashes of the states that every scene reaches by every method: a change that is meant to change
-//! no number changes none of them.
-//! `A3_BLESS=1 cargo test -p a3-simulator --test golden` writes them anew; the commit then says
-//! which and why.
+//! Hashes of the states that every scene reaches by every method. A change that is not meant to
+//! change results changes none of them. `A3_BLESS=1 cargo test -p a3-simulator --test golden`
+//! writes them again; the commit then says which changed and why.
 
 #![allow(missing_docs, reason = "a test")]
 
@@ -56,7 +55,7 @@ impl Run {
         format!("{scene} {} {method}", grid.unwrap_or("-"))
     }
 
-    /// FNV-1a of all bits of the state, or why there is none.
+    /// Returns the FNV-1a hash of all bits of the state, or the error of the run.
     fn hash(&self, folder: &Path) -> String {
         let mut words: Vec<String> = [
             "simulate".into(),

@@ -1,11 +1,11 @@
-//! What a page writes in place of a terminal: words to the console of the browser.
+//! Output of a page, which has no terminal: text goes to the console of the browser.
 
 use std::io;
 
 use super::browser::log;
 use super::failure::Failure;
 
-/// Writes words to the console.
+/// Writes text to the console.
 pub fn say(text: &str) -> Result<(), Failure> {
     log(text.trim_end());
     Ok(())
@@ -16,8 +16,8 @@ pub fn send(data: &str) -> Result<(), Failure> {
     say(data)
 }
 
-/// The result of a write to the console.
-pub fn said(written: io::Result<()>) -> Result<(), Failure> {
+/// Converts the result of a write to the console.
+pub fn check_write(written: io::Result<()>) -> Result<(), Failure> {
     written.map_err(Failure::run)
 }
 
@@ -26,7 +26,7 @@ pub fn warn(message: &str) {
     log(message);
 }
 
-/// Why a file could not be read, in words.
+/// Returns why a file could not be read, in words.
 pub fn reason(error: &io::Error) -> String {
     error.to_string()
 }

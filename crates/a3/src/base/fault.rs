@@ -1,12 +1,13 @@
-//! Faults on request, by which tests see that no failure of the system loses a file or is passed
-//! over: in a build with debug assertions, `A3_FAULT=n` makes the n-th operation and all later ones
-//! fail, as on a disk that is full.
+//! Injected faults, with which tests check that no failure of the system loses a file or goes
+//! unnoticed: in a build with debug assertions, `A3_FAULT=n` makes the n-th operation on the disk
+//! and all later ones fail, as if the disk were full.
 
 use std::io;
 use std::sync::LazyLock;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// `Ok` before every operation that can fail, unless a fault is requested by now.
+/// Counts an operation that can fail, and returns an error from the n-th on. It is called before
+/// each such operation.
 pub fn point() -> io::Result<()> {
     static FIRST: LazyLock<Option<u64>> = LazyLock::new(|| {
         let asked = std::env::var("A3_FAULT").ok()?;

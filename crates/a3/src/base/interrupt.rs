@@ -1,6 +1,6 @@
-//! Requests to end, as signals: Ctrl-C (SIGINT), SIGTERM, and SIGHUP when the terminal is closed. A
-//! command that listens comes to an end of its own, with what it has; every other, and one that
-//! goes on computing, ends within a second. No unfinished file stays.
+//! Signals that end the program: Ctrl-C (SIGINT), SIGTERM, and SIGHUP when the terminal is closed.
+//! A command that listens stops by itself and writes its results so far; any other command, and one
+//! that continues to compute, is ended within a second. No unfinished file stays.
 
 use std::io::{self, Write};
 use std::path::PathBuf;
@@ -9,24 +9,25 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::thread;
 use std::time::{Duration, Instant};
 
-/// Time after a request in which a command has to stop computing, before it is ended at once.
-const PATIENCE: Duration = Duration::from_millis(500);
-/// Time for the last message, which nobody may read.
-const LAST_WORDS: Duration = Duration::from_millis(200);
+/// Time after a signal in which a command has to stop computing, before it is ended at once.
+const GRACE_PERIOD: Duration = Duration::from_millis(500);
+/// Longest time to wait for the last message to be written: a blocked reader must not delay the
+/// end.
+const MESSAGE_TIMEOUT: Duration = Duration::from_millis(200);
 /// SIGINT, for systems without signals.
 const INTERRUPT: u8 = 2;
 
 /// The signal that was last received, or 0.
 static SIGNAL: AtomicU8 = AtomicU8::new(0);
-/// Whether the command comes to an end of its own.
+/// Whether the command stops by itself after a signal.
 static LISTENING: AtomicBool = AtomicBool::new(false);
-/// Whether the command computes no more, and only writes what it has.
+/// Whether the command has stopped computing, and only writes its results.
 static WRITING: AtomicBool = AtomicBool::new(false);
-/// What must not outlive the program.
-static LOOSE: Mutex<Vec<Loose>> = Mutex::new(vec![]);
+/// Temporary files and child processes that must not outlive the program.
+static CLEANUPS: Mutex<Vec<Cleanup>> = Mutex::new(vec![]);
 
-/// Receives signals from now on, in a thread of its own. All threads that are started later leave
-/// them to it.
+/// Starts a thread that receives the signals. Threads that are started later inherit the mask that
+/// blocks them.
 #[cfg(unix)]
 pub fn start() {
     use nix::sys::signal::{SigSet, Signal};
@@ -34,28 +35,29 @@ pub fn start() {
     if !hangups_are_ignored() {
         ends.add(Signal::SIGHUP);
     }
-    // At the limit for the size of files, the write shall fail, and not the program.
+    // At the limit for the size of files, only the write shall fail, not the program.
     let _ = SigSet::from(Signal::SIGXFSZ).thread_block();
     let _ = ends.thread_block();
     let wait = move || {
         while let Ok(signal) = ends.wait() {
-            request(signal as u8);
+            on_signal(signal as u8);
         }
     };
     if thread::Builder::new().spawn(wait).is_err() {
-        // Each signal then ends the program as systems do.
+        // Each signal then has its default effect: it ends the program.
         let _ = ends.thread_unblock();
     }
 }
 
-/// Receives Ctrl-C from now on.
+/// Sets a handler for Ctrl-C.
 #[cfg(not(unix))]
 pub fn start() {
-    // Where no handler can be set, Ctrl-C ends the program as systems do.
-    let _ = ctrlc::set_handler(|| request(INTERRUPT));
+    // Where no handler can be set, Ctrl-C has its default effect: it ends the program.
+    let _ = ctrlc::set_handler(|| on_signal(INTERRUPT));
 }
 
-/// Whether the program was started by `nohup`, to go on when the terminal is closed.
+/// Returns whether SIGHUP is ignored, as after `nohup`, so that the program continues when the
+/// terminal is closed.
 #[cfg(unix)]
 fn hangups_are_ignored() -> bool {
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
@@ -64,22 +66,23 @@ fn hangups_are_ignored() -> bool {
     mask.is_some_and(|mask| mask & 1 == 1)
 }
 
-/// Makes the first signal a request, from now on.
+/// Declares that the command stops by itself after the first signal.
 pub fn listen() {
     LISTENING.store(true, Ordering::SeqCst);
 }
 
-/// Whether no end has been requested.
+/// Returns whether no signal has been received.
 pub fn go_on() -> bool {
     SIGNAL.load(Ordering::SeqCst) == 0
 }
 
-/// Lets a command of which an end was requested write what it has, however long that takes.
+/// Declares that a command that was interrupted has stopped computing: it may take any time to
+/// write its results.
 pub fn write_on() {
     WRITING.store(!go_on(), Ordering::SeqCst);
 }
 
-/// Exit code of a program that was ended by a signal, as shells have it.
+/// Returns the exit code of a program that was ended by a signal, as shells define it.
 pub fn exit_code() -> u8 {
     match SIGNAL.load(Ordering::SeqCst) {
         0 => 128 + INTERRUPT,
@@ -87,14 +90,14 @@ pub fn exit_code() -> u8 {
     }
 }
 
-/// Does what a signal asks for.
-fn request(signal: u8) {
+/// Ends the program, or gives a command that listens some time to stop by itself.
+fn on_signal(signal: u8) {
     let first = SIGNAL.swap(signal, Ordering::SeqCst) == 0;
     if !first || !LISTENING.load(Ordering::SeqCst) {
         end();
     }
     thread::spawn(|| {
-        thread::sleep(PATIENCE);
+        thread::sleep(GRACE_PERIOD);
         if !WRITING.load(Ordering::SeqCst) {
             end();
         }
@@ -103,15 +106,15 @@ fn request(signal: u8) {
 
 /// Ends the program at once.
 fn end() -> ! {
-    // Nothing is begun any more: the list is never given back.
-    let loose = loose();
-    for loose in loose.iter().rev() {
-        loose.undo();
+    // The lock is never released, so no temporary file can be created any more.
+    let cleanups = cleanups();
+    for cleanup in cleanups.iter().rev() {
+        cleanup.run();
     }
     let words =
         thread::spawn(|| writeln!(io::stderr(), "interrupted: no unfinished file was kept"));
     let begun = Instant::now();
-    while !words.is_finished() && begun.elapsed() < LAST_WORDS {
+    while !words.is_finished() && begun.elapsed() < MESSAGE_TIMEOUT {
         thread::sleep(Duration::from_millis(1));
     }
     // Drivers of the GPU that are at work in other threads would crash in their exit handlers.
@@ -121,18 +124,18 @@ fn end() -> ! {
     std::process::exit(i32::from(exit_code()))
 }
 
-/// Something that must not outlive the program.
+/// A temporary file or child process that must not outlive the program.
 #[derive(Clone, PartialEq)]
-pub enum Loose {
+pub enum Cleanup {
     /// A temporary file.
     File(PathBuf),
-    /// Another program that writes one, by the number of its process.
+    /// Another program that writes a file, by its process id.
     Program(u32),
 }
 
-impl Loose {
-    /// Removes it, as far as that can be done.
-    fn undo(&self) {
+impl Cleanup {
+    /// Removes the file or kills the program; errors are ignored.
+    fn run(&self) {
         match self {
             Self::File(path) => {
                 let _ = std::fs::remove_file(path);
@@ -150,27 +153,28 @@ impl Loose {
     }
 }
 
-fn loose() -> MutexGuard<'static, Vec<Loose>> {
-    LOOSE.lock().unwrap_or_else(PoisonError::into_inner)
+fn cleanups() -> MutexGuard<'static, Vec<Cleanup>> {
+    CLEANUPS.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Something loose that is removed if the program ends at once while this value exists.
-pub struct Temporary(Loose);
+/// Registration of a temporary file or child process, which is removed if the program ends at once
+/// while this value exists.
+pub struct Temporary(Cleanup);
 
 /// Creates a temporary file and registers it for clean-up, with signals held back in between.
 pub fn temporary<T>(
     make: impl FnOnce() -> io::Result<T>,
-    part: impl FnOnce(&T) -> Loose,
+    part: impl FnOnce(&T) -> Cleanup,
 ) -> io::Result<(T, Temporary)> {
-    let mut loose = loose();
+    let mut cleanups = cleanups();
     let made = make()?;
     let part = part(&made);
-    loose.push(part.clone());
+    cleanups.push(part.clone());
     Ok((made, Temporary(part)))
 }
 
 impl Drop for Temporary {
     fn drop(&mut self) {
-        loose().retain(|loose| *loose != self.0);
+        cleanups().retain(|cleanup| *cleanup != self.0);
     }
 }

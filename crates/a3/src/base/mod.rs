@@ -1,4 +1,4 @@
-//! The ground of the program: failures and their exit codes, the terminal, signals, progress of
+//! Foundations of the program: failures and their exit codes, the terminal, signals, progress of
 //! long runs, and the ranges of steps and tolerances.
 
 pub mod bounds;

@@ -1,9 +1,9 @@
-//! Numbers as one would type them.
+//! Rounding to numbers with few digits.
 
-/// Digits of numbers that sums and products have, in which their roundings are not seen.
+/// Number of digits that hide the rounding errors of sums and products.
 pub const DIGITS: usize = 15;
 
-/// A value rounded to so many digits.
+/// Rounds a value to a number of digits.
 pub fn short(value: f64, digits: usize) -> f64 {
     format!("{value:.*e}", digits - 1).parse().unwrap_or(value)
 }
@@ -16,8 +16,8 @@ pub const MANY: &[f64] = &[
     1.0, 1.2, 1.5, 1.8, 2.0, 2.5, 3.0, 3.5, 4.0, 5.0, 6.0, 7.0, 8.0, 10.0,
 ];
 
-/// The least of some round numbers from 1 to 10, times a power of ten, that is no less than a value
-/// above 0.
+/// Rounds a value above 0 up to a round number: one of `rounds`, from 1 to 10, times a power of
+/// ten.
 pub fn round_up(value: f64, rounds: &[f64]) -> f64 {
     let power = 10_f64.powf(value.log10().floor());
     let mut next = rounds.iter().map(|round| short(round * power, 2));

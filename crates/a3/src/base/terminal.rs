@@ -1,40 +1,41 @@
-//! Standard output and standard error: words for people, in which nothing from a file or a name
+//! Standard output and standard error: text for people, in which nothing from a file or a name
 //! moves the cursor or changes colours, and data for programs.
 
 use std::io::{self, IsTerminal, Write};
 
 use crate::base::failure::Failure;
 
-/// The most characters of a message, and of a word in it.
-const LONGEST: usize = 1200;
-const LONGEST_WORD: usize = 160;
+/// Largest number of characters of a message.
+const MAX_MESSAGE_CHARS: usize = 1200;
+/// Largest number of characters of a word in a message.
+const MAX_WORD_CHARS: usize = 160;
 
-/// Writes words to standard output.
+/// Writes text to standard output.
 pub fn say(text: &str) -> Result<(), Failure> {
-    put(&printable(text))
+    print(&printable(text))
 }
 
-/// Writes data to standard output: to the byte, if it is no terminal.
+/// Writes data to standard output: unchanged, unless it is a terminal.
 pub fn send(data: &str) -> Result<(), Failure> {
     if io::stdout().is_terminal() {
         say(data)
     } else {
-        put(data)
+        print(data)
     }
 }
 
-fn put(text: &str) -> Result<(), Failure> {
+fn print(text: &str) -> Result<(), Failure> {
     let mut stdout = io::stdout().lock();
-    said(
+    check_write(
         super::fault::point()
             .and_then(|()| stdout.write_all(text.as_bytes()))
             .and_then(|()| stdout.flush()),
     )
 }
 
-/// The result of a write to standard output. It is no failure if the reader closes it early, as
-/// `head` does.
-pub fn said(written: io::Result<()>) -> Result<(), Failure> {
+/// Converts the result of a write to standard output. It is no failure if the reader closes the
+/// pipe early, as `head` does.
+pub fn check_write(written: io::Result<()>) -> Result<(), Failure> {
     match written {
         Err(e) if e.kind() != io::ErrorKind::BrokenPipe => Err(Failure::run(format!(
             "standard output could not be written: {}",
@@ -50,22 +51,22 @@ pub fn warn(message: &str) {
     let _ = io::stderr().lock().write_all(line.as_bytes());
 }
 
-/// A message in one line of limited length, in which every character can be seen.
+/// Returns a message as one line of limited length, in which every character is visible.
 fn one_line(message: &str) -> String {
     let shown = visible(message);
     let words: Vec<_> = shown
         .split(' ')
-        .map(|word| shortened(word, LONGEST_WORD))
+        .map(|word| shortened(word, MAX_WORD_CHARS))
         .collect();
-    shortened(&words.join(" "), LONGEST)
+    shortened(&words.join(" "), MAX_MESSAGE_CHARS)
 }
 
-/// The text with all that is no letter, sign or space as escapes.
+/// Returns a text in which all characters except letters, signs and spaces are escaped.
 pub fn visible(text: &str) -> String {
     printable(text).replace('\n', "\\n").replace('\t', "\\t")
 }
 
-/// The text, of which the middle is left out if it has more than `most` characters.
+/// Returns a text without its middle if it has more than `most` characters.
 fn shortened(text: &str, most: usize) -> String {
     let count = text.chars().count();
     if count <= most {
@@ -77,7 +78,7 @@ fn shortened(text: &str, most: usize) -> String {
     begin.chain("...".chars()).chain(end).collect()
 }
 
-/// The text with its control characters, and all others that cannot be seen, as escapes.
+/// Returns a text in which control characters and all other invisible ones are escaped.
 fn printable(text: &str) -> String {
     let mut shown = String::with_capacity(text.len());
     for c in text.chars() {
@@ -90,12 +91,12 @@ fn printable(text: &str) -> String {
     shown
 }
 
-/// Why a file could not be read or written, in words alone.
+/// Returns why a file could not be read or written, in words.
 pub fn reason(error: &io::Error) -> String {
     if error.kind() == io::ErrorKind::NotFound {
         return "there is no such file or folder".into();
     }
-    // Neither the name of a temporary file nor the number of the error says more.
+    // The name of a temporary file and the number of the error do not help.
     let mut why = error.to_string();
     for end in [" at path", " (os error"] {
         why.truncate(why.find(end).unwrap_or(why.len()));
@@ -126,7 +127,7 @@ mod tests {
 
     #[test]
     fn a_long_message_keeps_its_beginning_and_its_end() {
-        for (value, length) in [("é", LONGEST_WORD + 22), ("é ", LONGEST)] {
+        for (value, length) in [("é", MAX_WORD_CHARS + 22), ("é ", MAX_MESSAGE_CHARS)] {
             let line = format!("x.toml:3: {}é is too long", value.repeat(100_000));
             let line = one_line(&line);
             assert_eq!(line.chars().count(), length);

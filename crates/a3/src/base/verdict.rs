@@ -1,5 +1,5 @@
-//! Words about runs without a window that went wrong: what would have held, energy that nothing put
-//! in, and constraints that are not met.
+//! Messages about failed runs without a window: a step that would have held, energy that nothing
+//! put in, and constraints that are not met.
 
 use a3_core::{Cause, Control, Error, Simulation, Unmet};
 
@@ -7,8 +7,8 @@ use crate::base::failure::Failure;
 use crate::base::holding::step_that_holds;
 use crate::base::terminal;
 
-/// The failure of a run that was to last until then (s), with a clause that says what is left of
-/// it.
+/// Returns the failure of a run that was to last until the time `until` (s). `kept` is a clause
+/// that says what was written.
 pub fn lost(run: &Simulation, error: &Error, kept: &str, until: f64) -> Failure {
     let kept = if kept.is_empty() {
         String::new()
@@ -18,7 +18,8 @@ pub fn lost(run: &Simulation, error: &Error, kept: &str, until: f64) -> Failure 
     Failure::run(format!("{error}{kept}{}", advice(run, error, until)))
 }
 
-/// A clause with the longest step that would have held until then (s), where the step was at fault.
+/// Returns a clause with the longest step that would have held until the time `until` (s), if the
+/// step was the cause.
 fn advice(run: &Simulation, error: &Error, until: f64) -> String {
     let Error::BlowUp(lost) = error else {
         return String::new();
@@ -55,7 +56,7 @@ pub fn warn(run: &Simulation) {
     }
     if run.was_nearly_singular() {
         terminal::warn(
-            "warning: constraints contradict one another or pins, but for a single place: no force holds particles exactly there, as in a chain that is stretched straight between two pins",
+            "warning: constraints contradict one another or pins, except at a single place: no force holds particles exactly there, as in a chain that is stretched straight between two pins",
         );
     }
 }

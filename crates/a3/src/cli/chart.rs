@@ -37,7 +37,7 @@ pub struct Chart {
     /// Picture to write, ending in .svg, .pdf or .png; by default a3-chart-SCENE.svg
     #[arg(long, short, value_name = "FILE")]
     pub output: Option<PathBuf>,
-    /// File that keeps all runs, ending in .csv or .json; if it exists, the chart continues from it
+    /// File for all runs, ending in .csv or .json; if it exists, the chart continues from it
     #[arg(long, value_name = "FILE")]
     pub data: Option<PathBuf>,
     /// File for the largest errors of each particle along x, y and z, ending in .csv; runs that

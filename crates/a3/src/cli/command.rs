@@ -1,4 +1,4 @@
-//! The commands, and the help of the whole.
+//! The commands, and the help of the program.
 
 #[cfg(not(target_arch = "wasm32"))]
 use std::path::PathBuf;
@@ -20,7 +20,7 @@ use super::window::{Compare, Render, WindowOptions};
 /// Number of lessons.
 pub const LESSONS: u8 = 7;
 
-/// What the help ends with.
+/// End of the help.
 #[cfg(feature = "window")]
 const EXAMPLES: &str = "Examples:
   a3 t 0.01                          the default cloth, explicit trapezoid, 10 ms
@@ -42,7 +42,7 @@ const EXAMPLES: &str = "Examples:
 This a3 was built without its window and without the commands that draw scenes.";
 
 /// Simulate cloth and other mass-spring systems, and measure how fast and how accurate each
-/// integrator is.
+/// solver is.
 #[derive(Parser)]
 #[command(name = "a3", version, max_term_width = 100)]
 #[cfg_attr(feature = "window", command(args_conflicts_with_subcommands = true))]
@@ -57,8 +57,8 @@ pub struct Cli {
 
 #[derive(Subcommand)]
 pub enum Command {
-    /// Simulate without a window and write the final state, or every frame: JSON, CSV, OBJ, PC2,
-    /// GLB
+    /// Simulate without a window and write the final state, or every frame: JSON, CSV, NPZ, OBJ,
+    /// PC2, GLB, USD
     Simulate(Simulate),
     /// Simulate without a window and write a picture or a film: PNG, GIF, MP4
     #[cfg(feature = "window")]

@@ -1,4 +1,4 @@
-//! The options for how a scene is drawn.
+//! The options for the look of a picture.
 
 use a3_render::Style;
 use clap::Args;
@@ -32,7 +32,7 @@ fn arrows() -> impl TypedValueParser<Value = Arrows> {
     })
 }
 
-/// How a scene is drawn.
+/// Options for the look of a picture.
 #[expect(clippy::struct_excessive_bools, reason = "each is an option")]
 #[derive(Args, Clone, Copy)]
 pub struct Drawing {
@@ -46,7 +46,7 @@ pub struct Drawing {
     /// Draw in parallel projection instead of perspective
     #[arg(long)]
     pub orthographic: bool,
-    /// Draw light things on a dark background
+    /// Draw light objects on a dark background
     #[arg(long)]
     pub dark: bool,
     /// Colour each particle by a quantity
@@ -58,7 +58,7 @@ pub struct Drawing {
 }
 
 impl Drawing {
-    /// With the springs of one particle highlighted, or of none.
+    /// Returns the look of a picture, with the springs of a particle highlighted, if one is given.
     pub fn of(self, springs_of: Option<usize>) -> Manner {
         Manner {
             style: match (self.wireframe, self.springs) {

@@ -1,4 +1,4 @@
-//! What the program says when the command line cannot be understood.
+//! Messages for a command line that cannot be understood.
 
 use std::error::Error;
 
@@ -8,8 +8,8 @@ use clap::error::{ContextKind, ContextValue, ErrorKind};
 use crate::base::failure::Failure;
 use crate::base::terminal;
 
-/// Most characters of an argument that is quoted.
-const LONGEST: usize = 80;
+/// Largest number of characters of a quoted argument.
+const MAX_QUOTED_CHARS: usize = 80;
 
 /// Prints help and version as clap does, and returns any mistake in one line.
 pub fn explain(error: &clap::Error) -> Result<(), Failure> {
@@ -17,7 +17,7 @@ pub fn explain(error: &clap::Error) -> Result<(), Failure> {
         error.kind(),
         ErrorKind::DisplayHelp | ErrorKind::DisplayVersion
     ) {
-        return terminal::said(error.print());
+        return terminal::check_write(error.print());
     }
     Err(Failure::Usage(mistake(error)))
 }
@@ -39,7 +39,11 @@ fn mistake(error: &clap::Error) -> String {
             format!("{typed}: {why}")
         }
         ErrorKind::InvalidValue if value.is_empty() => {
-            let needed = format!("{} needs a value: {}", quoted(option), spelt(&arg));
+            let needed = format!(
+                "{} needs a value: {}",
+                quoted(option),
+                without_brackets(&arg)
+            );
             if choices.is_empty() {
                 needed
             } else {
@@ -68,7 +72,7 @@ fn mistake(error: &clap::Error) -> String {
         }
         ErrorKind::MissingRequiredArgument => {
             let missing = list(error, ContextKind::InvalidArg);
-            let missing: Vec<_> = missing.iter().map(|arg| spelt(arg)).collect();
+            let missing: Vec<_> = missing.iter().map(|arg| without_brackets(arg)).collect();
             if missing.iter().any(|arg| arg.contains("--error")) {
                 return either_error_or_budget();
             }
@@ -80,7 +84,7 @@ fn mistake(error: &clap::Error) -> String {
     }
 }
 
-/// What is said of a name that is not UTF-8, which is the first such argument of the process.
+/// Message for a name that is not UTF-8, which is the first such argument of the process.
 fn not_utf_8() -> String {
     let mut all = std::env::args_os();
     let name = all.find(|arg| arg.to_str().is_none()).unwrap_or_default();
@@ -88,7 +92,7 @@ fn not_utf_8() -> String {
     format!("{name} is not UTF-8: give the file a name in UTF-8")
 }
 
-/// What is said of an argument that there is not.
+/// Message for an unknown argument.
 fn unknown(arg: &str, similar: &str) -> String {
     let arg = quoted(arg);
     if !similar.is_empty() {
@@ -106,7 +110,7 @@ fn unknown(arg: &str, similar: &str) -> String {
     format!("{arg} is one word too many; --help shows what is expected")
 }
 
-/// What is said of two arguments of which only one may be given.
+/// Message for two arguments of which only one may be given.
 fn conflict(error: &clap::Error, arg: &str) -> String {
     let others = list(error, ContextKind::PriorArg);
     let both = [&[arg.to_owned()], &others[..]].concat();
@@ -119,9 +123,9 @@ fn conflict(error: &clap::Error, arg: &str) -> String {
             .into();
     }
     if both[0] == both[1] {
-        return format!("{} is there twice: give it once", spelt(arg));
+        return format!("{} is there twice: give it once", without_brackets(arg));
     }
-    let both: Vec<_> = both.iter().map(|arg| spelt(arg)).collect();
+    let both: Vec<_> = both.iter().map(|arg| without_brackets(arg)).collect();
     format!("give either {}, not both", both.join(" or "))
 }
 
@@ -130,18 +134,18 @@ fn either_error_or_budget() -> String {
 }
 
 /// An argument as it is typed, without clap's brackets.
-fn spelt(arg: &str) -> String {
+fn without_brackets(arg: &str) -> String {
     quoted(&arg.replace(['<', '>', '[', ']'], ""))
 }
 
 fn quoted(text: &str) -> String {
-    match text.char_indices().nth(LONGEST) {
+    match text.char_indices().nth(MAX_QUOTED_CHARS) {
         Some((end, _)) => format!("`{} ...`", &text[..end]),
         None => format!("`{text}`"),
     }
 }
 
-/// What clap knows of a mistake, as one text.
+/// Returns the first of clap's texts of this kind about a mistake; empty if there is none.
 fn text(error: &clap::Error, kind: ContextKind) -> String {
     list(error, kind).into_iter().next().unwrap_or_default()
 }

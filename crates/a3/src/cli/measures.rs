@@ -1,4 +1,4 @@
-//! What counts as the error and as the cost of a run.
+//! The measures of the error and of the cost of a run.
 
 use a3_core::accuracy::Metric;
 use clap::builder::TypedValueParser;
@@ -27,18 +27,18 @@ pub fn metric() -> impl TypedValueParser<Value = Metric> {
     })
 }
 
-/// Where errors are taken.
+/// Particles and times at which errors are taken.
 #[derive(Args)]
 pub struct ErrorScope {
     /// Take the errors of position and phase from particle I alone
     #[arg(long, value_name = "I", value_parser = particle, allow_negative_numbers = true)]
     pub particle: Option<usize>,
-    /// Take the error at the end, instead of the largest one on the way
+    /// Take the error at the end, instead of the largest one during the run
     #[arg(long)]
     pub at_end: bool,
 }
 
-/// What counts as the cost.
+/// Measure of the cost.
 #[derive(Clone, Copy, ValueEnum, PartialEq)]
 pub enum WorkMeasure {
     /// Computing time on this machine

@@ -22,7 +22,8 @@ mod window;
 
 pub use chart::Chart;
 pub use choose::Choose;
-pub use command::{Cli, Command, LESSONS};
+pub use command::LESSONS;
+pub use command::{Cli, Command};
 #[cfg(feature = "window")]
 pub use drawing::Drawing;
 pub use explain::explain;

@@ -1,4 +1,5 @@
-//! Names of solvers and scenes as arguments: shells complete them, and near misses are understood.
+//! Names of solvers and scenes as arguments. Shells complete them, and a message suggests the
+//! nearest.
 
 use std::ffi::OsStr;
 
@@ -10,7 +11,7 @@ use clap::{Arg, Command};
 #[cfg(feature = "window")]
 use super::values::step;
 
-/// A parser of names, which knows them all, for arguments of a command.
+/// Parser of an argument that is a name, with all names for the completion by shells.
 #[derive(Clone)]
 pub struct Names<T> {
     parse: fn(&str, &Command) -> Result<T, String>,
@@ -27,7 +28,7 @@ impl<T: Clone + Send + Sync + 'static> TypedValueParser for Names<T> {
         value: &OsStr,
     ) -> Result<T, clap::Error> {
         let found = (self.parse)(value.to_str().unwrap_or_default(), command);
-        // The message that clap makes needs a parser that fails.
+        // Only a parser that fails lets clap make its message.
         let found = move |_: &str| found.clone();
         TypedValueParser::parse_ref(&found, command, arg, value)
     }
@@ -37,19 +38,19 @@ impl<T: Clone + Send + Sync + 'static> TypedValueParser for Names<T> {
     }
 }
 
-/// A solver, by its letter or its name.
+/// A solver by its letter or its name.
 pub const SOLVER: Names<&'static Method> = Names {
     parse: |text, _| solver(text),
     all: solvers,
 };
 
-/// A solver, or all of them: none in particular.
+/// A solver, or `None` for the word "all".
 pub const SOLVER_OR_ALL: Names<Option<&'static Method>> = Names {
     parse: |text, _| solver_or_all(text),
     all: || [vec![ALL], solvers()].concat(),
 };
 
-/// A solver where there can also be a command.
+/// A solver in a place where a command may also stand.
 #[cfg(feature = "window")]
 pub const SOLVER_OR_COMMAND: Names<&'static Method> = Names {
     parse: solver_or_command,
@@ -136,7 +137,7 @@ fn solver_or_command(text: &str, cli: &Command) -> Result<&'static Method, Strin
     })
 }
 
-/// The command, the solver or the letter of a solver that is most like a word, if one is.
+/// Returns the command, the solver or the letter of a solver that is most like a word, if one is.
 fn nearest_of(text: &str, commands: &[&str]) -> Option<String> {
     let letters: Vec<_> = integrators::METHODS
         .iter()

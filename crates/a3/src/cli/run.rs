@@ -43,7 +43,7 @@ pub struct StepOptions {
 }
 
 impl StepOptions {
-    /// The limits that are given.
+    /// Returns the limits that were given.
     pub fn given(&self) -> StepLimits {
         StepLimits {
             absolute: self.absolute,

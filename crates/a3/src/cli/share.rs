@@ -1,18 +1,18 @@
-//! Which of the runs of a sweep are asked for.
+//! Parts of the runs of a sweep, as `--only` names them.
 
 use std::fmt;
 
-/// What a run is called: a number made of all that it depends on.
+/// Id of a run: a hash of all that the run depends on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Id(u64);
 
 impl Id {
-    /// The id of that number.
+    /// Creates an id from its number.
     pub fn new(number: u64) -> Self {
         Self(number)
     }
 
-    /// An id as it is printed.
+    /// Reads an id as it is printed.
     pub fn parse(text: &str) -> Option<Self> {
         let digits = text.len() == 16 && text.bytes().all(|b| b.is_ascii_hexdigit());
         let number = digits.then(|| u64::from_str_radix(text, 16).ok());
@@ -37,7 +37,7 @@ pub enum Only {
 }
 
 impl Only {
-    /// A share as it is typed.
+    /// Reads a share as it is typed.
     pub fn parse(text: &str) -> Result<Self, String> {
         let right = "a share is K/N with K from 1 to N, such as 3/12, or ids that --plan prints, separated by commas";
         if let Some((k, n)) = text.split_once('/') {
@@ -52,7 +52,7 @@ impl Only {
             .ok_or_else(|| right.into())
     }
 
-    /// The places of the runs with these ids, which are those of all.
+    /// Returns the indices of the selected runs among the ids of all runs.
     pub fn of(&self, runs: &[Id]) -> Result<Vec<usize>, String> {
         match self {
             Self::Share(k, n) => {

@@ -21,13 +21,13 @@ use crate::cli::share::Only;
     again by the same command, and several processes and machines may work in one folder. A run that\n\
     blows up is a result. docs/sweeps.md has recipes for GNU parallel and Slurm.")]
 pub struct Sweep {
-    /// File that says what is run, in TOML
+    /// File that describes the sweep, in TOML
     #[arg(value_name = "FILE.toml")]
     pub file: PathBuf,
     /// Print the runs, one a line: id, scene, solver, step or tolerance, seconds, and the keys
     #[arg(long, conflicts_with_all = ["collect", "status", "only"])]
     pub plan: bool,
-    /// Do a share of the runs: the K-th of N, or those with these ids, separated by commas
+    /// Make a share of the runs: the K-th of N, or those with these ids, separated by commas
     #[arg(long, value_name = "K/N|IDS", value_parser = Only::parse)]
     pub only: Option<Only>,
     /// Join the runs that are done into FOLDER.csv and its chart, FOLDER.svg

@@ -1,4 +1,4 @@
-//! Values of arguments: numbers within their ranges, and sizes. An error says what is right.
+//! Values of arguments: numbers within their ranges, and sizes. An error says what would be right.
 
 use std::ops::RangeInclusive;
 use std::str::FromStr;
@@ -8,9 +8,9 @@ use a3_core::Grid;
 use crate::base::bounds::{LARGEST_STEP, SMALLEST_STEP, TOLERANCES};
 
 /// Largest number of threads.
-const MOST_THREADS: usize = 1024;
+const MAX_THREADS: usize = 1024;
 
-/// A number, or a fraction such as 1/60.
+/// Reads a number, or a fraction such as 1/60.
 fn number(text: &str) -> Option<f64> {
     match text.split_once('/') {
         Some((above, below)) => Some(above.parse::<f64>().ok()? / below.parse::<f64>().ok()?),
@@ -18,21 +18,21 @@ fn number(text: &str) -> Option<f64> {
     }
 }
 
-/// A number of that range. `right` says what one is.
+/// Reads a number in a range. `right` is the message for any other text.
 fn within(text: &str, range: RangeInclusive<f64>, right: &str) -> Result<f64, String> {
     match number(text) {
         Some(number) if range.contains(&number) => Ok(number),
-        _ => Err(pointed(text).unwrap_or_else(|| right.into())),
+        _ => Err(decimal_point_advice(text).unwrap_or_else(|| right.into())),
     }
 }
 
-/// What is said of a number with a decimal comma.
-fn pointed(text: &str) -> Option<String> {
+/// Message for a number with a decimal comma.
+fn decimal_point_advice(text: &str) -> Option<String> {
     let point = text.replacen(',', ".", 1);
     (point != text && number(&point).is_some()).then(|| format!("use a decimal point: {point}"))
 }
 
-/// A step (s) or a tolerance.
+/// Reads a step (s) or a tolerance.
 pub fn step(text: &str) -> Result<f64, String> {
     let right = format!(
         "a step is a number of seconds from {SMALLEST_STEP} to {LARGEST_STEP}, such as 0.01 or 1/60; the tolerance of an \
@@ -43,7 +43,7 @@ pub fn step(text: &str) -> Result<f64, String> {
     within(text, *TOLERANCES.start()..=LARGEST_STEP, &right)
 }
 
-/// An absolute tolerance (m).
+/// Reads an absolute tolerance (m).
 pub fn absolute(text: &str) -> Result<f64, String> {
     within(
         text,
@@ -52,7 +52,7 @@ pub fn absolute(text: &str) -> Result<f64, String> {
     )
 }
 
-/// The longest step of an adaptive solver (s).
+/// Reads the longest step of an adaptive solver (s).
 pub fn max_step(text: &str) -> Result<f64, String> {
     within(
         text,
@@ -63,23 +63,23 @@ pub fn max_step(text: &str) -> Result<f64, String> {
     )
 }
 
-/// The number of a particle.
+/// Reads the number of a particle.
 pub fn particle(text: &str) -> Result<usize, String> {
     text.parse()
         .map_err(|_| "a particle is a whole number from 0, such as 12".into())
 }
 
-/// A number of threads.
+/// Reads a number of threads.
 pub fn threads(text: &str) -> Result<usize, String> {
     match text.parse() {
-        Ok(count) if (1..=MOST_THREADS).contains(&count) => Ok(count),
+        Ok(count) if (1..=MAX_THREADS).contains(&count) => Ok(count),
         _ => Err(format!(
-            "the number of threads is a whole number from 1 to {MOST_THREADS}, such as 4"
+            "the number of threads is a whole number from 1 to {MAX_THREADS}, such as 4"
         )),
     }
 }
 
-/// The end of a run (s).
+/// Reads the end of a run (s).
 pub fn until(text: &str) -> Result<f64, String> {
     within(
         text,
@@ -88,7 +88,7 @@ pub fn until(text: &str) -> Result<f64, String> {
     )
 }
 
-/// Real time between two checkpoints (s).
+/// Reads the real time between two checkpoints (s).
 pub fn pause(text: &str) -> Result<f64, String> {
     within(
         text,
@@ -97,7 +97,7 @@ pub fn pause(text: &str) -> Result<f64, String> {
     )
 }
 
-/// The beginning of a film (s).
+/// Reads the beginning of a film (s).
 pub fn beginning(text: &str) -> Result<f64, String> {
     within(
         text,
@@ -106,7 +106,7 @@ pub fn beginning(text: &str) -> Result<f64, String> {
     )
 }
 
-/// Frames a second.
+/// Reads a number of frames per second.
 pub fn rate(text: &str) -> Result<f64, String> {
     within(
         text,
@@ -115,7 +115,7 @@ pub fn rate(text: &str) -> Result<f64, String> {
     )
 }
 
-/// The end of runs that are compared (s).
+/// Reads the end of runs that are compared (s).
 pub fn horizon(text: &str) -> Result<f64, String> {
     within(
         text,
@@ -124,7 +124,7 @@ pub fn horizon(text: &str) -> Result<f64, String> {
     )
 }
 
-/// A factor of the stiffness.
+/// Reads a factor of the stiffness.
 pub fn factor(text: &str) -> Result<f64, String> {
     within(
         text,
@@ -133,7 +133,7 @@ pub fn factor(text: &str) -> Result<f64, String> {
     )
 }
 
-/// An error of positions (m).
+/// Reads an error of positions (m).
 pub fn error(text: &str) -> Result<f64, String> {
     within(
         text,
@@ -142,7 +142,7 @@ pub fn error(text: &str) -> Result<f64, String> {
     )
 }
 
-/// Computing time for a frame (ms).
+/// Reads the computing time for a frame (ms).
 pub fn budget(text: &str) -> Result<f64, String> {
     within(
         text,
@@ -152,12 +152,12 @@ pub fn budget(text: &str) -> Result<f64, String> {
 }
 
 /// Size of a chart for a column of a paper, 90 mm wide (px).
-const COLUMN: (u32, u32) = (340, 360);
+const COLUMN_SIZE: (u32, u32) = (340, 360);
 
-/// Width and height of a chart (px).
+/// Reads the width and height of a chart (px).
 pub fn picture_size(text: &str) -> Result<(u32, u32), String> {
     if text == "column" {
-        return Ok(COLUMN);
+        return Ok(COLUMN_SIZE);
     }
     match pair(text) {
         Some((w, h)) if (320..=8000).contains(&w) && (240..=8000).contains(&h) => Ok((w, h)),
@@ -167,19 +167,19 @@ pub fn picture_size(text: &str) -> Result<(u32, u32), String> {
     }
 }
 
-/// Two numbers with an x between them.
+/// Reads two numbers with an x between them.
 fn pair<T: FromStr>(text: &str) -> Option<(T, T)> {
     let (a, b) = text.split_once(['x', 'X', '×'])?;
     Some((a.parse().ok()?, b.parse().ok()?))
 }
 
-/// Rows and columns of a cloth.
+/// Reads the rows and columns of a cloth.
 pub fn grid(text: &str) -> Result<Grid, String> {
     let (rows, cols) = pair(text).ok_or("a grid is ROWSxCOLS, such as 20x30")?;
     Grid::new(rows, cols).map_err(|e| e.to_string())
 }
 
-/// Width and height of a picture (px).
+/// Reads the width and height of a picture (px).
 pub fn size(text: &str) -> Result<(u32, u32), String> {
     match pair(text) {
         Some((w, h)) if w > 0 && h > 0 => Ok((w, h)),

@@ -1,4 +1,4 @@
-//! The options of what is drawn: windows, comparisons, pictures and films.
+//! The options of windows, comparisons, pictures and films.
 
 use std::path::PathBuf;
 
@@ -36,7 +36,7 @@ pub struct WindowOptions {
     pub resume: Option<PathBuf>,
 }
 
-/// How a window begins.
+/// Options for the start of a window.
 #[derive(Args)]
 pub struct Look {
     #[command(flatten)]
@@ -58,7 +58,7 @@ pub struct Look {
     FILE.gif       a film that loops, 25 frames per second by default\n  \
     FILE.mp4       a film as H.264, 30 frames per second by default; needs ffmpeg\n  \
     FILE-####.png  a film as pictures, 30 per second by default, numbered with as many digits as there are #\n\n\
-    Frames are at exactly T + k / N, from --from to --until; a step that would pass one is shortened. A\n\
+    Frames are at exactly T + k / N, from --from to --until; no step is shortened for them. A\n\
     film that blows up or is interrupted keeps the frames until then."
 )]
 pub struct Render {

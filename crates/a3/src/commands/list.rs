@@ -8,8 +8,8 @@ use crate::base::terminal;
 use crate::cli::Scenes;
 use crate::files::setup::find;
 
-/// A table with columns as wide as their widest cells. A column whose heading starts with a space
-/// is aligned to the right.
+/// Lays out a table with columns as wide as their widest cells. A column whose heading starts with
+/// a space is aligned to the right.
 pub fn table(rows: &[Vec<String>]) -> String {
     let headings = &rows[0];
     let width = |c: usize| {

@@ -1,4 +1,5 @@
-//! `a3 man` and `a3 completions`: the definition of the command line, for man and for shells.
+//! `a3 man` and `a3 completions`: the manual and the completion scripts, made from the definition
+//! of the command line.
 
 use std::io;
 use std::path::Path;
@@ -12,14 +13,14 @@ use crate::base::terminal;
 use crate::cli::Cli;
 use crate::files::output;
 
-/// Prints a script by which the shell completes words.
+/// Prints the script with which a shell completes words.
 pub fn completions(shell: Shell) -> Result<(), Failure> {
     let mut script = vec![];
     clap_complete::generate(shell, &mut visible(&Cli::command()), "a3", &mut script);
     say(script)
 }
 
-/// Prints one page with everything, or writes a page for each command into a folder.
+/// Prints one page with all commands, or writes a page for each command into a folder.
 pub fn run(folder: Option<&Path>) -> Result<(), Failure> {
     let command = command();
     let Some(folder) = folder else {
@@ -43,15 +44,15 @@ pub fn run(folder: Option<&Path>) -> Result<(), Failure> {
     Ok(())
 }
 
-/// The command line with its complete names, and without the command `help`, which says no more
-/// than `--help`.
+/// Returns the command line with full names, and without the command `help`, which duplicates
+/// `--help`.
 fn command() -> Command {
     let mut command = Cli::command().disable_help_subcommand(true);
     command.build();
     command
 }
 
-/// A command without its hidden options, which clap would complete.
+/// Returns a command without its hidden options, which clap would complete.
 fn visible(command: &Command) -> Command {
     let args = command.get_arguments().filter(|arg| !arg.is_hide_set());
     let about = command.get_about().cloned().unwrap_or_default();
@@ -82,7 +83,7 @@ fn whole(command: &Command, page: &mut Vec<u8>) -> io::Result<()> {
         }
         let name = command.get_bin_name().unwrap_or_default();
         page.extend(format!(".SH \"{name}\"\n").bytes());
-        // The sections of a command stand below its name.
+        // The sections of a command become subsections below its name.
         page.extend(text(part)?.replace(".SH ", ".SS ").bytes());
     }
     exit_status(page);
@@ -93,7 +94,7 @@ fn whole(command: &Command, page: &mut Vec<u8>) -> io::Result<()> {
 fn exit_status(page: &mut Vec<u8>) {
     page.extend(b".SH \"EXIT STATUS\"\n");
     for (code, meaning) in EXIT_CODES {
-        // In a manual, a hyphen that is typed has a backslash.
+        // In a man page, a backslash makes a hyphen one that can be typed.
         let meaning = meaning.replace('-', "\\-");
         page.extend(format!(".TP\n\\fB{code}\\fR\n{meaning}\n").bytes());
     }
@@ -103,7 +104,7 @@ fn say(bytes: Vec<u8>) -> Result<(), Failure> {
     terminal::send(&text(bytes).map_err(Failure::run)?)
 }
 
-/// The text of a page, in which the section that follows the options is called notes.
+/// Returns the text of a page, in which the section after the options is called notes.
 fn text(bytes: Vec<u8>) -> io::Result<String> {
     let text = String::from_utf8(bytes).map_err(io::Error::other)?;
     Ok(text.replace(".SH EXTRA", ".SH NOTES"))

@@ -28,7 +28,7 @@ pub fn run(options: &Simulate) -> Result<(), Failure> {
     let every = Duration::from_secs_f64(options.every);
     let keeper = options.checkpoint.as_deref();
     let (mut simulation, end) = (run.simulation, run.until);
-    let mut looks = Looks {
+    let mut observer = Observer {
         options,
         request: run.request,
         extremes,
@@ -36,12 +36,12 @@ pub fn run(options: &Simulate) -> Result<(), Failure> {
         crossed: None,
         failure: None,
     };
-    advance(&mut simulation, end, &frames, &mut *export, &mut looks)?;
+    advance(&mut simulation, end, &frames, &mut *export, &mut observer)?;
     export.finish()?;
-    looks.keep(&simulation)?;
+    observer.save(&simulation)?;
     warn_of_tears(options, &simulation);
     verdict::warn(&simulation);
-    if let (Some(path), Some(extremes)) = (&options.summary, &looks.extremes) {
+    if let (Some(path), Some(extremes)) = (&options.summary, &observer.extremes) {
         summary::write(path, &simulation, frames.count, extremes, begun)?;
     }
     Ok(())
@@ -77,30 +77,30 @@ fn advance(
     end: f64,
     frames: &FrameTimes,
     export: &mut dyn Export,
-    looks: &mut Looks,
+    observer: &mut Observer,
 ) -> Result<(), Failure> {
     interrupt::listen();
     let bar = Bar::new(end - simulation.time());
-    let mut goes_on = looks.look(simulation);
+    let mut may_continue = observer.observe(simulation);
     for (k, time) in frames.times().enumerate() {
         let mut before = simulation.time();
         let reached = progress::march(simulation, time, |simulation| {
             bar.advance(simulation.time() - before);
             before = simulation.time();
-            goes_on &= looks.look(simulation);
-            goes_on
+            may_continue &= observer.observe(simulation);
+            may_continue
         });
-        // The last look comes before anything is complete.
+        // The energy is checked last before any file is complete.
         let reached = match reached {
             Ok(true) if k + 1 == frames.count => simulation.conclude().map(|()| true),
             other => other,
         };
         if reached != Ok(true) {
             bar.clear();
-            let written = written(&looks.options.output, k, frames.count);
+            let written = written(&observer.options.output, k, frames.count);
             return Err(match reached {
                 Err(error) => verdict::lost(simulation, &error, &written, end),
-                Ok(_) => looks.stopped(simulation, &written),
+                Ok(_) => observer.stopped(simulation, &written),
             });
         }
         export.add(simulation)?;
@@ -132,47 +132,47 @@ fn warn_of_tears(options: &Simulate, simulation: &Simulation) {
     }
 }
 
-/// What a run is looked at for on its way.
-struct Looks<'a> {
+/// Observer of a run: it writes checkpoints, and checks for crossings and interrupts.
+struct Observer<'a> {
     options: &'a Simulate,
     request: Request<'a>,
     extremes: Option<Extremes>,
     keeper: Option<Keeper>,
-    /// What passes through what, once something does.
+    /// Message about the first crossing of surfaces.
     crossed: Option<String>,
     /// Failure of a checkpoint.
     failure: Option<Failure>,
 }
 
-impl Looks<'_> {
-    /// Looks at the run. Returns whether it may go on.
-    fn look(&mut self, run: &Simulation) -> bool {
+impl Observer<'_> {
+    /// Observes the run. Returns whether it may continue.
+    fn observe(&mut self, run: &Simulation) -> bool {
         if let Some(extremes) = &mut self.extremes {
-            extremes.look(run);
+            extremes.observe(run);
         }
         self.crossed = check(run, self.options.check).err();
         if let Some(mut keeper) = self.keeper.take() {
-            self.failure = keeper.look(|| self.kept(run)).err();
+            self.failure = keeper.write_if_due(|| self.kept(run)).err();
             self.keeper = Some(keeper);
         }
         self.crossed.is_none() && self.failure.is_none() && interrupt::go_on()
     }
 
-    /// The run as it is now.
+    /// Returns the present run, as a checkpoint stores it.
     fn kept(&self, run: &Simulation) -> Kept {
         let Request { source, options } = &self.request;
         Kept::new(source, options.grid, run, self.extremes)
     }
 
-    /// Writes a last checkpoint, if any are wanted. Returns a clause that says so.
-    fn keep(&self, run: &Simulation) -> Result<String, Failure> {
+    /// Writes a last checkpoint, if --checkpoint is given. Returns a clause that says so.
+    fn save(&self, run: &Simulation) -> Result<String, Failure> {
         let Some(keeper) = &self.keeper else {
             return Ok(String::new());
         };
         Ok(format!("; {}", keeper.write(&self.kept(run))?))
     }
 
-    /// Why a run was stopped that has written so much.
+    /// Returns the failure of a run that was stopped. `written` says what it has written.
     fn stopped(&mut self, run: &Simulation, written: &str) -> Failure {
         interrupt::write_on();
         if let Some(failure) = self.failure.take() {
@@ -181,15 +181,15 @@ impl Looks<'_> {
         if let Some(why) = &self.crossed {
             return Failure::run(format!("{why}; {written}"));
         }
-        match self.keep(run) {
+        match self.save(run) {
             Ok(kept) => Failure::Interrupted(format!("interrupted: {written}{kept}")),
             Err(failure) => failure,
         }
     }
 }
 
-/// Takes a run up where it was kept in a file. A solver, a step or a disturbance that is asked for
-/// has to be the one that it was kept with.
+/// Resumes a run from a checkpoint. A solver, a step or a disturbance on the command line has to be
+/// that of the checkpoint.
 fn resume(path: &Path, options: &Simulate, begun: &mut Run) -> Result<Kept, Failure> {
     let kept = Kept::read(path)?;
     let (source, run) = (&begun.request.source, &mut begun.simulation);
@@ -209,7 +209,7 @@ fn resume(path: &Path, options: &Simulate, begun: &mut Run) -> Result<Kept, Fail
         || asked.step.is_some() && control != run.control()
     {
         return refuse(format!(
-            "this run goes on with {} {}, which need not be given",
+            "this run continues with {} {}, which need not be given",
             run.method().name,
             run.control().value()
         ));
@@ -221,7 +221,7 @@ fn resume(path: &Path, options: &Simulate, begun: &mut Run) -> Result<Kept, Fail
     ] {
         if asked && !there {
             return refuse(format!(
-                "this run goes on without {option}: leave out --{option}"
+                "this run continues without {option}: leave out --{option}"
             ));
         }
     }
@@ -234,7 +234,7 @@ fn resume(path: &Path, options: &Simulate, begun: &mut Run) -> Result<Kept, Fail
     Ok(kept)
 }
 
-/// `Ok` if no surfaces pass through one another, or none shall be looked for; else what does.
+/// Checks for crossings of surfaces, if --check is given.
 fn check(simulation: &Simulation, wanted: bool) -> Result<(), String> {
     let Some(network) = simulation.model().network().filter(|_| wanted) else {
         return Ok(());
@@ -244,7 +244,7 @@ fn check(simulation: &Simulation, wanted: bool) -> Result<(), String> {
     apart.map_err(|why| format!("at t = {:.4} s {why}", simulation.time()))
 }
 
-/// What an interrupted run has written: a file is complete or absent, and so is each file of a
+/// Says what an interrupted run has written: a file is complete or absent, and so is each file of a
 /// sequence.
 fn written(path: &Path, done: usize, count: usize) -> String {
     if Sequence::of(path).is_some() && done > 0 {

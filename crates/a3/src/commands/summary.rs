@@ -23,40 +23,40 @@ struct Summary {
     evaluations: u64,
     /// Total energy; none for a system without forces.
     energy: Option<Energy>,
-    /// Energy that nothing put in, if it is much (J).
+    /// Energy that the method added (J), if it is large enough for a warning.
     energy_gained: Option<f64>,
-    /// Energy gained or, below 0, lost (percent); none where the forces do not keep it.
+    /// Energy gained or, below 0, lost (percent); none where forces do not conserve energy.
     energy_change_percent: Option<f64>,
-    /// The constraint that was farthest from being met; none if all were met.
-    constraint: Option<Broken>,
+    /// The constraint with the largest error; none if all were met.
+    constraint: Option<Violation>,
     /// Largest length over rest length of a spring; none without springs.
     largest_stretch: Option<f64>,
     /// Number of springs that broke.
     torn: usize,
-    /// What the guard of surfaces did; none where surfaces do not touch.
+    /// Actions of the collision safeguard; none where surfaces do not touch.
     contact: Option<Contact>,
     /// Real time (s).
     wall_time: f64,
 }
 
-/// Error of a constraint over its length from which on it is in a summary.
-const BROKEN: f64 = 1e-4;
+/// Least error of a constraint, over its length, that a summary reports.
+const MIN_REPORTED_ERROR: f64 = 1e-4;
 
 /// Constraint that was not met.
 #[derive(Serialize)]
-struct Broken {
+struct Violation {
     /// Number, counted from 0.
     number: usize,
-    /// What it is.
+    /// Description.
     name: String,
     /// Largest error over its length (percent).
     off_by_percent: f64,
 }
 
-impl Broken {
+impl Violation {
     fn of(simulation: &Simulation) -> Option<Self> {
         let unmet = simulation.worst_constraint()?;
-        (unmet.share > BROKEN).then(|| Self {
+        (unmet.share > MIN_REPORTED_ERROR).then(|| Self {
             number: unmet.number,
             name: unmet.constraint.to_string(),
             off_by_percent: 100.0 * unmet.share,
@@ -64,12 +64,12 @@ impl Broken {
     }
 }
 
-/// What the guard of surfaces did.
+/// Actions of the collision safeguard of surfaces.
 #[derive(Serialize)]
 struct Contact {
     /// Number of impulses.
     impulses: usize,
-    /// Number of vertices whose way was cut.
+    /// Number of displacements of vertices that were cut.
     cuts: usize,
     /// Momentum that cuts took (N s).
     momentum_lost: f64,
@@ -87,8 +87,8 @@ impl Contact {
     }
 }
 
-/// Writes the summary of a run that began then and has written so many frames: to a file, or for -
-/// to standard output.
+/// Writes the summary of a run that began at the instant `begun` and has written `frames` frames:
+/// to a file, or for - to standard output.
 pub fn write(
     path: &Path,
     simulation: &Simulation,
@@ -106,7 +106,7 @@ pub fn write(
         energy: extremes.energy,
         energy_gained: simulation.gained().map(|gain| gain.energy),
         energy_change_percent: simulation.energy_change().map(|share| 100.0 * share),
-        constraint: Broken::of(simulation),
+        constraint: Violation::of(simulation),
         largest_stretch: extremes.stretch,
         torn: simulation.tears(),
         contact: Contact::of(simulation),

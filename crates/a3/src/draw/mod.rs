@@ -1,4 +1,4 @@
-//! From a simulation to surfaces and pictures.
+//! Surfaces and pictures of a simulation.
 
 #[cfg(all(feature = "window", not(target_arch = "wasm32")))]
 pub mod painter;

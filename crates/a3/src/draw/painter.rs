@@ -7,9 +7,9 @@ use crate::base::failure::Failure;
 use crate::draw::show::Show;
 
 /// Height of a picture (px) in which lines are drawn at one pixel per point.
-const POINTS: f32 = 720.0;
+const UNSCALED_HEIGHT: f32 = 720.0;
 
-/// Draws a run as often as needed, seen by the camera of its scene.
+/// Draws pictures of a run, seen by the camera of its scene.
 pub struct Painter {
     gpu: Gpu,
     offscreen: Offscreen,
@@ -20,7 +20,7 @@ pub struct Painter {
 }
 
 impl Painter {
-    /// A painter for pictures of this run, of this size (px).
+    /// Creates a painter for pictures of this run, of this size (px).
     pub fn new(show: &Show, simulation: &Simulation, size: (u32, u32)) -> Result<Self, Failure> {
         let gpu = pollster::block_on(Gpu::headless()).map_err(Failure::run)?;
         let offscreen = Offscreen::new(&gpu, size).map_err(Failure::usage)?;
@@ -35,7 +35,7 @@ impl Painter {
         })
     }
 
-    /// A picture of the run as it is now: rows from the top, with four bytes for a pixel.
+    /// Draws the present state of the run: rows from the top, with four bytes for a pixel.
     pub fn draw(&mut self, show: &mut Show, simulation: &Simulation) -> Result<Vec<u8>, Failure> {
         if simulation.tears() != self.tears {
             self.tears = simulation.tears();
@@ -50,7 +50,7 @@ impl Painter {
     }
 }
 
-/// Pixels per point in a picture of this size.
+/// Returns the pixels per point in a picture of this size (px).
 pub fn scale(size: (u32, u32)) -> f32 {
-    (size.1 as f32 / POINTS).max(0.5)
+    (size.1 as f32 / UNSCALED_HEIGHT).max(0.5)
 }

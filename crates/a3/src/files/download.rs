@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 use crate::base::browser::{download, files, log};
 use crate::base::failure::Failure;
 
-/// Gives `bytes` to the browser as a download, and keeps them as a file of the page. Returns its
-/// name.
+/// Gives `bytes` to the browser as a download, and stores them as a file of the page under the
+/// first free name a3-SCENE-k. Returns that name.
 pub fn write_new(_: &Path, scene: &str, extension: &str, bytes: &[u8]) -> Result<PathBuf, Failure> {
     let scene = scene.replace(|c: char| c.is_control() || "/\\".contains(c), "-");
     let name = |k: usize| PathBuf::from(format!("a3-{scene}-{k}.{extension}"));
@@ -18,7 +18,7 @@ pub fn write_new(_: &Path, scene: &str, extension: &str, bytes: &[u8]) -> Result
     Ok(path)
 }
 
-/// Gives `bytes` to the browser as a download of that name, and keeps them as a file of the page.
+/// Gives `bytes` to the browser as a download of that name, and stores them as a file of the page.
 pub fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
     files::keep(path, bytes);
     download(&path.to_string_lossy(), bytes).map_err(Failure::run)

@@ -17,7 +17,7 @@ impl Ending {
     /// All formats.
     pub const ALL: [Self; 3] = [Self::Gif, Self::Mp4, Self::Png];
 
-    /// What it is called.
+    /// Name for people.
     pub fn name(self) -> &'static str {
         match self {
             Self::Gif => "GIF",
@@ -26,7 +26,7 @@ impl Ending {
         }
     }
 
-    /// The end of the names of its files.
+    /// Ending of the names of its files.
     pub fn of_files(self) -> &'static str {
         match self {
             Self::Gif => ".gif",
@@ -35,8 +35,8 @@ impl Ending {
         }
     }
 
-    /// Frames a second: a whole number of them fits between two of a window at 60 Hz, and the
-    /// delays of a GIF are whole hundredths of a second.
+    /// Frames per second. A frame lasts a whole number of frames of a window at 60 Hz, and in a GIF
+    /// a whole number of hundredths of a second.
     pub fn rate(self) -> f64 {
         match self {
             Self::Gif => 20.0,
@@ -44,9 +44,9 @@ impl Ending {
         }
     }
 
-    /// The largest size (px) in which this format is written of a picture of `size` (px), in the
-    /// same proportions and with even sides, as an MP4 needs them. A GIF has few colours and is
-    /// long: it is smaller.
+    /// Returns the size (px) of a film of a picture of `size` (px): at most the largest of this
+    /// format, with the same proportions and with even sides, as MP4 needs them. GIFs compress
+    /// badly, so they are smaller.
     pub fn fit(self, (width, height): (u32, u32)) -> (u32, u32) {
         let most = match self {
             Self::Gif => 640.0,

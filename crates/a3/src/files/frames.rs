@@ -6,8 +6,8 @@ use std::path::{Path, PathBuf};
 use crate::base::failure::Failure;
 use crate::files::output;
 
-/// Most frames of a run. More are taken for a mistake.
-const MOST: f64 = 1e6;
+/// Largest number of frames of a run. More are refused as a mistake.
+const MAX_FRAMES: f64 = 1e6;
 
 /// Times `from` + k / `rate` (s), the last at or before the end.
 #[derive(Clone, Copy, Debug)]
@@ -16,7 +16,7 @@ pub struct FrameTimes {
     pub from: f64,
     /// Frames a second (1/s).
     pub rate: f64,
-    /// Number of the first frame: 0, unless the run was taken up later.
+    /// Number of the first frame: 0, unless the run was resumed from a checkpoint.
     pub first: usize,
     /// The number of frames, at least 1.
     pub count: usize,
@@ -25,7 +25,7 @@ pub struct FrameTimes {
 }
 
 impl FrameTimes {
-    /// The frames of a film from `from` to `until` (s).
+    /// Creates the times of the frames from `from` to `until` (s).
     pub fn new(from: f64, until: f64, rate: f64) -> Result<Self, Failure> {
         if from > until {
             return Err(Failure::usage(format!(
@@ -34,9 +34,9 @@ impl FrameTimes {
         }
         // The last frame may miss the end by no more than rounding.
         let count = ((until - from) * rate + 1e-6).floor() + 1.0;
-        if count > MOST {
+        if count > MAX_FRAMES {
             return Err(Failure::usage(format!(
-                "{until} s at {rate} frames a second are {count:.0} frames, and {MOST} is the most: a lower --fps or \
+                "{until} s at {rate} frames a second are {count:.0} frames, and {MAX_FRAMES} is the most: a lower --fps or \
                  --until"
             )));
         }
@@ -49,7 +49,7 @@ impl FrameTimes {
         })
     }
 
-    /// Those of these frames that are at a time (s) or later; at least the last.
+    /// Returns the frames at a time (s) or later; at least the last one.
     pub fn since(self, time: f64) -> Self {
         let before = self.times().filter(|t| *t < time).count();
         let before = before.min(self.count - 1);
@@ -60,7 +60,7 @@ impl FrameTimes {
         }
     }
 
-    /// The times of all frames (s).
+    /// Returns the times of all frames (s).
     pub fn times(self) -> impl Iterator<Item = f64> {
         let numbers = self.first..self.first + self.count;
         numbers.map(move |k| (self.from + k as f64 / self.rate).min(self.until))
@@ -77,7 +77,7 @@ pub struct Sequence {
 }
 
 impl Sequence {
-    /// The sequence that a path names, if there is a `#` in its file name.
+    /// Returns the sequence that a path names, if there is a `#` in its file name.
     pub fn of(path: &Path) -> Option<Self> {
         let name = path.file_name()?.to_str()?;
         let (before, rest) = name.split_once('#')?;
@@ -90,7 +90,7 @@ impl Sequence {
         })
     }
 
-    /// Refuses a sequence whose numbers have too few digits for so many files.
+    /// Refuses a sequence whose numbers have too few digits for `count` files.
     pub fn check(&self, count: usize) -> Result<(), Failure> {
         if self.after.contains('#') {
             return Err(Failure::usage(
@@ -116,7 +116,7 @@ impl Sequence {
         Ok(())
     }
 
-    /// The file of frame k, counted from 0: its number is k + 1.
+    /// Returns the file of frame k, counted from 0: its number is k + 1.
     pub fn file(&self, k: usize) -> PathBuf {
         let (before, after, width) = (&self.before, &self.after, self.digits);
         let name = format!("{before}{:0width$}{after}", k + 1);

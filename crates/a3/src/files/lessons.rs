@@ -1,4 +1,4 @@
-//! The lessons of the folder `lessons`, carried in the program, so that they can be read wherever
+//! The lessons of the folder `lessons`, embedded in the program, so that they can be read wherever
 //! it is installed: opened from the window, or printed.
 
 use std::path::{Path, PathBuf};
@@ -39,7 +39,7 @@ static FILES: &[(&str, &[u8])] = carried![
 // The index comes first, and then the lessons.
 const _: () = assert!((LESSONS as usize) < FILES.len());
 
-/// What opens a file with the program that the user has chosen for it.
+/// Command that opens a file with the user's program for it.
 const OPENER: &str = if cfg!(target_os = "macos") {
     "open"
 } else if cfg!(windows) {
@@ -54,14 +54,15 @@ pub fn print(lesson: Option<u8>) -> Result<(), Failure> {
     terminal::send(&String::from_utf8_lossy(text))
 }
 
-/// Writes the lessons where the user's programs find them, opens the index, and says so.
+/// Writes the lessons to the user's cache folder, opens the index, and returns a message that says
+/// so.
 pub fn open() -> Result<String, Failure> {
     let folder = folder();
     write(&folder)?;
     Ok(open_with(OPENER, &folder.join(FILES[0].0)))
 }
 
-/// The user's folder for files that can be made again.
+/// Returns the folder of the lessons in the user's cache folder.
 fn folder() -> PathBuf {
     let named = |name| env::var_os(name).map(PathBuf::from);
     let absolute = |path: &PathBuf| path.is_absolute();
@@ -78,7 +79,7 @@ fn folder() -> PathBuf {
         .join("lessons")
 }
 
-/// Writes those files that are not there as they should be.
+/// Writes the files that are missing or differ.
 fn write(folder: &Path) -> Result<(), Failure> {
     for (name, bytes) in FILES {
         let path = folder.join(name);
@@ -94,7 +95,8 @@ fn write(folder: &Path) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Opens a file with a program that is not waited for, and says what was opened or where it is.
+/// Opens a file with a program, without waiting for it, and returns a message that says what was
+/// opened, or where the file is.
 fn open_with(opener: &str, path: &Path) -> String {
     let child = Command::new(opener)
         .arg(path)
@@ -105,12 +107,12 @@ fn open_with(opener: &str, path: &Path) -> String {
     let path = path.display();
     match child {
         Ok(mut child) => {
-            // Whoever starts a program has to ask how it ended.
+            // A child process stays as a zombie until it is waited for.
             thread::spawn(move || child.wait());
             format!("opened {path}")
         }
         Err(_) => {
-            format!("The lessons are in {path}; {opener}, which would open them, is not here.")
+            format!("The lessons are in {path}; {opener}, which would open them, is not installed.")
         }
     }
 }
@@ -154,7 +156,7 @@ mod tests {
     #[test]
     fn where_nothing_opens_them_it_says_where_they_are() {
         let said = open_with("no-such-opener", Path::new("/some/README.md"));
-        for word in ["/some/README.md", "no-such-opener", "not here"] {
+        for word in ["/some/README.md", "no-such-opener", "not installed"] {
             assert!(said.contains(word), "{said}");
         }
     }

@@ -1,4 +1,4 @@
-//! From arguments to what they ask for: scenes and simulations.
+//! Scenes and simulations from the arguments of the command line.
 
 use std::sync::Arc;
 
@@ -18,7 +18,7 @@ pub struct Request<'a> {
     pub options: &'a What,
 }
 
-/// A run without a window that is ready to begin.
+/// A run without a window that is ready to start.
 pub struct Run<'a> {
     pub request: Request<'a>,
     pub simulation: Simulation,
@@ -69,9 +69,9 @@ impl<'a> Request<'a> {
         })
     }
 
-    /// The scene, with the wind, the swing and the self-collision that were asked for.
+    /// Builds the scene, with the wind, the swing and the self-collision of the options.
     pub fn scene(&self) -> Result<Scene, Failure> {
-        // Euler's method serves every scene.
+        // Euler's method can run every scene.
         let run = self.simulate(&self.build()?, &integrators::METHODS[0], None)?;
         Ok(Scene {
             model: run.model().clone(),
@@ -80,11 +80,12 @@ impl<'a> Request<'a> {
         })
     }
 
-    /// The scene with its presentation and its defaults.
+    /// Builds the scene with its presentation and its defaults.
     pub fn build(&self) -> Result<Setup, Failure> {
         let options = self.options;
         if let Some(count) = options.threads {
-            // Only the first scene of a command sets it; the others have it.
+            // Only the first call has an effect; later ones fail because the threads are there
+            // already.
             let threads = rayon::ThreadPoolBuilder::new().num_threads(count);
             let _ = threads.build_global();
         }
@@ -101,7 +102,8 @@ impl<'a> Request<'a> {
         Ok(setup)
     }
 
-    /// A simulation by this solver, with its own step or tolerance unless one is given.
+    /// Creates a simulation with this solver, and with the solver's own step or tolerance unless
+    /// one is given.
     pub fn simulate(
         &self,
         setup: &Setup,
@@ -141,7 +143,7 @@ impl<'a> Request<'a> {
         }
         let mut simulation =
             Simulation::new(scene.clone(), solver, control).map_err(Failure::usage)?;
-        // Without --wind the wind stays as it is: some scenes begin with it.
+        // Without --wind the wind stays as it is: in some scenes it blows from the start.
         if self.options.wind {
             simulation.set_wind(true);
             solver
@@ -160,7 +162,7 @@ impl<'a> Request<'a> {
     }
 }
 
-/// The scene that an option names.
+/// Finds the scene that an option names.
 pub fn find(typed: &str, option: &str) -> Result<Source, Failure> {
     Source::find(typed).map_err(|error| match error {
         InputError::Unknown(why) => Failure::usage(format!("`{option} {typed}`: {why}")),
@@ -168,7 +170,7 @@ pub fn find(typed: &str, option: &str) -> Result<Source, Failure> {
     })
 }
 
-/// `Ok` if the step or the tolerance is within its range.
+/// Checks that the step or the tolerance is within its range.
 fn check_control(method: &Method, control: Control) -> Result<(), Failure> {
     let range = bounds::of(control);
     if range.contains(&control.value()) {

@@ -1,4 +1,4 @@
-//! Charts as a user makes them: measured, resumed, interrupted, and refused in one line.
+//! Charts as a user makes them: measured, continued, interrupted, and refused in one line.
 
 use std::fs;
 use std::path::Path;
@@ -7,7 +7,7 @@ use std::time::Duration;
 
 use crate::common::{a3, command};
 
-/// What it wrote to stdout, of a program that went well.
+/// Runs a program that succeeds, and returns its standard output.
 pub fn said(folder: &Path, words: &[&str]) -> String {
     let output = a3(folder, words);
     let stderr = String::from_utf8_lossy(&output.stderr);
@@ -96,13 +96,12 @@ fn a_chart_goes_on_from_its_data() {
         assert!(two == three);
         assert!(after == fs::read_to_string(&path).unwrap(), "{data}");
     }
-    // What is in the file is believed, not measured again: here, that Verlet's method needs no
-    // work.
+    // Runs in the file are used, not measured again: here, that Verlet's method needs no work.
     let path = folder.path().join("d.csv");
     let mut reader = csv::Reader::from_path(&path).unwrap();
     let headers = reader.headers().unwrap().clone();
     let mut writer = csv::Writer::from_path(folder.path().join("e.csv")).unwrap();
-    // Without its checksums.
+    // Without checksums, edited data are accepted.
     let count = headers.len() - 1;
     assert_eq!(&headers[count], "check");
     writer.write_record(headers.iter().take(count)).unwrap();
@@ -124,8 +123,8 @@ fn a_chart_goes_on_from_its_data() {
     assert!(text.contains("*0.12"), "{text}");
 }
 
-/// Ctrl-C in the middle: what was measured is drawn and kept, and the next run ends where this one
-/// would have.
+/// Ctrl-C in the middle: the runs so far are drawn and saved, and the next command gives the chart
+/// that this one would have given.
 #[cfg(unix)]
 #[test]
 fn an_interrupted_chart_draws_what_it_has() {

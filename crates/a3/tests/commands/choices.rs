@@ -27,7 +27,7 @@ fn bounded_accurate_and_slowly_growing_steps_are_told_apart() {
             assert!(bounded <= tenfold, "{line}");
             assert!((0.97..1.03).contains(&(seen / tenfold)), "{line}");
             assert!(accurate <= moving, "{line}");
-            // What is not sharp grows slowly, while the cloth goes on to another shape.
+            // An unsharp limit: motion grows slowly while the cloth moves to another shape.
             let most = if line.contains('\u{2013}') { 2.0 } else { 1.1 };
             assert!((0.9..most).contains(&(moving / tenfold)), "{line}");
             rows += 1;
@@ -77,7 +77,7 @@ fn a_choice_comes_with_its_command() {
         words.contains(&"--scene") && words.contains(&"chain"),
         "{line}"
     );
-    // The same words, without a window.
+    // The same arguments, without a window.
     words.splice(0..0, ["simulate"]);
     words.extend(["--until", "1", "--output", "c.json"]);
     said(folder.path(), &words);

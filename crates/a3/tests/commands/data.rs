@@ -6,8 +6,8 @@ use std::fs;
 use crate::charts::{CHAIN, said};
 use crate::common::a3;
 
-/// The order between runs is that of their method, the errors of single particles make those of
-/// all, and the errors beside a tolerance are near its own.
+/// The order between runs is that of their method, the errors of single particles agree with those
+/// of all, and the errors at neighbouring tolerances are similar.
 #[test]
 fn orders_particles_and_spread_are_in_the_data() {
     let folder = tempfile::tempdir().unwrap();
@@ -57,7 +57,7 @@ fn orders_particles_and_spread_are_in_the_data() {
 }
 
 /// In linear motion the limits of Verlet's method and RK4 are sharp and known: 2 and 2 sqrt(2) over
-/// the fastest frequency. Explicit Euler has none, and an interval in its place.
+/// the fastest frequency. Explicit Euler has no sharp limit: an interval stands in its place.
 #[test]
 fn limits_are_written_as_data() {
     let folder = tempfile::tempdir().unwrap();

@@ -1,4 +1,4 @@
-//! How the program ends: its exit codes, as the manual lists them, and its last words.
+//! The end of the program: its exit codes, as the manual lists them, and its last message.
 
 use std::fmt::Write;
 use std::fs;
@@ -29,7 +29,7 @@ fn every_exit_code_is_in_the_manual_and_is_used() {
     assert_eq!(listed, [0, 1, 2, 129, 130, 143]);
     let code = |words: &[&str]| {
         let output = command(folder.path(), words)
-            // No adapter is called so.
+            // No adapter has this name.
             .env("WGPU_ADAPTER_NAME", "none of them")
             .output()
             .unwrap();
@@ -126,7 +126,7 @@ fn nothing_from_a_file_or_a_name_moves_the_cursor() {
     assert!(!obj.lines().any(|line| line == "v 7 7 7"));
 }
 
-/// Words that nobody can read are no reason to panic.
+/// A failed write to standard error causes no panic.
 #[cfg(target_os = "linux")]
 #[test]
 fn a_full_standard_error_does_not_change_the_exit_code() {

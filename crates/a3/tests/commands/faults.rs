@@ -1,5 +1,6 @@
 //! A disk that fails from the n-th operation on, for every n until a command succeeds: each target
-//! is the old file or the whole new one, nothing is left behind, and one line says where and why.
+//! is the old file or the complete new one, no temporary file remains, and one line says where and
+//! why.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -7,7 +8,7 @@ use std::path::Path;
 
 use crate::common::{command, complaint, gpu_is_missing, is_missing, text};
 
-/// The files of a folder, with their contents.
+/// Returns the files of a folder, with their contents.
 fn contents(folder: &Path) -> BTreeMap<String, Vec<u8>> {
     let entries = fs::read_dir(folder).unwrap().map(|entry| {
         let entry = entry.unwrap();
@@ -17,7 +18,7 @@ fn contents(folder: &Path) -> BTreeMap<String, Vec<u8>> {
     entries.collect()
 }
 
-/// Whether a file is as it should be, apart from the real time that its run took.
+/// Returns whether a file is as expected, apart from the real time of its run.
 fn is_whole(name: &str, bytes: &[u8], whole: &[u8]) -> bool {
     let timeless = |bytes: &[u8]| {
         let lines = String::from_utf8_lossy(bytes).into_owned();
@@ -27,8 +28,8 @@ fn is_whole(name: &str, bytes: &[u8], whole: &[u8]) -> bool {
     bytes == whole || name == "summary.json" && timeless(bytes) == timeless(whole)
 }
 
-/// Makes a command fail in every place, over files that were there before. Each must fail at least
-/// so many times, and its files must be there after it.
+/// Makes a command fail at every operation, over files that exist already. It must fail at least
+/// `least` times, and its files must exist after it.
 fn fail_everywhere(words: &str, files: &[&str], least: usize) {
     let words: Vec<_> = words.split(' ').collect();
     let fresh = || {
@@ -134,7 +135,7 @@ fn charts_and_manuals_survive_every_fault() {
     fail_everywhere("man --output .", &["a3.1", "a3-man.1"], 50);
 }
 
-/// The request for faults is no secret that could spoil a run: a number that is none is nothing.
+/// A value of `A3_FAULT` that is no number has no effect.
 #[test]
 fn no_fault_is_asked_for_by_chance() {
     let folder = tempfile::tempdir().unwrap();

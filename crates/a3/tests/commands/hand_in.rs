@@ -1,4 +1,4 @@
-//! The archive to hand in: made, unpacked, and used as the one who gets it would.
+//! The archive to hand in: made, unpacked, and used as its recipient would.
 
 use std::fs;
 use std::path::Path;
@@ -6,7 +6,7 @@ use std::process::{Command, Output};
 
 use crate::common::{asked, complaint, is_missing, text};
 
-/// The sources as they are here, committed to a repository of their own.
+/// Copies the sources and commits them to a repository of their own.
 fn repository(folder: &Path) {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
     for entry in fs::read_dir(&root).unwrap() {
@@ -40,7 +40,7 @@ fn the_archive_has_the_sources_the_program_and_the_readme() {
     let (folder, other) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
     repository(folder.path());
     let script = folder.path().join("hand-in");
-    // What is there for debuggers takes long to pack.
+    // Debug information would take long to pack.
     let programs = tempfile::tempdir().unwrap();
     let program = programs.path().join("a3");
     asked(
@@ -70,7 +70,7 @@ fn the_archive_has_the_sources_the_program_and_the_readme() {
     ] {
         assert!(readme.contains(question), "{question}");
     }
-    // Every file of the commit is there, as it is.
+    // The archive has every file of the commit, unchanged.
     let sources = asked(folder.path(), "git", &["ls-files"]);
     assert!(sources.lines().count() > 100 && sources.contains("crates/core/src/lib.rs"));
     for source in sources.lines() {
@@ -86,7 +86,7 @@ fn the_archive_has_the_sources_the_program_and_the_readme() {
     let state: serde_json::Value = serde_json::from_str(&state).unwrap();
     assert_eq!(state["steps"], 10);
 
-    // What is not committed would not be handed in.
+    // Uncommitted changes are refused, because the archive would lack them.
     fs::write(folder.path().join("crates/core/src/new.rs"), "").unwrap();
     let line = complaint(&hand_in(folder.path(), &script, &program, &[]), 1);
     assert!(

@@ -1,4 +1,5 @@
-//! The lessons say what is true: their commands run, make what they name, and print what is shown.
+//! The lessons are true: their commands run, make the files that are named, and print the output
+//! that is shown.
 
 use std::fs;
 use std::path::Path;
@@ -9,13 +10,13 @@ use super::refused;
 const LESSONS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/lessons");
 const COUNT: usize = 7;
 
-/// The code blocks of a page: their languages and their texts.
+/// Returns the code blocks of a page: their languages and their texts.
 fn blocks(page: &str) -> Vec<(&str, &str)> {
     let parts = page.split("```").skip(1).step_by(2);
     parts.filter_map(|block| block.split_once('\n')).collect()
 }
 
-/// Does all that a lesson says in a folder of its own.
+/// Follows a lesson in a folder of its own.
 fn follow(name: &str, page: &str) {
     let folder = tempfile::tempdir().unwrap();
     let (mut said, mut made) = (String::new(), vec![]);

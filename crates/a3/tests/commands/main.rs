@@ -1,4 +1,4 @@
-//! The program as it is typed: what it writes, what it refuses, and how it says so.
+//! The program from the command line: its outputs, its refusals, and its messages.
 
 #![allow(missing_docs, reason = "a test")]
 
@@ -38,7 +38,8 @@ use std::path::Path;
 
 use common::{a3, complaint};
 
-/// The line on stderr of a program that left with `code`, and left an empty folder empty.
+/// Returns the line on stderr of a program that ended with `code` and wrote nothing to its empty
+/// folder.
 fn refused(folder: &Path, words: &[&str], code: i32) -> String {
     let line = complaint(&a3(folder, words), code);
     assert!(line.starts_with("error: "), "{words:?}: {line}");

@@ -1,4 +1,4 @@
-//! The manual and what shells complete, as man and shells take them.
+//! The manual and the completion scripts, read by man and by shells.
 
 use std::fs;
 use std::path::Path;
@@ -36,7 +36,7 @@ fn every_shell_completes_every_command() {
             assert!(script.contains(command), "{shell}: {command}");
         }
         assert!(script.contains("transparent"), "{shell}");
-        // The others are not told of values by the generator.
+        // The generator gives the other shells no values.
         if ["bash", "zsh", "fish"].contains(&shell) {
             for offered in ["ball-on-cloth", "implicit-midpoint"] {
                 assert!(script.contains(offered), "{shell}: {offered}");
@@ -77,7 +77,7 @@ fn bash_takes_its_script() {
     assert_eq!(complete("a3 simulate symp", 2).trim(), "symplectic");
     assert_eq!(complete("a3 chart --solvers eu", 3).trim(), "euler");
     assert_eq!(complete("a3 --pa", 1).trim(), "--paused");
-    // Of the window, a hidden option for tests.
+    // A hidden option of the window, for tests.
     assert_eq!(complete("a3 --sta", 1).trim(), "");
     assert_eq!(complete("a3 sweep --sta", 2).trim(), "--status");
 }

@@ -1,5 +1,5 @@
-//! What is never overwritten: what a command reads, another of its outputs, a protected file, and
-//! the runs of another chart.
+//! Files that are never overwritten: inputs of the command, another of its outputs, a protected
+//! file, and the runs of another chart.
 
 use std::fs;
 use std::os::unix::fs::{PermissionsExt, symlink};
@@ -92,7 +92,7 @@ fn no_output_overwrites_an_input_or_another_output() {
         fs::read(path("sheet.obj")).unwrap(),
         fs::read(path("hard.obj")).unwrap()
     );
-    // What only looks alike is written.
+    // A path that only looks similar is written.
     for output in ["sheet.json", "sheet.glb", "other-####.obj"] {
         let words = [&sheet(output)[..], &["--until", "0"]].concat();
         assert!(a3(folder, &words).status.success(), "{output}");
@@ -164,7 +164,7 @@ fn a_scene_reads_nothing_outside_its_folder() {
     assert!(a3(folder.path(), &words).status.success());
 }
 
-/// Two charts at once: the file has the runs of both.
+/// After two charts at the same time, the file has the runs of both.
 #[test]
 fn two_charts_keep_the_runs_of_both() {
     let folder = tempfile::tempdir().unwrap();

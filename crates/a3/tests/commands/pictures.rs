@@ -55,7 +55,8 @@ fn pictures_without_a_window() {
     assert!(text(&output.stderr).contains("99999x99999"));
 }
 
-/// The panes of a picture that differ from the first, pixel by pixel, below the text.
+/// Solvers are compared in panes side by side, with their errors as text and the trails of their
+/// particles.
 #[test]
 fn methods_side_by_side() {
     let folder = tempfile::tempdir().unwrap();
@@ -68,7 +69,7 @@ fn methods_side_by_side() {
         return;
     }
     assert!(output.status.success(), "{}", text(&output.stderr));
-    // What is said: Euler's radius grows as sqrt(1 + h^2) a step, and RK4 is late by h^4 / 120 a
+    // The text: Euler's radius grows by sqrt(1 + h^2) a step, and RK4 is late by h^4 / 120 a
     // second.
     let stdout = text(&output.stdout);
     let rows: Vec<Vec<&str>> = stdout
@@ -86,7 +87,7 @@ fn methods_side_by_side() {
         ("20.0", "80.0", "160")
     );
 
-    // What is seen: the trail of the second is that of the third, and the first leads elsewhere.
+    // The picture: the trails of the second and the third agree, and the first leads elsewhere.
     let picture = image::open(folder.path().join("x.png")).unwrap().to_rgb8();
     assert_eq!(picture.dimensions(), (906, 500));
     let pane = |k: u32| image::imageops::crop_imm(&picture, 303 * k, 205, 300, 295).to_image();
@@ -107,7 +108,7 @@ fn methods_side_by_side() {
         assert!(dark > 150 && light > 10_000, "{dark} {light}");
     }
 
-    // One that blows up says so, and the others are there all the same.
+    // A pane that blows up says so, and the others are drawn nevertheless.
     let words = [
         "compare", "e:0.05", "r", "--scene", "mit", "--until", "1", "--output", "y.png", "--size",
         "400x300",

@@ -1,4 +1,4 @@
-//! Runs that are killed and taken up again from their checkpoints: the same files, to the bit.
+//! Runs that are killed and resumed from their checkpoints: the same files, to the bit.
 
 use std::fs;
 use std::path::Path;
@@ -14,8 +14,8 @@ const FOLDING: &str = "gravity = [0, -9.81, 0]\ndrag_per_mass = 0.5\n\
     [[cloth]]\ngrid = [8, 8]\nwidth = 1\ndensity = 0.2\nstiffness = [40, 20, 0.5]\n\
     damping_ratio = 0.1\nfriction = 0.3\nright = [1, 0, 0]\ndown = [0, -0.98, 0.2]\nat = [0, 1.05, 0]\n";
 
-/// Runs that together have all that a checkpoint keeps: tears, pins on paths, contact, rods, wind
-/// and swing, steps of their own choice and BDF's differences.
+/// Runs that together need everything in a checkpoint: tears, pins on paths, contact, rods, wind
+/// and swing, adaptive steps and BDF's differences.
 const RUNS: &[&[&str]] = &[
     &["--scene", "rag.toml", "--until", "1"],
     &["v", "0.002", "--scene", "fold.toml", "--until", "0.8"],
@@ -25,7 +25,7 @@ const RUNS: &[&[&str]] = &[
     &["a", "1e-6", "--scene", "rag.toml", "--until", "1"],
 ];
 
-/// The state and the summary that a run wrote, without what depends on the machine.
+/// Returns the state and the summary of a run, without the values that depend on the machine.
 fn written(folder: &Path) -> (String, Value) {
     let state = fs::read_to_string(folder.join("state.json")).unwrap();
     let summary = fs::read_to_string(folder.join("summary.json")).unwrap();
@@ -34,7 +34,7 @@ fn written(folder: &Path) -> (String, Value) {
     (state, summary)
 }
 
-/// Words of a command that goes through a run and writes both.
+/// Returns the arguments of a command that makes a run and writes both.
 fn words<'a>(run: &[&'a str], more: &[&'a str]) -> Vec<&'a str> {
     let files = ["--output", "state.json", "--summary", "summary.json"];
     [&["simulate"], run, &files, more].concat()
@@ -65,12 +65,12 @@ fn a_run_that_is_killed_goes_on_to_the_same_bits() {
             let _ = fs::remove_file(folder.join("run.checkpoint"));
             let _ = fs::remove_file(folder.join("state.json"));
             let mut child = command(folder, &words(run, &keep)).spawn().unwrap();
-            // Numbers that are spread evenly, by the golden section.
+            // Numbers that are spread evenly, by the golden ratio.
             let share = (f64::from(kill as u32) * 0.618_033_988_75).fract();
             std::thread::sleep(Duration::from_secs_f64(share * taken.as_secs_f64()));
             child.kill().unwrap();
             child.wait().unwrap();
-            // Killed before it kept anything, or after it had ended.
+            // Killed before the first checkpoint, or after the end.
             if folder.join("run.checkpoint").exists() {
                 let threads = ["1", "3"][kill % 2];
                 let again = go(&["--resume", "run.checkpoint"], threads);
@@ -153,10 +153,10 @@ fn what_does_not_fit_is_refused_by_name() {
     };
     refused(&["--until", "1"], "of the scene own, not of cloth");
     let own = ["--scene", "own.toml", "--until", "1"];
-    refused(&[&["v"], &own[..]].concat(), "goes on with rk4 0.01");
+    refused(&[&["v"], &own[..]].concat(), "continues with rk4 0.01");
     refused(
         &[&["r", "0.02"], &own[..]].concat(),
-        "goes on with rk4 0.01",
+        "continues with rk4 0.01",
     );
     refused(
         &["--scene", "own.toml", "--until", "0.4"],

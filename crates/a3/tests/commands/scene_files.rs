@@ -1,4 +1,4 @@
-//! Scenes from files: what is read, what is refused, and where it says so.
+//! Scenes from files: which are read, which are refused, and the places that errors name.
 
 use std::fs;
 use std::path::Path;
@@ -15,7 +15,7 @@ density = 3
 stiffness = [7, 2]
 ";
 
-/// Scenes with states that others computed are run as they are, and meet those states.
+/// Scenes with states that other programs computed reach these states.
 #[test]
 fn listed_particles_and_springs_are_a_scene() {
     let folder = Path::new(concat!(
@@ -47,7 +47,7 @@ fn listed_particles_and_springs_are_a_scene() {
     }
 }
 
-/// What is printed as a start for one's own is the scene itself.
+/// The printed file of a scene gives the same scene.
 #[test]
 fn a_printed_scene_is_the_scene() {
     let folder = tempfile::tempdir().unwrap();
@@ -78,7 +78,7 @@ fn a_printed_scene_is_the_scene() {
     assert!(schema["properties"]["cloth"].is_object());
 }
 
-/// A scene says what it is run with, and the command line has the last word.
+/// A scene names its solver, step and duration, and the command line takes precedence.
 #[test]
 fn a_scene_brings_its_solver_its_step_and_its_time() {
     let folder = tempfile::tempdir().unwrap();
@@ -237,7 +237,7 @@ fn what_is_wrong_is_said_with_file_and_line() {
     assert!(said.contains("--watch needs a scene file"), "{said}");
 }
 
-/// Charts of a file's scene do not go on from those of another with the same name.
+/// A chart of a scene file does not continue from the data of another scene with the same name.
 #[test]
 fn a_chart_knows_which_scene_it_has() {
     let folder = tempfile::tempdir().unwrap();
@@ -275,8 +275,8 @@ fn a_chart_knows_which_scene_it_has() {
     assert!(chart("500") > first);
 }
 
-/// The scenes that come with the documents last as long as they say, and what their text shows can
-/// be read.
+/// The scenes in the documentation run for their duration, and the examples in its text can be
+/// read.
 #[test]
 fn documented_scenes_are_scenes() {
     let docs = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs"));
@@ -303,7 +303,7 @@ fn documented_scenes_are_scenes() {
     }
 }
 
-/// A level mesh that is pinned by its top is pinned all over, which a line says.
+/// A level mesh that is pinned by its top is pinned everywhere, and a note says so.
 #[test]
 fn a_scene_that_is_pinned_all_over_says_so() {
     let folder = tempfile::tempdir().unwrap();

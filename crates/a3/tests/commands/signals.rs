@@ -1,5 +1,5 @@
-//! Signals: a program that is asked to end does so with 128 and the signal's number, and leaves no
-//! unfinished file.
+//! Signals: a program that a signal ends has the exit code 128 plus the signal's number, and leaves
+//! no unfinished file.
 
 use std::fs;
 use std::path::Path;
@@ -20,7 +20,7 @@ fn names(folder: &Path) -> Vec<String> {
     names.collect()
 }
 
-/// Starts a command and waits until it has begun its file.
+/// Starts a command and waits until it has created its file.
 fn begin(folder: &Path, words: &[&str]) -> Child {
     let mut child = command(folder, words).spawn().unwrap();
     let begun = Instant::now();
@@ -34,7 +34,7 @@ fn begin(folder: &Path, words: &[&str]) -> Child {
 
 const EXPORT: [&str; 6] = ["simulate", "v", "0.001", "--until", "5000", "--output"];
 
-/// Whether this test was started by `nohup`, which the program respects.
+/// Returns whether this test was started by `nohup`, which the program respects.
 fn hangups_are_ignored() -> bool {
     let status = fs::read_to_string("/proc/self/status").unwrap_or_default();
     let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
@@ -63,7 +63,7 @@ fn every_signal_ends_a_run_with_its_own_code() {
     }
 }
 
-/// A film has begun its file before it starts the adapter, in whatever time that takes.
+/// A film creates its file before it starts the adapter, which may take long.
 #[test]
 fn a_film_ends_while_it_starts() {
     let folder = tempfile::tempdir().unwrap();
@@ -90,7 +90,7 @@ fn a_film_ends_while_it_starts() {
     }
 }
 
-/// A command that does not look, because it waits for a reader that never comes, ends all the same.
+/// A command that does not check for signals, because it waits for a reader, is ended nevertheless.
 #[test]
 fn a_run_that_does_not_notice_is_ended() {
     let folder = tempfile::tempdir().unwrap();
@@ -139,12 +139,12 @@ fn a_run_is_ended_within_a_long_step() {
     kill(&child, "-TERM");
     let output = child.wait_with_output().unwrap();
     assert_eq!(output.status.code(), Some(143), "{}", text(&output.stderr));
-    // A second, and more where the machine is busy.
+    // A second, and more if the machine is busy.
     assert!(begun.elapsed() < Duration::from_secs(4));
     assert_eq!(names(folder.path()), [""; 0]);
 }
 
-/// What `kill -9` leaves behind is deleted by the next run, and only that.
+/// The next run deletes the temporary file of a run that `kill -9` ended, and nothing else.
 #[test]
 fn the_next_run_sweeps_what_a_killed_one_left() {
     let folder = tempfile::tempdir().unwrap();
@@ -171,7 +171,7 @@ fn the_next_run_sweeps_what_a_killed_one_left() {
     at_work.wait_with_output().unwrap();
 }
 
-/// `nohup` has the last word on the signal of a terminal that is closed.
+/// After `nohup`, the signal of a closed terminal is ignored.
 #[cfg(target_os = "linux")]
 #[test]
 fn a_run_without_a_terminal_goes_on() {

@@ -66,7 +66,7 @@ fn the_state_is_written_at_full_precision() {
     assert_eq!(state["tolerance"], 1e-4);
 }
 
-/// As many steps as it takes, and none of a rounding error's size.
+/// The number of steps is right, and no step has the size of a rounding error.
 #[test]
 fn steps_are_counted_right() {
     let folder = tempfile::tempdir().unwrap();
@@ -113,7 +113,7 @@ fn fractions_of_a_second_meet_frames() {
     };
     assert_eq!(steps("1/60"), 120);
     assert_eq!(steps("0.01666666666"), 120);
-    // The last step reaches past the end.
+    // The last step would end after the end of the run.
     assert_eq!(steps("0.016666666"), 121);
     assert_eq!(steps("0.01666"), 121);
     let words = ["implicit", "10", "--scene", "simple", "--until", "40000"];
@@ -244,7 +244,7 @@ fn a_blow_up_writes_nothing_and_says_where() {
     }
 }
 
-/// So many threads run, and none of them changes a bit.
+/// The number of threads is as requested, and changes no bit.
 #[test]
 #[cfg(target_os = "linux")]
 fn threads_are_as_many_as_asked_for() {

@@ -1,4 +1,5 @@
-//! Sweeps: whoever does their runs, in whatever order and however often killed, collects the same.
+//! Sweeps: runs that are made in any order, by several processes, or again after kills, give the
+//! same files.
 
 use std::fs;
 use std::path::Path;
@@ -19,7 +20,7 @@ stiffness = [1, 100]
 chain.mass = [0.5, 1, 2]
 ";
 
-/// The table and the chart of a sweep that was done at once.
+/// Returns the table and the chart of a sweep that was made by one command.
 fn whole() -> [Vec<u8>; 2] {
     let folder = begun(SWEEP);
     let told = said(folder.path(), &["sweep", "s.toml"]);
@@ -37,7 +38,7 @@ fn collected(folder: &Path) -> [Vec<u8>; 2] {
     ["csv", "svg"].map(|end| fs::read(folder.join(format!("a3-sweep-s.{end}"))).unwrap())
 }
 
-/// The files of the runs, with their bytes.
+/// Returns the files of the runs, with their bytes.
 fn runs(folder: &Path) -> Vec<(std::path::PathBuf, Vec<u8>)> {
     let files = fs::read_dir(folder.join("a3-sweep-s")).unwrap();
     let mut files: Vec<_> = files.map(|file| file.unwrap().path()).collect();
@@ -56,7 +57,7 @@ fn shares_in_any_order_are_one_run() {
     }
     said(folder.path(), &["sweep", "s.toml", "--collect"]);
     assert!(collected(folder.path()) == whole);
-    // One run by its id, on another machine.
+    // One run by its id, as on another machine.
     let plan = said(folder.path(), &["sweep", "s.toml", "--plan"]);
     assert_eq!(plan.lines().count(), 72);
     let id = plan.lines().nth(40).unwrap().split('\t').next().unwrap();
@@ -69,7 +70,7 @@ fn shares_in_any_order_are_one_run() {
         .join("a3-sweep-s")
         .join(path.file_name().unwrap());
     assert!(path.file_stem().unwrap() == id && fs::read(there).unwrap() == bytes);
-    // The table has a line for each run, with its keys, and lost runs say when.
+    // The table has a line for each run, with its keys, and the time at which a run blew up.
     let mut table = csv::Reader::from_reader(&whole[0][..]);
     let head = table.headers().unwrap().clone();
     assert_eq!(

@@ -1,4 +1,5 @@
-//! What is not the program's own is left alone, and what it cannot read is refused by its name.
+//! Files that are not the program's own are left alone, and files that it cannot read are refused
+//! by name.
 
 use std::fs::{self, File};
 use std::io::Write;
@@ -19,7 +20,7 @@ fn write(folder: &Path, name: &str, content: impl AsRef<[u8]>) {
     fs::write(folder.join(name), content).unwrap();
 }
 
-/// The file of a run that is a link is not followed.
+/// A link in the place of a run's file is not followed.
 #[test]
 fn runs_of_a_sweep_replace_no_end_of_a_link() {
     let folder = tempfile::tempdir().unwrap();
@@ -43,7 +44,7 @@ fn runs_of_a_sweep_replace_no_end_of_a_link() {
     }
 }
 
-/// Names show all their signs in a plan, and each run has one line.
+/// A plan shows names with escapes, and has one line for each run.
 #[test]
 fn names_in_a_plan_move_no_cursor() {
     let folder = tempfile::tempdir().unwrap();
@@ -60,7 +61,7 @@ fn names_in_a_plan_move_no_cursor() {
     assert!(!plan.contains('\u{1b}'), "{plan}");
 }
 
-/// The points of a mesh obey the rule for all files: none is outside the folder of the scene.
+/// A file of points of a mesh, too, is refused outside the folder of the scene.
 #[test]
 fn points_outside_the_folder_are_not_read() {
     let (folder, outside) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
@@ -85,7 +86,7 @@ fn points_outside_the_folder_are_not_read() {
     assert!(a3(folder.path(), &words).status.success());
 }
 
-/// A chart whose data another process has locked says that it waits, and gives up.
+/// A chart whose data another process has locked says that it waits, and fails in the end.
 #[test]
 fn locked_data_is_waited_for_a_while() {
     let folder = tempfile::tempdir().unwrap();
@@ -129,7 +130,7 @@ fn locked_data_is_waited_for_a_while() {
     assert!(output.status.success(), "{}", text(&output.stderr));
 }
 
-/// A wrong ending is said before a scene is built, which may take long, or be impossible.
+/// A wrong ending is reported before a scene is built, which may take long or fail.
 #[test]
 fn endings_are_looked_at_first() {
     let folder = tempfile::tempdir().unwrap();
@@ -211,7 +212,7 @@ fn files_that_are_not_read_are_named() {
     }
 }
 
-/// A scene comes by standard input, as TOML or as JSON.
+/// Scenes are read from standard input, as TOML or as JSON.
 #[test]
 fn scenes_come_by_standard_input() {
     let folder = tempfile::tempdir().unwrap();

@@ -1,4 +1,4 @@
-//! Words that are refused in one line, which says what is right.
+//! Arguments that are refused in one line, which says what would be right.
 
 use std::time::{Duration, Instant};
 
@@ -209,6 +209,6 @@ fn huge_grids_are_refused_before_memory_is_taken() {
         &["t", "0.01", "--grid", "2000000x2000000"],
         2,
     );
-    // A program that tried would be busy for much longer.
+    // A program that tried to allocate it would take much longer.
     assert!(begun.elapsed() < Duration::from_secs(5));
 }

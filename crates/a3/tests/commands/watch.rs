@@ -1,4 +1,4 @@
-//! What a run says of energy and of constraints that went wrong, and what it advises.
+//! Messages about gained energy and unmet constraints, and the advice in them.
 
 use std::fs;
 use std::path::Path;
@@ -22,7 +22,7 @@ const SHORT: &str = "gravity = [0, -9.81, 0]\n[[chain]]\nparticles = 6\nfrom = [
 const HUNG: &str = "[[body]]\nparts = [{ ball = 0.1 }]\nmass = 1\n\
     [[constraint]]\nparticle = 1\npoint = [0, 0.5, 0]\n";
 
-/// The words of a run of this scene, after `a3 simulate`.
+/// Returns the arguments of a run of this scene, after `a3 simulate`.
 fn words<'a>(folder: &Path, scene: &str, more: &'a str) -> Vec<&'a str> {
     fs::write(folder.join("scene.toml"), scene).unwrap();
     let files = "--scene scene.toml -o x.json --summary s.json";
@@ -33,7 +33,7 @@ fn words<'a>(folder: &Path, scene: &str, more: &'a str) -> Vec<&'a str> {
         .collect()
 }
 
-/// What a run of this scene says on stderr, and its summary.
+/// Returns the stderr of a run of this scene, and its summary.
 fn told(scene: &str, more: &str) -> (String, Value) {
     let folder = tempfile::tempdir().unwrap();
     let output = a3(folder.path(), &words(folder.path(), scene, more));
@@ -43,7 +43,7 @@ fn told(scene: &str, more: &str) -> (String, Value) {
     (said, serde_json::from_slice(&summary).unwrap())
 }
 
-/// The error of a run of this scene that leaves no file.
+/// Returns the error of a run of this scene that leaves no file.
 fn failed(scene: &str, more: &str, code: i32) -> String {
     let folder = tempfile::tempdir().unwrap();
     let line = complaint(&a3(folder.path(), &words(folder.path(), scene, more)), code);
@@ -110,7 +110,7 @@ fn advice_held_for_as_long() {
     let output = run(step);
     assert!(output.status.success());
     assert_eq!(text(&output.stderr), "");
-    // No step that a3 takes holds a spring of such a mass.
+    // The spring is unstable with every step that a3 accepts.
     let hopeless = "springs = [[0, 1, 1e9, 1, 0]]\n[particles]\n\
         positions = [[0, 0, 0], [1.5, 0, 0]]\nmass = 1e-9\n";
     let line = failed(hopeless, "r 0.001 --until 1", 1);

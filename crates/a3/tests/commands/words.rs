@@ -1,8 +1,8 @@
-//! What is said of words that are not understood, word for word.
+//! Messages about arguments that are not understood, word for word.
 
 use crate::refused;
 
-/// Words, and how what is said of them begins.
+/// Arguments, and the start of the message about them.
 const WRONG: &[(&str, &str)] = &[
     (
         "simulte",

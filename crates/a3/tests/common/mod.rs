@@ -104,7 +104,10 @@ pub fn is_missing(program: &str) -> bool {
         .status();
     let missing = found.is_err();
     if missing {
-        skip(&format!("{program} is not here"), "A3_REQUIRE_CHECKERS");
+        skip(
+            &format!("{program} is not installed"),
+            "A3_REQUIRE_CHECKERS",
+        );
     }
     missing
 }

@@ -1,5 +1,4 @@
-//! What the modules of a crate import from one another, read from their text, and the circles that
-//! this makes.
+//! Imports between the modules of a crate, read from their text, and circles of them.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -28,7 +27,7 @@ impl Crate {
         Self(modules.collect())
     }
 
-    /// The module that defines what a path leads to, seen from a module.
+    /// Returns the module that defines the item of a path, as seen from another module.
     fn resolve(&self, from: &Name, path: &[String], depth: usize) -> Option<Name> {
         let mut at = from.clone();
         let mut rest = path;
@@ -74,7 +73,7 @@ impl Crate {
         Some(at)
     }
 
-    /// Which module uses something of which.
+    /// Returns pairs of modules, of which the first uses an item of the second.
     fn edges(&self) -> BTreeSet<(Name, Name)> {
         let mut edges = BTreeSet::new();
         for (from, text) in &self.0 {
@@ -87,8 +86,8 @@ impl Crate {
         edges
     }
 
-    /// What modules use that their parent defines: a circle, as a parent uses those inside it.
-    /// Tests may.
+    /// Returns the modules that use an item that their parent defines: a circle, because a parent
+    /// uses the modules inside it. Tests may.
     pub fn upwards(&self) -> Vec<String> {
         let is_test = |name: &Name| name.iter().any(|part| part == "tests" || part == "testing");
         let edges = self.edges().into_iter();
@@ -100,7 +99,7 @@ impl Crate {
             .collect()
     }
 
-    /// Types with inherent methods in more than two files, with their number.
+    /// Returns the types with inherent methods in more than two files, with the number of files.
     pub fn spread(&self) -> Vec<String> {
         let mut files: BTreeMap<(&str, &str), BTreeSet<&Name>> = BTreeMap::new();
         for (name, text) in &self.0 {
@@ -124,13 +123,13 @@ impl Crate {
             .collect()
     }
 
-    /// Circles among the modules that stand side by side, each with what uses what.
+    /// Returns the circles among sibling modules, each with its uses.
     pub fn circles(&self) -> Vec<String> {
         let mut graphs: BTreeMap<Name, BTreeMap<String, BTreeMap<String, String>>> =
             BTreeMap::new();
         for (from, to) in self.edges() {
             let common = from.iter().zip(&to).take_while(|(a, b)| a == b).count();
-            // A parent uses those inside it; what they use of it is found by `upwards`.
+            // A parent uses the modules inside it; `upwards` finds uses in the other direction.
             if common == from.len() || common == to.len() {
                 continue;
             }
@@ -143,12 +142,12 @@ impl Crate {
     }
 }
 
-/// A circle through each module from which one leads back to it, named once.
+/// Returns a shortest circle through each module that is in one, each circle once.
 fn circles_of(graph: &BTreeMap<String, BTreeMap<String, String>>) -> Vec<String> {
     let mut found = vec![];
     let mut seen = BTreeSet::new();
     for start in graph.keys() {
-        // The shortest way back, by breadth.
+        // The shortest way back, by breadth-first search.
         let mut ways = vec![vec![start]];
         let mut reached = BTreeSet::new();
         let mut k = 0;
@@ -186,7 +185,7 @@ fn circles_of(graph: &BTreeMap<String, BTreeMap<String, String>>) -> Vec<String>
     found
 }
 
-/// The text without comments, strings, and the tests at its end.
+/// Returns the text without comments, strings, and the tests at its end.
 fn code(text: &str) -> String {
     let text = text
         .split("#[cfg(test)]\nmod tests {")
@@ -208,8 +207,8 @@ fn defines(text: &str, item: &str) -> bool {
     })
 }
 
-/// Every path that begins with one of these words (or follows it, where that is `use`), with the
-/// name that it brings.
+/// Returns every path that begins with one of these words (or follows it, if it is `use`), with the
+/// name that it imports.
 fn paths(text: &str, words: &[&str]) -> Vec<(Vec<String>, String)> {
     let mut tokens: Vec<String> = vec![];
     let mut characters = text.chars().peekable();
@@ -241,7 +240,7 @@ fn paths(text: &str, words: &[&str]) -> Vec<(Vec<String>, String)> {
     found
 }
 
-/// Reads a path that may branch in braces. Where it ends.
+/// Reads a path that may branch in braces. Returns its end.
 fn tree(
     tokens: &[String],
     mut k: usize,

@@ -1,6 +1,6 @@
 //! The rules of the house: no file of more than 400 lines, no comment of more than 100 columns, no
 //! circle of imports between the modules of a crate, a first line in each file that says its
-//! subject, and a map in ARCHITECTURE.md that names every folder and none that is not there.
+//! subject, and a map in ARCHITECTURE.md that names exactly the folders that exist.
 
 #![allow(missing_docs, reason = "a test")]
 
@@ -13,10 +13,10 @@ use std::path::{Path, PathBuf};
 use imports::Crate;
 
 const ROOT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../..");
-const MOST_LINES: usize = 400;
-const MOST_COLUMNS: usize = 100;
+const MAX_LINES: usize = 400;
+const MAX_COLUMNS: usize = 100;
 
-/// All files below a folder whose names end so, in order.
+/// Returns all files below a folder whose names have this ending, in order.
 fn files(folder: &Path, ending: &str) -> Vec<PathBuf> {
     let mut entries: Vec<_> = fs::read_dir(folder)
         .into_iter()
@@ -42,7 +42,7 @@ fn rust_files() -> Vec<PathBuf> {
         .collect()
 }
 
-/// The sources of each crate, by its folder.
+/// Returns the folder of the sources of each crate.
 fn sources() -> Vec<PathBuf> {
     let crates = fs::read_dir(Path::new(ROOT).join("crates")).unwrap();
     crates
@@ -61,20 +61,20 @@ fn no_file_is_longer_than_400_lines() {
         .chain(shaders)
         .filter_map(|path| {
             let lines = fs::read_to_string(&path).unwrap().lines().count();
-            (lines > MOST_LINES).then(|| format!("{lines} {}", path.display()))
+            (lines > MAX_LINES).then(|| format!("{lines} {}", path.display()))
         })
         .collect();
     assert!(long.is_empty(), "{long:#?}");
 }
 
-/// The formatter breaks code, but no comments.
+/// The formatter wraps code, but not comments.
 #[test]
 fn no_comment_is_wider_than_100_columns() {
     let mut wide = vec![];
     for path in rust_files() {
         for (k, line) in fs::read_to_string(&path).unwrap().lines().enumerate() {
             let is_comment = line.trim_start().starts_with("//");
-            if is_comment && line.chars().count() > MOST_COLUMNS {
+            if is_comment && line.chars().count() > MAX_COLUMNS {
                 wide.push(format!("{}:{}", path.display(), k + 1));
             }
         }
@@ -100,7 +100,7 @@ fn no_module_imports_from_its_parent() {
     assert!(upwards.is_empty(), "{upwards:#?}");
 }
 
-/// A type that many files add methods to is a bag, not a value made of parts.
+/// A type to which many files add methods is too large, and should be made of parts.
 #[test]
 fn no_type_has_methods_in_more_than_two_files() {
     let spread: Vec<_> = sources()

@@ -1,10 +1,10 @@
-//! The address of the page: what comes after its question mark is a command line.
+//! The address of the page, whose query (after the question mark) is a command line.
 
 use wasm_bindgen::JsValue;
 
 use super::window::window;
 
-/// The words of the address behind the question mark: `?t+0.01+--scene+flag`.
+/// Returns the words of the query, as in `?t+0.01+--scene+flag`.
 pub fn words() -> Vec<String> {
     let search = window().and_then(|window| window.location().search().ok());
     let search = search.unwrap_or_default().replace('+', " ");
@@ -13,7 +13,7 @@ pub fn words() -> Vec<String> {
     text.split_whitespace().map(str::to_owned).collect()
 }
 
-/// The address of this page with other words.
+/// Returns the address of this page with another query.
 pub fn address(words: &str) -> String {
     let here = window().map(|window| window.location());
     let part =
@@ -23,7 +23,7 @@ pub fn address(words: &str) -> String {
         part(here.as_ref().map(web_sys::Location::pathname)),
     ];
     let words: String = js_sys::encode_uri_component(words).into();
-    // What stays readable in an address.
+    // These may stand in a query, and are easier to read.
     let words = words
         .replace("%20", "+")
         .replace("%3A", ":")
@@ -31,7 +31,7 @@ pub fn address(words: &str) -> String {
     format!("{origin}{path}?{words}")
 }
 
-/// Puts words into the address, without loading the page again.
+/// Sets the query of the address, without loading the page again.
 pub fn set_words(words: &str) {
     let history = window().and_then(|window| window.history().ok());
     if let Some(history) = history {

@@ -7,7 +7,7 @@ use web_sys::{Blob, HtmlAnchorElement, Url};
 
 use super::window::{canvas, document};
 
-/// Offers bytes as a file of that name.
+/// Offers bytes as a download with this name.
 pub fn download(name: &str, bytes: &[u8]) -> Result<(), &'static str> {
     let parts = Array::of1(&Uint8Array::from(bytes));
     let blob = Blob::new_with_u8_array_sequence(&parts);
@@ -15,7 +15,7 @@ pub fn download(name: &str, bytes: &[u8]) -> Result<(), &'static str> {
         .and_then(|blob| offer(name, &blob))
 }
 
-/// Offers the picture in the canvas, as it is now, as a file of that name.
+/// Offers the present picture of the canvas as a download with this name.
 pub fn download_picture(name: String) {
     let offer = Closure::once_into_js(move |blob: Option<Blob>| {
         if let Some(blob) = blob {

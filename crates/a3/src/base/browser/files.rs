@@ -8,12 +8,12 @@ thread_local! {
     static FILES: RefCell<BTreeMap<PathBuf, Vec<u8>>> = const { RefCell::new(BTreeMap::new()) };
 }
 
-/// Keeps a file, in place of one of the same name.
+/// Stores a file, in place of one of the same name.
 pub fn keep(path: &Path, bytes: &[u8]) {
     FILES.with_borrow_mut(|files| files.insert(path.into(), bytes.into()));
 }
 
-/// The bytes of a file, if it is there.
+/// Returns the bytes of a file, if there is one.
 pub fn read(path: &Path) -> Option<Vec<u8>> {
     FILES.with_borrow(|files| files.get(path).cloned())
 }

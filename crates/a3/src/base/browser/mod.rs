@@ -1,4 +1,4 @@
-//! What the page asks of the browser.
+//! Functions of the browser that the page uses.
 
 mod address;
 mod download;

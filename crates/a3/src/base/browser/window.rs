@@ -1,4 +1,4 @@
-//! The window of the browser, and what it does for the page.
+//! The window of the browser: its document, storage, console and clipboard.
 
 use wasm_bindgen::JsCast;
 use web_sys::{Document, HtmlCanvasElement, Storage, Window};
@@ -13,12 +13,12 @@ pub fn document() -> Option<Document> {
     window()?.document()
 }
 
-/// The canvas that is drawn to.
+/// The canvas of the page.
 pub fn canvas() -> Option<HtmlCanvasElement> {
     document()?.get_element_by_id("a3")?.dyn_into().ok()
 }
 
-/// What the browser remembers for this page from one time to the next.
+/// Storage of the browser for this page, which lasts from one visit to the next.
 pub fn storage() -> Option<Storage> {
     window()?.local_storage().ok().flatten()
 }
@@ -28,21 +28,21 @@ pub fn log(line: &str) {
     web_sys::console::log_1(&line.into());
 }
 
-/// Shows words in place of the picture.
+/// Shows a text in place of the picture.
 pub fn show(words: &str) {
     if let Some(place) = document().and_then(|document| document.get_element_by_id("words")) {
         place.set_text_content(Some(words));
     }
 }
 
-/// Copies a text to the clipboard, if the browser lets it.
+/// Copies a text to the clipboard, if the browser allows it.
 pub fn copy(text: &str) {
     if let Some(window) = window() {
         let _ = window.navigator().clipboard().write_text(text);
     }
 }
 
-/// Opens another page beside this one.
+/// Opens another page in a new tab.
 pub fn open(address: &str) {
     if let Some(window) = window() {
         let _ = window.open_with_url_and_target(address, "_blank");

@@ -7,8 +7,8 @@ use web_time::{Duration, Instant};
 use super::march::march;
 use crate::base::terminal;
 
-/// Brings a simulation to `until` (s) in whole steps, the last one shortened, with a bar once it
-/// takes long. Calls `frame` about sixty times a simulated second.
+/// Advances a simulation to `until` (s) in whole steps, the last one shortened, with a bar once it
+/// takes longer than a second. Calls `frame` about sixty times a simulated second.
 pub fn advance(
     simulation: &mut Simulation,
     until: f64,
@@ -37,7 +37,7 @@ pub fn advance(
 pub struct Bar(ProgressBar);
 
 impl Bar {
-    /// A bar for so much work.
+    /// Creates a bar for an expected amount of work.
     pub fn new(expected: f64) -> Self {
         let bar = new_bar();
         bar.enable_steady_tick(Duration::from_millis(250));
@@ -46,18 +46,18 @@ impl Bar {
         bar
     }
 
-    /// Notes that so much more work is done.
+    /// Adds work that was done.
     pub fn advance(&self, work: f64) {
-        self.0.inc(parts(work));
+        self.0.inc(to_units(work));
     }
 
-    /// Sets how much work there is in all, of which none is done yet.
+    /// Starts again at zero, with a new amount of expected work.
     pub fn expect(&self, work: f64) {
-        self.0.set_length(parts(work));
+        self.0.set_length(to_units(work));
         self.0.set_position(0);
     }
 
-    /// Takes the bar off the terminal while something else is written.
+    /// Removes the bar from the terminal while something else is written.
     pub fn pause<T>(&self, write: impl FnOnce() -> T) -> T {
         self.0.suspend(write)
     }
@@ -67,28 +67,28 @@ impl Bar {
         self.pause(|| terminal::warn(line));
     }
 
-    /// Estimates the time that is left from here on.
+    /// Starts the estimate of the remaining time again.
     pub fn start(&self) {
         self.0.reset_eta();
     }
 
-    /// Shows what is being done.
+    /// Shows a text before the bar.
     pub fn say(&self, what: String) {
         self.0.set_message(what);
     }
 
-    /// Takes the bar away.
+    /// Removes the bar.
     pub fn clear(&self) {
         self.0.finish_and_clear();
     }
 }
 
-/// Work in the smallest parts that a bar counts.
-fn parts(work: f64) -> u64 {
+/// Converts work to the integer units of a bar, millionths.
+fn to_units(work: f64) -> u64 {
     (1e6 * work) as u64
 }
 
-/// A bar on stderr. Where that is no terminal, nothing is drawn.
+/// Creates a bar on stderr. If that is no terminal, nothing is drawn.
 fn new_bar() -> ProgressBar {
     let style = ProgressStyle::with_template("{msg}{wide_bar} {percent:>3} %  {eta} left");
     ProgressBar::new(1000).with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))

@@ -1,12 +1,12 @@
-//! A run to a time, with looks on the way.
+//! A run to a given time, with an observer.
 
 use a3_core::{Error, Simulation};
 
 /// Simulated time between two calls of `frame` (s).
 const FRAME: f64 = 1.0 / 60.0;
 
-/// Brings a simulation to `until` (s) in whole steps, the last one shortened, as long as `frame`
-/// returns true, which is called about sixty times a simulated second. Returns whether it got to
+/// Advances a simulation to `until` (s) in whole steps, the last one shortened. Calls `frame` about
+/// sixty times a simulated second, and stops if it returns false. Returns whether the run got to
 /// the end.
 pub fn march(
     simulation: &mut Simulation,

@@ -4,7 +4,7 @@ use a3_core::{Error, Simulation};
 
 use super::march::march;
 
-/// Does what [`march`] does to the end, whatever `frame` sees.
+/// Does the same as [`march`], without a way to stop.
 pub fn advance(
     simulation: &mut Simulation,
     until: f64,

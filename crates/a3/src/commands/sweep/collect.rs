@@ -1,4 +1,4 @@
-//! All runs of a sweep in one file, and its chart.
+//! The table of all runs of a sweep, and its chart.
 
 use a3_core::Method;
 use a3_plot::WorkPrecision;
@@ -13,10 +13,11 @@ use crate::commands::chart::record::Record;
 use crate::commands::chart::{picture, text};
 use crate::files::output;
 
-/// Most panels of a chart.
-const MOST_PANELS: usize = 25;
+/// Largest number of panels of a chart.
+const MAX_PANELS: usize = 25;
 
-/// Joins the runs that are there, in the order of the plan. Fails after that if some are missing.
+/// Joins the finished runs, in the order of the plan, into a table and a chart. Fails after that if
+/// some are missing.
 pub fn run(sweep: &Sweep, plan: &Plan, folder: &Folder, size: (u32, u32)) -> Result<(), Failure> {
     let mut records: Vec<(usize, Record)> = vec![];
     for (place, run) in plan.runs.iter().enumerate() {
@@ -28,7 +29,7 @@ pub fn run(sweep: &Sweep, plan: &Plan, folder: &Folder, size: (u32, u32)) -> Res
     let missing = plan.runs.len() - records.len();
     let say_missing = || {
         format!(
-            "{missing} of {} runs are missing; `a3 sweep` does them, or --only a share of them",
+            "{missing} of {} runs are missing; `a3 sweep` makes them, or --only a share of them",
             plan.runs.len()
         )
     };
@@ -48,9 +49,9 @@ pub fn run(sweep: &Sweep, plan: &Plan, folder: &Folder, size: (u32, u32)) -> Res
         records.len(),
         table.display()
     ))?;
-    if plan.variants.len() > MOST_PANELS {
+    if plan.variants.len() > MAX_PANELS {
         terminal::say(&format!(
-            "no chart: it would have {} panels, and at most {MOST_PANELS} can be read\n",
+            "no chart: it would have {} panels, and at most {MAX_PANELS} can be read\n",
             plan.variants.len()
         ))?;
     } else {
@@ -65,7 +66,7 @@ pub fn run(sweep: &Sweep, plan: &Plan, folder: &Folder, size: (u32, u32)) -> Res
     Ok(())
 }
 
-/// The table: ids, what varies, and the records.
+/// Returns the table: ids, values of the swept keys, and records.
 fn lines(sweep: &Sweep, plan: &Plan, records: &[(usize, Record)]) -> Result<String, Failure> {
     let row = |fields: Vec<String>| -> Result<String, Failure> {
         let mut writer = csv::Writer::from_writer(vec![]);
@@ -91,7 +92,7 @@ fn lines(sweep: &Sweep, plan: &Plan, records: &[(usize, Record)]) -> Result<Stri
     Ok(all)
 }
 
-/// A value as it is written in a table.
+/// Returns a value as it is written in the table.
 fn short(value: &Value) -> String {
     match value {
         Value::String(text) => text.clone(),
@@ -99,7 +100,7 @@ fn short(value: &Value) -> String {
     }
 }
 
-/// The work-precision diagram, with a panel for each scene and its values.
+/// Returns the work-precision diagram, with a panel for each scene with its values.
 fn diagram(sweep: &Sweep, plan: &Plan, records: &[(usize, Record)]) -> WorkPrecision {
     let mut methods: Vec<&'static Method> = vec![];
     for run in &plan.runs {
@@ -128,7 +129,7 @@ fn diagram(sweep: &Sweep, plan: &Plan, records: &[(usize, Record)]) -> WorkPreci
     }
 }
 
-/// What tells a panel from the others.
+/// Returns the title of a panel: the scene and the values in which panels differ.
 fn title(sweep: &Sweep, variant: &Variant) -> String {
     let mut parts = vec![];
     if sweep.scenes.len() > 1 || variant.values.is_empty() {

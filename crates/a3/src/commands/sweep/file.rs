@@ -18,9 +18,9 @@ use crate::cli::ErrorScope;
 use crate::files::output;
 use crate::files::scene_file::Source;
 
-/// Size of the largest file (bytes).
-const LARGEST: u64 = 1 << 20;
-/// What stands for the stiffness of all springs among the names of what varies.
+/// Largest size of the file (bytes).
+const MAX_SIZE: u64 = 1 << 20;
+/// Key of the factor of the stiffness, among the names of swept keys.
 const STIFFNESS: &str = "stiffness";
 
 /// The keys of the file.
@@ -41,14 +41,14 @@ struct Text {
     keys: BTreeMap<String, Value>,
 }
 
-/// What is run.
+/// A sweep: its scenes, solvers, steps, tolerances and values of keys.
 pub struct Sweep {
-    /// The path of the file as it was typed.
+    /// Path of the file as it was typed.
     pub file: String,
     /// Name of the file.
     pub name: String,
     pub scenes: Vec<Source>,
-    /// The solvers that were asked for; empty if all are meant.
+    /// The chosen solvers; empty for all.
     pub methods: Vec<&'static Method>,
     pub steps: Vec<f64>,
     pub tolerances: Vec<f64>,
@@ -72,7 +72,7 @@ impl Sweep {
         };
         let size = fs::metadata(path)
             .map_err(|e| wrong(format!("it could not be read: {}", terminal::reason(&e))))?;
-        if !size.is_file() || size.len() > LARGEST {
+        if !size.is_file() || size.len() > MAX_SIZE {
             return Err(wrong("it is no ordinary file of at most 1 MiB".into()));
         }
         output::is_read(path);
@@ -165,7 +165,7 @@ impl Sweep {
         Ok(sweep)
     }
 
-    /// The steps or tolerances of a method.
+    /// Returns the steps or tolerances of a method.
     pub fn settings(&self, method: &Method) -> &[f64] {
         if is_adaptive(method) {
             &self.tolerances
@@ -174,7 +174,7 @@ impl Sweep {
         }
     }
 
-    /// The names of what varies from scene to scene, beside the scene.
+    /// Returns the names of the swept keys, including the stiffness.
     pub fn names(&self) -> Vec<&str> {
         let names = self.keys.iter().map(|(path, _)| path.as_str());
         names
@@ -187,7 +187,7 @@ fn is_adaptive(method: &Method) -> bool {
     method.control(1e-3).step().is_none()
 }
 
-/// Numbers in a range; none if the key is not there.
+/// Reads the numbers of a key, each within a range; none without the key.
 fn numbers(
     key: &str,
     value: Option<&Value>,
@@ -207,7 +207,7 @@ fn numbers(
     values.iter().map(number).collect()
 }
 
-/// Texts; none if the key is not there.
+/// Reads the texts of a key; none without the key.
 fn texts(key: &str, value: Option<&Value>) -> Result<Vec<String>, String> {
     let Some(value) = value else {
         return Ok(vec![]);

@@ -1,4 +1,4 @@
-//! The folder of a sweep: a file for each run, as the data of a chart with one line.
+//! The folder of a sweep: a file for each run, in the format of the data of a chart, with one line.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -13,24 +13,24 @@ use crate::commands::chart::record::Record;
 use crate::commands::chart::text;
 use crate::files::output;
 
-/// Size of the largest file of a run (bytes).
-const LARGEST: u64 = 1 << 16;
+/// Largest size of the file of a run (bytes).
+const MAX_SIZE: u64 = 1 << 16;
 
-/// The folder.
+/// The folder of a sweep.
 pub struct Folder(PathBuf);
 
 impl Folder {
-    /// A folder that may be there or not.
+    /// Creates a folder object, whether or not the folder exists.
     pub fn new(path: &Path) -> Self {
         Self(path.into())
     }
 
-    /// Its path.
+    /// Returns the path.
     pub fn path(&self) -> &Path {
         &self.0
     }
 
-    /// Makes it, if it is not there.
+    /// Creates the folder if it does not exist.
     pub fn create(&self) -> Result<(), Failure> {
         fs::create_dir_all(&self.0).map_err(|why| {
             let path = self.0.display();
@@ -45,19 +45,19 @@ impl Folder {
         self.0.join(format!("{id}.csv"))
     }
 
-    /// The outcome of a run, if it is there. A file that is damaged counts as missing, and a
-    /// warning says so: the run is done again.
+    /// Reads the outcome of a run; `None` if its file is missing. A damaged file counts as missing,
+    /// and a warning says so: the run is made again.
     pub fn read(&self, run: &Run) -> Result<Option<Record>, Failure> {
         let path = self.file(run.id);
         let fault = |why: String| Failure::run(format!("{}: {why}", path.display()));
-        // A link is not followed, lest what it leads to is replaced.
+        // A link is not followed, because the file that it leads to would be replaced.
         let length = match fs::symlink_metadata(&path) {
             Ok(there) if there.is_file() => there.len(),
             Ok(_) => return Err(fault("it is no ordinary file: take it away".into())),
             Err(why) if why.kind() == std::io::ErrorKind::NotFound => return Ok(None),
             Err(why) => return Err(fault(terminal::reason(&why))),
         };
-        let bytes = if length > LARGEST {
+        let bytes = if length > MAX_SIZE {
             Ok(vec![])
         } else {
             fs::read(&path)
@@ -86,7 +86,7 @@ impl Folder {
         output::write(&self.file(id), text.as_bytes())
     }
 
-    /// Says if there are runs of another version, or of other values: nothing is done with them.
+    /// Warns of runs of another version, or of other values, which are left alone.
     pub fn warn_of_others(&self, plan: &Plan) {
         let ids: BTreeSet<Id> = plan.runs.iter().map(|run| run.id).collect();
         let names = fs::read_dir(&self.0).into_iter().flatten().flatten();
@@ -104,17 +104,17 @@ impl Folder {
         match (others.len(), version) {
             (0, _) => {}
             (count, Some(version)) => terminal::warn(&format!(
-                "warning: {folder} has {count} other runs, of a3 {version}, which this a3 {VERSION} leaves as they are: \
+                "warning: {folder} has {count} other runs, of a3 {version}, which this a3 {VERSION} leaves alone: \
                  give another --output to keep them apart"
             )),
             (count, None) => terminal::warn(&format!(
-                "warning: {folder} has {count} other runs, which the sweep as it is now leaves as they are"
+                "warning: {folder} has {count} other runs, which do not belong to the present sweep and are left alone"
             )),
         }
     }
 }
 
-/// The run in the text of a file, whose checksum must be there and right.
+/// Reads the run in the text of a file, whose checksum must be there and correct.
 fn record_of(text: &str) -> Option<Record> {
     let names_checks = text.lines().next()?.ends_with(",check");
     let mut records = text::read(text, false).ok().filter(|_| names_checks)?;

@@ -7,8 +7,8 @@ use serde_json::{Map, Value};
 
 use super::values::is_range;
 
-/// The paths of tables of keys, with what they are to be: a table that is no range is a part of a
-/// path.
+/// Returns the paths of all keys in nested tables, with their values. A table is a range if it has
+/// the keys of one; the name of any other table is a part of the path.
 pub fn flat(keys: &BTreeMap<String, Value>) -> Vec<(String, Value)> {
     let mut all = vec![];
     for (name, value) in keys {
@@ -28,7 +28,7 @@ fn flatten(path: String, value: &Value, all: &mut Vec<(String, Value)>) {
     }
 }
 
-/// Gives the key at a path a value.
+/// Sets the value of the key at a path.
 pub fn set(at: &mut Value, path: &str, value: &Value) -> Result<(), String> {
     let (first, rest) = match path.split_once('.') {
         Some((first, rest)) => (first, Some(rest)),
@@ -43,12 +43,12 @@ pub fn set(at: &mut Value, path: &str, value: &Value) -> Result<(), String> {
                     count.max(1) - 1
                 )
             })?;
-            put(item, rest, value)
+            set_in(item, rest, value)
         }
         (Value::Array(list), Err(_)) => list.iter_mut().try_for_each(|item| set(item, path, value)),
         (Value::Object(table), _) => {
             let empty = || Value::Object(Map::new());
-            put(table.entry(first).or_insert_with(empty), rest, value)
+            set_in(table.entry(first).or_insert_with(empty), rest, value)
         }
         _ => Err(format!(
             "there is no key `{first}` in a value that is not a table"
@@ -56,7 +56,7 @@ pub fn set(at: &mut Value, path: &str, value: &Value) -> Result<(), String> {
     }
 }
 
-fn put(at: &mut Value, rest: Option<&str>, value: &Value) -> Result<(), String> {
+fn set_in(at: &mut Value, rest: Option<&str>, value: &Value) -> Result<(), String> {
     if let Some(rest) = rest {
         return set(at, rest, value);
     }

@@ -1,5 +1,6 @@
-//! `a3 sweep`: scenes x solvers x steps or tolerances x keys of the scenes, in shares on however
-//! many machines. Each run is a file of its own, whose name is made of all that it depends on.
+//! `a3 sweep`: scenes x solvers x steps or tolerances x keys of the scenes, in shares on any number
+//! of machines. Each run has a file of its own, whose name is a hash of all that the run depends
+//! on.
 
 mod collect;
 mod file;
@@ -18,7 +19,7 @@ use file::Sweep;
 use folder::Folder;
 use plan::Plan;
 
-/// Does what the command line asks for.
+/// Runs the command.
 pub fn run(options: &Options) -> Result<(), Failure> {
     interrupt::listen();
     if let Some(count) = options.threads {
@@ -48,7 +49,7 @@ pub fn run(options: &Options) -> Result<(), Failure> {
         }
         None => (0..plan.runs.len()).collect(),
     };
-    // Who asks for all that can run a scene knows that some cannot.
+    // Without a choice of solvers, all that can run the scene are meant, so refusals are expected.
     if !sweep.methods.is_empty() {
         for refusal in &plan.refusals {
             terminal::warn(&format!("left out: {refusal}"));
@@ -58,7 +59,7 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     let left = work::run(&sweep, &plan, &share, &folder)?;
     if left > 0 {
         return Err(Failure::Interrupted(format!(
-            "interrupted: {left} of {} runs are left, which the same command goes on with",
+            "interrupted: {left} of {} runs are left; the same command continues with them",
             share.len()
         )));
     }
@@ -69,7 +70,7 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     }
 }
 
-/// The plan, a line for each run.
+/// Returns the plan, a line for each run.
 fn lines(sweep: &Sweep, plan: &Plan) -> String {
     let mut text = String::new();
     for run in &plan.runs {
@@ -89,7 +90,7 @@ fn lines(sweep: &Sweep, plan: &Plan) -> String {
     text
 }
 
-/// Says how far the sweep is, on all machines that use the folder.
+/// Prints how many runs are done, on all machines that use the folder.
 fn status(plan: &Plan, folder: &Folder) -> Result<(), Failure> {
     let (mut done, mut lost) = (0, 0);
     for run in &plan.runs {

@@ -1,4 +1,4 @@
-//! The runs of a sweep, in their order: those of one scene stand together.
+//! The runs of a sweep, in order: those of one scene are neighbours.
 
 use a3_core::accuracy::{Metric, Scope};
 use a3_core::{Method, Scene, integrators};
@@ -15,8 +15,8 @@ use crate::commands::chart::measure::{stiffened, words};
 use crate::commands::chart::{check_metric, scope};
 use crate::files::scene_file::{Hash, Source};
 
-/// Most runs.
-const MOST: u128 = 1_000_000;
+/// Largest number of runs.
+const MAX_RUNS: u128 = 1_000_000;
 
 /// A scene with values for its keys.
 pub struct Variant {
@@ -24,7 +24,7 @@ pub struct Variant {
     pub name: String,
     /// Number of the scene in the sweep.
     scene: usize,
-    /// Values of what varies, in the order of [`Sweep::names`].
+    /// Values of the swept keys, in the order of [`Sweep::names`].
     pub values: Vec<Value>,
     /// Factor of the stiffness of all springs.
     pub stiffness: f64,
@@ -34,7 +34,7 @@ pub struct Variant {
     pub scope: Scope,
 }
 
-/// A run.
+/// A run of a sweep.
 pub struct Run {
     pub id: Id,
     /// Number of its scene among the variants.
@@ -44,11 +44,11 @@ pub struct Run {
     pub setting: f64,
 }
 
-/// All runs.
+/// All runs of a sweep.
 pub struct Plan {
     pub variants: Vec<Variant>,
     pub runs: Vec<Run>,
-    /// Solvers that refuse a scene, in words.
+    /// Messages of solvers that refuse a scene.
     pub refusals: Vec<String>,
 }
 
@@ -56,7 +56,7 @@ pub struct Plan {
 type Planned = (Variant, Vec<Run>, Vec<String>);
 
 impl Plan {
-    /// The runs of a sweep.
+    /// Lists the runs of a sweep.
     pub fn new(sweep: &Sweep) -> Result<Self, Failure> {
         let methods: Vec<&'static Method> = if sweep.methods.is_empty() {
             integrators::METHODS.iter().collect()
@@ -75,9 +75,9 @@ impl Plan {
             .map(|m| sweep.settings(m).len() as u128)
             .sum();
         let count = scenes.saturating_mul(each);
-        if count > MOST {
+        if count > MAX_RUNS {
             return Err(Failure::usage(format!(
-                "{}: the sweep has {count} runs; at most {MOST} are possible: make several files of it",
+                "{}: the sweep has {count} runs; at most {MAX_RUNS} are possible: split it into several files",
                 sweep.file
             )));
         }
@@ -101,7 +101,7 @@ impl Plan {
         let mut seen = std::collections::BTreeSet::new();
         for (number, (variant, runs, refusals)) in planned.into_iter().enumerate() {
             plan.variants.push(variant);
-            // Of values that are there twice, there is one run.
+            // Values that are listed twice give one run.
             let new = runs.into_iter().filter(|run| seen.insert(run.id));
             plan.runs.extend(new.map(|run| Run {
                 variant: number,
@@ -125,7 +125,7 @@ impl Plan {
 }
 
 impl Variant {
-    /// The file of the scene with these values.
+    /// Returns the file of the scene with these values.
     fn source(&self, sweep: &Sweep) -> Result<Source, String> {
         let source = &sweep.scenes[self.scene];
         let keys: Vec<_> = sweep
@@ -144,14 +144,15 @@ impl Variant {
         })
     }
 
-    /// The scene.
+    /// Builds the scene.
     pub fn scene(&self, sweep: &Sweep) -> Result<Scene, Failure> {
         let source = self.source(sweep).map_err(Failure::usage)?;
         stiffened(&source.build(None)?.scene, self.stiffness)
     }
 }
 
-/// The scene of this number with the values at these places, and its runs by these methods.
+/// Returns the scene of this number with the values at these indices, and its runs by these
+/// methods.
 fn variant(
     sweep: &Sweep,
     methods: &[&'static Method],

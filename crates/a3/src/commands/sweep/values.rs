@@ -2,39 +2,41 @@
 
 use serde_json::{Number, Value};
 
-/// Most values of a range.
-const MOST: u64 = 1_000_000;
+/// Largest number of values of a range.
+const MAX_COUNT: u64 = 1_000_000;
 /// Keys of a range.
 const RANGE: [&str; 4] = ["from", "to", "count", "spacing"];
 
-/// What values may be.
-const RIGHT: &str =
+/// Description of valid values, for errors.
+const VALID_VALUES: &str =
     "a value, a list, or a range such as { from = 1, to = 100, count = 5, spacing = \"linear\" }";
 
-/// Whether a table is a range.
+/// Returns whether a table is a range.
 pub fn is_range(value: &Value) -> bool {
     let table = value.as_object();
     table.is_some_and(|table| RANGE[..3].iter().any(|key| table.contains_key(*key)))
 }
 
-/// All values. Ranges are in equal ratios, unless their spacing is linear.
+/// Lists all values. Those of a range have equal ratios, unless its spacing is linear.
 pub fn all(value: &Value) -> Result<Vec<Value>, String> {
     match value {
         Value::Array(list) if list.is_empty() => Err("the list is empty".into()),
         Value::Array(list) => Ok(list.clone()),
         Value::Object(table) => {
             if let Some(key) = table.keys().find(|key| !RANGE.contains(&key.as_str())) {
-                return Err(format!("there is no key `{key}`: it must be {RIGHT}"));
+                return Err(format!(
+                    "there is no key `{key}`: it must be {VALID_VALUES}"
+                ));
             }
             let number = |key: &str| {
                 let number = table.get(key).and_then(Value::as_f64);
-                number.ok_or_else(|| format!("`{key}` must be a number: it must be {RIGHT}"))
+                number.ok_or_else(|| format!("`{key}` must be a number: it must be {VALID_VALUES}"))
             };
             let (from, to) = (number("from")?, number("to")?);
             let count = table.get("count").and_then(Value::as_u64);
-            let count = count.filter(|count| (1..=MOST).contains(count));
-            let count =
-                count.ok_or_else(|| format!("`count` must be a whole number from 1 to {MOST}"))?;
+            let count = count.filter(|count| (1..=MAX_COUNT).contains(count));
+            let count = count
+                .ok_or_else(|| format!("`count` must be a whole number from 1 to {MAX_COUNT}"))?;
             match table.get("spacing").and_then(Value::as_str) {
                 Some("linear") => Ok(spread(from, to, count, |share| from + (to - from) * share)),
                 None if !(from > 0.0 && to > 0.0) => Err(
@@ -50,8 +52,8 @@ pub fn all(value: &Value) -> Result<Vec<Value>, String> {
     }
 }
 
-/// Numbers at equal shares from 0 to 1, the ends as they are, and between them to six digits. Whole
-/// numbers stay whole.
+/// Returns `count` numbers: both ends as they are, and between them `at` of equal shares from 0 to
+/// 1, rounded to six digits. Whole numbers stay whole.
 fn spread(from: f64, to: f64, count: u64, at: impl Fn(f64) -> f64) -> Vec<Value> {
     let numbers = (0..count).map(|k| match k {
         0 => from,
@@ -64,7 +66,7 @@ fn spread(from: f64, to: f64, count: u64, at: impl Fn(f64) -> f64) -> Vec<Value>
     numbers.map(exact).collect()
 }
 
-/// A number, as a whole one if it is.
+/// Converts a number, to a whole one if it is whole.
 pub fn exact(number: f64) -> Value {
     if number.fract() == 0.0 && number.abs() < 2f64.powi(53) {
         Value::from(number as i64)

@@ -1,4 +1,4 @@
-//! Doing the runs of a share.
+//! Execution of the runs of a share.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -16,8 +16,8 @@ use crate::commands::chart::measure::words;
 use crate::commands::chart::record::Record;
 use crate::commands::chart::single::{compared, precision, reference};
 
-/// Does the runs at these places of the plan that are not there yet. Returns how many are left:
-/// some, if it was interrupted.
+/// Makes the missing runs among those at these indices of the plan. Returns how many are left,
+/// which is not 0 after an interrupt.
 pub fn run(sweep: &Sweep, plan: &Plan, share: &[usize], folder: &Folder) -> Result<usize, Failure> {
     let mut missing: Vec<&Run> = vec![];
     for place in share {
@@ -32,7 +32,7 @@ pub fn run(sweep: &Sweep, plan: &Plan, share: &[usize], folder: &Folder) -> Resu
     let groups: Vec<&[&Run]> = missing.chunk_by(|a, b| a.variant == b.variant).collect();
     let done = groups.into_par_iter().try_for_each(|runs| {
         let variant = &plan.variants[runs[0].variant];
-        together(sweep, variant, runs, folder, &|| {
+        run_variant(sweep, variant, runs, folder, &|| {
             left.fetch_sub(1, Ordering::Relaxed);
             bar.advance(1.0);
         })
@@ -41,8 +41,8 @@ pub fn run(sweep: &Sweep, plan: &Plan, share: &[usize], folder: &Folder) -> Resu
     done.map(|()| left.into_inner())
 }
 
-/// Does runs of one scene, which have their reference in common.
-fn together(
+/// Makes runs of one scene, which share a reference.
+fn run_variant(
     sweep: &Sweep,
     variant: &Variant,
     runs: &[&Run],

@@ -7,24 +7,25 @@ use super::colouring::Scale;
 use super::colours::INK;
 use super::quantity::Arrows;
 
-/// Most arrows that are drawn: of more particles, every second one has one, or every third.
-const MOST: usize = 1200;
+/// Largest number of arrows. If there are more particles, only every second or third one has an
+/// arrow, and so on.
+const MAX_ARROWS: usize = 1200;
 /// Length of an arrow at the end of the scale, as a share of the scene's radius.
-const LONGEST: f64 = 0.25;
+const MAX_LENGTH: f64 = 0.25;
 /// Shares of an arrow's length that are its shaft and its head, with their widths (points).
 const PIECES: [(f32, f32, f32); 3] = [(0.0, 0.8, 1.4), (0.8, 0.92, 4.2), (0.92, 1.0, 2.2)];
 
-/// The arrows that are drawn, and their scale.
+/// Arrows on particles, and their scale.
 #[derive(Clone, Debug, Default)]
 pub struct Field {
-    /// What they show, if there are any.
+    /// Vectors that the arrows show, if there are arrows.
     pub arrows: Option<Arrows>,
-    /// The scale of their lengths.
+    /// Scale of their lengths.
     pub scale: Scale,
 }
 
 impl Field {
-    /// Shows another vector, or none.
+    /// Sets the vectors that are shown, or none.
     pub fn set_arrows(&mut self, arrows: Option<Arrows>) {
         self.arrows = arrows;
         self.scale = Scale::default();
@@ -39,8 +40,8 @@ impl Field {
         let length = |[x, y, z]: [f64; 3]| x.hypot(y).hypot(z);
         let largest = (0..n).map(|i| length(vector(i))).fold(0.0, f64::max);
         self.scale.follow(largest);
-        let longest = LONGEST * simulation.extent().1;
-        for i in (0..n).step_by(n.div_ceil(MOST).max(1)) {
+        let longest = MAX_LENGTH * simulation.extent().1;
+        for i in (0..n).step_by(n.div_ceil(MAX_ARROWS).max(1)) {
             let length = length(vector(i));
             let share = f64::from(self.scale.share(length));
             // Shorter ones are dots.
@@ -81,7 +82,7 @@ mod tests {
         field.draw(&run, &points, &mut lines);
         assert!(lines.len() > 3 * 100 && lines.len() % 3 == 0);
         let (n, v) = (run.particles(), run.velocities());
-        let longest = LONGEST * run.extent().1;
+        let longest = MAX_LENGTH * run.extent().1;
         for arrow in lines.chunks(3) {
             let i = points.iter().position(|p| p[..3] == arrow[0].from).unwrap();
             for axis in 0..3 {

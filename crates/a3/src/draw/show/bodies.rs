@@ -10,7 +10,7 @@ use super::colours::{BODIES, INK};
 use super::obstacles::{Paint, draw_shape, great_circles};
 use crate::draw::surfaces::tessellation::parts;
 
-/// Draws the bodies as they are in the state y, in colours of their own or by values.
+/// Draws the bodies in the state y, in colours of their own or by values.
 pub fn draw(
     network: &Network,
     y: &[f64],
@@ -24,7 +24,7 @@ pub fn draw(
         let points = first..first + part.shape.simplices().points.len();
         let paint = Paint {
             color: BODIES[k % BODIES.len()],
-            // None, unless each point has one.
+            // Values count only if each point has one.
             values: points
                 .map(|i| colouring.vector(i))
                 .collect::<Option<_>>()
@@ -37,7 +37,7 @@ pub fn draw(
     }
 }
 
-/// Parts of a body, with the numbers of the particles that are their first points.
+/// Returns the parts of a body, each with the number of the particle that is its first point.
 fn first_points(body: &Body) -> impl Iterator<Item = (&Part, usize)> {
     let mut next = body.points().start;
     body.parts().iter().map(move |part| {
@@ -47,7 +47,7 @@ fn first_points(body: &Body) -> impl Iterator<Item = (&Part, usize)> {
     })
 }
 
-/// Parts that are meshes, with the numbers of the particles that are their first points.
+/// Returns the parts that are meshes, each with the number of the particle that is its first point.
 pub fn meshes(network: &Network) -> impl Iterator<Item = (&ClosedMesh, usize)> {
     let parts = network.bodies().iter().flat_map(first_points);
     parts.filter_map(|(part, first)| match &part.shape {

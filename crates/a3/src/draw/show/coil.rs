@@ -4,13 +4,13 @@ use a3_core::{Spring, Vector3};
 
 use super::vectors::{perpendicular, to_f32};
 
-/// Turns of a coil.
+/// Number of turns of a coil.
 const TURNS: usize = 12;
-/// Straight pieces of a turn.
+/// Number of straight pieces of a turn.
 const PIECES: usize = 14;
 
-/// The points of a coil from a to b (m) with straight ends, in a picture with that unit of length
-/// (m). A stretched coil is thinner.
+/// Returns the points of a coil from a to b (m) with straight ends. `unit` is the unit of length of
+/// the scene (m). A stretched coil is thinner.
 pub fn coil(a: Vector3<f64>, b: Vector3<f64>, spring: &Spring, unit: f64) -> Vec<[f32; 3]> {
     let along = b - a;
     let length = along.norm();

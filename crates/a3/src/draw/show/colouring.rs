@@ -1,4 +1,4 @@
-//! Colours by a quantity, and the scale of what is drawn to scale.
+//! Colours by a quantity, and their scale.
 
 use a3_core::Simulation;
 use a3_render::ramp;
@@ -6,35 +6,39 @@ use a3_render::ramp;
 use super::quantity::{Quantity, lengths};
 use crate::base::rounding::{MANY, round_up};
 
-/// What is not larger is the rounding of nothing.
-const NOTHING: f64 = 1e-9;
+/// Largest value that counts as 0, because it is rounding error.
+const MAX_ROUNDING_ERROR: f64 = 1e-9;
 
-/// The end of a scale shrinks where all that it measures is less than this share of it.
-const SHRINKS: f64 = 0.2;
+/// Share of a scale below which the largest value makes the scale shrink.
+const MIN_USED_SHARE: f64 = 0.2;
 
-/// Powers of ten on a logarithmic scale.
+/// Number of powers of ten on a logarithmic scale.
 pub const DECADES: i32 = 5;
 
-/// A scale from 0 to a round number, or a logarithmic one of [`DECADES`] to a power of ten: that
-/// of the largest value lately, or a fixed one.
+/// A scale from 0 to a round number, or a logarithmic one of [`DECADES`] powers of ten up to a
+/// power of ten. Its end follows the recent largest value, or is fixed.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Scale {
-    /// The end that was chosen, if one was.
+    /// The fixed end, if there is one.
     pub fixed: Option<f64>,
-    /// The end that fits what was measured last; 0 if that was nothing.
+    /// The end that fits the recent largest values; 0 if there were none.
     pub fitting: f64,
-    /// Whether it is logarithmic.
+    /// Whether the scale is logarithmic.
     pub logarithmic: bool,
 }
 
 impl Scale {
-    /// Follows the largest value. Little changes do not move the end.
+    /// Follows the largest value. Small changes do not move the end.
     pub fn follow(&mut self, largest: f64) {
-        let fits = largest <= self.fitting && largest >= SHRINKS * self.fitting;
+        let fits = largest <= self.fitting && largest >= MIN_USED_SHARE * self.fitting;
         if !fits && largest.is_finite() {
             let rounds = if self.logarithmic { &[1.0, 10.0] } else { MANY };
-            // A logarithmic scale says how small an error is, in scenes of any size.
-            let nothing = if self.logarithmic { 0.0 } else { NOTHING };
+            // A logarithmic scale shows errors of any size.
+            let nothing = if self.logarithmic {
+                0.0
+            } else {
+                MAX_ROUNDING_ERROR
+            };
             self.fitting = if largest > nothing {
                 round_up(largest, rounds)
             } else {
@@ -43,12 +47,12 @@ impl Scale {
         }
     }
 
-    /// Its end.
+    /// Returns the end of the scale.
     pub fn end(&self) -> f64 {
         self.fixed.unwrap_or(self.fitting)
     }
 
-    /// The share of the scale at which a value is, from 0 to 1.
+    /// Returns the place of a value on the scale, from 0 to 1.
     pub fn share(&self, value: f64) -> f32 {
         if value > 0.0 && value < self.end() && self.logarithmic {
             let below = (value / self.end()).log10() / f64::from(DECADES);
@@ -56,7 +60,11 @@ impl Scale {
         } else if value > 0.0 && value < self.end() {
             (value / self.end()) as f32
         } else {
-            let least = if self.end() > 0.0 { 0.0 } else { NOTHING };
+            let least = if self.end() > 0.0 {
+                0.0
+            } else {
+                MAX_ROUNDING_ERROR
+            };
             f32::from(value.is_nan() || value > least)
         }
     }
@@ -65,28 +73,29 @@ impl Scale {
 /// The colours of particles by a quantity.
 #[derive(Clone, Debug, Default)]
 pub struct Colouring {
-    /// The quantity, if they are coloured by one.
+    /// The quantity, if particles are coloured by one.
     pub quantity: Option<Quantity>,
-    /// Its scale.
+    /// Scale of the quantity.
     pub scale: Scale,
-    /// The ways to the particles from where a reference has them (m), n x 3, if there is one.
+    /// Vectors from the particles of the reference to those of the run (m), n x 3; empty without a
+    /// reference.
     pub errors: Vec<f64>,
-    /// The largest error of this and other runs, with which it shares a scale (m).
+    /// Largest error of this run and of the other runs that share its scale (m).
     pub beside: f64,
     /// Value of each particle, NaN where it has none; empty where the run has none.
     values: Vec<f64>,
-    /// The vectors of which these are the lengths, n x 3, if they are.
+    /// Vectors whose lengths are the values, n x 3; empty if the values are no lengths.
     vectors: Vec<f64>,
 }
 
 impl Colouring {
-    /// Colours by another quantity, or by none.
+    /// Sets the quantity, or none.
     pub fn set_quantity(&mut self, quantity: Option<Quantity>) {
         self.quantity = quantity;
         self.forget();
     }
 
-    /// Forgets the scale, as for another scene.
+    /// Resets the scale, for another scene.
     pub fn forget(&mut self) {
         self.scale = Scale {
             logarithmic: self.quantity == Some(Quantity::Error),
@@ -94,12 +103,13 @@ impl Colouring {
         };
     }
 
-    /// The largest distance of a particle from where a reference has it (m); 0 without one.
+    /// Returns the largest distance of a particle from its place in the reference (m); 0 without a
+    /// reference.
     pub fn largest_error(&self) -> f64 {
         lengths(&self.errors).into_iter().fold(0.0, f64::max)
     }
 
-    /// Takes the values of a run.
+    /// Updates the values with those of a run.
     pub fn update(&mut self, simulation: &Simulation) {
         self.values = self
             .quantity
@@ -117,7 +127,7 @@ impl Colouring {
         self.scale.follow(largest);
     }
 
-    /// The quantity by which anything is coloured now.
+    /// Returns the quantity that colours anything now, if there is one.
     pub fn shown(&self) -> Option<Quantity> {
         self.quantity.filter(|_| !self.values.is_empty())
     }
@@ -131,14 +141,15 @@ impl Colouring {
         }
     }
 
-    /// The share of the scale at which the value of a particle is, if it has one.
+    /// Returns the place of a particle's value on the scale, from 0 to 1, if it has one.
     pub fn share(&self, i: usize) -> Option<f32> {
         let value = self.values.get(i).filter(|value| !value.is_nan())?;
         Some(self.scale.share(*value))
     }
 
-    /// A vector of a particle whose length is that share; where the quantity is the length of a
-    /// vector, along it, so that such vectors of a rigid body tell all between its points.
+    /// Returns a vector of a particle whose length is the place of its value on the scale. If the
+    /// quantity is the length of a vector, the result is parallel to that vector, so that it can be
+    /// interpolated between the points of a rigid body.
     pub fn vector(&self, i: usize) -> Option<[f32; 3]> {
         let (share, n) = (self.share(i)?, self.vectors.len() / 3);
         let end = self.scale.end();
@@ -152,7 +163,7 @@ impl Colouring {
         })
     }
 
-    /// The colour of a particle, or that which it has otherwise.
+    /// Returns the colour of a particle by its value, or `otherwise` if it has none.
     pub fn of(&self, i: usize, otherwise: [f32; 4]) -> [f32; 4] {
         self.share(i).map_or(otherwise, ramp)
     }

@@ -1,4 +1,4 @@
-//! Colours of what is drawn, as linear red, green, blue and opacity.
+//! Colours of pictures, as linear red, green, blue and opacity.
 
 pub const INK: [f32; 4] = [0.035, 0.05, 0.09, 1.0];
 pub const STEEL: [f32; 4] = [0.30, 0.36, 0.44, 1.0];

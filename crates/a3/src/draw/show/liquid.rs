@@ -1,4 +1,4 @@
-//! The surface of a fluid, as it is drawn.
+//! The surface of a fluid for the renderer.
 
 use a3_core::Simulation;
 use a3_render::{Corner, Style};
@@ -14,7 +14,8 @@ pub struct Liquid {
 }
 
 impl Liquid {
-    /// The surface of the fluid of a run as it is now, coloured or not; empty in other styles.
+    /// Computes the present surface of the fluid of a run, coloured or not; empty in styles without
+    /// surfaces.
     pub fn of(simulation: &Simulation, style: Style, colouring: &Colouring) -> Self {
         if style != Style::Shaded {
             return Self::default();
@@ -31,7 +32,7 @@ impl Liquid {
         }
     }
 
-    /// What the renderer draws.
+    /// Returns the surface in the form of the renderer.
     pub fn as_drawn(&self) -> a3_render::Liquid<'_> {
         a3_render::Liquid {
             corners: &self.corners,

@@ -1,4 +1,4 @@
-//! What a picture of a run is asked to show.
+//! Options for a picture of a run.
 
 use a3_render::Style;
 
@@ -12,7 +12,7 @@ pub enum Target {
 }
 
 impl Target {
-    /// The number of the particle, if it is one.
+    /// Returns the number of the particle, if the target is one.
     pub fn particle(self) -> Option<usize> {
         match self {
             Self::Particle(i) => Some(i),
@@ -21,7 +21,7 @@ impl Target {
     }
 }
 
-/// The manner in which a run is shown at first.
+/// The first look of a run.
 #[derive(Clone, Copy, Default)]
 pub struct Manner {
     /// Surface, wires or springs.
@@ -30,9 +30,9 @@ pub struct Manner {
     pub springs_of: Option<usize>,
     /// Whether the projection is orthographic, not perspective.
     pub orthographic: bool,
-    /// Whether the background is dark, and text light.
+    /// Whether the background is dark and text is light.
     pub dark: bool,
-    /// What particles are coloured by.
+    /// Quantity that colours the particles.
     pub colour: Option<Quantity>,
     /// Arrows on particles.
     pub arrows: Option<Arrows>,

@@ -1,4 +1,4 @@
-//! The look of a run: from particles, springs and obstacles to balls, lines and triangles.
+//! Balls, lines and triangles that show the particles, springs and obstacles of a run.
 
 mod arrows;
 mod bodies;

@@ -9,9 +9,9 @@ use a3_render::{Ball, Line, STEEL_LOOK, Solid, ramp};
 use super::colours::{INK, STEEL};
 use super::vectors::{perpendicular, to_f32};
 
-/// Drawn radius of a sphere or a capsule, as a share of its radius: a little smaller where only
-/// particles stay out of obstacles, so that the flat triangles between them stay outside too, and
-/// full where surfaces touch.
+/// Returns the drawn radius of a sphere or a capsule, as a share of its radius: a little smaller
+/// where only particles stay out of obstacles, so that the flat triangles between them stay outside
+/// too, and the full radius where surfaces touch.
 pub fn drawn_radius(network: &Network) -> f32 {
     if network.contact_layer().is_some() {
         1.0
@@ -20,7 +20,7 @@ pub fn drawn_radius(network: &Network) -> f32 {
     }
 }
 
-/// Draws the obstacles where they are at `time` (s), and returns the height of the floor (m) if
+/// Draws the obstacles at their places at `time` (s), and returns the height of the floor (m) if
 /// there is one.
 pub fn draw(
     network: &Network,
@@ -45,12 +45,12 @@ pub fn draw(
 /// Colour of a shape, or vectors whose lengths, from 0 to 1, colour its points.
 pub struct Paint {
     pub color: [f32; 4],
-    /// Empty for the colour.
+    /// Vectors of the points; empty if the shape has a single colour.
     pub values: Vec<[f32; 3]>,
 }
 
 impl Paint {
-    /// A colour alone.
+    /// Creates the paint of a single colour.
     pub fn plain(color: [f32; 4]) -> Self {
         Self {
             color,
@@ -58,14 +58,14 @@ impl Paint {
         }
     }
 
-    /// The colour of the first point.
+    /// Returns the colour of the first point.
     fn first(&self) -> [f32; 4] {
         let length = |[x, y, z]: &[f32; 3]| x.hypot(*y).hypot(*z);
         let first = self.values.first();
         first.map_or(self.color, |value| ramp(length(value)))
     }
 
-    /// The values of the eight corners of a solid, each that of a point.
+    /// Returns the colours of the eight corners of a box, by the numbers of their points.
     fn corners(&self, points: [usize; 8]) -> [[f32; 4]; 8] {
         if self.values.is_empty() {
             return Solid::PLAIN;
@@ -74,8 +74,8 @@ impl Paint {
     }
 }
 
-/// Draws a shape at a place, round ones with that share of their radius. Meshes are triangles of
-/// the picture.
+/// Draws a shape at a place, a round one with a share of its radius. Meshes are triangles of the
+/// picture and are left out.
 pub fn draw_shape(
     shape: &Shape,
     pose: &Pose,
@@ -128,7 +128,7 @@ pub fn draw_shape(
     }
 }
 
-/// Obstacles that are meshes.
+/// Returns the obstacles that are meshes.
 pub fn meshes(network: &Network) -> impl Iterator<Item = (&ClosedMesh, &Obstacle)> {
     let obstacles = network.obstacles().iter();
     obstacles.filter_map(|obstacle| match &obstacle.shape {
@@ -137,7 +137,7 @@ pub fn meshes(network: &Network) -> impl Iterator<Item = (&ClosedMesh, &Obstacle
     })
 }
 
-/// Adds the points of meshes where they are at `time` (s), with the look of steel.
+/// Adds the points of meshes at their places at `time` (s), with the look of steel.
 pub fn add_points(network: &Network, time: f64, points: &mut Vec<[f32; 4]>) {
     let share = f64::from(drawn_radius(network));
     for (mesh, obstacle) in meshes(network) {
@@ -153,8 +153,9 @@ pub fn add_points(network: &Network, time: f64, points: &mut Vec<[f32; 4]>) {
     }
 }
 
-/// Three great circles through the poles of each sphere that turns, where they are at `time` (s);
-/// none where surfaces touch, because they would show through what lies on the sphere.
+/// Returns three great circles through the poles of each sphere that turns, at their places at
+/// `time` (s); none where surfaces touch, because the circles would show through a cloth on the
+/// sphere.
 pub fn meridians(network: &Network, time: f64) -> impl Iterator<Item = Line> {
     let share = f64::from(drawn_radius(network));
     let turning = network.obstacles().iter().filter_map(move |obstacle| {
@@ -168,7 +169,7 @@ pub fn meridians(network: &Network, time: f64) -> impl Iterator<Item = Line> {
     turning.flat_map(move |(radius, axis, pose)| great_circles(share * radius, axis, pose, INK))
 }
 
-/// Great circles around a sphere among the obstacles, in a colour.
+/// Returns great circles around a sphere among the obstacles, in a colour.
 pub fn rings(
     network: &Network,
     k: usize,
@@ -186,7 +187,7 @@ pub fn rings(
     sphere.into_iter().flat_map(rings)
 }
 
-/// Three great circles through the poles of a sphere.
+/// Returns three great circles through the poles of a sphere.
 pub fn great_circles(
     radius: f64,
     axis: Vector3<f64>,
@@ -207,7 +208,7 @@ pub fn great_circles(
     })
 }
 
-/// Half axis of a solid: its direction and its length.
+/// Returns half an axis of a box, with the length in the last number.
 fn axis(direction: Vector3<f64>, half: f64) -> [f32; 4] {
     let [x, y, z] = to_f32(direction);
     [x, y, z, half as f32]

@@ -1,5 +1,5 @@
-//! Parts of a scene: those that are drawn as a surface, with their looks, and springs that are
-//! drawn one by one.
+//! Parts of a scene: bodies that are drawn as a surface, with their looks, and springs and
+//! particles that are drawn one by one.
 
 use std::sync::Arc;
 
@@ -12,11 +12,11 @@ use super::springs::{KINDS, kind_look};
 use super::{bodies, obstacles};
 use crate::draw::surfaces::whole_triangles;
 
-/// Parts that change only with the scene or when something tears.
+/// Parts of a scene, which change only with the scene or when something tears.
 #[derive(Clone, Default)]
 pub struct Parts {
     presentation: Arc<Presentation>,
-    /// Number of broken springs when the parts were found, once they were.
+    /// Number of broken springs when the parts were found; `None` before.
     tears: Option<usize>,
     /// Look of each body.
     looks: Vec<f32>,
@@ -24,12 +24,12 @@ pub struct Parts {
     loose: Vec<Spring>,
     /// Particles that are drawn one by one.
     single: Vec<usize>,
-    /// Kinds of springs that there are.
+    /// Kinds of springs in the scene.
     kinds: Vec<SpringKind>,
 }
 
 impl Parts {
-    /// Finds the parts again if the scene is another one or something has torn.
+    /// Finds the parts again if the scene has changed or something has torn.
     pub fn update(&mut self, presentation: &Arc<Presentation>, simulation: &Simulation) {
         let (surface, tears) = (&presentation.surface, Some(simulation.tears()));
         let known = Arc::ptr_eq(presentation, &self.presentation);
@@ -50,22 +50,22 @@ impl Parts {
         self.single = uncovered.filter(|i| !is_rigid(i)).collect();
     }
 
-    /// Springs of particles without a surface, and springs between bodies.
+    /// Returns the springs of particles without a surface, and the springs between bodies.
     pub fn loose(&self) -> &[Spring] {
         &self.loose
     }
 
-    /// Particles without a surface that belong to no rigid body.
+    /// Returns the particles without a surface that belong to no rigid body.
     pub fn single(&self) -> &[usize] {
         &self.single
     }
 
-    /// Kinds of springs that there are, those that are drawn over others last.
+    /// Returns the kinds of springs in the scene, in the order in which they are drawn.
     pub fn kinds(&self) -> &[SpringKind] {
         &self.kinds
     }
 
-    /// Gives each particle of a body its look.
+    /// Sets the look of each particle of a body.
     pub fn paint(&self, points: &mut [[f32; 4]]) {
         let mut start = 0;
         for (look, &end) in self.looks.iter().zip(&self.presentation.surface.bodies) {
@@ -77,8 +77,8 @@ impl Parts {
     }
 }
 
-/// A look for each body: in the first half of the looks before steel for cloth, in the second for
-/// jelly, which is closed.
+/// Returns a look for each body. Looks before that of steel are for cloth in their first half, and
+/// for closed surfaces such as jelly in their second half.
 fn looks(surface: &Surface) -> Vec<f32> {
     let mut edges: Vec<_> = surface
         .triangles
@@ -102,20 +102,20 @@ fn looks(surface: &Surface) -> Vec<f32> {
     surface.bodies.iter().enumerate().map(look).collect()
 }
 
-/// The body to whose surface both ends of the spring belong.
+/// Returns the body to whose surface both ends of the spring belong, if there is one.
 fn body(surface: &Surface, spring: &Spring) -> Option<usize> {
     let [a, b] = [spring.i, spring.j].map(|i| surface.bodies.partition_point(|end| *end <= i));
     (a == b && a < surface.bodies.len()).then_some(a)
 }
 
-/// All springs.
+/// Returns all springs.
 fn springs(simulation: &Simulation) -> impl Iterator<Item = Spring> {
     let network = simulation.model().network();
     network.into_iter().flat_map(Network::all_springs)
 }
 
-/// Triangles and wires, which stay the same from frame to frame until something tears. Parts
-/// without a surface are drawn by balls and coils instead. Meshes of obstacles come last.
+/// Returns the triangles and wires, which stay the same from frame to frame until something tears.
+/// Parts without a surface are drawn by balls and coils instead. Meshes of obstacles come last.
 pub fn topology(surface: &Surface, simulation: &Simulation) -> Topology {
     let mut topology = Topology {
         points: simulation.particles(),
@@ -169,8 +169,8 @@ fn add_edges(topology: &mut Topology, surface: &Surface) {
     topology.wires.extend(edges);
 }
 
-/// Adds the springs of bodies with a surface, each kind after those that it is drawn over, and the
-/// wires after the first so many, which are no springs.
+/// Adds the springs of bodies with a surface, in the order in which kinds are drawn, and the wires
+/// that are no springs: those after the first `structural`.
 fn add_springs(
     topology: &mut Topology,
     structural: usize,
@@ -179,18 +179,18 @@ fn add_springs(
 ) {
     let edges = topology.wires[structural..].iter();
     topology.springs = edges
-        .map(|ends| drawn(*ends, (INK, 1.35)))
+        .map(|ends| line_of(*ends, (INK, 1.35)))
         .chain(KINDS.into_iter().flat_map(|kind| {
             let of_kind = move |s: &Spring| s.kind == kind && body(surface, s).is_some();
             springs(simulation)
                 .filter(of_kind)
-                .map(move |s| drawn([s.i as u32, s.j as u32], kind_look(kind)))
+                .map(move |s| line_of([s.i as u32, s.j as u32], kind_look(kind)))
         }))
         .collect();
 }
 
-/// A spring or an edge of that colour and width (points).
-fn drawn(ends: [u32; 2], ([r, g, b, _], width): ([f32; 4], f32)) -> Drawn {
+/// Returns a spring or an edge with a colour and width (points).
+fn line_of(ends: [u32; 2], ([r, g, b, _], width): ([f32; 4], f32)) -> Drawn {
     Drawn {
         ends,
         width,
@@ -222,7 +222,7 @@ mod tests {
         }
     }
 
-    /// The number of edges of a closed surface.
+    /// Returns the number of edges of a closed surface.
     fn edges_of_closed(simulation: &Simulation) -> usize {
         3 * whole_triangles(simulation).count() / 2
     }

@@ -19,14 +19,14 @@ use super::trail::Trail;
 use super::vectors::to_f32;
 use super::{bodies, obstacles, view, wires};
 
-/// The most springs or particles without a surface that are drawn as coils and balls. More of them
-/// are drawn as lines and small balls: a coil is 170 lines.
-const MANY: usize = 60;
+/// Largest number of springs or particles without a surface that are drawn as coils and balls. More
+/// of them are drawn as lines and small balls, because a coil has 170 lines.
+const MAX_COILS: usize = 60;
 
-/// How a run is shown, and the buffers of its picture.
+/// The view of a run: its options, and the buffers of its picture.
 #[derive(Clone)]
 pub struct Show {
-    /// What of the scene is shown, and from where.
+    /// Presentation of the scene: its surface, camera and trail.
     presentation: Arc<Presentation>,
     /// Surface, wires or springs.
     pub style: Style,
@@ -38,15 +38,15 @@ pub struct Show {
     pub field: Field,
     /// Whether floor and background are left out.
     pub transparent: bool,
-    /// Whether the background is dark, and text light.
+    /// Whether the background is dark and text is light.
     pub dark: bool,
     /// Whether the scene is first seen in an orthographic projection.
     orthographic: bool,
-    /// What the hand would take, if it is highlighted.
+    /// Particle or obstacle under the pointer, which a press would take.
     pub hovered: Option<Target>,
-    /// Point to which the hand pulls (m).
+    /// Point to which the mouse pulls (m).
     pub hand: Option<Vector3<f64>>,
-    /// The way of the trailing particle.
+    /// Path of the particle that leaves a trail.
     trail: Trail,
     parts: Parts,
     points: Vec<[f32; 4]>,
@@ -60,7 +60,7 @@ pub struct Show {
 }
 
 impl Show {
-    /// A scene, shown in some manner.
+    /// Creates the view of a scene.
     pub fn new(presentation: Arc<Presentation>, manner: Manner) -> Self {
         let mut colouring = Colouring::default();
         colouring.set_quantity(manner.colour);
@@ -90,7 +90,7 @@ impl Show {
         }
     }
 
-    /// Shows another scene in the same way.
+    /// Changes to another scene, with the same options.
     pub fn set_presentation(&mut self, presentation: Arc<Presentation>) {
         self.presentation = presentation;
         self.unit = view::camera(&self.presentation).unit();
@@ -101,21 +101,21 @@ impl Show {
         self.clear_trail();
     }
 
-    /// The camera that the scene is first seen by.
+    /// Returns the camera that first shows the scene.
     pub fn camera(&self) -> Camera {
         let mut camera = view::camera(&self.presentation);
         camera.set_parallel(self.orthographic);
         camera
     }
 
-    /// Whether the scene has a surface.
+    /// Returns whether the scene has a surface.
     pub fn has_surface(&self, simulation: &Simulation) -> bool {
         let network = simulation.model().network();
         let flows = network.is_some_and(|network| network.fluid().is_some());
         flows || !self.presentation.surface.triangles.is_empty()
     }
 
-    /// The styles in which the scene looks different, in the order of their key.
+    /// Returns the styles in which the scene looks different, in the order of key w.
     pub fn styles(simulation: &Simulation) -> &'static [Style] {
         if has_springs(simulation) {
             &[Style::Shaded, Style::Wireframe, Style::Springs]
@@ -124,7 +124,7 @@ impl Show {
         }
     }
 
-    /// The kinds of springs that are drawn in their colours, if they are.
+    /// Returns the kinds of springs that are drawn in their colours; none in other styles.
     pub fn kinds(&self) -> &[SpringKind] {
         match self.style {
             Style::Springs => self.parts.kinds(),
@@ -132,7 +132,8 @@ impl Show {
         }
     }
 
-    /// Triangles and wires, which stay the same from frame to frame until something tears.
+    /// Returns the triangles and wires, which stay the same from frame to frame until something
+    /// tears.
     pub fn topology(&self, simulation: &Simulation) -> Topology {
         parts::topology(&self.presentation.surface, simulation)
     }
@@ -142,18 +143,18 @@ impl Show {
         self.trail.clear();
     }
 
-    /// The points of the trail (m).
+    /// Returns the points of the trail (m).
     #[cfg(test)]
     pub fn trail(&self) -> impl Iterator<Item = &[f32; 3]> {
         self.trail.points()
     }
 
-    /// Whether a particle leaves a trail.
+    /// Returns whether a particle leaves a trail.
     pub fn has_trail(&self) -> bool {
         self.presentation.trail.is_some()
     }
 
-    /// Continues the trail to where the trailing particle is.
+    /// Continues the trail to the present place of its particle.
     pub fn follow(&mut self, simulation: &Simulation) {
         if let Some(i) = self.presentation.trail {
             let point = to_f32(simulation.position(i));
@@ -161,7 +162,7 @@ impl Show {
         }
     }
 
-    /// Turns the state of the run into a picture.
+    /// Composes the picture of the present state of the run.
     pub fn compose(&mut self, simulation: &Simulation) {
         let n = simulation.particles();
         let (x, rest) = simulation.state().split_at(n);
@@ -213,11 +214,11 @@ impl Show {
         }
     }
 
-    /// The picture composed last, seen by `camera`.
+    /// Returns the picture composed last, seen by `camera`.
     pub fn picture(&self, camera: Camera, scale: f32) -> Picture<'_> {
         Picture {
             camera,
-            // Without springs there would be nothing.
+            // Without springs the picture would be empty.
             style: match self.style {
                 Style::Springs if self.parts.kinds().is_empty() => Style::Wireframe,
                 style => style,
@@ -234,13 +235,13 @@ impl Show {
         }
     }
 
-    /// The point of particle i (m).
+    /// Returns the position of particle i (m).
     fn at(&self, i: usize) -> [f32; 3] {
         let [x, y, z, _] = self.points[i];
         [x, y, z]
     }
 
-    /// Draws a ball at particle i, whose radius is so many units of length.
+    /// Draws a ball at particle i. Its radius is in units of length of the scene.
     fn ball(&mut self, i: usize, radius: f32, color: [f32; 4]) {
         self.balls.push(Ball {
             center: self.at(i),
@@ -250,7 +251,7 @@ impl Show {
     }
 
     /// Draws springs and particles that have no surface: as coils and balls, or as lines and small
-    /// balls where there are many. Of bodies with a surface it draws the pins.
+    /// balls where there are many. Of bodies with a surface it draws only the pins.
     fn draw_parts(&mut self, simulation: &Simulation) {
         let network = simulation.model().network();
         let covered = self.presentation.surface.particles();
@@ -259,7 +260,7 @@ impl Show {
                 self.ball(i, 0.032, INK);
             }
         }
-        let many = self.parts.loose().len().max(self.parts.single().len()) > MANY;
+        let many = self.parts.loose().len().max(self.parts.single().len()) > MAX_COILS;
         for spring in self.parts.loose() {
             let ends = [spring.i, spring.j];
             let (own, width) = match self.style {
@@ -311,7 +312,7 @@ impl Show {
         }
     }
 
-    /// Draws a particle of fluid as a small ball among wires, where no surface is drawn.
+    /// Draws a particle of fluid as a small ball, in the styles without surfaces.
     fn draw_drop(&mut self, simulation: &Simulation, i: usize) {
         let fluid = simulation.model().network().and_then(Network::fluid);
         let in_wall = self.presentation.tanks.iter().any(|tank| tank.contains(&i));
@@ -338,7 +339,7 @@ impl Show {
                     high[axis] = high[axis].max(point[axis]);
                 }
             }
-            // The walls are as thick as their layers; in two dimensions they have no sides in z.
+            // The walls are as thick as their layers; in two dimensions there are none across z.
             let wall = (TANK_LAYERS as f32 - 0.5) * spacing;
             for axis in 0..3 {
                 let flat = high[axis] - low[axis] < wall;
@@ -360,7 +361,7 @@ impl Show {
         }
     }
 
-    /// Highlights what the hand would take.
+    /// Highlights the particle or the obstacle under the pointer.
     fn highlight(&mut self, simulation: &Simulation) {
         let network = simulation.model().network();
         match (self.hovered, network) {

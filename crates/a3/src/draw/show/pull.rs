@@ -1,4 +1,4 @@
-//! The pull of a hand.
+//! The pull of the mouse.
 
 use a3_core::{Simulation, Vector3};
 use a3_render::{Ball, Line};
@@ -6,11 +6,13 @@ use a3_render::{Ball, Line};
 use super::colours::{ALARM, AMBER};
 use super::vectors::to_f32;
 
-/// Length of a pull that is drawn as the strongest, as a share of the scene's radius.
-const STRONG: f64 = 0.5;
+/// Length of a pull from which on it is drawn with the strongest line, as a share of the scene's
+/// radius.
+const MAX_PULL: f64 = 0.5;
 
-/// A line from particle i to the hand (m), thicker and redder the farther it is, and a ball at its
-/// end, in a picture with that unit of length (m); none while the hand is at the particle.
+/// Returns a line from particle i to the pointer (m), thicker and redder the longer it is, and a
+/// ball at its end; `None` while the pointer is at the particle. `unit` is the unit of length of
+/// the scene (m).
 pub fn pull(
     simulation: &Simulation,
     i: usize,
@@ -22,7 +24,7 @@ pub fn pull(
     if strength < 0.01 {
         return None;
     }
-    let share = (strength / STRONG).min(1.0) as f32;
+    let share = (strength / MAX_PULL).min(1.0) as f32;
     let color = [0, 1, 2, 3].map(|k| AMBER[k] + share * (ALARM[k] - AMBER[k]));
     let to = to_f32(hand);
     let ball = Ball {

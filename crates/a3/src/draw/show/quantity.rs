@@ -1,4 +1,4 @@
-//! What particles are coloured by, and the arrows on them.
+//! Quantities that colour particles, and vectors that arrows show.
 
 use a3_core::{Mechanics, Network, Simulation};
 
@@ -27,7 +27,7 @@ pub enum Arrows {
 }
 
 impl Quantity {
-    /// All of them, in the order of their key.
+    /// All quantities, in the order of key v.
     pub const ALL: [Self; 5] = [
         Self::Speed,
         Self::Strain,
@@ -36,7 +36,7 @@ impl Quantity {
         Self::Error,
     ];
 
-    /// Its name.
+    /// Returns the name of the quantity.
     pub fn name(self) -> &'static str {
         match self {
             Self::Speed => "speed",
@@ -47,7 +47,7 @@ impl Quantity {
         }
     }
 
-    /// Its unit, after a space.
+    /// Returns the unit of the quantity, after a space.
     pub fn unit(self) -> &'static str {
         match self {
             Self::Speed => " m/s",
@@ -57,7 +57,7 @@ impl Quantity {
         }
     }
 
-    /// Whether a run has it, which is one of several with a reference or not.
+    /// Returns whether a run has the quantity. `compared` says whether the run has a reference.
     pub fn is_in(self, simulation: &Simulation, compared: bool) -> bool {
         let network = simulation.model().network();
         match self {
@@ -69,7 +69,7 @@ impl Quantity {
         }
     }
 
-    /// The vectors of which its values are the lengths, n x 3, or nothing if they are none.
+    /// Returns the vectors whose lengths are the values, n x 3; empty if the values are no lengths.
     pub fn vectors(self, simulation: &Simulation, errors: &[f64]) -> Vec<f64> {
         match self {
             Self::Speed => simulation.velocities(),
@@ -78,8 +78,8 @@ impl Quantity {
         }
     }
 
-    /// Its value at each particle, NaN for one that has none; or nothing where the run does not
-    /// have it. Errors, n x 3, are known to the caller.
+    /// Returns the value at each particle, NaN for one that has none; empty if the run does not
+    /// have the quantity. `errors` are the vectors from the reference to the particles, n x 3 (m).
     pub fn values(self, simulation: &Simulation, errors: &[f64]) -> Vec<f64> {
         let network = simulation.model().network();
         match self {
@@ -90,11 +90,11 @@ impl Quantity {
                 .unwrap_or_default(),
             Self::Force => {
                 let mut forces = lengths(&forces(simulation));
-                // Pins hold much more than what moves is moved by.
+                // Reaction forces at pins dwarf the others, so they are not shown.
                 for (i, _) in network.into_iter().flat_map(Network::pins) {
                     forces[i] = 0.0;
                 }
-                // The forces on a body's points are gathered at its centre.
+                // The forces on a body's points are summed at its centre.
                 for body in network.into_iter().flat_map(Network::bodies) {
                     let on_body = forces[body.center()];
                     forces[body.points()].fill(on_body);
@@ -110,10 +110,10 @@ impl Quantity {
 }
 
 impl Arrows {
-    /// Both, in the order of their key.
+    /// Both vectors, in the order of key a.
     pub const ALL: [Self; 2] = [Self::Velocity, Self::Force];
 
-    /// Its name.
+    /// Returns the name of the vector.
     pub fn name(self) -> &'static str {
         match self {
             Self::Velocity => "velocity",
@@ -121,7 +121,7 @@ impl Arrows {
         }
     }
 
-    /// Its unit, after a space.
+    /// Returns the unit of the vector, after a space.
     pub fn unit(self) -> &'static str {
         match self {
             Self::Velocity => " m/s",
@@ -129,12 +129,12 @@ impl Arrows {
         }
     }
 
-    /// Whether the scene has it.
+    /// Returns whether the scene has the vector.
     pub fn is_in(self, simulation: &Simulation) -> bool {
         self == Self::Velocity || simulation.model().network().is_some()
     }
 
-    /// The vectors, n x 3, or nothing where the scene does not have it.
+    /// Returns the vectors, n x 3; empty if the scene does not have them.
     pub fn vectors(self, simulation: &Simulation) -> Vec<f64> {
         match self {
             Self::Velocity => simulation.velocities(),
@@ -143,7 +143,7 @@ impl Arrows {
     }
 }
 
-/// The sum of all forces on each particle (N), n x 3; nothing for a scene without forces.
+/// Returns the sum of all forces on each particle (N), n x 3; empty for a scene without forces.
 fn forces(simulation: &Simulation) -> Vec<f64> {
     let Some(network) = simulation.model().network() else {
         return vec![];
@@ -154,7 +154,7 @@ fn forces(simulation: &Simulation) -> Vec<f64> {
     f
 }
 
-/// The lengths of the rows of an n x 3 matrix.
+/// Returns the lengths of the rows of an n x 3 matrix.
 pub fn lengths(a: &[f64]) -> Vec<f64> {
     let n = a.len() / 3;
     let square = |i: usize| (0..3).map(|axis| a[axis * n + i].powi(2)).sum::<f64>();

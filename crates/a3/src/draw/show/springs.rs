@@ -1,22 +1,23 @@
-//! Springs: the look of each kind, and those of a particle in words.
+//! Springs: the look of each kind, and the list of the springs of a particle as text.
 
 use a3_core::{Simulation, Spring, SpringKind, SpringLaw};
 
 use super::colours::{AMBER, TEAL, VIOLET};
 
-/// All kinds. In a grid, bend springs lie over structural ones: wide lines come first.
+/// All kinds, in the order in which they are drawn. In a grid, bend springs lie over structural
+/// ones, so the wider lines come first.
 pub const KINDS: [SpringKind; 3] = [SpringKind::Bend, SpringKind::Shear, SpringKind::Structural];
 
-/// Width (points) of a spring among all of them.
+/// Width of a spring when all springs are drawn (points).
 const WIDTH: f32 = 1.6;
 
-/// Whether a scene has springs.
+/// Returns whether a scene has springs.
 pub fn has_springs(simulation: &Simulation) -> bool {
     let network = simulation.model().network();
     network.is_some_and(|network| network.all_springs().next().is_some())
 }
 
-/// The colour of a kind of springs, and the width of one among all springs (points).
+/// Returns the colour of a kind of springs, and its width when all springs are drawn (points).
 pub fn kind_look(kind: SpringKind) -> ([f32; 4], f32) {
     match kind {
         SpringKind::Structural => (AMBER, WIDTH),
@@ -25,7 +26,7 @@ pub fn kind_look(kind: SpringKind) -> ([f32; 4], f32) {
     }
 }
 
-/// The springs attached to particle i.
+/// Returns the springs attached to particle i.
 pub fn springs_of(simulation: &Simulation, i: usize) -> Vec<Spring> {
     simulation
         .model()
@@ -35,7 +36,7 @@ pub fn springs_of(simulation: &Simulation, i: usize) -> Vec<Spring> {
         .collect()
 }
 
-/// The name of a kind of springs.
+/// Returns the name of a kind of springs.
 pub fn kind_name(kind: SpringKind) -> &'static str {
     match kind {
         SpringKind::Structural => "structural",
@@ -44,7 +45,7 @@ pub fn kind_name(kind: SpringKind) -> &'static str {
     }
 }
 
-/// The springs attached to particle i as text, each in its own line.
+/// Lists the springs attached to particle i as text, each in its own line.
 pub fn list_springs_of(simulation: &Simulation, i: usize) -> String {
     let springs = springs_of(simulation, i);
     let line = |s: &Spring| {

@@ -2,12 +2,12 @@
 
 use a3_core::Vector3;
 
-/// The vector in single precision.
+/// Converts a vector to single precision.
 pub fn to_f32(v: Vector3<f64>) -> [f32; 3] {
     [v.x as f32, v.y as f32, v.z as f32]
 }
 
-/// A unit vector at a right angle to `along`.
+/// Returns a unit vector at a right angle to `along`.
 pub fn perpendicular(along: Vector3<f64>) -> Vector3<f64> {
     let up = if along.y.abs() < 0.9 * along.norm() {
         Vector3::y()

@@ -5,7 +5,7 @@ use a3_scenes::Presentation;
 
 use super::vectors::to_f32;
 
-/// The camera that a scene is first seen by.
+/// Returns the camera that first shows a scene.
 pub fn camera(presentation: &Presentation) -> Camera {
     let viewpoint = presentation.viewpoint;
     Camera::look_at(to_f32(viewpoint.eye), to_f32(viewpoint.target))

@@ -5,13 +5,13 @@ use a3_render::Line;
 
 use super::vectors::{perpendicular, to_f32};
 
-/// Straight pieces of a circle.
+/// Number of straight pieces of a circle.
 const PIECES: usize = 96;
-/// Length of a straight wire to either side of its point, in units of length.
-const REACH: f64 = 20.0;
+/// Length of a straight wire to either side of its point, in units of length of the scene.
+const HALF_LENGTH: f64 = 20.0;
 
-/// Lines for the constraints of a network, with `at` for the points of particles (m), in a picture
-/// with that unit of length (m).
+/// Returns lines for the constraints of a network. `at` gives the positions of particles (m), and
+/// `unit` is the unit of length of the scene (m).
 pub fn lines(
     network: &Network,
     at: impl Fn(usize) -> [f32; 3],
@@ -29,7 +29,7 @@ pub fn lines(
             Constraint::Line {
                 point, direction, ..
             } => {
-                let way = direction * (REACH * unit);
+                let way = direction * (HALF_LENGTH * unit);
                 let ends = [point - way, point + way];
                 let [a, b] = ends.map(to_f32);
                 vec![Line::new(a, b, 1.6, faint)]
@@ -49,7 +49,7 @@ pub fn lines(
         })
 }
 
-/// Lines of a circle.
+/// Returns the lines of a circle.
 fn circle(center: Vector3<f64>, normal: Vector3<f64>, radius: f64, color: [f32; 4]) -> Vec<Line> {
     let side = perpendicular(normal);
     let other = normal.cross(&side);

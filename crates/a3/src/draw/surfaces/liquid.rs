@@ -1,26 +1,26 @@
-//! The surface of a fluid: where a field that is the sum of a bump around each particle has a fixed
-//! value. It is meshed by naive surface nets: a vertex in each cell of a grid through which the
-//! surface passes, and two triangles across each edge of the grid that it cuts (Gibson,
-//! *Constrained elastic surface nets*, 1998).
+//! The surface of a fluid: an isosurface of a field, the sum of a bump around each particle. It is
+//! meshed by naive surface nets: a vertex in each cell of a grid through which the surface passes,
+//! and two triangles across each edge of the grid that it cuts (Gibson, *Constrained elastic
+//! surface nets*, 1998).
 
 use a3_core::Simulation;
 
 /// Radius of the bump around a particle, in spacings.
 const RADIUS: f64 = 1.8;
-/// Value of the field at the surface: a particle alone has 1 in its middle, and particles at their
-/// spacing have a little more than twice that at a level surface.
+/// Value of the field at the surface. The field of a single particle is 1 at its centre, and
+/// particles at their spacing have a little more than twice that at a level surface.
 const LEVEL: f32 = 0.6;
 /// Width of a cell of the grid, in spacings.
-const CELL: f64 = 0.7;
-/// Most nodes of the grid: it is coarser where drops have flown far apart.
-const MOST: f64 = 3e6;
+const CELL_WIDTH: f64 = 0.7;
+/// Largest number of nodes of the grid: it is coarser where drops have flown far apart.
+const MAX_NODES: f64 = 3e6;
 
 /// Vertex of the surface of a fluid.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Corner {
     /// Position (m).
     pub place: [f32; 3],
-    /// Value from 0 to 1 that colours it, or -1 without one.
+    /// Value from 0 to 1 that colours the vertex, or -1 without one.
     pub value: f32,
     /// Unit normal.
     pub normal: [f32; 3],
@@ -38,17 +38,17 @@ pub struct Liquid {
 /// Field on the nodes of a grid.
 struct Field {
     counts: [usize; 3],
-    /// Position of the first node (m), and the distance of nodes.
+    /// Position of the first node, and the distance of nodes (m).
     origin: [f64; 3],
     cell: f64,
     values: Vec<f32>,
-    /// The same sum, each bump times the value that colours its particle; empty without colours.
+    /// Sum of the bumps, each times the value that colours its particle; empty without colours.
     coloured: Vec<f32>,
 }
 
 impl Liquid {
-    /// Surface of the fluid of a run as it is now, coloured by the values from 0 to 1 of its
-    /// particles, if all have one; empty without a fluid.
+    /// Computes the present surface of the fluid of a run, coloured by the values from 0 to 1 of
+    /// its particles, if all have one; empty without a fluid.
     pub fn of(simulation: &Simulation, value: impl Fn(usize) -> Option<f32>) -> Self {
         let network = simulation.model().network();
         let Some((network, fluid)) = network.and_then(|n| Some((n, n.fluid()?))) else {
@@ -66,7 +66,8 @@ impl Liquid {
         Self::around(&places, fluid.law().spacing, values.as_deref())
     }
 
-    /// Surface around particles at these places (m) at that spacing (m), with these values.
+    /// Computes the surface around particles at these places (m), with this spacing (m) and these
+    /// values.
     fn around(places: &[[f64; 3]], spacing: f64, values: Option<&[f32]>) -> Self {
         if places.is_empty() {
             return Self::default();
@@ -85,16 +86,16 @@ impl Field {
             }
         }
         let nodes = |cell: f64| {
-            let reach = RADIUS / CELL * cell + cell;
+            let reach = RADIUS / CELL_WIDTH * cell + cell;
             let count = |axis: usize| ((high[axis] - low[axis] + 2.0 * reach) / cell).ceil() + 1.0;
             [0, 1, 2].map(count)
         };
-        let mut cell = CELL * spacing;
-        while nodes(cell).iter().product::<f64>() > MOST {
+        let mut cell = CELL_WIDTH * spacing;
+        while nodes(cell).iter().product::<f64>() > MAX_NODES {
             cell *= 1.1;
         }
         let counts = nodes(cell).map(|count| count as usize);
-        let radius = RADIUS / CELL * cell;
+        let radius = RADIUS / CELL_WIDTH * cell;
         let mut field = Self {
             counts,
             origin: low.map(|low| low - radius - cell),
@@ -112,7 +113,7 @@ impl Field {
         (k * self.counts[1] + j) * self.counts[0] + i
     }
 
-    /// Adds the bump (1 - r^2 / radius^2)^3 around a place, with a value that colours it.
+    /// Adds the bump (1 - r^2 / radius^2)^3 around a particle, with the value that colours it.
     fn add(&mut self, place: &[f64; 3], radius: f64, value: f32) {
         let at: [f64; 3] = std::array::from_fn(|a| (place[a] - self.origin[a]) / self.cell);
         let reach = radius / self.cell;
@@ -138,8 +139,9 @@ impl Field {
         }
     }
 
-    /// The vertex in a cell: the mean of the points at which the surface cuts its edges, with the
-    /// direction in which the field falls; `None` if the surface does not pass through.
+    /// Returns the vertex in a cell: the mean of the points at which the surface cuts its edges,
+    /// with the direction in which the field falls; `None` if the surface does not pass through the
+    /// cell.
     fn vertex(&self, cell: [usize; 3]) -> Option<Corner> {
         let nodes: [usize; 8] = std::array::from_fn(|corner| {
             self.index([0, 1, 2].map(|axis| cell[axis] + (corner >> axis & 1)))
@@ -178,7 +180,7 @@ impl Field {
         })
     }
 
-    /// The mean of the values around some nodes, weighted by the bumps; -1 without colours.
+    /// Returns the mean of the values around some nodes, weighted by the bumps; -1 without colours.
     fn colour(&self, nodes: [usize; 8]) -> f32 {
         if self.coloured.is_empty() {
             return -1.0;
@@ -255,7 +257,7 @@ mod tests {
         places
     }
 
-    /// The surface of a ball is closed, as round as its particles allow, and seen from outside.
+    /// The surface of a ball is closed, as round as its particles allow, and oriented outwards.
     #[test]
     fn the_surface_of_a_ball_is_a_sphere() {
         let spacing = 0.1;

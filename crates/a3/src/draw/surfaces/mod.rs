@@ -1,4 +1,4 @@
-//! Surfaces as triangles, of what is simulated: for files and for pictures.
+//! Surfaces of rigid bodies and liquids as triangles, for files and for pictures.
 
 mod liquid;
 pub mod tessellation;
@@ -7,7 +7,7 @@ use a3_core::Simulation;
 
 pub use liquid::Liquid;
 
-/// The triangles of the surface that are not torn.
+/// Returns the triangles of the surface that are not torn.
 pub fn whole_triangles(simulation: &Simulation) -> impl Iterator<Item = [u32; 3]> {
     let network = simulation.model().network();
     network

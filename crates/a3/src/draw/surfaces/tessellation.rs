@@ -6,12 +6,13 @@ use a3_core::contact::Shape;
 use a3_core::rigid::{Body, Part};
 use a3_core::{Network, Pose, Vector3};
 
-/// Number of meridians of a round shape, and of parallels from pole to pole.
+/// Number of meridians of a round shape.
 const MERIDIANS: u32 = 24;
+/// Number of parallels of a round shape, from pole to pole.
 const PARALLELS: u32 = 12;
 
-/// Points of a shape, seen from its place (m), and the corners of its triangles, anticlockwise as
-/// seen from outside. Sides of a box share no points, so that its edges stay sharp.
+/// Points of a shape, relative to its centre (m), and the corners of its triangles, anticlockwise
+/// as seen from outside. Sides of a box share no points, so that its edges stay sharp.
 pub struct Tessellation {
     pub points: Vec<Vector3<f64>>,
     pub triangles: Vec<[u32; 3]>,
@@ -20,8 +21,8 @@ pub struct Tessellation {
 impl Tessellation {
     fn of(shape: &Shape) -> Self {
         match shape {
-            Shape::Sphere { radius } => round([Vector3::zeros(); 2], *radius),
-            Shape::Capsule { ends, radius } => round(*ends, *radius),
+            Shape::Sphere { radius } => capsule([Vector3::zeros(); 2], *radius),
+            Shape::Capsule { ends, radius } => capsule(*ends, *radius),
             Shape::Mesh(mesh) => Self {
                 points: mesh.points().to_vec(),
                 triangles: mesh.triangles().to_vec(),
@@ -40,8 +41,9 @@ impl Tessellation {
     }
 }
 
-/// All within a radius of a line segment: parallels around its axis, half of them at either end.
-fn round([low, high]: [Vector3<f64>; 2], radius: f64) -> Tessellation {
+/// Tessellates a capsule, the points within a radius (m) of a line segment: parallels around its
+/// axis, half of them at either end.
+fn capsule([low, high]: [Vector3<f64>; 2], radius: f64) -> Tessellation {
     let axis = (high - low).try_normalize(0.0).unwrap_or(Vector3::y());
     let side = axis.cross(&if axis.x.abs() < 0.5 {
         Vector3::x()
@@ -53,7 +55,7 @@ fn round([low, high]: [Vector3<f64>; 2], radius: f64) -> Tessellation {
     let mut points = vec![];
     let rows = PARALLELS + 2;
     for row in 0..rows {
-        // The equator is there twice, once at each end.
+        // There are two equators, one at each end.
         let (end, step) = if row < rows / 2 {
             (low, row)
         } else {
@@ -77,7 +79,7 @@ fn round([low, high]: [Vector3<f64>; 2], radius: f64) -> Tessellation {
     Tessellation { points, triangles }
 }
 
-/// Corners of the triangles of all bodies, whose points are numbered from `first` on.
+/// Returns the corners of the triangles of all bodies, whose points are numbered from `first` on.
 pub fn triangles(network: &Network, first: u32) -> Vec<[u32; 3]> {
     let mut next = first;
     let mut all = vec![];
@@ -89,7 +91,7 @@ pub fn triangles(network: &Network, first: u32) -> Vec<[u32; 3]> {
     all
 }
 
-/// The number of points of all bodies.
+/// Returns the number of points of all bodies.
 pub fn count(network: &Network) -> usize {
     let parts = network.bodies().iter().flat_map(Body::parts);
     parts
@@ -97,14 +99,14 @@ pub fn count(network: &Network) -> usize {
         .sum()
 }
 
-/// The points of all bodies (m), as they are in the state y.
+/// Returns the points of all bodies in the state y (m).
 pub fn points(network: &Network, y: &[f64]) -> Vec<Vector3<f64>> {
     placed(network, y)
         .flat_map(|(_, part)| part.points)
         .collect()
 }
 
-/// Each part of each body, with the body's number, as it is in the state y.
+/// Returns each part of each body, placed as in the state y, with the body's number.
 pub fn placed<'a>(
     network: &'a Network,
     y: &'a [f64],
@@ -118,7 +120,7 @@ pub fn placed<'a>(
     })
 }
 
-/// Each part of each body, with the body's number and where the part is in the state y.
+/// Returns each part of each body, with the body's number and the place of the part in the state y.
 pub fn parts<'a>(
     network: &'a Network,
     y: &'a [f64],
@@ -137,7 +139,7 @@ pub fn parts<'a>(
 mod tests {
     use super::*;
 
-    /// The volume within triangles, which is negative where they are inside out.
+    /// Returns the volume within triangles, which is negative if they are inside out.
     fn volume(shape: &Shape) -> f64 {
         let Tessellation { points, triangles } = Tessellation::of(shape);
         let of = |t: &[u32; 3]| {

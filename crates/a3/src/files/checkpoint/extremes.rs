@@ -1,4 +1,4 @@
-//! Extremes of a run, which its checkpoints keep for the summary at its end.
+//! Extremes of a run, which its checkpoints store for the summary at its end.
 
 use a3_core::Simulation;
 use serde::{Deserialize, Serialize};
@@ -6,11 +6,11 @@ use serde::{Deserialize, Serialize};
 /// Total energy (J).
 #[derive(Clone, Copy, Serialize, Deserialize)]
 pub struct Energy {
-    /// At the beginning.
+    /// At the start.
     pub begin: f64,
     /// At the end.
     pub end: f64,
-    /// Largest distance from the energy at the beginning.
+    /// Largest distance from the energy at the start.
     pub largest_drift: f64,
 }
 
@@ -24,8 +24,8 @@ pub struct Extremes {
 }
 
 impl Extremes {
-    /// Takes the values of the state as it is now.
-    pub fn look(&mut self, simulation: &Simulation) {
+    /// Updates the extremes with the present state.
+    pub fn observe(&mut self, simulation: &Simulation) {
         if let Some(total) = simulation.energy().map(|energy| energy.total()) {
             let energy = self.energy.get_or_insert(Energy {
                 begin: total,
@@ -40,14 +40,14 @@ impl Extremes {
         }
     }
 
-    /// All its numbers.
+    /// Returns all numbers.
     pub fn numbers(&self) -> impl Iterator<Item = f64> {
         let energy = self.energy.into_iter();
         let energies = energy.flat_map(|e| [e.begin, e.end, e.largest_drift]);
         energies.chain(self.stretch)
     }
 
-    /// The same without a number for the stretch.
+    /// Returns a copy whose stretch is not a number.
     #[cfg(test)]
     pub fn spoiled(self) -> Self {
         Self {

@@ -1,4 +1,4 @@
-//! The bytes of a file of the system.
+//! Reading of a checkpoint from the file system.
 
 use std::fs::File;
 use std::io::Read;
@@ -7,18 +7,18 @@ use std::path::Path;
 use crate::base::terminal;
 
 /// Size of the largest file that is read (bytes).
-const LARGEST: u64 = 4 << 30;
+const MAX_SIZE: u64 = 4 << 30;
 
-/// The bytes of an ordinary file that is not too large.
+/// Reads the bytes of an ordinary file that is not too large.
 pub fn bytes_of(path: &Path) -> Result<Vec<u8>, String> {
     let read = || -> std::io::Result<Option<Vec<u8>>> {
         let file = File::open(path)?;
         let there = file.metadata()?;
-        if !there.is_file() || there.len() > LARGEST {
+        if !there.is_file() || there.len() > MAX_SIZE {
             return Ok(None);
         }
         let mut bytes = vec![];
-        file.take(LARGEST).read_to_end(&mut bytes)?;
+        file.take(MAX_SIZE).read_to_end(&mut bytes)?;
         Ok(Some(bytes))
     };
     match read() {

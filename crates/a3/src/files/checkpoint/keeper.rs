@@ -1,4 +1,4 @@
-//! Checkpoints as files of the system, written again and again.
+//! Periodic writing of checkpoints.
 
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -8,7 +8,7 @@ use super::kept::{ENDING, Kept, TITLE};
 use crate::base::failure::Failure;
 use crate::files::output;
 
-/// The file in which a run is kept again and again.
+/// A file to which a run is saved periodically.
 pub struct Keeper {
     path: PathBuf,
     /// Real time between two writes.
@@ -17,10 +17,11 @@ pub struct Keeper {
 }
 
 impl Keeper {
-    /// A file that is written when so much real time has passed since the last time.
+    /// Creates a keeper that writes to `path` when the real time `every` has passed since the last
+    /// write.
     pub fn new(path: &Path, every: Duration) -> Result<Self, Failure> {
         output::check(path, &[ENDING])?;
-        // Nothing else is overwritten, whatever its name is.
+        // Only checkpoints are overwritten, whatever the file is called.
         if path.is_file() && !bytes_of(path).is_ok_and(|bytes| bytes.starts_with(TITLE)) {
             return Err(Failure::usage(format!(
                 "{}: this is no checkpoint of a3, and would be overwritten: give another name",
@@ -34,8 +35,8 @@ impl Keeper {
         })
     }
 
-    /// Writes what `kept` returns, if it is time to.
-    pub fn look(&mut self, kept: impl FnOnce() -> Kept) -> Result<(), Failure> {
+    /// Writes the run that `kept` returns, if it is time to.
+    pub fn write_if_due(&mut self, kept: impl FnOnce() -> Kept) -> Result<(), Failure> {
         if self.last.elapsed() < self.every {
             return Ok(());
         }
@@ -44,7 +45,7 @@ impl Keeper {
         Ok(())
     }
 
-    /// Writes what is kept now. Returns a clause that says so.
+    /// Writes the run now. Returns a clause that says so.
     pub fn write(&self, kept: &Kept) -> Result<String, Failure> {
         kept.write(&self.path)?;
         let time = kept.checkpoint.time();

@@ -1,7 +1,7 @@
-//! A run as it is kept in a file.
+//! A run as it is saved in a file.
 //!
-//! A file is a line with the version of the program, the run in the format of `postcard`, and the
-//! CRC-32 of all that stands before it.
+//! The file consists of a line with the version of the program, the run in the format of
+//! `postcard`, and the CRC-32 of both.
 
 use std::fmt::Write;
 use std::path::Path;
@@ -28,23 +28,23 @@ pub const TITLE: &[u8] = b"a3 checkpoint, version ";
 /// Version of the program that reads and writes the files: no other one promises the same bits.
 const VERSION: &str = env!("CARGO_PKG_VERSION");
 
-/// A run as it is kept in a file.
+/// A saved run: its checkpoint, with the identity of its scene.
 #[derive(Serialize, Deserialize)]
 pub struct Kept {
     /// Name of the scene.
     name: String,
-    /// What tells the scene from others of this name: its grid, and a hash of its files.
+    /// Identity of the scene among others of this name: its grid, and a hash of its files.
     scene: String,
     /// The run.
     pub checkpoint: Checkpoint,
     /// Extremes of the run for its summary, if one is wanted.
     pub extremes: Option<Extremes>,
-    /// What the panel of the window has tuned, by the names of its rows.
+    /// Values that were tuned in the panel of the window, by the names of its rows.
     pub tuned: Vec<(String, f64)>,
 }
 
 impl Kept {
-    /// The run as it is now.
+    /// Records the present state of a run.
     pub fn new(
         source: &Source,
         grid: Option<Grid>,
@@ -65,7 +65,7 @@ impl Kept {
         output::write(path, &self.bytes()?)
     }
 
-    /// The bytes of the file.
+    /// Returns the bytes of the file.
     pub fn bytes(&self) -> Result<Vec<u8>, Failure> {
         let bytes = [TITLE, VERSION.as_bytes(), b"\n"].concat();
         let mut bytes = postcard::to_extend(self, bytes).map_err(Failure::run)?;
@@ -80,7 +80,7 @@ impl Kept {
         Self::parse(&bytes).map_err(refuse)
     }
 
-    /// The run in the bytes of a file.
+    /// Reads a run from the bytes of a file.
     fn parse(bytes: &[u8]) -> Result<Self, String> {
         if !bytes.starts_with(TITLE) {
             return Err("this is no checkpoint of a3".into());
@@ -100,7 +100,7 @@ impl Kept {
             ));
         }
         let kept: Self = postcard::from_bytes(&run[1..])
-            .map_err(|_| "this checkpoint is damaged: a run is not what it holds")?;
+            .map_err(|_| "this checkpoint is damaged: its contents cannot be read")?;
         let control = kept.checkpoint.run.control;
         let range = bounds::of(control);
         if !range.contains(&control.value()) {
@@ -117,7 +117,7 @@ impl Kept {
         Ok(kept)
     }
 
-    /// `Ok` if the file at `path` is of the scene of a run.
+    /// Checks that the file at `path` belongs to the scene of a run.
     pub fn check(
         &self,
         path: &Path,
@@ -142,7 +142,7 @@ impl Kept {
     }
 }
 
-/// What tells the scene of a run from others of its name.
+/// Returns the identity of the scene of a run among others of its name.
 fn identity(source: &Source, grid: Option<Grid>, run: &Simulation) -> String {
     let mut identity = source.fingerprint(run.scene());
     if let Some(grid) = grid {
@@ -189,7 +189,7 @@ mod tests {
         }
     }
 
-    /// A file whose checksum is right, but whose numbers no run has.
+    /// Files with a correct checksum, but with numbers that no run has.
     #[test]
     fn what_no_run_holds_is_refused() {
         let refused = |change: &dyn Fn(&mut Kept)| {
@@ -205,7 +205,7 @@ mod tests {
             refused(&|kept| kept.checkpoint.run.control = control);
         }
         let mut extremes = Extremes::default();
-        extremes.look(&{
+        extremes.observe(&{
             let setup = Source::find("pendulum").unwrap().build(None).unwrap();
             let method = a3_core::integrators::find("v").unwrap();
             Simulation::new(setup.scene, method, method.default_control).unwrap()
@@ -215,8 +215,8 @@ mod tests {
         refused(&|kept| kept.tuned.push(("gravity".into(), f64::INFINITY)));
     }
 
-    /// A file whose checksum is right, but in which a number of the adaptive method or of the step
-    /// that the time is within is another one.
+    /// Files with a correct checksum in which a number of the adaptive method or of the present
+    /// step was changed.
     #[test]
     fn forged_steps_are_refused() {
         let kept = kept();

@@ -1,5 +1,5 @@
-//! Checkpoints in files: all that a run needs to go on to the same bits, also after the program was
-//! killed.
+//! Checkpoints in files: all that a run needs to continue with the same bits, also after the
+//! program was killed.
 
 mod extremes;
 #[cfg(not(target_arch = "wasm32"))]

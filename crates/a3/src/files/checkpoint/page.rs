@@ -1,10 +1,10 @@
-//! The bytes of a file of the page.
+//! Reading of a checkpoint on a web page.
 
 use std::path::Path;
 
 use crate::base::browser::files;
 
-/// The bytes of a file of the page.
+/// Returns the bytes of a file of the page.
 pub fn bytes_of(path: &Path) -> Result<Vec<u8>, String> {
     files::read(path).ok_or_else(|| "there is no such file on this page".into())
 }

@@ -1,4 +1,4 @@
-//! The beginning of an export, by the ending of its file.
+//! Creation of exports, by the ending of the file.
 
 use std::path::Path;
 
@@ -10,16 +10,16 @@ use crate::files::frames::{FrameTimes, Sequence};
 use crate::files::output;
 use crate::files::setup::Run;
 
-/// Default frames a second.
-const RATE: f64 = 30.0;
+/// Default frames per second.
+const DEFAULT_RATE: f64 = 30.0;
 
-/// Sizes of the largest files (GiB): in general, and in formats whose lengths have 32 bits.
-const LARGEST: (f64, f64) = (16.0, 4.0);
+/// Largest sizes of files (GiB): in general, and in formats whose lengths have 32 bits.
+const MAX_SIZES: (f64, f64) = (16.0, 4.0);
 
-/// Endings of files of all formats.
+/// Endings of the files of all formats.
 const ENDINGS: &[&str] = &["json", "csv", "npz", "obj", "pc2", "glb", "usda"];
 
-/// `Ok` if the output is standard output or ends as a format does.
+/// Checks that the output is standard output or has the ending of a format.
 pub fn check_ending(path: &Path) -> Result<(), Failure> {
     if path == Path::new("-") {
         return Ok(());
@@ -27,8 +27,8 @@ pub fn check_ending(path: &Path) -> Result<(), Failure> {
     output::check_ending(path, ENDINGS)
 }
 
-/// The export that was asked for, and the times of its frames. Impossible exports are refused here,
-/// before any work is done.
+/// Creates the export that the options describe, and the times of its frames. Impossible exports
+/// are refused here, before any work is done.
 pub fn begin(options: &Simulate, run: &Run) -> Result<(FrameTimes, Box<dyn Export>), Failure> {
     let (simulation, presentation) = (&run.simulation, &run.presentation);
     let surface = &presentation.surface;
@@ -37,7 +37,7 @@ pub fn begin(options: &Simulate, run: &Run) -> Result<(FrameTimes, Box<dyn Expor
         files,
     };
     let (path, until) = (options.output.as_path(), run.until);
-    let last = FrameTimes::new(until, until, RATE)?;
+    let last = FrameTimes::new(until, until, DEFAULT_RATE)?;
     if path == Path::new("-") {
         if options.fps.is_some() {
             return Err(Failure::usage(
@@ -61,21 +61,24 @@ pub fn begin(options: &Simulate, run: &Run) -> Result<(FrameTimes, Box<dyn Expor
     if ending == "json" && options.fps.is_none() {
         return Ok((last, Box::new(json::Json::new(path, false)?)));
     }
-    let all = FrameTimes::new(0.0, until, options.fps.unwrap_or(RATE))?;
+    let all = FrameTimes::new(0.0, until, options.fps.unwrap_or(DEFAULT_RATE))?;
     let several = all.since(simulation.time());
     let particles = simulation.particles() as f64;
     let check = |size: f64, largest: f64| check_size(size, largest).map(|()| several);
     Ok(match (ending.to_str(), sequence) {
         (Some("csv"), _) => {
-            let frames = check(csv::ROW * particles * several.count as f64, LARGEST.0)?;
+            let frames = check(
+                csv::ROW_SIZE * particles * several.count as f64,
+                MAX_SIZES.0,
+            )?;
             (frames, Box::new(csv::Csv::new(path, frames.first)?))
         }
         (Some("npz"), _) => {
-            let frames = check(npz::size(particles, several), LARGEST.1)?;
+            let frames = check(npz::size(particles, several), MAX_SIZES.1)?;
             (frames, Box::new(npz::Npz::new(path, simulation, frames)?))
         }
         (Some("pc2"), _) => {
-            let frames = check(pc2::size(simulation, several), LARGEST.0)?;
+            let frames = check(pc2::size(simulation, several), MAX_SIZES.0)?;
             (
                 frames,
                 Box::new(pc2::Pc2::new(path, surface, simulation, frames)?),
@@ -83,14 +86,14 @@ pub fn begin(options: &Simulate, run: &Run) -> Result<(FrameTimes, Box<dyn Expor
         }
         (Some("glb"), _) => {
             glb::check(several)?;
-            let frames = check(glb::size(surface, simulation, several), LARGEST.1)?;
+            let frames = check(glb::size(surface, simulation, several), MAX_SIZES.1)?;
             (
                 frames,
                 Box::new(glb::Glb::new(path, surface, simulation, frames)?),
             )
         }
         (Some("usda"), _) => {
-            let frames = check(usd::size(simulation, several), LARGEST.0)?;
+            let frames = check(usd::size(simulation, several), MAX_SIZES.0)?;
             (
                 frames,
                 Box::new(usd::Usd::new(path, surface, simulation, frames)?),
@@ -100,19 +103,22 @@ pub fn begin(options: &Simulate, run: &Run) -> Result<(FrameTimes, Box<dyn Expor
             sequence.check(all.count)?;
             let frames = check(
                 obj::size(surface, simulation) * several.count as f64,
-                LARGEST.0,
+                MAX_SIZES.0,
             )?;
             let files = obj::Files::Many(sequence, frames.first);
             (frames, Box::new(obj(files)))
         }
         _ => {
-            let frames = check(json::ROW * particles * several.count as f64, LARGEST.0)?;
+            let frames = check(
+                json::ROW_SIZE * particles * several.count as f64,
+                MAX_SIZES.0,
+            )?;
             (frames, Box::new(json::Json::new(path, true)?))
         }
     })
 }
 
-/// Refuses so many bytes if they are more than `largest` (GiB).
+/// Refuses a file of `bytes` bytes if they are more than `largest` (GiB).
 fn check_size(bytes: f64, largest: f64) -> Result<(), Failure> {
     let size = bytes / 1024f64.powi(3);
     if size <= largest {

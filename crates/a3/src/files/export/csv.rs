@@ -11,9 +11,9 @@ use crate::base::rounding::{DIGITS, short};
 use crate::files::output::Draft;
 
 /// Approximate size of a row (bytes).
-pub const ROW: f64 = 150.0;
+pub const ROW_SIZE: f64 = 150.0;
 
-/// A CSV file in the making.
+/// A CSV file that is being written.
 pub struct Csv {
     writer: csv::Writer<Draft>,
     /// Number of the next frame.
@@ -21,7 +21,7 @@ pub struct Csv {
 }
 
 impl Csv {
-    /// A file with a heading, for frames from that number on.
+    /// Creates a file with a heading, for frames from number `first` on.
     pub fn new(path: &Path, first: usize) -> Result<Self, Failure> {
         let mut csv = Self {
             writer: csv::Writer::from_writer(Draft::new(path)?),

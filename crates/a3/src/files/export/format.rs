@@ -1,10 +1,10 @@
-//! What every format of exports does.
+//! The interface of all export formats.
 
 use a3_core::Simulation;
 
 use crate::base::failure::Failure;
 
-/// An export in the making.
+/// An export that is being written.
 pub trait Export {
     /// Adds the current state as a frame.
     fn add(&mut self, simulation: &Simulation) -> Result<(), Failure>;

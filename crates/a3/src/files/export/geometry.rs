@@ -14,20 +14,20 @@ use crate::draw::surfaces::{tessellation, whole_triangles};
 pub struct Geometry {
     /// Corners of the triangles of the surface, counter-clockwise as seen from outside.
     pub triangles: Vec<[u32; 3]>,
-    /// The number of particles with a surface, which come first.
+    /// Number of particles with a surface, which come first.
     pub covered: usize,
     /// The ends of springs of particles without a surface.
     pub lines: Vec<[u32; 2]>,
-    /// The particles without a surface, but for those of rigid bodies and of a tank's walls.
+    /// The particles without a surface, except those of rigid bodies and of a tank's walls.
     pub points: Vec<u32>,
-    /// The number of particles, after which the points of rigid bodies come.
+    /// Number of particles, after which the points of rigid bodies come.
     pub particles: usize,
-    /// The number of all vertices.
+    /// Number of all vertices.
     pub vertices: usize,
 }
 
 impl Geometry {
-    /// The geometry of the scene as it is now.
+    /// Finds the present geometry of the scene.
     pub fn of(surface: &Surface, simulation: &Simulation) -> Self {
         let covered = surface.particles();
         let network = simulation.model().network();
@@ -51,15 +51,15 @@ impl Geometry {
         }
     }
 
-    /// Whether a vertex has a normal in a file: that of a particle with a surface, or a point of a
-    /// rigid body.
+    /// Returns whether a vertex has a normal in a file: if it is a particle with a surface, or a
+    /// point of a rigid body.
     pub fn has_normal(&self, vertex: u32) -> bool {
         let vertex = vertex as usize;
         vertex < self.covered || vertex >= self.particles
     }
 
-    /// The vertices that triangles or lines use, in order, or the points if there are neither:
-    /// those that programs keep when they read a file.
+    /// Returns the vertices that other programs keep when they read a file: those that triangles or
+    /// lines use, in order, or the points if there are neither.
     pub fn in_use(&self) -> Vec<u32> {
         let corners = self.triangles.iter().flatten();
         let ends = self.lines.iter().flatten();
@@ -70,9 +70,9 @@ impl Geometry {
         used.into_iter().collect()
     }
 
-    /// The unit normal at each vertex: the direction of the sum, over its triangles, of the cross
-    /// product of two sides, so that triangles are weighted by area. A particle without a surface
-    /// has a normal that points upwards.
+    /// Computes the unit normal at each vertex: the direction of the sum, over its triangles, of
+    /// the cross product of two sides, so that triangles are weighted by area. A particle without a
+    /// surface has a normal that points upwards.
     pub fn normals(&self, positions: &[[f32; 3]]) -> Vec<[f32; 3]> {
         let mut sums = vec![[0.0f64; 3]; positions.len()];
         for triangle in &self.triangles {
@@ -99,19 +99,19 @@ impl Geometry {
     }
 }
 
-/// The difference of two vectors.
+/// Returns the difference of two vectors.
 fn minus(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     [0, 1, 2].map(|k| a[k] - b[k])
 }
 
-/// The number of vertices: of particles, and of points of rigid bodies.
+/// Returns the number of vertices: particles, and points of rigid bodies.
 pub fn vertices(simulation: &Simulation) -> usize {
     let network = simulation.model().network();
     simulation.particles() + network.map_or(0, tessellation::count)
 }
 
-/// The position of every particle, and then of every point of a rigid body (m), in single
-/// precision, as all files of geometry have it; an error if a number is too large for that.
+/// Returns the position of every particle, and then of every point of a rigid body (m), in single
+/// precision, as all files of geometry use it; an error if a number is too large for that.
 pub fn positions(simulation: &Simulation) -> io::Result<Vec<[f32; 3]>> {
     let n = simulation.particles();
     let x = simulation.state();
@@ -143,7 +143,7 @@ mod tests {
 
     use super::*;
 
-    /// The position of one particle, as files have it.
+    /// Returns the position of a particle at x, as files have it.
     fn written(x: f64) -> io::Result<Vec<[f32; 3]>> {
         let model = Model::Network(Box::new(Network::new(vec![1.0]).unwrap()));
         let scene = Scene::new("far", model, vec![x, 0.0, 0.0, 0.0, 0.0, 0.0]);

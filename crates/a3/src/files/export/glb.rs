@@ -1,7 +1,8 @@
 //! glTF 2.0 in one binary file (Khronos, *glTF 2.0 Specification*). The first frame is a mesh,
-//! every other frame a morph target, and an animation goes from one to the next. The mesh stays
-//! whole when something tears. The surface of a fluid has other triangles in each frame: it is a
-//! mesh for each, of which the animation shows one after another at its full size.
+//! every other frame a morph target, and an animation blends from each to the next. The mesh stays
+//! whole when something tears. The surface of a fluid has different triangles in each frame, so
+//! each frame has a mesh of its own: the animation scales one after another from 0 to its full
+//! size.
 
 use std::io::{self, Write};
 use std::path::Path;
@@ -18,9 +19,9 @@ use crate::draw::surfaces::Liquid;
 use crate::files::frames::FrameTimes;
 use crate::files::output::{Draft, Scratch};
 
-/// Most frames. The animation has a weight for each morph target in each frame, so that its size
-/// grows with the square of their number.
-const MOST: usize = 600;
+/// Largest number of frames. The animation has a weight for each morph target in each frame, so
+/// that its size grows with the square of their number.
+const MAX_FRAMES: usize = 600;
 
 // The codes of glTF for types of numbers, for uses of buffers, and for kinds of primitives.
 const F32: u32 = 5126;
@@ -31,7 +32,7 @@ const POINTS: u32 = 0;
 const LINES: u32 = 1;
 const TRIANGLES: u32 = 4;
 
-/// A binary glTF file in the making.
+/// A binary glTF file that is being written.
 pub struct Glb {
     draft: Draft,
     geometry: Geometry,
@@ -46,17 +47,17 @@ pub struct Glb {
     liquids: Vec<Value>,
 }
 
-/// The binary chunk, which is kept in a temporary file until the length of the chunk before it is
+/// The binary chunk, which stays in a temporary file until the length of the chunk before it is
 /// known.
 struct Binary {
     file: io::BufWriter<Scratch>,
-    /// The number of bytes so far.
+    /// Number of bytes so far.
     length: usize,
     views: Vec<Value>,
     accessors: Vec<Value>,
 }
 
-/// Size of the binary chunk (bytes).
+/// Returns the size of the binary chunk (bytes).
 pub fn size(surface: &Surface, simulation: &Simulation, frames: FrameTimes) -> f64 {
     let geometry = Geometry::of(surface, simulation);
     let (n, count) = (geometry.vertices as f64, frames.count as f64);
@@ -67,17 +68,17 @@ pub fn size(surface: &Surface, simulation: &Simulation, frames: FrameTimes) -> f
 
 /// Refuses too many frames.
 pub fn check(frames: FrameTimes) -> Result<(), Failure> {
-    if frames.count <= MOST {
+    if frames.count <= MAX_FRAMES {
         return Ok(());
     }
     Err(Failure::usage(format!(
-        "{} frames are too many for a .glb, which has at most {MOST}: use a lower --fps, a .pc2, or film-####.obj",
+        "{} frames are too many for a .glb, which has at most {MAX_FRAMES}: use a lower --fps, a .pc2, or film-####.obj",
         frames.count
     )))
 }
 
 impl Glb {
-    /// A file for these frames of the simulation.
+    /// Creates a file for these frames of the simulation.
     pub fn new(
         path: &Path,
         surface: &Surface,
@@ -103,7 +104,7 @@ impl Glb {
         })
     }
 
-    /// Whether there is a surface.
+    /// Returns whether there is a surface.
     fn has_surface(&self) -> bool {
         !self.geometry.triangles.is_empty()
     }
@@ -132,7 +133,8 @@ impl Glb {
         Ok(())
     }
 
-    /// The primitives: triangles of the surface, and lines and points of particles without one.
+    /// Writes the primitives: triangles of the surface, and lines and points of particles without
+    /// one.
     fn primitives(&mut self) -> io::Result<Vec<Value>> {
         let parts = [
             (TRIANGLES, self.geometry.triangles.as_flattened()),
@@ -166,8 +168,8 @@ impl Glb {
         Ok(primitives)
     }
 
-    /// The animation from each frame to the next. In frame k > 0 the weight of morph target k - 1
-    /// is 1, and all others are 0.
+    /// Writes the animation from each frame to the next. In frame k > 0 the weight of morph target
+    /// k - 1 is 1, and all others are 0.
     fn animation(&mut self) -> io::Result<Value> {
         let times: Vec<f32> = self.frames.times().map(|time| time as f32).collect();
         let targets = times.len() - 1;
@@ -186,7 +188,7 @@ impl Glb {
             vec![json!({ "sampler": 0, "target": { "node": 0, "path": "weights" } })];
         let shown = (0..times.len()).filter(|k| !self.liquids[*k].is_null());
         for (node, k) in (1..).zip(shown) {
-            // The size is 0 at first, 1 in this frame, and 0 from the next one on.
+            // The scale is 0 at first, 1 in this frame, and 0 from the next one on.
             let mut keys = vec![(times[k], 1.0)];
             if k > 0 {
                 keys.insert(0, (times[0], 0.0));
@@ -325,8 +327,8 @@ impl Binary {
         }))
     }
 
-    /// Writes vectors of vertices, and returns the number of their accessor. That of positions must
-    /// have a range.
+    /// Writes vectors of vertices, and returns the number of their accessor. An accessor of
+    /// positions must have a range.
     fn vectors(&mut self, vectors: &[[f32; 3]], with_range: bool) -> io::Result<usize> {
         rows(&mut self.file, vectors)?;
         let mut accessor = json!({ "componentType": F32, "type": "VEC3", "count": vectors.len() });

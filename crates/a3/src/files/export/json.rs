@@ -14,19 +14,19 @@ use crate::base::terminal;
 use crate::files::output::Draft;
 
 /// Approximate size of a particle (bytes).
-pub const ROW: f64 = 130.0;
+pub const ROW_SIZE: f64 = 130.0;
 
-/// A JSON file in the making.
+/// A JSON file that is being written.
 pub struct Json {
     /// The file, or `None` for standard output.
     draft: Option<Draft>,
     /// Whether the frames are an array.
     several: bool,
-    /// The number of frames so far.
+    /// Number of frames so far.
     frames: usize,
 }
 
-/// The state of a simulation as it is written.
+/// The state of a simulation, with the keys of the file.
 #[derive(Serialize)]
 struct StateRecord<'a> {
     scene: &'a str,
@@ -60,7 +60,7 @@ impl Serialize for MatrixRows<'_> {
 }
 
 impl Json {
-    /// One state, to standard output.
+    /// Creates the output of one state to standard output.
     pub fn to_stdout() -> Self {
         Self {
             draft: None,
@@ -69,7 +69,7 @@ impl Json {
         }
     }
 
-    /// A file with one state, or with an array of several.
+    /// Creates a file with one state, or with an array of several.
     pub fn new(path: &Path, several: bool) -> Result<Self, Failure> {
         Ok(Self {
             draft: Some(Draft::new(path)?),
@@ -108,7 +108,7 @@ impl Export for Json {
     }
 }
 
-/// The state of a simulation, with its velocities.
+/// Returns the state of a simulation, with its velocities.
 fn state<'a>(simulation: &'a Simulation, velocities: &'a [f64]) -> StateRecord<'a> {
     let n = simulation.particles();
     StateRecord {

@@ -1,9 +1,9 @@
 //! `.npz`: an array of doubles for each quantity, for `numpy.load`.
 //!
-//! It is a ZIP archive of files `NAME.npy` that are stored as they are (PKWARE, *APPNOTE*). Each
-//! has a header that is a Python literal, and the numbers after it in row-major order (Kern,
-//! *NEP 1*, 2007). The frames of an array follow one another, so each array is kept in a temporary
-//! file until the run is over.
+//! It is a ZIP archive of files `NAME.npy` that are stored without compression (PKWARE, *APPNOTE*).
+//! Each has a header that is a Python literal, and the numbers after it in row-major order (Kern,
+//! *NEP 1*, 2007). The frames of an array follow one another, so each array is written to a
+//! temporary file until the run is over.
 
 use std::io::{self, BufWriter, Write};
 use std::path::Path;
@@ -18,25 +18,26 @@ use crate::base::rounding::{DIGITS, short};
 use crate::files::frames::FrameTimes;
 use crate::files::output::{Draft, Scratch};
 
-/// The boundary to which a header fills up the bytes before the numbers.
+/// Alignment of the numbers, to which the header is padded (bytes).
 const ALIGNMENT: usize = 64;
 
-/// The length of what comes before a header: a mark, a version and the header's own length.
+/// Length of the bytes before a header: a magic string, a version and the header's own length.
 const BEFORE_HEADER: usize = 10;
 
-/// Version of ZIP that a reader has to know (2.0).
+/// Version of ZIP that a reader has to support (2.0).
 const VERSION: u16 = 20;
 
-/// The first of January 1980, which is no date: the same run writes the same bytes.
+/// The first of January 1980, in the place of the real date, so that the same run writes the same
+/// bytes.
 const DATE: u16 = 0x21;
 
-/// An archive in the making.
+/// An archive that is being written.
 pub struct Npz {
     draft: Draft,
     time: Array,
     positions: Array,
     velocities: Array,
-    /// Masses, unless the scene is of first order.
+    /// Masses (kg), unless the scene is of first order.
     masses: Option<Array>,
 }
 
@@ -48,22 +49,22 @@ struct Array {
     bytes: usize,
 }
 
-/// An array that is in the archive.
+/// An entry of the directory of the archive: an array.
 struct Entry {
     name: String,
     checksum: u32,
     bytes: u32,
-    /// Where it begins in the archive.
+    /// Offset in the archive (bytes).
     offset: u32,
 }
 
-/// Approximate size of the archive (bytes).
+/// Returns the approximate size of the archive (bytes).
 pub fn size(particles: f64, frames: FrameTimes) -> f64 {
     (48.0 * frames.count as f64 + 8.0) * particles + 8.0 * frames.count as f64
 }
 
 impl Npz {
-    /// An archive for these frames of the simulation.
+    /// Creates an archive for these frames of the simulation.
     pub fn new(path: &Path, simulation: &Simulation, frames: FrameTimes) -> Result<Self, Failure> {
         let draft = Draft::new(path)?;
         let (count, n) = (frames.count, simulation.particles());
@@ -120,7 +121,7 @@ impl Export for Npz {
 }
 
 impl Array {
-    /// An array of this shape, whose numbers are still to come.
+    /// Creates an array of this shape, without its numbers.
     fn new(name: &'static str, shape: &[usize], file: Scratch) -> io::Result<Self> {
         let shape: Vec<_> = shape.iter().map(usize::to_string).collect();
         let shape = shape.join(",");
@@ -155,7 +156,8 @@ impl Array {
     }
 }
 
-/// Writes the archive: the arrays, each with its name before it, the directory, and where that is.
+/// Writes the archive: the arrays, each after its name, the directory, and the offset of the
+/// directory.
 fn archive(file: &mut dyn Write, arrays: impl Iterator<Item = Array>) -> io::Result<()> {
     let (mut entries, mut offset) = (vec![], 0);
     for mut array in arrays {
@@ -166,18 +168,23 @@ fn archive(file: &mut dyn Write, arrays: impl Iterator<Item = Array>) -> io::Res
             bytes: length(array.bytes)?,
             offset: length(offset)?,
         };
-        let head = [&b"PK\x03\x04"[..], &entry.common(), entry.name.as_bytes()].concat();
+        let head = [
+            &b"PK\x03\x04"[..],
+            &entry.shared_fields(),
+            entry.name.as_bytes(),
+        ]
+        .concat();
         file.write_all(&head)?;
         io::copy(&mut array.file.get_ref().reader()?, file)?;
         offset += head.len() + array.bytes;
         entries.push(entry);
     }
-    let directory: Vec<u8> = entries.iter().flat_map(Entry::listed).collect();
+    let directory: Vec<u8> = entries.iter().flat_map(Entry::directory_entry).collect();
     file.write_all(&directory)?;
     let count = (entries.len() as u16).to_le_bytes();
     let size = length(directory.len())?.to_le_bytes();
     let start = length(offset)?.to_le_bytes();
-    // The numbers of this disk and of that of the directory come first, and a comment last.
+    // First the numbers of this disk and of the directory's disk, last the length of a comment.
     let end = [
         &b"PK\x05\x06"[..],
         &[0; 4],
@@ -191,8 +198,8 @@ fn archive(file: &mut dyn Write, arrays: impl Iterator<Item = Array>) -> io::Res
 }
 
 impl Entry {
-    /// What stands before the array and in the directory alike.
-    fn common(&self) -> Vec<u8> {
+    /// Returns the fields that stand both before the array and in the directory.
+    fn shared_fields(&self) -> Vec<u8> {
         let name = self.name.len() as u16;
         // The flags, the method (stored) and the time of day are 0, and so is the length of extras.
         let [version, date, name] = [VERSION, DATE, name].map(u16::to_le_bytes);
@@ -210,14 +217,14 @@ impl Entry {
         parts.concat()
     }
 
-    /// The entry of the directory.
-    fn listed(&self) -> Vec<u8> {
+    /// Returns the entry of the directory.
+    fn directory_entry(&self) -> Vec<u8> {
         let (version, offset) = (VERSION.to_le_bytes(), self.offset.to_le_bytes());
         // The length of a comment, the disk and the attributes are 0.
         let parts = [
             &b"PK\x01\x02"[..],
             &version,
-            &self.common(),
+            &self.shared_fields(),
             &[0; 10],
             &offset,
             self.name.as_bytes(),
@@ -226,7 +233,7 @@ impl Entry {
     }
 }
 
-/// A length as ZIP has it.
+/// Converts a length to the 32 bits of ZIP.
 fn length(bytes: usize) -> io::Result<u32> {
     u32::try_from(bytes).map_err(|_| io::Error::other("a .npz has at most 4 GiB"))
 }

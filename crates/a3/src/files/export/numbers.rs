@@ -1,4 +1,4 @@
-//! The numbers of a state, as formats write them.
+//! Checks and encodings of the numbers of a state, for several formats.
 
 use std::io::{self, Write};
 
@@ -6,7 +6,7 @@ use a3_core::Simulation;
 
 use crate::base::failure::Failure;
 
-/// The velocities of all particles; a failure if a number of the state is not finite.
+/// Returns the velocities of all particles (m/s); a failure if a number of the state is not finite.
 pub fn velocities(simulation: &Simulation) -> Result<Vec<f64>, Failure> {
     let velocities = simulation.velocities();
     let mut all = simulation.state().iter().chain(&velocities);

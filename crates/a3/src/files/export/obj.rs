@@ -16,7 +16,7 @@ use crate::draw::surfaces::Liquid;
 use crate::files::frames::Sequence;
 use crate::files::output;
 
-/// OBJ files in the making.
+/// OBJ files that are being written.
 pub struct Obj {
     pub presentation: Arc<Presentation>,
     pub files: Files,
@@ -49,7 +49,7 @@ impl Export for Obj {
     }
 }
 
-/// Approximate size of a file (bytes).
+/// Returns the approximate size of a file (bytes).
 pub fn size(surface: &Surface, simulation: &Simulation) -> f64 {
     let geometry = Geometry::of(surface, simulation);
     let rigid = geometry.vertices - geometry.particles;
@@ -64,9 +64,9 @@ pub fn size(surface: &Surface, simulation: &Simulation) -> f64 {
     36.0 * vertices as f64 + 37.0 * normals as f64 + 42.0 * faces as f64 + 16.0 * lines as f64
 }
 
-/// Writes the current state: `v` of all vertices, `vn` and `f` of surfaces as far as they are not
-/// torn, and `l` and `p` of particles without a surface. The surface of a fluid is an object of its
-/// own, with vertices after all others.
+/// Writes the current state: `v` of all vertices, `vn` and `f` of the surfaces except torn
+/// triangles, and `l` and `p` of particles without a surface. The surface of a fluid is an object
+/// of its own, with vertices after all others.
 fn write(file: &mut dyn Write, surface: &Surface, simulation: &Simulation) -> io::Result<()> {
     let geometry = Geometry::of(surface, simulation);
     let all: Vec<_> = (0..geometry.vertices as u32).collect();

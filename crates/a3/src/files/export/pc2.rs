@@ -22,7 +22,7 @@ use crate::base::terminal;
 use crate::files::frames::FrameTimes;
 use crate::files::output::{self, Draft};
 
-/// A `PointCache2` file in the making, with its mesh.
+/// A `PointCache2` file that is being written, with its mesh.
 pub struct Pc2 {
     draft: Draft,
     mesh: Draft,
@@ -31,17 +31,17 @@ pub struct Pc2 {
     kept: Vec<u32>,
     /// Whether the mesh is still to be written.
     first: bool,
-    /// The names of the file and of its mesh.
+    /// Paths of the file and of its mesh.
     names: (PathBuf, PathBuf),
 }
 
-/// Size of the file at most (bytes).
+/// Returns the largest possible size of the file (bytes).
 pub fn size(simulation: &Simulation, frames: FrameTimes) -> f64 {
     32.0 + 12.0 * vertices(simulation) as f64 * frames.count as f64
 }
 
 impl Pc2 {
-    /// A file for these frames of the simulation.
+    /// Creates a file for these frames of the simulation.
     pub fn new(
         path: &Path,
         surface: &Surface,

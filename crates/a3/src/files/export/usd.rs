@@ -1,10 +1,10 @@
 //! Universal Scene Description as text (`.usda`; Pixar, *`OpenUSD`*): a mesh of all surfaces,
 //! linear curves of the springs of particles without one, these particles as points, and the
-//! surface of a fluid as a mesh of its own. Points, normals and extents are time samples at the
-//! numbers of the frames. The mesh stays whole when something tears; the fluid has other triangles
-//! in each frame.
+//! surface of a fluid as a mesh of its own. Points, normals and extents are time samples, whose
+//! times are the numbers of the frames. The mesh stays whole when something tears; the fluid has
+//! different triangles in each frame.
 //!
-//! The samples of an attribute follow one another, so each attribute is kept in a temporary file
+//! The samples of an attribute follow one another, so each attribute is written to a temporary file
 //! until the run is over.
 
 use std::collections::BTreeMap;
@@ -23,12 +23,13 @@ use crate::draw::surfaces::Liquid;
 use crate::files::frames::FrameTimes;
 use crate::files::output::{Draft, Scratch};
 
-/// Width of curves and points, over the length of the diagonal of all that is there at first.
+/// Width of curves and points, over the diagonal of the bounding box of the first frame.
 const WIDTH: f32 = 0.005;
 
-/// Approximate length of a vector and of a number of a vertex (bytes).
-const VECTOR: f64 = 38.0;
-const NUMBER: f64 = 6.0;
+/// Approximate length of a vector in the file (bytes).
+const VECTOR_LENGTH: f64 = 38.0;
+/// Approximate length of a number of a vertex in the file (bytes).
+const NUMBER_LENGTH: f64 = 6.0;
 
 // Attributes that change.
 const POINTS: &str = "point3f[] points";
@@ -45,7 +46,7 @@ const MESH: &str = "        uniform bool doubleSided = 1
         )
 ";
 
-/// A file in the making.
+/// A file that is being written.
 pub struct Usd {
     draft: Draft,
     frames: FrameTimes,
@@ -59,35 +60,35 @@ pub struct Usd {
     liquid: Option<Prim>,
 }
 
-/// A primitive: what the file draws as one thing.
+/// A primitive: a mesh, curves or points with their attributes.
 struct Prim {
     /// Its type and its name.
     kind: &'static str,
     name: &'static str,
-    /// The vertices that it has.
+    /// Its vertices.
     vertices: Vec<u32>,
-    /// Attributes that do not change, as they are written.
+    /// Text of the attributes that do not change.
     fixed: String,
     /// Attributes that change.
     samples: Vec<Samples>,
 }
 
-/// An attribute at each frame.
+/// Time samples of an attribute.
 struct Samples {
     /// Its type and its name.
     name: &'static str,
     file: BufWriter<Scratch>,
 }
 
-/// Approximate size of the file (bytes).
+/// Returns the approximate size of the file (bytes).
 pub fn size(simulation: &Simulation, frames: FrameTimes) -> f64 {
     let Liquid { corners, triangles } = Liquid::of(simulation, |_| None);
     let vectors = 2.0 * (vertices(simulation) + corners.len()) as f64;
-    frames.count as f64 * (VECTOR * vectors + 4.0 * NUMBER * triangles.len() as f64)
+    frames.count as f64 * (VECTOR_LENGTH * vectors + 4.0 * NUMBER_LENGTH * triangles.len() as f64)
 }
 
 impl Usd {
-    /// A file for these frames of the simulation.
+    /// Creates a file for these frames of the simulation.
     pub fn new(
         path: &Path,
         surface: &Surface,
@@ -241,8 +242,8 @@ impl Usd {
 }
 
 impl Prim {
-    /// Adds the values of its attributes at a frame, in their order. Values of attributes that it
-    /// does not have come last, and are left out.
+    /// Adds the values of the attributes at a frame, in their order. Further values, of attributes
+    /// that this primitive does not have, are left out.
     fn add(&mut self, frame: usize, texts: impl IntoIterator<Item = String>) -> io::Result<()> {
         for (samples, text) in self.samples.iter_mut().zip(texts) {
             writeln!(samples.file, "            {frame}: {text},")?;
@@ -264,7 +265,8 @@ impl Export for Usd {
     }
 }
 
-/// The vertices that corners are, in order, and the corners by their places among these.
+/// Returns the distinct vertices of some corners, in order, and the index of each corner among
+/// these.
 fn renumbered(corners: &[u32]) -> (Vec<u32>, Vec<usize>) {
     let mut places: BTreeMap<u32, usize> = corners.iter().map(|i| (*i, 0)).collect();
     for (k, place) in places.values_mut().enumerate() {
@@ -274,7 +276,7 @@ fn renumbered(corners: &[u32]) -> (Vec<u32>, Vec<usize>) {
     (places.into_keys().collect(), renumbered)
 }
 
-/// The least and the largest coordinates of points; nothing but 0 without any.
+/// Returns the least and the largest coordinates of points; zeros if there are none.
 fn extent(points: &[[f32; 3]]) -> [[f32; 3]; 2] {
     let most = |better: fn(f32, f32) -> f32| {
         let all = points.iter().copied();
@@ -284,7 +286,7 @@ fn extent(points: &[[f32; 3]]) -> [[f32; 3]; 2] {
     [most(f32::min), most(f32::max)]
 }
 
-/// An array of values.
+/// Writes an array of values.
 fn list<T: Display>(values: impl IntoIterator<Item = T>) -> String {
     let mut text = String::from("[");
     for (k, value) in values.into_iter().enumerate() {
@@ -294,7 +296,7 @@ fn list<T: Display>(values: impl IntoIterator<Item = T>) -> String {
     text + "]"
 }
 
-/// An array of vectors.
+/// Writes an array of vectors.
 fn vectors(all: &[[f32; 3]]) -> String {
     list(all.iter().map(|[x, y, z]| format!("({x}, {y}, {z})")))
 }

@@ -1,4 +1,4 @@
-//! The beginning of a film, by the ending of its file.
+//! Creation of films, by the ending of the file.
 
 use std::path::PathBuf;
 
@@ -12,18 +12,19 @@ use crate::files::ending::Ending;
 use crate::files::frames::{FrameTimes, Sequence};
 use crate::files::output;
 
-/// Default frames a second: of a GIF, whose delays are whole hundredths of a second, and of others.
-const RATE: (f64, f64) = (25.0, 30.0);
+/// Default frames per second: of a GIF, whose delays are whole hundredths of a second, and of other
+/// films.
+const DEFAULT_RATES: (f64, f64) = (25.0, 30.0);
 
-/// Creates the film, until that time (s), that the options ask for; `None` for a single picture.
-/// Refuses impossible films before any work is done.
+/// Creates the film that the options describe, which ends at the time `until` (s); `None` for a
+/// single picture. Refuses impossible films before any work is done.
 pub fn begin(options: &Render, until: f64) -> Result<Option<TimedFilm>, Failure> {
     let (path, size) = (options.output.as_path(), options.size);
     let frames = |rate| FrameTimes::new(options.from.unwrap_or(0.0), until, rate);
-    let rate = options.fps.unwrap_or(RATE.1);
+    let rate = options.fps.unwrap_or(DEFAULT_RATES.1);
     let ends_in = |ending| output::ends_in(path, ending);
     if ends_in("gif") {
-        let asked = options.fps.unwrap_or(RATE.0);
+        let asked = options.fps.unwrap_or(DEFAULT_RATES.0);
         let delay = gif::delay(asked);
         let rate = 100.0 / delay;
         let frames = frames(rate)?;
@@ -60,8 +61,8 @@ pub fn begin(options: &Render, until: f64) -> Result<Option<TimedFilm>, Failure>
     Ok(None)
 }
 
-/// A film of this size (px) in the working folder, under the first name that is free, and that
-/// name.
+/// Creates a film of this size (px) in the working folder. Returns it with its name, the first free
+/// one.
 pub fn begin_new(
     scene: &str,
     ending: Ending,

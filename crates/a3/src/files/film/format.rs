@@ -1,9 +1,9 @@
-//! What every format of films does.
+//! The interface of all film formats.
 
 use crate::base::failure::Failure;
 use crate::files::frames::FrameTimes;
 
-/// A film in the making. Its frames are rows from the top, four bytes a pixel.
+/// A film that is being written. Frames are rows from the top, four bytes a pixel.
 pub trait Film: Send {
     /// Adds a frame.
     fn add(&mut self, pixels: &[u8]) -> Result<(), Failure>;

@@ -1,5 +1,5 @@
-//! Animated GIFs. Each frame has up to 255 colours of its own, and only the part that has changed
-//! since the frame before.
+//! Animated GIFs. Each frame has a palette of up to 255 colours, and contains only the part that
+//! has changed since the frame before.
 
 use std::io;
 use std::ops::Range;
@@ -12,13 +12,13 @@ use super::palette::Palette;
 use crate::base::failure::Failure;
 use crate::files::output::{Draft, not_written};
 
-/// The shortest delay that players obey (1/100 s).
-const SHORTEST: f64 = 2.0;
+/// Shortest delay that players obey (1/100 s).
+const MIN_DELAY: f64 = 2.0;
 
 /// Largest difference of a channel, of 255 levels, at which a pixel counts as unchanged.
-const NEAR: u8 = 3;
+const MAX_UNSEEN: u8 = 3;
 
-/// An animated GIF in the making.
+/// An animated GIF that is being written.
 pub struct Gif {
     encoder: Encoder<Draft>,
     /// Width and height (px).
@@ -30,13 +30,13 @@ pub struct Gif {
     transparent: bool,
 }
 
-/// The whole delay (1/100 s) that is nearest to so many frames a second.
+/// Returns the whole delay (1/100 s) that is nearest to a rate (frames per second).
 pub fn delay(fps: f64) -> f64 {
-    (100.0 / fps).round().max(SHORTEST)
+    (100.0 / fps).round().max(MIN_DELAY)
 }
 
 impl Gif {
-    /// A GIF of this size (px), whose frames have this delay (1/100 s).
+    /// Creates a GIF of this size (px), whose frames have this delay (1/100 s).
     pub fn new(
         path: &Path,
         (width, height): (u32, u32),
@@ -66,13 +66,13 @@ impl Gif {
         })
     }
 
-    /// Whether pixel k is part of the next frame: it is opaque in a transparent film, or has
-    /// changed in any other.
+    /// Returns whether pixel k is part of the next frame: in a transparent film if it is opaque, in
+    /// any other if it has changed.
     fn is_new(&self, k: usize, pixel: &[u8]) -> bool {
         match &self.shown {
             _ if self.transparent => pixel[3] >= 128,
             None => true,
-            Some(shown) => (0..3).any(|c| shown[k][c].abs_diff(pixel[c]) > NEAR),
+            Some(shown) => (0..3).any(|c| shown[k][c].abs_diff(pixel[c]) > MAX_UNSEEN),
         }
     }
 }
@@ -88,7 +88,7 @@ impl Film for Gif {
             .collect();
         let sent = || (0..new.len()).filter(|&k| new[k]);
         let palette = Palette::of(sent().map(color), 255);
-        // The index after the last colour means no colour.
+        // The index after the last colour stands for transparent pixels.
         let none = palette.colors.len() as u8;
         let index = |k: usize| {
             if new[k] {
@@ -113,7 +113,8 @@ impl Film for Gif {
             ..Frame::default()
         };
         if self.transparent {
-            // The frame is removed before the next, because no pixel can be made transparent again.
+            // The frame is cleared before the next one, because a frame cannot make pixels
+            // transparent again.
             frame.dispose = DisposalMethod::Background;
         }
         let shown = self.shown.get_or_insert_with(|| vec![[0; 3]; new.len()]);
@@ -132,8 +133,8 @@ impl Film for Gif {
     }
 }
 
-/// The columns and the rows of the smallest rectangle around these pixels; one pixel if there are
-/// none.
+/// Returns the columns and the rows of the smallest rectangle around these pixels; one pixel if
+/// there are none.
 fn bounds(pixels: impl Iterator<Item = usize>, width: usize) -> (Range<usize>, Range<usize>) {
     let join = |a: Range<usize>, b: Range<usize>| a.start.min(b.start)..a.end.max(b.end);
     pixels
@@ -143,12 +144,12 @@ fn bounds(pixels: impl Iterator<Item = usize>, width: usize) -> (Range<usize>, R
         .unwrap_or((0..1, 0..1))
 }
 
-/// The failure of a write.
+/// Converts an error of the encoder.
 fn failure(encoder: &Encoder<Draft>, error: EncodingError) -> Failure {
     encoder.get_ref().failure(&cause(error))
 }
 
-/// The error behind a failed write.
+/// Returns the I/O error in an error of the encoder.
 fn cause(error: EncodingError) -> io::Error {
     match error {
         EncodingError::Io(error) => error,
@@ -160,7 +161,7 @@ fn cause(error: EncodingError) -> io::Error {
 mod tests {
     use super::*;
 
-    /// A frame is the smallest rectangle around what changed, or one pixel if nothing did.
+    /// A frame is the smallest rectangle around the changed pixels, or one pixel if none changed.
     #[test]
     fn only_what_changed_is_sent() {
         let folder = tempfile::tempdir().ok().unwrap();

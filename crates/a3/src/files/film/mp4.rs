@@ -8,23 +8,23 @@ use std::process::{Child, Command, ExitStatus, Stdio};
 
 use super::format::Film;
 use crate::base::failure::Failure;
-use crate::base::interrupt::{self, Loose, Temporary};
+use crate::base::interrupt::{self, Cleanup, Temporary};
 use crate::base::terminal;
 use crate::files::output::{Draft, not_written};
 
-/// An MP4 in the making, which `ffmpeg` writes to a temporary file beside the target.
+/// An MP4 that is being written: `ffmpeg` writes to a temporary file beside the target.
 pub struct Mp4 {
-    /// The target, until the film is complete.
+    /// The draft of the target, until the film is complete.
     draft: Option<Draft>,
     ffmpeg: Child,
-    /// What ends `ffmpeg` if the program ends at once.
+    /// Kills `ffmpeg` if the program ends at once.
     running: Option<Temporary>,
     /// The messages of `ffmpeg`.
     log: File,
 }
 
 impl Mp4 {
-    /// A film of this size (px), with so many frames a second.
+    /// Creates a film of this size (px) at a rate of `fps` (frames per second).
     pub fn new(path: &Path, (width, height): (u32, u32), fps: f64) -> Result<Self, Failure> {
         if width % 2 + height % 2 > 0 {
             let even = [width, height].map(|side| side + side % 2);
@@ -51,7 +51,7 @@ impl Mp4 {
             .args(["-f", "rawvideo", "-pixel_format", "rgba"])
             .args(["-video_size", &format!("{width}x{height}")])
             .args(["-framerate", &fps.to_string(), "-i", "-"])
-            // The colour space is that of high definition, and is named, so that players need not
+            // The colour space is that of high definition. It is stored, so that players need not
             // guess.
             .args(["-vf", "scale=out_color_matrix=bt709:out_range=tv"])
             .args([
@@ -72,10 +72,10 @@ impl Mp4 {
         // are no more frames.
         #[cfg(unix)]
         std::os::unix::process::CommandExt::process_group(&mut command, 0);
-        let spawned = interrupt::temporary(|| command.spawn(), |it| Loose::Program(it.id()));
+        let spawned = interrupt::temporary(|| command.spawn(), |it| Cleanup::Program(it.id()));
         let (ffmpeg, running) = spawned.map_err(|e| match e.kind() {
             io::ErrorKind::NotFound => Failure::run(
-                "an MP4 is written by ffmpeg, which is not here: install it (apt install ffmpeg), or write a .gif or a \
+                "an MP4 is written by ffmpeg, which is not installed: install it (apt install ffmpeg), or write a .gif or a \
                  sequence such as film-####.png",
             ),
             _ => Failure::run(format!("ffmpeg could not be started: {}", terminal::reason(&e))),
@@ -88,15 +88,15 @@ impl Mp4 {
         })
     }
 
-    /// Waits until `ffmpeg` has ended, which nobody needs to do any more then.
+    /// Waits until `ffmpeg` has ended, and removes its registration for clean-up.
     fn wait(&mut self) -> io::Result<ExitStatus> {
         drop(self.ffmpeg.stdin.take());
         self.running = None;
         self.ffmpeg.wait()
     }
 
-    /// The failure of `ffmpeg`, which must have ended: what the disk says, or else its own first
-    /// words, because those that follow only say what came of it.
+    /// Returns the failure of `ffmpeg`, which must have ended: the error of the disk, or else its
+    /// first message, because later ones only name consequences.
     fn complaint(&mut self, status: io::Result<ExitStatus>) -> Failure {
         let Some(mut draft) = self.draft.take() else {
             return Failure::run("ffmpeg failed");
@@ -135,7 +135,7 @@ impl Film for Mp4 {
 
     fn finish(mut self: Box<Self>) -> Result<(), Failure> {
         let status = self.wait();
-        // When the disk is full, some versions of ffmpeg call a part of the file a success.
+        // When the disk is full, some versions of ffmpeg report success for an incomplete file.
         let succeeded = matches!(&status, Ok(status) if status.success());
         let is_whole = |draft: &mut Draft| {
             let path = draft.beside().filter(|_| succeeded);
@@ -148,8 +148,8 @@ impl Film for Mp4 {
     }
 }
 
-/// Whether the boxes of an MP4 end where the file does, and the index of its frames is among them.
-/// A box begins with its length, in 4 bytes or, behind its name, in 8.
+/// Returns whether the boxes of an MP4 end where the file does and include the index of its frames.
+/// A box begins with its length, in 4 bytes or, after its name, in 8.
 fn is_whole(path: &Path) -> io::Result<bool> {
     let mut file = File::open(path)?;
     let length = file.metadata()?.len();
@@ -174,7 +174,7 @@ fn is_whole(path: &Path) -> io::Result<bool> {
 
 impl Drop for Mp4 {
     fn drop(&mut self) {
-        // This ends ffmpeg if the film was given up, and does nothing if ffmpeg has ended.
+        // This kills ffmpeg if the film was abandoned, and does nothing if ffmpeg has ended.
         let _ = self.ffmpeg.kill();
         let _ = self.ffmpeg.wait();
     }

@@ -1,7 +1,7 @@
 //! Colour quantisation: a few colours for a picture that has many. The cube of colours is divided
-//! into boxes. Again and again the box with the largest variance along an axis is halved at its
-//! mean on that axis (Heckbert, *Color Image Quantization*, 1982; by variance as in Wu, *Graphics
-//! Gems II*, 1991).
+//! into boxes: repeatedly, the box with the largest variance along an axis is split at its mean on
+//! that axis (Heckbert, *Color Image Quantization*, 1982; by variance as in Wu, *Graphics Gems II*,
+//! 1991).
 
 /// Bits of each channel that distinguish the cells of the cube.
 const BITS: usize = 7;
@@ -37,7 +37,7 @@ struct ColorBox {
 }
 
 impl Palette {
-    /// A palette of at most `most` colours for these colours. `most` is at most 256.
+    /// Chooses at most `most` colours for these colours. `most` is at most 256.
     pub fn of(colors: impl Iterator<Item = [u8; 3]>, most: usize) -> Self {
         let mut boxes: Vec<_> = Some(cells(colors))
             .filter(|cells| !cells.is_empty())
@@ -76,14 +76,15 @@ impl Palette {
         }
     }
 
-    /// The index of the colour that replaces one of those that the palette was made for.
+    /// Returns the index of the colour that replaces `color`, which must be one of those that the
+    /// palette was made for.
     pub fn index(&self, color: [u8; 3]) -> u8 {
         self.index[cell_of(color)]
     }
 }
 
 impl ColorBox {
-    /// The box of these cells.
+    /// Creates the box of these cells.
     fn of(cells: Vec<Cell>) -> Self {
         let count: f64 = cells.iter().map(|cell| cell.count).sum();
         let sum =
@@ -99,7 +100,7 @@ impl ColorBox {
         }
     }
 
-    /// The cells below the mean on the axis of the box, and the others.
+    /// Splits the cells into those below the mean on the axis of the box, and the others.
     fn halves(self) -> (Vec<Cell>, Vec<Cell>) {
         let (axis, mean) = (self.axis, self.mean);
         self.cells
@@ -108,7 +109,7 @@ impl ColorBox {
     }
 }
 
-/// The cells that these colours are in.
+/// Returns the cells that contain these colours.
 fn cells(colors: impl Iterator<Item = [u8; 3]>) -> Vec<Cell> {
     let mut colors: Vec<_> = colors.map(|color| (cell_of(color), color)).collect();
     colors.sort_unstable();
@@ -126,7 +127,7 @@ fn cells(colors: impl Iterator<Item = [u8; 3]>) -> Vec<Cell> {
         .collect()
 }
 
-/// The number of the cell of a colour.
+/// Returns the number of the cell of a colour.
 fn cell_of(color: [u8; 3]) -> usize {
     color.iter().fold(0, |number, &c| {
         number << BITS | usize::from(c) >> (8 - BITS)

@@ -9,12 +9,12 @@ use crate::files::output;
 pub struct Pictures {
     sequence: Sequence,
     size: (u32, u32),
-    /// The number of pictures so far.
+    /// Number of pictures so far.
     count: usize,
 }
 
 impl Pictures {
-    /// A film of pictures of this size (px).
+    /// Creates a film of pictures of this size (px).
     pub fn new(sequence: Sequence, size: (u32, u32)) -> Self {
         Self {
             sequence,

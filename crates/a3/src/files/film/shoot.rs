@@ -1,4 +1,4 @@
-//! A run that is filmed, from its first frame to its last.
+//! Filming of a run, from its first frame to its last.
 
 use std::path::Path;
 
@@ -11,7 +11,7 @@ use crate::base::{interrupt, verdict};
 use crate::draw::painter::Painter;
 use crate::draw::show::Show;
 
-/// Films the run. If it blows up or is interrupted, the frames so far are kept.
+/// Films the run. If it blows up or is interrupted, the film keeps the frames so far.
 pub fn shoot(
     simulation: &mut Simulation,
     show: &mut Show,

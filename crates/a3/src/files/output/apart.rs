@@ -1,4 +1,4 @@
-//! The files of a command, apart from one another: none that is read is written, and none is
+//! Checks that the files of a command are distinct: none that is read is written, and none is
 //! written twice.
 
 use std::fs;
@@ -23,7 +23,7 @@ fn files() -> MutexGuard<'static, Files> {
     FILES.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Notes a file that the command reads, such as a scene or a mesh: it is never written.
+/// Registers a file that the command reads, such as a scene or a mesh: it is never written.
 pub fn is_read(path: &Path) {
     let mut files = files();
     if !files.read.iter().any(|read| read == path) {
@@ -31,12 +31,12 @@ pub fn is_read(path: &Path) {
     }
 }
 
-/// The files that the command reads, as they were named.
+/// Returns the files that the command reads, as they were named.
 pub fn files_read() -> Vec<PathBuf> {
     files().read.clone()
 }
 
-/// `Ok` if the command does not read this file, under any name.
+/// Checks that the command does not read this file, under any name.
 pub fn refuse_read(path: &Path) -> Result<(), Failure> {
     if files().read.iter().any(|read| same(read, path)) {
         return Err(Failure::usage(format!(
@@ -47,8 +47,8 @@ pub fn refuse_read(path: &Path) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Notes a file that the command will write. Refuses one that it reads, or that has been noted
-/// before.
+/// Registers a file that the command will write. Refuses one that it reads, or that is registered
+/// already.
 pub fn claim(path: &Path) -> Result<(), Failure> {
     refuse_read(path)?;
     let mut files = files();
@@ -62,7 +62,8 @@ pub fn claim(path: &Path) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Whether two paths lead to one ordinary file, there or not, also by links of any kind.
+/// Returns whether two paths lead to the same ordinary file, which need not exist, also by links of
+/// any kind.
 fn same(a: &Path, b: &Path) -> bool {
     let there = [a, b].map(|path| fs::metadata(path).ok());
     if there.iter().flatten().any(|there| !there.is_file()) {

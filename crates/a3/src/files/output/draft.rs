@@ -1,4 +1,4 @@
-//! A file in the making: beside its place until it is complete.
+//! Writing of a file under a temporary name in its folder until it is complete.
 
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Read, Seek, Write};
@@ -6,30 +6,30 @@ use std::path::{Path, PathBuf};
 
 use tempfile::NamedTempFile;
 
-use super::place::{folder, not_written, resolve, there, writable};
+use super::place::{folder, metadata, not_written, resolve, writable};
 use super::{apart, leftovers};
 use crate::base::failure::Failure;
 use crate::base::fault;
-use crate::base::interrupt::{self, Loose, Temporary};
+use crate::base::interrupt::{self, Cleanup, Temporary};
 
-/// Length by which a draft grows to see what the system says (bytes).
-const GROWTH: u64 = 1 << 20;
+/// Length by which a draft is extended to find out whether the disk is full (bytes).
+const PROBE_LENGTH: u64 = 1 << 20;
 
-/// A file that is being written: beside its place until it is complete. A draft that is dropped
-/// leaves nothing behind. A path that is no ordinary file, such as a device, is written to
-/// directly.
+/// A file that is being written: it has a temporary name in its folder until it is complete. A
+/// draft that is dropped leaves nothing behind. A path that is no ordinary file, such as a device,
+/// is written to directly.
 pub struct Draft {
     /// The path as it was given.
     path: PathBuf,
     file: BufWriter<Sink>,
 }
 
-/// How a temporary file gets the name of its place.
+/// Function that renames a temporary file to its target.
 type Rename = fn(NamedTempFile, PathBuf) -> Result<File, tempfile::PersistError>;
 
-/// Where a draft is written.
+/// Target of the bytes of a draft.
 enum Sink {
-    /// A temporary file, and the place to which it will go.
+    /// A temporary file, and the path to which it will be renamed.
     Beside {
         file: NamedTempFile,
         target: PathBuf,
@@ -40,7 +40,7 @@ enum Sink {
 }
 
 impl Draft {
-    /// Begins a file.
+    /// Creates a draft of the file at `path`.
     pub fn new(path: &Path) -> Result<Self, Failure> {
         apart::refuse_read(path)?;
         let sink = Sink::new(path).map_err(|e| not_written(path, &e))?;
@@ -55,7 +55,8 @@ impl Draft {
         &self.path
     }
 
-    /// The path at which another program may write the draft, if it is an ordinary file.
+    /// Path of the temporary file, to which another program may write; `None` if the target is no
+    /// ordinary file.
     pub fn beside(&self) -> Option<&Path> {
         match self.file.get_ref() {
             Sink::Beside { file, .. } => Some(file.path()),
@@ -63,27 +64,27 @@ impl Draft {
         }
     }
 
-    /// Checks for a full disk by extending a draft that another program wrote a little.
+    /// Checks for a full disk by extending a draft that another program wrote.
     pub fn grow(&mut self) -> io::Result<()> {
         let Sink::Beside { file, .. } = self.file.get_mut() else {
             return Ok(());
         };
         file.seek(io::SeekFrom::End(0))?;
-        io::copy(&mut io::repeat(0).take(GROWTH), file)?;
+        io::copy(&mut io::repeat(0).take(PROBE_LENGTH), file)?;
         Ok(())
     }
 
-    /// Puts the complete file in its place.
+    /// Renames the complete file to its path.
     pub fn place(self) -> Result<(), Failure> {
-        self.put(NamedTempFile::persist).map(drop)
+        self.rename_by(NamedTempFile::persist).map(drop)
     }
 
-    /// Puts the complete file in its place, if there is nothing. Returns whether there was nothing.
+    /// Renames the complete file to its path if nothing is there. Returns whether it did.
     pub fn place_new(self) -> Result<bool, Failure> {
-        self.put(NamedTempFile::persist_noclobber)
+        self.rename_by(NamedTempFile::persist_noclobber)
     }
 
-    fn put(self, rename: Rename) -> Result<bool, Failure> {
+    fn rename_by(self, rename: Rename) -> Result<bool, Failure> {
         let sink = self.file.into_inner();
         match sink
             .map_err(io::IntoInnerError::into_error)
@@ -95,7 +96,7 @@ impl Draft {
         }
     }
 
-    /// The failure of a write.
+    /// Returns the failure of a write.
     pub fn failure(&self, error: &io::Error) -> Failure {
         not_written(&self.path, error)
     }
@@ -112,10 +113,10 @@ impl Write for Draft {
 }
 
 impl Sink {
-    /// Where the file of this path is written.
+    /// Opens the file of this path, or a temporary one beside it.
     fn new(path: &Path) -> io::Result<Self> {
         let target = resolve(path)?;
-        let there = there(&target)?;
+        let there = metadata(&target)?;
         fault::point()?;
         if there.as_ref().is_some_and(|there| !there.is_file()) {
             return File::options().write(true).open(&target).map(Self::Direct);
@@ -123,7 +124,8 @@ impl Sink {
         there.as_ref().map_or(Ok(()), writable)?;
         leftovers::sweep(&folder(&target));
         let make = || beside(&target, there.map(|there| there.permissions()));
-        let (file, temporary) = interrupt::temporary(make, |file| Loose::File(file.path().into()))?;
+        let (file, temporary) =
+            interrupt::temporary(make, |file| Cleanup::File(file.path().into()))?;
         Ok(Self::Beside {
             file,
             target,
@@ -131,7 +133,8 @@ impl Sink {
         })
     }
 
-    /// Puts the complete file in its place, where it stays even if the power fails.
+    /// Renames the complete file to its path, and syncs file and folder, so that it stays even if
+    /// the power fails.
     fn place(self, rename: Rename) -> io::Result<()> {
         let Self::Beside { file, target, .. } = self else {
             return Ok(());
@@ -160,8 +163,8 @@ impl Write for Sink {
     }
 }
 
-/// A new file beside `path`, with these permissions or with those of any new file. It is locked as
-/// long as it is open, so that no other run takes it for a leftover.
+/// Creates a temporary file beside `path`, with these permissions or with the defaults of new
+/// files. It is locked while it is open, so that no other run takes it for a leftover.
 fn beside(path: &Path, permissions: Option<fs::Permissions>) -> io::Result<NamedTempFile> {
     let prefix = leftovers::prefix();
     let mut builder = tempfile::Builder::new();
@@ -169,11 +172,11 @@ fn beside(path: &Path, permissions: Option<fs::Permissions>) -> io::Result<Named
     #[cfg(unix)]
     {
         use std::os::unix::fs::PermissionsExt;
-        // The umask takes permissions from these.
+        // The umask is subtracted from these.
         builder.permissions(fs::Permissions::from_mode(0o666));
     }
     let file = builder.tempfile_in(folder(path))?;
-    // Without locks, files that are left over stay.
+    // On systems without these locks, leftovers are never deleted.
     #[cfg(unix)]
     let _ = file.as_file().try_lock();
     if let Some(permissions) = permissions {
@@ -182,7 +185,7 @@ fn beside(path: &Path, permissions: Option<fs::Permissions>) -> io::Result<Named
     Ok(file)
 }
 
-/// Brings the names in a folder to the disk, where the system can do that and the folder may be
+/// Syncs the names in a folder to the disk, where the system can do that and the folder may be
 /// read.
 fn sync(folder: &Path) -> io::Result<()> {
     if cfg!(not(unix)) {
@@ -203,18 +206,18 @@ fn sync(folder: &Path) -> io::Result<()> {
     }
 }
 
-/// A file without a name, for what is copied to a draft later.
+/// A temporary file without a name, for data that are copied to a draft later.
 pub struct Scratch(File);
 
 impl Scratch {
-    /// A file in the folder of `path`.
+    /// Creates a file in the folder of `path`.
     pub fn new(path: &Path) -> Result<Self, Failure> {
         let make = || tempfile::tempfile_in(folder(&resolve(path)?));
         let file = fault::point().and_then(|()| make());
         file.map(Self).map_err(|e| not_written(path, &e))
     }
 
-    /// What was written, from its beginning.
+    /// Returns a reader of the file from its beginning.
     pub fn reader(&self) -> io::Result<impl Read> {
         let mut file = &self.0;
         file.rewind()?;
@@ -237,7 +240,7 @@ impl Write for Scratch {
 mod tests {
     use super::*;
 
-    /// Of two runs that found the same name free, one takes it, and the other sees that.
+    /// If two runs find the same name free, one gets it, and the other notices.
     #[test]
     fn a_name_is_taken_once() {
         let folder = tempfile::tempdir().unwrap();

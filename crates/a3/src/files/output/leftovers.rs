@@ -2,17 +2,17 @@
 
 use std::path::Path;
 
-/// The end of the name of a temporary file.
+/// End of the name of a temporary file.
 pub const SUFFIX: &str = ".tmp";
 
-/// The beginning of the name of a temporary file of this process.
+/// Returns the start of the name of a temporary file of this process.
 pub fn prefix() -> String {
     format!(".a3-{}-", std::process::id())
 }
 
-/// Deletes the leftovers in a folder, the first time that it is asked to. A file is left over if it
-/// has a name of ours, its process is gone, and no process of another machine or container has
-/// locked it.
+/// Deletes the leftovers in a folder, at the first call for that folder. A file is a leftover if
+/// its name is that of a temporary file of a3, its process is gone, and no process of another
+/// machine or container has locked it.
 #[cfg(unix)]
 pub fn sweep(folder: &Path) {
     use std::fs::{self, File};
@@ -32,17 +32,17 @@ pub fn sweep(folder: &Path) {
             && entry.file_type().is_ok_and(|kind| kind.is_file())
             && File::open(&path).is_ok_and(|file| file.try_lock().is_ok())
         {
-            // What cannot be deleted does no harm.
+            // A leftover that cannot be deleted does no harm.
             let _ = fs::remove_file(path);
         }
     }
 }
 
-/// Does nothing where it cannot be told whether a process is gone.
+/// Does nothing on systems where a3 cannot find out whether a process is gone.
 #[cfg(not(unix))]
 pub fn sweep(_: &Path) {}
 
-/// The process that wrote the temporary file of this name, if it is a name of ours.
+/// Returns the process that wrote the temporary file of this name, if it is a name of such a file.
 #[cfg(unix)]
 fn process_of(name: &str) -> Option<i32> {
     let rest = name.strip_prefix(".a3-")?.strip_suffix(SUFFIX)?;
@@ -52,7 +52,7 @@ fn process_of(name: &str) -> Option<i32> {
     process.parse().ok().filter(|_| digits && ours)
 }
 
-/// Whether there is no such process.
+/// Returns whether there is no such process.
 #[cfg(unix)]
 fn is_gone(process: i32) -> bool {
     use nix::errno::Errno;

@@ -1,4 +1,4 @@
-//! Locks on folders, by which processes wait for one another.
+//! Locks on folders, with which processes wait for one another.
 
 use std::fs::{File, TryLockError};
 use std::path::Path;
@@ -10,12 +10,12 @@ use super::place::{folder, resolve};
 use crate::base::failure::Failure;
 use crate::base::terminal::warn;
 
-/// How long another process is waited for, and after which time a line says so.
-const PATIENCE: [Duration; 2] = [Duration::from_secs(1), Duration::from_secs(10)];
+/// Times of waiting for another process: until a message says so, and until the wait fails.
+const WAITS: [Duration; 2] = [Duration::from_secs(1), Duration::from_secs(10)];
 
 /// Locks the folder of a file until the returned value is dropped, so that no other process that
-/// locks it reads or replaces the file meanwhile. `None` where the system has no such
-/// locks; a failure if another process holds it for 10 s.
+/// locks it reads or replaces the file meanwhile. `None` where the system has no such locks; a
+/// failure if another process holds the lock for 10 s.
 pub fn lock(path: &Path) -> Result<Option<File>, Failure> {
     let folder = resolve(path).and_then(|place| File::open(folder(&place)));
     let Ok(folder) = folder else {
@@ -29,12 +29,12 @@ pub fn lock(path: &Path) -> Result<Option<File>, Failure> {
             Err(TryLockError::WouldBlock) => {}
         }
         let (waited, place) = (begun.elapsed(), path.display());
-        if waited > PATIENCE[1] {
+        if waited > WAITS[1] {
             return Err(Failure::run(format!(
                 "{place}: another process has locked its folder for 10 s: end it, or give another name"
             )));
         }
-        if waited > PATIENCE[0] && !is_said {
+        if waited > WAITS[0] && !is_said {
             is_said = true;
             warn(&format!(
                 "{place}: waits for another process that has locked its folder"

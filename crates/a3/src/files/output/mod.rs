@@ -1,4 +1,4 @@
-//! Writing files: each is complete or absent, and none is also read.
+//! Writing of files: each is complete or absent, and none is also read.
 
 mod apart;
 mod draft;
@@ -17,12 +17,12 @@ pub use draft::{Draft, Scratch};
 pub use lock::lock;
 pub use place::not_written;
 
-/// Most numbered names of one scene.
-const MOST_NAMES: usize = 9999;
+/// Largest number of numbered names of a scene.
+const MAX_NAMES: usize = 9999;
 
-/// `Ok` if the path has one of the extensions, its folder exists, and the file may be written:
-/// it is not protected, and the command neither reads it nor writes it for another purpose.
-/// Commands check each output once, before they work.
+/// Checks that the path has one of the extensions, that its folder exists, and that the file may be
+/// written: it is not protected, and the command neither reads it nor writes it for another
+/// purpose. Commands check each output once, before they work.
 pub fn check(path: &Path, extensions: &[&str]) -> Result<(), Failure> {
     check_ending(path, extensions)?;
     if path.is_dir() {
@@ -35,7 +35,7 @@ pub fn check(path: &Path, extensions: &[&str]) -> Result<(), Failure> {
     apart::claim(path)
 }
 
-/// `Ok` if the path has one of the extensions, which is looked at before anything is built.
+/// Checks that the path has one of the extensions. This is done before any scene is built.
 pub fn check_ending(path: &Path, extensions: &[&str]) -> Result<(), Failure> {
     if !extensions.iter().any(|extension| ends_in(path, extension)) {
         let (last, others) = extensions.split_last().unwrap_or((&"", &[]));
@@ -51,23 +51,23 @@ pub fn check_ending(path: &Path, extensions: &[&str]) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Whether the path has this extension, in lower or upper case.
+/// Returns whether the path has this extension, in lower or upper case.
 pub fn ends_in(path: &Path, extension: &str) -> bool {
     path.extension()
         .is_some_and(|e| e.eq_ignore_ascii_case(extension))
 }
 
-/// The first path of the names a3-SCENE-1, a3-SCENE-2, ... with this ending that is free in the
-/// working folder: of a sequence, that of its first file.
+/// Returns the first of the names a3-SCENE-1, a3-SCENE-2, ... with this ending that is free in the
+/// working folder. A sequence is free if its first file is.
 pub fn free_name(scene: &str, ending: &str) -> Result<PathBuf, Failure> {
     let scene = part_of_name(scene);
-    (1..=MOST_NAMES)
+    (1..=MAX_NAMES)
         .map(|k| format!("a3-{scene}-{k}{ending}"))
         .find(|name| fs::symlink_metadata(name.replace("####", "0001")).is_err())
         .map(PathBuf::from)
         .ok_or_else(|| {
             Failure::run(format!(
-                "there are {MOST_NAMES} files a3-{scene}-*{ending} already"
+                "there are {MAX_NAMES} files a3-{scene}-*{ending} already"
             ))
         })
 }
@@ -81,9 +81,9 @@ pub fn write_new(
     bytes: &[u8],
 ) -> Result<PathBuf, Failure> {
     let scene = part_of_name(scene);
-    for k in 1..=MOST_NAMES {
+    for k in 1..=MAX_NAMES {
         let path = folder.join(format!("a3-{scene}-{k}.{extension}"));
-        // A link that leads nowhere takes a name too.
+        // A link that leads nowhere occupies a name too.
         if fs::symlink_metadata(&path).is_ok() {
             continue;
         }
@@ -95,12 +95,12 @@ pub fn write_new(
         }
     }
     Err(Failure::run(format!(
-        "there are {MOST_NAMES} files a3-{scene}-*.{extension} already"
+        "there are {MAX_NAMES} files a3-{scene}-*.{extension} already"
     )))
 }
 
-/// The name of a scene as a part of the name of a file: without what leads to another folder, or
-/// cannot be seen.
+/// Returns the name of a scene as a part of the name of a file: without path separators and
+/// invisible characters.
 pub fn part_of_name(scene: &str) -> String {
     scene.replace(|c: char| c.is_control() || "/\\".contains(c), "-")
 }
@@ -120,7 +120,8 @@ pub fn write_with(
     draft.place()
 }
 
-/// A PNG of pixels: rows from the top, with eight bits each of red, green, blue and opacity.
+/// Encodes pixels as a PNG: rows from the top, with eight bits each of red, green, blue and
+/// opacity.
 pub fn png(pixels: &[u8], (width, height): (u32, u32)) -> Result<Vec<u8>, Failure> {
     let mut bytes = vec![];
     let mut encoder = png::Encoder::new(&mut bytes, width, height);

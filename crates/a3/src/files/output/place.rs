@@ -1,4 +1,4 @@
-//! Where a file is written: the end of all links, in a folder that is there, unless protected.
+//! The path of the file that an output goes to: links are followed, and protected files refused.
 
 use std::fs::{self, Metadata};
 use std::io;
@@ -7,10 +7,10 @@ use std::path::{Path, PathBuf};
 use crate::base::failure::Failure;
 use crate::base::terminal::reason;
 
-/// Most links, one leading to the next, that are followed. Systems follow as many.
-const MOST_LINKS: usize = 40;
+/// Largest number of links in a row that are followed, as operating systems do.
+const MAX_LINKS: usize = 40;
 
-/// The folder of a file.
+/// Returns the folder of a file.
 pub fn folder(path: &Path) -> PathBuf {
     match path.parent() {
         Some(folder) if !folder.as_os_str().is_empty() => folder.into(),
@@ -18,11 +18,10 @@ pub fn folder(path: &Path) -> PathBuf {
     }
 }
 
-/// The place to which a path leads: a link stays a link, and the file at its end is written, also
-/// if there is none yet.
+/// Follows links to the path of the file that is written. It need not exist yet.
 pub fn resolve(path: &Path) -> io::Result<PathBuf> {
     let mut path = path.to_owned();
-    for _ in 0..MOST_LINKS {
+    for _ in 0..MAX_LINKS {
         match fs::canonicalize(&path) {
             Err(e) if e.kind() == io::ErrorKind::NotFound => {}
             resolved => return resolved,
@@ -36,15 +35,15 @@ pub fn resolve(path: &Path) -> io::Result<PathBuf> {
     Err(io::Error::other("too many links lead to one another"))
 }
 
-/// What is at a place, if there is anything.
-pub fn there(place: &Path) -> io::Result<Option<Metadata>> {
+/// Returns the metadata of a path; `None` if nothing is there.
+pub fn metadata(place: &Path) -> io::Result<Option<Metadata>> {
     match fs::metadata(place) {
         Err(e) if e.kind() == io::ErrorKind::NotFound => Ok(None),
         there => there.map(Some),
     }
 }
 
-/// `Ok` if a file may be written to the path, as far as can be told before.
+/// Checks that a file may be written to the path, as far as that is known before writing.
 pub fn check(path: &Path) -> Result<(), Failure> {
     let given = folder(path);
     if !given.is_dir() {
@@ -58,11 +57,11 @@ pub fn check(path: &Path) -> Result<(), Failure> {
         }
         place => place.map_err(failed)?,
     };
-    let there = there(&place).map_err(failed)?;
+    let there = metadata(&place).map_err(failed)?;
     there.as_ref().map_or(Ok(()), writable).map_err(failed)
 }
 
-/// An error for a file that its owner has protected: a rename would replace it all the same.
+/// Refuses a file that its owner has protected, because a rename would replace it nevertheless.
 pub fn writable(there: &Metadata) -> io::Result<()> {
     #[cfg(unix)]
     let protected = {
@@ -88,7 +87,7 @@ fn no_folder(path: &Path, folder: &Path) -> Failure {
     ))
 }
 
-/// The failure of a write.
+/// Returns the failure of a write.
 pub fn not_written(path: &Path, error: &io::Error) -> Failure {
     let why = reason(error);
     Failure::run(format!("{}: could not be written: {why}", path.display()))

@@ -54,7 +54,7 @@ fn exports_that_cannot_be_are_refused_before_the_work() {
     assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
 }
 
-/// Files are whole or absent, and hold nothing that is no number.
+/// Files are complete or absent, and all their numbers are finite.
 #[test]
 fn a_run_that_blows_up_leaves_only_the_whole_files_of_a_sequence() {
     let folder = tempfile::tempdir().unwrap();
@@ -73,7 +73,7 @@ fn a_run_that_blows_up_leaves_only_the_whole_files_of_a_sequence() {
         ];
         complaint(&a3(folder.path(), &[&words[..], more].concat()), 1)
     };
-    // Frames a step, which none shortens.
+    // Steps for a frame, none of which is shortened.
     let several = ["--fps", "25"];
     for output in ["x.json", "x.obj"] {
         assert!(run(&[output]).contains("blew up at step"));

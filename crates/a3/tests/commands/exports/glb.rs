@@ -47,7 +47,7 @@ fn glb_goes_from_frame_to_frame() {
         assert_eq!(times[k], (k as f64 / RATE) as f32);
         assert_eq!(indices, triangles(simulation).concat());
         let weights = &weights[k * (COUNT - 1)..(k + 1) * (COUNT - 1)];
-        // As a viewer does it: the base, and of each target as much as its weight.
+        // As a viewer does it: the base plus each target times its weight.
         let sum = |base: [f32; 3], of: &dyn Fn(usize) -> [f32; 3]| {
             let mut sum = base;
             for (target, weight) in weights.iter().enumerate() {
@@ -65,7 +65,7 @@ fn glb_goes_from_frame_to_frame() {
         }
     });
 
-    // The ranges that positions have to say are true.
+    // The ranges of positions are true.
     for accessor in read
         .accessors()
         .filter(|accessor| accessor.min().is_some() && accessor.size() == 12)

@@ -41,7 +41,8 @@ fn obj_sequences_have_surfaces_with_smooth_normals() {
     assert!(last.contains("t = 0.21 s"));
 }
 
-/// No face of an OBJ spans a tear; formats that have one mesh for all frames say that theirs does.
+/// No face of an OBJ spans a tear; for formats with one mesh for all frames, a warning says that
+/// their faces do.
 #[test]
 fn what_is_torn_is_no_face() {
     let folder = tempfile::tempdir().unwrap();
@@ -79,7 +80,7 @@ fn what_is_torn_is_no_face() {
     assert_eq!(faces(1).0, 50);
     let (left, longest) = faces(9);
     assert!((20..50).contains(&left), "{left} faces are left");
-    // Diagonals are of springs or across a square of four.
+    // Diagonals are springs, or lie across a square of four.
     assert!(longest < 1.4 * 2.0 * 0.2, "{longest} m");
     let summary = fs::read(folder.path().join("s.json")).unwrap();
     let summary: Value = serde_json::from_slice(&summary).unwrap();
@@ -92,7 +93,7 @@ fn what_is_torn_is_no_face() {
     }
 }
 
-/// The words of the lines of an OBJ that begin with this one.
+/// Returns the words of the lines of an OBJ that begin with a keyword.
 fn lines<'a>(obj: &'a str, keyword: &'a str) -> impl Iterator<Item = Vec<&'a str>> {
     obj.lines()
         .map(|line| line.split(' ').collect::<Vec<_>>())
@@ -158,8 +159,8 @@ fn pc2_has_the_positions_of_all_frames() {
     }
 }
 
-/// Vertices as Blender has them after it read an OBJ: those in faces or lines, or all if there are
-/// no such.
+/// Returns the vertices that Blender keeps when it reads an OBJ: those in faces or lines, or all if
+/// there are none.
 fn kept(obj: &str) -> Vec<[f32; 3]> {
     let all: Vec<[f32; 3]> = lines(obj, "v")
         .map(|words| [1, 2, 3].map(|k| words[k].parse().unwrap()))
@@ -176,8 +177,7 @@ fn kept(obj: &str) -> Vec<[f32; 3]> {
     used.into_iter().map(|k| all[k - 1]).collect()
 }
 
-/// A point cache has as many points as the mesh beside it has in Blender, at the same places, in
-/// every built-in scene.
+/// In every built-in scene, a point cache has the points that the mesh beside it has in Blender.
 #[test]
 fn pc2_moves_the_mesh_that_programs_read() {
     let folder = tempfile::tempdir().unwrap();
@@ -215,7 +215,7 @@ fn pc2_moves_the_mesh_that_programs_read() {
     assert!(fewer > 2, "{fewer}");
 }
 
-/// Times have no digits that only roundings have.
+/// Times have no digits from rounding errors.
 #[test]
 fn times_are_short() {
     let folder = tempfile::tempdir().unwrap();

@@ -1,7 +1,6 @@
-//! Files for other programs, read back by readers that were written elsewhere, and compared with
-//! the run that they are of.
+//! Files for other programs, read back by independent readers, and compared with their run.
 //!
-//! Khronos' own validator is asked too where it is installed: `npm install gltf-validator`, and
+//! Khronos' own validator checks them too if it is installed: `npm install gltf-validator`, and
 //! `A3_GLTF_VALIDATOR` set to that `node_modules`.
 
 mod endings;
@@ -16,12 +15,13 @@ use std::path::Path;
 use crate::common::{a3, text};
 use a3_core::{Control, Simulation, integrators};
 
-/// Frames a second of what is compared, and how many: the last at 0.2 s, before the end.
+/// Frames per second that are compared.
 const RATE: f64 = 25.0;
 
+/// Number of frames: the last one is at 0.2 s, before the end.
 const COUNT: usize = 6;
 
-/// What the program is asked for.
+/// Returns the arguments of the program.
 fn words<'a>(scene: &'a str, output: &'a str, more: &[&'a str]) -> Vec<&'a str> {
     let run = [
         "simulate", "r", "0.007", "--scene", scene, "--until", "0.21", "--output", output,
@@ -36,7 +36,7 @@ fn write(folder: &Path, scene: &str, output: &str, more: &[&str]) -> String {
     text(&output.stdout).to_owned()
 }
 
-/// The same run by the library, at the times of its frames.
+/// Makes the same run with the library, and calls `frame` at the times of its frames.
 fn run(scene: &str, mut frame: impl FnMut(usize, &Simulation)) {
     let scene = a3_scenes::find(scene).unwrap().build(None).unwrap().scene;
     let method = integrators::find("r").unwrap();
@@ -66,8 +66,8 @@ fn triangles(simulation: &Simulation) -> Vec<[u32; 3]> {
     network.map_or(vec![], |network| network.triangles().to_vec())
 }
 
-/// Normals by the textbook: cross products of two sides, which are as long as the areas, summed
-/// over the triangles around.
+/// Returns normals by the textbook: cross products of two sides, whose lengths are twice the areas,
+/// summed over the triangles around each particle.
 fn normals(simulation: &Simulation) -> Vec<[f64; 3]> {
     let mut sums = vec![a3_core::Vector3::zeros(); simulation.particles()];
     for triangle in triangles(simulation) {

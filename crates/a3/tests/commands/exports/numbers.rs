@@ -69,7 +69,7 @@ fn arrays(bytes: &[u8]) -> BTreeMap<String, (String, Vec<f64>)> {
         let (name_length, start) = (number(at + 28, 2), number(at + 42, 4));
         let name = &bytes[at + 46..at + 46 + name_length];
         at += 46 + name_length;
-        // What stands before the file says the same.
+        // The header before the file agrees with the directory.
         assert_eq!(&bytes[start..start + 4], b"PK\x03\x04");
         assert_eq!(
             (number(start + 14, 4), number(start + 22, 4)),

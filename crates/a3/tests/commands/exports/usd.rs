@@ -6,11 +6,11 @@ use std::fs;
 
 use super::{COUNT, RATE, distance, normals, positions, run, triangles, write};
 
-/// Values of an attribute at each frame, as numbers one after another; at frame -1 if it is the
-/// same at all.
+/// Values of an attribute at each frame, as numbers one after another; at frame -1 if the attribute
+/// is constant.
 type Values = BTreeMap<i64, Vec<f64>>;
 
-/// Attributes of each primitive, by its type and name and theirs.
+/// Attributes of each primitive, by the type and name of the primitive and of the attribute.
 type Prims = BTreeMap<String, BTreeMap<String, Values>>;
 
 /// Reads a file: its head, and its primitives.
@@ -107,7 +107,7 @@ fn usd_of_each_scene_is_whole() {
         for (prim, attributes) in &prims {
             let points = &attributes["point3f[] points"];
             assert!(points.len() == COUNT && points.keys().copied().eq(0..COUNT as i64));
-            // A mesh of a fluid has other triangles in each frame.
+            // The mesh of a fluid has different triangles in each frame.
             for (frame, points) in points {
                 let at = |name: &str| {
                     let values = attributes.get(name)?;

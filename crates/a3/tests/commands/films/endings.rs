@@ -73,7 +73,7 @@ fn a_film_that_blows_up_keeps_what_was_before() {
     assert!(line.contains("blew up at step"), "{line}");
     let kept = format!("x.gif has the first {} of 201 frames", film.len());
     assert!(line.contains(&kept), "{line}");
-    // One that does so before it begins leaves nothing.
+    // A run that blows up before the film begins leaves nothing.
     let line = complaint(
         &a3(folder.path(), &words(&["--output", "y.gif", "--from", "7"])),
         1,
@@ -96,11 +96,11 @@ fn an_interrupted_film_keeps_what_was_before() {
             "render", "v", "0.01", "--until", "1000", "--size", "80x60", "--output", name,
         ];
         let mut child = command(folder.path(), &words);
-        // As a terminal does it: a group, all of which is interrupted.
+        // Like Ctrl-C in a terminal, which interrupts the whole process group.
         std::os::unix::process::CommandExt::process_group(&mut child, 0);
         let child = child.spawn().unwrap();
         let begun = Instant::now();
-        // Its first frames are in a file beside.
+        // Its first frames are in a temporary file.
         let is_writing = || {
             let mut sizes = fs::read_dir(folder.path()).unwrap().flatten().map(|entry| {
                 let beside = entry.file_name().to_string_lossy().starts_with(".a3-");

@@ -17,7 +17,7 @@ fn a_gif_shows_the_pictures_of_its_times() {
     for frame in &film {
         assert_eq!(frame.delay().numer_denom_ms(), (40, 1));
     }
-    // In steps that end at the frames, so that a picture of that time is of the same state.
+    // With steps that end at the frames, a picture of that time shows the same state.
     for (k, time) in [(0, "0"), (5, "0.2"), (12, "0.48")] {
         let words = [
             "render", "v", "0.01", "--until", time, "--size", "160x120", "--output", "x.png",
@@ -78,7 +78,7 @@ fn transparent_films_have_nothing_behind_the_cloth() {
     ));
     assert_eq!(picture(folder.path(), "2.png"), bare);
 
-    // A GIF's pixels are there or not, and what has moved leaves nothing behind.
+    // The pixels of a GIF are opaque or transparent, and a moved object leaves no pixels behind.
     assert!(made(folder.path(), &with("film.gif", &["--transparent"])));
     let film = frames(&folder.path().join("film.gif"));
     let words = [

@@ -1,5 +1,4 @@
-//! Films: the frames that were asked for, as others read them, and what is kept of those that end
-//! early.
+//! Films: their frames, as other programs read them, and the frames of films that end early.
 
 mod endings;
 mod gif;
@@ -18,12 +17,12 @@ const CLOTH: [&str; 9] = [
     "render", "v", "0.01", "--until", "0.5", "--size", "160x120", "--output", "film.gif",
 ];
 
-/// The words of `CLOTH` with another file, and more of them.
+/// Returns the arguments of `CLOTH` with another file, and further arguments.
 fn with<'a>(name: &'a str, more: &[&'a str]) -> Vec<&'a str> {
     [&CLOTH[..8], &[name], more].concat()
 }
 
-/// Whether it was made: not where nothing can be drawn.
+/// Makes a film. Returns false if there is no adapter to draw with.
 fn made(folder: &Path, words: &[&str]) -> bool {
     let output = a3(folder, words);
     if gpu_is_missing(&output) {
@@ -46,7 +45,7 @@ fn picture(folder: &Path, name: &str) -> RgbaImage {
     image::open(folder.join(name)).unwrap().to_rgba8()
 }
 
-/// The largest and the mean difference of a channel.
+/// Returns the largest and the mean difference of a channel.
 fn difference(a: &RgbaImage, b: &RgbaImage) -> (u8, f64) {
     assert_eq!(a.dimensions(), b.dimensions());
     let off: Vec<u8> = a

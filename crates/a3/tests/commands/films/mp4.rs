@@ -1,4 +1,4 @@
-//! MP4s, which ffmpeg makes.
+//! MP4 films, which ffmpeg encodes.
 
 use std::fs;
 use std::path::Path;
@@ -57,7 +57,7 @@ fn an_mp4_is_what_it_should_be() {
     assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 3);
 }
 
-/// A program that takes the place of ffmpeg.
+/// Writes a script in the place of ffmpeg.
 #[cfg(unix)]
 fn stand_in(folder: &Path, script: &str) {
     use std::os::unix::fs::PermissionsExt;
@@ -66,8 +66,8 @@ fn stand_in(folder: &Path, script: &str) {
     fs::set_permissions(&path, fs::Permissions::from_mode(0o755)).unwrap();
 }
 
-/// It may fail at once or when it has everything: its first line says why, and the others what came
-/// of it. It may also call a part of a film a success.
+/// ffmpeg may fail at once or after all frames: its first line says why, and the others name
+/// consequences. It may also report success for an incomplete film.
 #[test]
 #[cfg(unix)]
 fn when_ffmpeg_fails_nothing_is_left_but_its_reason() {

@@ -1,4 +1,4 @@
-//! Numbered pictures, and what is drawn on them.
+//! Numbered pictures, and their contents.
 
 use std::fs;
 
@@ -67,7 +67,7 @@ fn trails_and_highlighted_springs_are_filmed_too() {
     assert!(most > 100);
 }
 
-/// There is no cloth between the pins and what they have let go.
+/// No cloth is drawn across a tear.
 #[test]
 fn what_has_torn_is_not_drawn() {
     let folder = tempfile::tempdir().unwrap();
@@ -110,8 +110,7 @@ fn what_has_torn_is_not_drawn() {
         let red: Vec<_> = (0..320)
             .filter(|x| (0..120).any(|y| is_red(*x, y)))
             .collect();
-        // The pins are 2.8 m apart, which are 83 px; the cloth that they let go is 1 m wide at
-        // most.
+        // The pins are 2.8 m apart, which are 83 px; the torn-off cloth is 1 m wide at most.
         assert!((15..35).contains(&red.len()), "{name}: {red:?}");
     }
 }
