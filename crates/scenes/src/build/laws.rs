@@ -28,7 +28,7 @@ pub(super) fn springs(specs: &[SpringSpec], particles: usize) -> Result<Vec<Spri
 
 /// Damping over stiffness (s), given directly or by the damping ratio of a particle of that mass
 /// (kg) on a spring of that stiffness (N/m).
-pub(super) fn damping_time(
+pub fn damping_time(
     damping: Option<f64>,
     ratio: Option<f64>,
     mass: f64,

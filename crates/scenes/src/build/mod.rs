@@ -35,7 +35,9 @@ use crate::surface::Surface;
 use crate::wording::unknown_choice;
 use circle::Circling;
 pub use fluid::LAYERS;
+pub use laws::damping_time;
 use network::NetworkParts;
+pub use skins::most_thickness;
 
 impl Description {
     /// The scene, with this grid of its first cloth instead of its own, if one is given. `mesh`

@@ -9,6 +9,11 @@ use crate::fault::Fault;
 /// distance of its particles: neighbours are never so near that they repel each other.
 const SHARE: f64 = 0.25;
 
+/// Largest thickness (m) of a surface whose particles are at that distance (m).
+pub fn most_thickness(spacing: f64) -> f64 {
+    SHARE * spacing
+}
+
 /// Acceleration (m/s2) that contact withstands at least before surfaces meet.
 const WITHSTOOD: f64 = 100.0;
 
