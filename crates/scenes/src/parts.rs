@@ -1,7 +1,8 @@
 //! Parts of a scene that can be left out, or replaced by simpler ones, and the scene without them.
 
+use crate::build::damping_time;
 use crate::description::{
-    Chain, Cloth, Description, Floor, FloorSpec, Jelly, MeshCloth, Particles, Solid, WindSpec,
+    Chain, Cloth, Description, Floor, FloorSpec, Jelly, MeshCloth, Solid, WindSpec,
 };
 
 /// Part of a scene that can be left out.
@@ -221,8 +222,16 @@ impl Description {
         }
     }
 
-    /// Leaves out the springs of a kind. Meshes have no shear springs.
+    /// Leaves out the springs of a kind. Meshes have no shear springs. The others are damped as
+    /// before, also where their damping is relative to structural springs.
     fn leave_out_springs(&mut self, kind: usize) {
+        for cloth in self.cloth.iter_mut().filter(|_| kind == 0) {
+            let mass = cloth.checked_mass().unwrap_or_default();
+            let (damping, ratio) = (cloth.damping, cloth.damping_ratio);
+            if let Ok(time) = damping_time(damping, ratio, mass, cloth.stiffness[0]) {
+                (cloth.damping, cloth.damping_ratio) = (Some(time), None);
+            }
+        }
         for Cloth {
             stiffness,
             buckling,
@@ -266,7 +275,7 @@ impl Description {
             &mut self.mesh,
             &mut self.solid,
             &mut self.chain,
-            &mut self.particles,
+            self.particles.iter_mut(),
             &mut self.body,
             &mut self.sphere,
             &mut self.boxes,

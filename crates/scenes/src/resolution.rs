@@ -28,7 +28,7 @@ impl Description {
         let mut places = Places::default();
         for (own, other) in self.cloth.iter().zip(&mut other.cloth) {
             regrid_cloth(own, other, factor)?;
-            places.add(own.grid.to_vec(), &other.grid);
+            places.add(&own.grid, &other.grid);
         }
         for (own, other) in self.jelly.iter().zip(&mut other.jelly) {
             regrid_jelly(own, other, factor);
@@ -173,7 +173,7 @@ struct Places {
 impl Places {
     /// Adds a body whose particles along each axis are given, those along the last axis being
     /// numbered fastest.
-    fn add(&mut self, own: Vec<usize>, other: &[usize]) {
+    fn add(&mut self, own: &[usize], other: &[usize]) {
         let first = self.count;
         let total: usize = own.iter().product();
         for number in 0..total {
@@ -211,7 +211,7 @@ impl Places {
 
     /// Adds a lattice whose particles along x are numbered fastest.
     fn add_lattice(&mut self, [x, y, z]: [usize; 3], [i, j, k]: [usize; 3]) {
-        self.add(vec![z, y, x], &[k, j, i]);
+        self.add(&[z, y, x], &[k, j, i]);
     }
 
     /// Adds the particles that follow, up to this number, which no grid has.
