@@ -135,7 +135,7 @@ fn warn_of_tears(options: &Simulate, simulation: &Simulation) {
 /// What a run is looked at for on its way.
 struct Looks<'a> {
     options: &'a Simulate,
-    request: Request<'a>,
+    request: Request,
     extremes: Option<Extremes>,
     keeper: Option<Keeper>,
     /// What passes through what, once something does.

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use a3_core::{Control, Method, Scene, Simulation, integrators};
-use a3_scenes::{Presentation, Setup};
+use a3_scenes::{Description, Presentation, Setup};
 
 use crate::base::bounds;
 use crate::base::failure::Failure;
@@ -12,23 +12,23 @@ use crate::cli::{RunOptions, What};
 use crate::files::scene_file::{SceneError, Source};
 
 /// A scene, with the options that the command line gives for it.
-pub struct Request<'a> {
+pub struct Request {
     pub source: Source,
-    pub options: &'a What,
+    pub options: What,
 }
 
 /// A run without a window that is ready to begin.
-pub struct Run<'a> {
-    pub request: Request<'a>,
+pub struct Run {
+    pub request: Request,
     pub simulation: Simulation,
     pub presentation: Arc<Presentation>,
     /// End of the run (s).
     pub until: f64,
 }
 
-impl<'a> Run<'a> {
+impl Run {
     /// Reads the scene and prepares its run.
-    pub fn new(options: &'a RunOptions) -> Result<Self, Failure> {
+    pub fn new(options: &RunOptions) -> Result<Self, Failure> {
         let request = Request::read(&options.what)?;
         if let Some(solver) = options.solver.filter(|solver| !solver.is_adaptive()) {
             let given = [
@@ -59,13 +59,39 @@ impl<'a> Run<'a> {
     }
 }
 
-impl<'a> Request<'a> {
+impl Request {
     /// Reads the scene that the options name.
-    pub fn read(options: &'a What) -> Result<Self, Failure> {
+    pub fn read(options: &What) -> Result<Self, Failure> {
         Ok(Self {
             source: find(&options.scene, "--scene")?,
-            options,
+            options: options.clone(),
         })
+    }
+
+    /// The same request by a description alone: the grid, the wind and the self-collision of the
+    /// options are in it.
+    pub fn described(&self) -> Self {
+        let mut options = self.options.clone();
+        let mut description = Description::clone(&self.source.description);
+        if let (Some(grid), Some(cloth)) = (options.grid.take(), description.cloth.first_mut()) {
+            cloth.grid = [grid.rows(), grid.cols()];
+        }
+        if let (true, Some(wind)) = (std::mem::take(&mut options.wind), &mut description.wind) {
+            wind.on = true;
+        }
+        description.self_collision |= std::mem::take(&mut options.self_collision);
+        Self {
+            source: self.source.described(description),
+            options,
+        }
+    }
+
+    /// The same request with another description.
+    pub fn with(&self, description: Description) -> Self {
+        Self {
+            source: self.source.described(description),
+            options: self.options.clone(),
+        }
     }
 
     /// The scene, with the wind, the swing and the self-collision that were asked for.
@@ -81,7 +107,7 @@ impl<'a> Request<'a> {
 
     /// The scene with its presentation and its defaults.
     pub fn build(&self) -> Result<Setup, Failure> {
-        let options = self.options;
+        let options = &self.options;
         if let Some(count) = options.threads {
             // Only the first scene of a command sets it; the others have it.
             let threads = rayon::ThreadPoolBuilder::new().num_threads(count);

@@ -3,7 +3,6 @@
 use std::path::Path;
 
 use a3_core::accuracy::{Frames, Metric, Precision, Reference};
-use a3_scenes::Description;
 
 use super::lean::{Answer, LeanModel, MOST_TIME, Solved, assemble, solve, solve_whole};
 use super::models::{Model, Models, measure_all};
@@ -47,16 +46,11 @@ pub fn run(options: &Simplify) -> Result<(), Failure> {
 }
 
 /// Reads the scene, with the options of the command line in its description.
-fn request(options: &Simplify) -> Result<Request<'_>, Failure> {
-    let mut request = Request::read(&options.what)?;
-    let mut description = Description::clone(&request.source.description);
-    if let (Some(grid), Some(cloth)) = (options.what.grid, description.cloth.first_mut()) {
-        cloth.grid = [grid.rows(), grid.cols()];
-    }
-    if let (true, Some(wind)) = (options.what.wind, &mut description.wind) {
-        wind.on = true;
-    }
-    description.self_collision |= options.what.self_collision;
+fn request(options: &Simplify) -> Result<Request, Failure> {
+    let given = Request::read(&options.what)?;
+    // What the scene lacks is refused.
+    given.scene()?;
+    let request = given.described();
     if let Some(path) = &options.output {
         output::check(path, &["toml"])?;
         if path.exists() {
@@ -65,14 +59,14 @@ fn request(options: &Simplify) -> Result<Request<'_>, Failure> {
                 path.display()
             )));
         }
-        check_folder(path, &request, &description)?;
+        check_folder(path, &request)?;
     }
-    request.source = request.source.described(description);
     Ok(request)
 }
 
 /// Refuses to write a scene with meshes to another folder: their files are found beside it.
-fn check_folder(path: &Path, request: &Request, description: &Description) -> Result<(), Failure> {
+fn check_folder(path: &Path, request: &Request) -> Result<(), Failure> {
+    let description = &request.source.description;
     let parts = description.body.iter().flat_map(|body| &body.parts);
     let has_files = !description.mesh.is_empty()
         || !description.obstacle.is_empty()
@@ -102,7 +96,7 @@ fn check_folder(path: &Path, request: &Request, description: &Description) -> Re
 /// Integrates the whole scene accurately, as far as errors mean something.
 fn whole<'a>(
     options: &Simplify,
-    request: &'a Request<'a>,
+    request: &'a Request,
     bar: &Bar,
 ) -> Result<(Models<'a>, Reference), Failure> {
     let scene = request.scene()?;
@@ -171,7 +165,9 @@ fn leanest(
         return Ok(None);
     }
     // What is left out has to pay, or at least to cost nothing.
-    let pays = |solved: &Solved| solved.time <= MOST_TIME * whole.time;
+    let pays = |solved: &Solved| {
+        solved.time <= MOST_TIME * whole.time || model.factor == 1.0 && solved.work <= whole.work
+    };
     let found = solved.filter(pays).map(|solved| (model, solved));
     let (model, solved) = found.unwrap_or_else(|| (LeanModel::whole(models), whole));
     Ok(Some(Answer {

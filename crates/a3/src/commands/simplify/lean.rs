@@ -1,7 +1,7 @@
 //! The leanest scene for an error: parts left out together, a coarser grid, and the cheapest solver
 //! for what is left of the error. It is measured as a whole.
 
-use a3_core::accuracy::{Frames, Metric, Precision, Reference, Scope, choose};
+use a3_core::accuracy::{Candidate, Frames, Metric, Precision, Reference, Scope, choose};
 use a3_core::{Control, Method, Scene};
 use a3_scenes::{Description, Part, Regridded};
 
@@ -20,7 +20,7 @@ const MOST_WORK: f64 = 1.05;
 pub const MOST_TIME: f64 = 1.05;
 /// Share of what is left of the error that the solver is first asked for, and then after each run
 /// of the whole that erred too much.
-const SHARES: [f64; 3] = [0.9, 0.45, 0.2];
+const SHARES: [f64; 4] = [1.0, 0.8, 0.4, 0.2];
 /// Uncertainty of the reference over the error.
 const UNCERTAINTY: f64 = 0.01;
 
@@ -33,6 +33,8 @@ pub struct Solved {
     pub error: f64,
     /// Computing time of a simulated second (s).
     pub time: f64,
+    /// Work of the run, in evaluations.
+    pub work: f64,
 }
 
 /// Scene without some of its parts, perhaps on a coarser grid.
@@ -133,15 +135,16 @@ pub fn solve_whole(
     error: f64,
 ) -> Result<Option<Solved>, Failure> {
     let scene = &models.scene;
-    let Some((method, control, found)) = cheapest(scene, reference, error)? else {
+    let Some(best) = cheapest(scene, reference, error)? else {
         return Ok(None);
     };
-    let time = seconds(scene, (method, control), reference.frames)?;
+    let time = seconds(scene, &best, reference.frames)?;
     Ok(time.map(|time| Solved {
-        method,
-        control,
-        error: found,
+        method: best.method,
+        control: best.control,
+        error: best.outcome.errors.position,
         time,
+        work: best.outcome.work.total(),
     }))
 }
 
@@ -173,9 +176,10 @@ pub fn solve(models: &Models, model: &LeanModel, error: f64) -> Result<Option<So
         return Ok(None);
     };
     for share in SHARES {
-        let Some((method, control, _)) = cheapest(&scene, &reference, share * left)? else {
+        let Some(best) = cheapest(&scene, &reference, share * left)? else {
             return Ok(None);
         };
+        let (method, control) = (best.method, best.control);
         let places = places.as_deref();
         let track = match models.points.follow(&scene, (method, control), places)? {
             None => return Ok(None),
@@ -184,24 +188,25 @@ pub fn solve(models: &Models, model: &LeanModel, error: f64) -> Result<Option<So
         };
         let found = models.effect(&track).change;
         if found <= error {
-            let time = seconds(&scene, (method, control), frames)?;
+            let time = seconds(&scene, &best, frames)?;
             return Ok(time.map(|time| Solved {
                 method,
                 control,
                 error: found,
                 time,
+                work: track.work,
             }));
         }
     }
     Ok(None)
 }
 
-/// The cheapest solver of a scene for an error (m), with the error of its run.
+/// The cheapest solver of a scene for an error (m). `None` if it was interrupted.
 fn cheapest(
     scene: &Scene,
     reference: &Reference,
     error: f64,
-) -> Result<Option<(&'static Method, Control, f64)>, Failure> {
+) -> Result<Option<Candidate>, Failure> {
     let found = choose(
         scene,
         reference,
@@ -211,16 +216,11 @@ fn cheapest(
         |_| {},
     );
     let found = found.map_err(Failure::run)?;
-    let best = found.and_then(|found| found.into_iter().next());
-    Ok(best.map(|best| (best.method, best.control, best.outcome.errors.position)))
+    Ok(found.and_then(|found| found.into_iter().next()))
 }
 
 /// Computing time of a simulated second (s). `None` if it was interrupted.
-fn seconds(
-    scene: &Scene,
-    (method, control): (&'static Method, Control),
-    frames: Frames,
-) -> Result<Option<f64>, Failure> {
-    let time = time(scene, method, control, &frames, None)?;
+fn seconds(scene: &Scene, best: &Candidate, frames: Frames) -> Result<Option<f64>, Failure> {
+    let time = time(scene, best.method, best.control, &frames, None)?;
     Ok(time.map(|time| time.as_secs_f64() / frames.until))
 }

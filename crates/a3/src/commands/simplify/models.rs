@@ -23,7 +23,7 @@ pub const FACTORS: [f64; 4] = [0.25, 0.5, 0.75, 2.0];
 
 /// Models of a scene, compared with the whole scene.
 pub struct Models<'a> {
-    pub request: &'a Request<'a>,
+    pub request: &'a Request,
     pub scene: Scene,
     pub points: Points,
     /// Motion of the whole scene.
@@ -62,7 +62,7 @@ impl<'a> Models<'a> {
     /// Integrates the whole scene more accurately than the error (m) that is asked for. `None` if
     /// it was interrupted.
     pub fn new(
-        request: &'a Request<'a>,
+        request: &'a Request,
         scene: Scene,
         points: Points,
         reference: &Reference,
@@ -194,11 +194,7 @@ impl<'a> Models<'a> {
 
     /// Builds the scene of another description.
     pub fn build(&self, description: &Description) -> Result<Scene, Failure> {
-        let request = Request {
-            source: self.request.source.described(description.clone()),
-            options: self.request.options,
-        };
-        request.scene()
+        self.request.with(description.clone()).scene()
     }
 }
 

@@ -2,6 +2,7 @@
 
 use super::lean::{Answer, LeanModel};
 use super::models::{Model, grid};
+use super::own::GridError;
 use crate::commands::chart::table::words;
 use crate::commands::list;
 use a3_scenes::Description;
@@ -67,24 +68,8 @@ pub fn of_grid(models: &[Model], description: &Description) -> Option<String> {
             .find(|m| m.part.is_none() && m.factor == factor)?;
         model.effect.as_ref().ok().map(|effect| effect.change)
     };
-    let finer = change(2.0)?;
-    let grid = grid(description);
-    let order = change(0.5).map(|coarser| (coarser / finer).log2());
-    Some(match order {
-        Some(order) if order > 0.3 => {
-            let power = order.min(4.0).exp2();
-            format!(
-                "the grid of {grid} errs by about {} m (order {order:.1}): smaller errors describe the model, not the \
-                 material\n",
-                number(finer * power / (power - 1.0))
-            )
-        }
-        _ => format!(
-            "the grid of {grid} differs from one twice as fine by {} m, and grids do not converge yet: smaller errors \
-             describe the model, not the material\n",
-            number(finer)
-        ),
-    })
+    let own = GridError::new(grid(description), change(0.5), change(2.0)?);
+    Some(own.sentence())
 }
 
 /// The leanest scene in words, beside the whole one.
