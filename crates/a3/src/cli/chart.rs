@@ -19,6 +19,9 @@ pub struct Chart {
     /// are measured, and those that are cheapest for some error, and e, t, r and i, are drawn
     #[arg(long, value_name = "SOLVERS", value_delimiter = ',', value_parser = SOLVER_OR_ALL, hide_possible_values = true)]
     pub solvers: Vec<Option<&'static Method>>,
+    /// Leave out the runs on finer and coarser grids that tell how much the grid itself errs
+    #[arg(long)]
+    pub no_model: bool,
     /// Simulated seconds; by default, as long as errors are meaningful on this scene
     #[arg(long, value_name = "T", value_parser = horizon, allow_negative_numbers = true)]
     pub until: Option<f64>,

@@ -26,6 +26,9 @@ pub struct Choose {
     /// Computing time in ms for each frame of 1/60 s: the most accurate solver within it is chosen
     #[arg(long, value_name = "MS_PER_FRAME", value_parser = budget, allow_negative_numbers = true)]
     pub budget: Option<f64>,
+    /// Leave out the runs on finer and coarser grids that tell how much the grid itself errs
+    #[arg(long)]
+    pub no_model: bool,
     /// Simulated seconds; by default, as long as errors are meaningful on this scene
     #[arg(long, value_name = "T", value_parser = horizon, allow_negative_numbers = true)]
     pub until: Option<f64>,

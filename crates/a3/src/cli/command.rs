@@ -10,6 +10,7 @@ use clap_complete::Shell;
 use super::chart::Chart;
 use super::choose::Choose;
 use super::scenes::Scenes;
+use super::simplify::Simplify;
 use super::simulate::Simulate;
 use super::stability::Stability;
 #[cfg(not(target_arch = "wasm32"))]
@@ -69,6 +70,9 @@ pub enum Command {
     Stability(Stability),
     /// Choose the cheapest solver and step for an error, or the most accurate ones for a budget
     Choose(Choose),
+    /// Find what a scene can do without: each part left out, its grids finer and coarser, and the
+    /// leanest scene for an error
+    Simplify(Simplify),
     /// Run scenes with many solvers, steps and values of their keys, in shares on many machines
     #[cfg(not(target_arch = "wasm32"))]
     Sweep(Sweep),

@@ -73,7 +73,7 @@ fn mistake(error: &clap::Error) -> String {
         ErrorKind::MissingRequiredArgument => {
             let missing = list(error, ContextKind::InvalidArg);
             let missing: Vec<_> = missing.iter().map(|arg| without_brackets(arg)).collect();
-            if missing.iter().any(|arg| arg.contains("--error")) {
+            if is_of_choose(error) && missing.iter().any(|arg| arg.contains("--error")) {
                 return either_error_or_budget();
             }
             format!("{} is missing; --help explains it", missing.join(" and "))
@@ -127,6 +127,12 @@ fn conflict(error: &clap::Error, arg: &str) -> String {
     }
     let both: Vec<_> = both.iter().map(|arg| without_brackets(arg)).collect();
     format!("give either {}, not both", both.join(" or "))
+}
+
+/// Whether a mistake is one of the options of `a3 choose`.
+fn is_of_choose(error: &clap::Error) -> bool {
+    let usage = error.get(ContextKind::Usage);
+    usage.is_some_and(|usage| usage.to_string().contains("a3 choose"))
 }
 
 fn either_error_or_budget() -> String {

@@ -12,6 +12,7 @@ mod run;
 mod scenes;
 #[cfg(not(target_arch = "wasm32"))]
 pub mod share;
+mod simplify;
 mod simulate;
 mod stability;
 #[cfg(not(target_arch = "wasm32"))]
@@ -30,6 +31,7 @@ pub use explain::explain;
 pub use measures::{ErrorScope, WorkMeasure};
 pub use run::{RunOptions, What};
 pub use scenes::Scenes;
+pub use simplify::Simplify;
 pub use simulate::Simulate;
 pub use stability::Stability;
 #[cfg(not(target_arch = "wasm32"))]

@@ -6,6 +6,7 @@ pub mod list;
 pub mod manual;
 #[cfg(feature = "window")]
 pub mod render;
+pub mod simplify;
 pub mod simulate;
 pub mod stability;
 mod summary;

@@ -135,7 +135,7 @@ fn warn_of_tears(options: &Simulate, simulation: &Simulation) {
 /// Observer of a run: it writes checkpoints, and checks for crossings and interrupts.
 struct Observer<'a> {
     options: &'a Simulate,
-    request: Request<'a>,
+    request: Request,
     extremes: Option<Extremes>,
     keeper: Option<Keeper>,
     /// Message about the first crossing of surfaces.

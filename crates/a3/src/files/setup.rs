@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use a3_core::{Control, Method, Scene, Simulation, integrators};
-use a3_scenes::{Presentation, Setup};
+use a3_scenes::{Description, Presentation, Setup};
 
 use crate::base::bounds;
 use crate::base::failure::Failure;
@@ -13,23 +13,23 @@ use crate::cli::{RunOptions, What};
 use crate::files::scene_file::Source;
 
 /// A scene, with the options that the command line gives for it.
-pub struct Request<'a> {
+pub struct Request {
     pub source: Source,
-    pub options: &'a What,
+    pub options: What,
 }
 
 /// A run without a window that is ready to start.
-pub struct Run<'a> {
-    pub request: Request<'a>,
+pub struct Run {
+    pub request: Request,
     pub simulation: Simulation,
     pub presentation: Arc<Presentation>,
     /// End of the run (s).
     pub until: f64,
 }
 
-impl<'a> Run<'a> {
+impl Run {
     /// Reads the scene and prepares its run.
-    pub fn new(options: &'a RunOptions) -> Result<Self, Failure> {
+    pub fn new(options: &RunOptions) -> Result<Self, Failure> {
         let request = Request::read(&options.what)?;
         if let Some(solver) = options.solver.filter(|solver| !solver.is_adaptive()) {
             let given = [
@@ -60,13 +60,39 @@ impl<'a> Run<'a> {
     }
 }
 
-impl<'a> Request<'a> {
+impl Request {
     /// Reads the scene that the options name.
-    pub fn read(options: &'a What) -> Result<Self, Failure> {
+    pub fn read(options: &What) -> Result<Self, Failure> {
         Ok(Self {
             source: find(&options.scene, "--scene")?,
-            options,
+            options: options.clone(),
         })
+    }
+
+    /// The same request by a description alone: the grid, the wind and the self-collision of the
+    /// options are in it.
+    pub fn described(&self) -> Self {
+        let mut options = self.options.clone();
+        let mut description = Description::clone(&self.source.description);
+        if let (Some(grid), Some(cloth)) = (options.grid.take(), description.cloth.first_mut()) {
+            cloth.grid = [grid.rows(), grid.cols()];
+        }
+        if let (true, Some(wind)) = (std::mem::take(&mut options.wind), &mut description.wind) {
+            wind.on = true;
+        }
+        description.self_collision |= std::mem::take(&mut options.self_collision);
+        Self {
+            source: self.source.described(description),
+            options,
+        }
+    }
+
+    /// The same request with another description.
+    pub fn with(&self, description: Description) -> Self {
+        Self {
+            source: self.source.described(description),
+            options: self.options.clone(),
+        }
     }
 
     /// Builds the scene, with the wind, the swing and the self-collision of the options.
@@ -82,7 +108,7 @@ impl<'a> Request<'a> {
 
     /// Builds the scene with its presentation and its defaults.
     pub fn build(&self) -> Result<Setup, Failure> {
-        let options = self.options;
+        let options = &self.options;
         if let Some(count) = options.threads {
             // Only the first call has an effect; later ones fail because the threads are there
             // already.

@@ -25,6 +25,7 @@ mod resumed;
 mod scene_files;
 #[cfg(unix)]
 mod signals;
+mod simplify;
 mod states;
 mod sweeps;
 #[cfg(unix)]

@@ -17,7 +17,7 @@ impl Cloth {
     }
 
     /// Returns the distance between neighbouring particles (m).
-    pub(super) fn checked_spacing(&self) -> Result<f64, Fault> {
+    pub(crate) fn checked_spacing(&self) -> Result<f64, Fault> {
         let (by_width, size) = one_of(("width", self.width), ("spacing", self.spacing))?;
         at(
             if by_width { "width" } else { "spacing" },
@@ -28,7 +28,7 @@ impl Cloth {
     }
 
     /// Returns the mass of each particle (kg): an equal share of the density times the area.
-    pub(super) fn checked_mass(&self) -> Result<f64, Fault> {
+    pub(crate) fn checked_mass(&self) -> Result<f64, Fault> {
         let (grid, spacing) = (self.checked_grid()?, self.checked_spacing()?);
         let (by_area, mass) = one_of(("density", self.density), ("mass", self.mass))?;
         at(

@@ -28,7 +28,7 @@ pub(super) fn springs(specs: &[SpringSpec], particles: usize) -> Result<Vec<Spri
 
 /// Returns damping over stiffness (s), which is given directly or by the damping ratio of a
 /// particle of this mass (kg) on a spring of this stiffness (N/m).
-pub(super) fn damping_time(
+pub fn damping_time(
     damping: Option<f64>,
     ratio: Option<f64>,
     mass: f64,

@@ -34,7 +34,9 @@ use crate::surface::Surface;
 use crate::wording::unknown_choice;
 use circle::Circling;
 pub use fluid::LAYERS;
+pub use laws::damping_time;
 use network::NetworkParts;
+pub use skins::max_thickness;
 
 impl Description {
     /// Builds the scene. A `grid` replaces that of the first cloth. `mesh` reads a file of

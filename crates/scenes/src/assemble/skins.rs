@@ -9,6 +9,11 @@ use crate::fault::Fault;
 /// neighbours in a surface do not repel each other.
 const MAX_THICKNESS: f64 = 0.25;
 
+/// Returns the largest thickness (m) of a surface whose particles are at this distance (m).
+pub fn max_thickness(spacing: f64) -> f64 {
+    MAX_THICKNESS * spacing
+}
+
 /// Smallest acceleration (m/s2) against which the contact force keeps surfaces apart.
 const ACCELERATION: f64 = 100.0;
 

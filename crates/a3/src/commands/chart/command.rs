@@ -16,6 +16,7 @@ use crate::base::failure::Failure;
 use crate::base::progress::Bar;
 use crate::base::{interrupt, terminal};
 use crate::cli::{Chart, WorkMeasure};
+use crate::commands::simplify::grid_error;
 use crate::files::output;
 use crate::files::setup::Request;
 
@@ -46,6 +47,7 @@ pub fn run(options: &Chart) -> Result<(), Failure> {
 /// What the command line asks for, once the scene is known to have it.
 struct Asked<'a> {
     options: &'a Chart,
+    request: Request,
     scene: Scene,
     /// Name of the scene with a hash of its files, for the data.
     name: String,
@@ -74,6 +76,7 @@ impl<'a> Asked<'a> {
             scope: scope(&options.scope, &scene)?,
             picture,
             scene,
+            request,
         })
     }
 
@@ -117,8 +120,21 @@ impl<'a> Asked<'a> {
             for advice in studies.iter().filter_map(table::advice) {
                 terminal::say(&advice)?;
             }
+            self.print_grid_error(studies)?;
         }
         Ok(())
+    }
+
+    /// Says how much the grid of the scene errs.
+    fn print_grid_error(&self, studies: &[Study]) -> Result<(), Failure> {
+        if self.options.no_model || !interrupt::go_on() {
+            return Ok(());
+        }
+        let until = studies[0].frames.until;
+        match grid_error(&self.request, &self.scene, until)? {
+            Some(own) => terminal::say(&own.sentence()),
+            None => Ok(()),
+        }
     }
 
     /// Draws the chart, and says where it is.

@@ -14,6 +14,7 @@ use crate::commands::chart::single::{precision, reference};
 use crate::commands::chart::{
     check_contact, check_metric, check_motion, look_ahead, methods, scope, unit,
 };
+use crate::commands::simplify::grid_error;
 use crate::files::setup::Request;
 
 /// Finds and prints what the command line asks for.
@@ -37,6 +38,7 @@ enum Goal {
 /// What the command line asks for, once the scene is known to have it.
 struct Asked<'a> {
     options: &'a Choose,
+    request: Request,
     scene: Scene,
     metric: Metric,
     scope: Scope,
@@ -45,10 +47,12 @@ struct Asked<'a> {
 
 impl<'a> Asked<'a> {
     fn new(options: &'a Choose) -> Result<Self, Failure> {
-        let scene = Request::read(&options.what)?.scene()?;
+        let request = Request::read(&options.what)?;
+        let scene = request.scene()?;
         check_metric(options.of, &scene)?;
         Ok(Self {
             options,
+            request,
             metric: options.of,
             scope: scope(&options.scope, &scene)?,
             scene,
@@ -133,7 +137,21 @@ impl<'a> Asked<'a> {
         let table = report(what, &self.scene, until, &self.goal(), (self.metric, found));
         terminal::say(&(table + &note))?;
         let line = command(what, best.method, best.control, until);
-        terminal::say(&format!("run it:  {line}\n"))
+        terminal::say(&format!("run it:  {line}\n"))?;
+        self.print_grid_error(best, until)
+    }
+}
+
+impl Asked<'_> {
+    /// Says how much the grid of the scene errs, where that is more than the solver.
+    fn print_grid_error(&self, best: &Candidate, until: f64) -> Result<(), Failure> {
+        if self.options.no_model || self.metric != Metric::Position {
+            return Ok(());
+        }
+        match grid_error(&self.request, &self.scene, until)? {
+            Some(own) if own.error > best.outcome.errors.position => terminal::say(&own.sentence()),
+            _ => Ok(()),
+        }
     }
 }
 

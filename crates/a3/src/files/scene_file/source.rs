@@ -145,6 +145,15 @@ impl Source {
         })
     }
 
+    /// The scene with another description, which its text does not have.
+    pub fn described(&self, description: Description) -> Self {
+        Self {
+            description: Arc::new(description),
+            meshes: Arc::default(),
+            ..self.clone()
+        }
+    }
+
     /// Whether the scene came by standard input, which is no file to read again.
     pub fn is_input(&self) -> bool {
         self.typed == INPUT

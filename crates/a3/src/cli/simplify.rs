@@ -1,0 +1,31 @@
+//! The options of `a3 simplify`.
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+use super::measures::ErrorScope;
+use super::run::What;
+use super::values::{error, horizon};
+
+#[derive(Args)]
+pub struct Simplify {
+    #[command(flatten)]
+    pub what: What,
+    /// Largest error of the positions that is allowed, in m, such as 1e-2: that of what is left
+    /// out, of a coarser grid and of the time steps together
+    #[arg(long, value_name = "E", value_parser = error, allow_negative_numbers = true)]
+    pub error: f64,
+    #[command(flatten)]
+    pub scope: ErrorScope,
+    /// Compare the path of the centre of mass instead of the positions of the particles: it means
+    /// something for longer where the motion is chaotic
+    #[arg(long, conflicts_with = "particle")]
+    pub centre: bool,
+    /// Simulated seconds; by default, as long as errors are meaningful on this scene
+    #[arg(long, value_name = "T", value_parser = horizon, allow_negative_numbers = true)]
+    pub until: Option<f64>,
+    /// File for the leanest scene, ending in .toml, with its solver and step
+    #[arg(long, short, value_name = "FILE.toml")]
+    pub output: Option<PathBuf>,
+}

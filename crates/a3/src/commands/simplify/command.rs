@@ -1,0 +1,246 @@
+//! The command: measures the models, and puts the leanest scene together.
+
+use std::path::Path;
+
+use a3_core::accuracy::{Frames, Metric, Precision, Reference};
+
+use super::lean::{Answer, LeanModel, MOST_TIME, Solved, assemble, solve, solve_whole};
+use super::models::{Model, Models, measure_all};
+use super::table;
+use super::track::Points;
+use crate::base::failure::Failure;
+use crate::base::progress::Bar;
+use crate::base::{interrupt, terminal};
+use crate::cli::Simplify;
+use crate::commands::chart::single::reference;
+use crate::commands::chart::{check_motion, describe, look_ahead, scope};
+use crate::files::output;
+use crate::files::setup::Request;
+
+/// Uncertainty of the reference over the error that is asked for, and the most that it may be.
+const UNCERTAINTY: (f64, f64) = (0.01, 0.3);
+
+/// Measures models of a scene, prints them, and writes the leanest.
+pub fn run(options: &Simplify) -> Result<(), Failure> {
+    interrupt::listen();
+    let request = request(options)?;
+    let bar = Bar::new(1.0);
+    let (models, reference) = whole(options, &request, &bar)?;
+    let (mut all, why) = models.all();
+    let complete = measure_all(&models, &mut all, &bar)?;
+    let answer = if complete {
+        leanest(&models, &all, &reference, options.error, &bar)?
+    } else {
+        None
+    };
+    bar.clear();
+    interrupt::write_on();
+    print(options, &models, &all, why.as_deref(), answer.as_ref())?;
+    match (answer, &options.output) {
+        (Some(answer), Some(path)) => write(path, &models, &answer),
+        (Some(_), None) => Ok(()),
+        (None, _) => Err(Failure::Interrupted(
+            "interrupted: the table has what was measured until then".into(),
+        )),
+    }
+}
+
+/// Reads the scene, with the options of the command line in its description.
+fn request(options: &Simplify) -> Result<Request, Failure> {
+    let given = Request::read(&options.what)?;
+    // What the scene lacks is refused.
+    given.scene()?;
+    let request = given.described();
+    if let Some(path) = &options.output {
+        output::check(path, &["toml"])?;
+        if path.exists() {
+            return Err(Failure::usage(format!(
+                "{}: there is such a file already: give the scene another name",
+                path.display()
+            )));
+        }
+        check_folder(path, &request)?;
+    }
+    Ok(request)
+}
+
+/// Refuses to write a scene with meshes to another folder: their files are found beside it.
+fn check_folder(path: &Path, request: &Request) -> Result<(), Failure> {
+    let description = &request.source.description;
+    let parts = description.body.iter().flat_map(|body| &body.parts);
+    let has_files = !description.mesh.is_empty()
+        || !description.obstacle.is_empty()
+        || description.solid.iter().any(|solid| solid.file.is_some())
+        || parts.into_iter().any(|part| part.file.is_some());
+    let folder = |path: &Path| path.parent().map(Path::to_path_buf).unwrap_or_default();
+    let own = request
+        .source
+        .path
+        .as_deref()
+        .map(folder)
+        .unwrap_or_default();
+    if has_files && folder(path) != own {
+        return Err(Failure::usage(format!(
+            "{}: the scene has meshes in files beside it: write the lean scene to the folder {}",
+            path.display(),
+            if own.as_os_str().is_empty() {
+                ".".into()
+            } else {
+                own.display().to_string()
+            }
+        )));
+    }
+    Ok(())
+}
+
+/// Integrates the whole scene accurately, as far as errors mean something.
+fn whole<'a>(
+    options: &Simplify,
+    request: &'a Request,
+    bar: &Bar,
+) -> Result<(Models<'a>, Reference), Failure> {
+    let scene = request.scene()?;
+    if scene.model.network().is_none() {
+        return Err(Failure::usage(format!(
+            "the scene {} is a single equation: there is nothing to leave out",
+            scene.name
+        )));
+    }
+    let error = options.error;
+    let scope = scope(&options.scope, &scene)?;
+    bar.say("looking ahead  ".into());
+    let horizon = look_ahead(&scene, options.until, 1.0, bar)?.ok_or_else(stopped)?;
+    check_motion(&scene, &horizon)?;
+    let frames = Frames::new(horizon.until);
+    bar.say("reference  ".into());
+    let precision = Precision {
+        metric: Metric::Position,
+        uncertainty: UNCERTAINTY.0 * error,
+        max_work: f64::INFINITY,
+    };
+    let reference = reference(&scene, frames, scope, precision)?.ok_or_else(stopped)?;
+    let floor = reference.floor.position;
+    if floor > UNCERTAINTY.1 * error {
+        return Err(Failure::usage(format!(
+            "the motion of this scene over {} s is itself known to {floor:.0e} m only: ask for an error of at least \
+             {:.0e}, or for a shorter --until",
+            frames.until,
+            floor / UNCERTAINTY.1
+        )));
+    }
+    let points = Points {
+        frames,
+        scope,
+        centre: options.centre,
+    };
+    let models = Models::new(request, scene, points, &reference, error)?.ok_or_else(stopped)?;
+    Ok((models, reference))
+}
+
+/// Puts the leanest scene together, with the whole scene's own solver beside it. `None` if it was
+/// interrupted.
+fn leanest(
+    models: &Models,
+    all: &[Model],
+    reference: &Reference,
+    error: f64,
+    bar: &Bar,
+) -> Result<Option<Answer>, Failure> {
+    bar.say("cheapest solver  ".into());
+    let Some(whole) = solve_whole(models, reference, error)? else {
+        return stop_or(format!(
+            "no solver meets an error of {error:e} m on the whole scene"
+        ));
+    };
+    bar.say("leanest scene  ".into());
+    let Some(model) = assemble(models, all, error)? else {
+        return Ok(None);
+    };
+    let solved = if model.is_whole() {
+        None
+    } else {
+        solve(models, &model, error)?
+    };
+    if !interrupt::go_on() {
+        return Ok(None);
+    }
+    // What is left out has to pay, or at least to cost nothing.
+    let pays = |solved: &Solved| {
+        solved.time <= MOST_TIME * whole.time || model.factor == 1.0 && solved.work <= whole.work
+    };
+    let found = solved.filter(pays).map(|solved| (model, solved));
+    let (model, solved) = found.unwrap_or_else(|| (LeanModel::whole(models), whole));
+    Ok(Some(Answer {
+        model,
+        solved,
+        whole,
+    }))
+}
+
+/// `None` if the command was interrupted, or else the failure.
+fn stop_or<T>(why: String) -> Result<Option<T>, Failure> {
+    if interrupt::go_on() {
+        Err(Failure::run(why))
+    } else {
+        Ok(None)
+    }
+}
+
+fn print(
+    options: &Simplify,
+    models: &Models,
+    all: &[Model],
+    why: Option<&str>,
+    answer: Option<&Answer>,
+) -> Result<(), Failure> {
+    let (scene, points) = (&models.scene, models.points);
+    let motion = points.way(&models.whole);
+    let of = if points.centre {
+        "the centre of mass"
+    } else {
+        "the particles"
+    };
+    terminal::say(&format!(
+        "{} for {} s, an error of {:e} m; {of} move by {motion:.1e} m:\n",
+        describe(&options.what, scene),
+        points.frames.until,
+        options.error
+    ))?;
+    let lean = answer.map(|answer| &answer.model);
+    terminal::say(&table::text(all, motion, options.error, lean))?;
+    let description = &models.request.source.description;
+    if let Some(of_grid) = table::of_grid(all, description) {
+        terminal::say(&of_grid)?;
+    }
+    if let Some(why) = why {
+        terminal::say(&format!("the grid is not varied: {why}\n"))?;
+    }
+    match answer {
+        Some(answer) => terminal::say(&table::of_lean(answer)),
+        None => Ok(()),
+    }
+}
+
+/// Writes the leanest scene with its solver and its step.
+fn write(path: &Path, models: &Models, answer: &Answer) -> Result<(), Failure> {
+    let mut description = answer.model.description.clone();
+    description.solver = Some(answer.solved.method.name.into());
+    description.step = Some(answer.solved.control.value());
+    description
+        .duration
+        .get_or_insert(models.points.frames.until);
+    let text = description.to_toml().map_err(Failure::run)?;
+    let head = format!(
+        "# The scene {} without what changes its motion by less than {:.1e} m, by a3 {}.\n\n",
+        models.scene.name.replace(char::is_control, " "),
+        answer.solved.error,
+        env!("CARGO_PKG_VERSION")
+    );
+    output::write(path, (head + &text).as_bytes())?;
+    terminal::say(&format!("scene: {}\n", path.display()))
+}
+
+/// Creates the failure of a command that was interrupted too early.
+fn stopped() -> Failure {
+    Failure::Interrupted("interrupted before anything was measured".into())
+}

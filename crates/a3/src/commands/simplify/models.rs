@@ -1,0 +1,225 @@
+//! Models of a scene: without one of its parts, and on other grids.
+
+use a3_core::accuracy::{Metric, Reference, measure};
+use a3_core::integrators::find;
+use a3_core::{Control, Method, Scene};
+use a3_scenes::{Description, Part, Regridded};
+
+use super::track::{Motion, Places, Points, Track};
+use crate::base::failure::Failure;
+use crate::base::interrupt;
+use crate::base::progress::Bar;
+use crate::commands::chart::single::time;
+use crate::files::setup::Request;
+
+/// Tolerances at which models are integrated, from the largest on.
+const TOLERANCES: [f64; 10] = [
+    1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11, 1e-12,
+];
+/// Error in time of a model over the error that is asked for.
+const MARGIN: f64 = 0.02;
+/// Factors by which the cells of grids are shortened.
+pub const FACTORS: [f64; 4] = [0.25, 0.5, 0.75, 2.0];
+
+/// Models of a scene, compared with the whole scene.
+pub struct Models<'a> {
+    pub request: &'a Request,
+    pub scene: Scene,
+    pub points: Points,
+    /// Motion of the whole scene.
+    pub whole: Track,
+    /// Method and tolerance by which all models are integrated.
+    accurate: (&'static Method, Control),
+}
+
+/// Effect of a model.
+#[derive(Clone, Copy, Debug)]
+pub struct Effect {
+    /// Change of the motion (m).
+    pub change: f64,
+    /// Computing time of the model over that of the whole scene.
+    pub time: f64,
+    /// Work of the model over that of the whole scene, in evaluations of each.
+    pub work: f64,
+}
+
+/// Model of a scene.
+pub struct Model {
+    /// Name in the table.
+    pub name: String,
+    pub description: Description,
+    /// Places of the particles on its grids, if these are others.
+    pub places: Option<Vec<Vec<(usize, f64)>>>,
+    /// Part that is left out; none for another grid.
+    pub part: Option<Part>,
+    /// Factor by which its cells are shorter; 1 for the grids of the scene.
+    pub factor: f64,
+    /// Its effect, or why there is none.
+    pub effect: Result<Effect, String>,
+}
+
+impl<'a> Models<'a> {
+    /// Integrates the whole scene more accurately than the error (m) that is asked for. `None` if
+    /// it was interrupted.
+    pub fn new(
+        request: &'a Request,
+        scene: Scene,
+        points: Points,
+        reference: &Reference,
+        error: f64,
+    ) -> Result<Option<Self>, Failure> {
+        let names = ["verner65", "dopri5"];
+        let serves = |method: &&'static Method| method.check(scene.model.system()).is_ok();
+        let method = names.into_iter().filter_map(find).find(serves);
+        let method = method.ok_or_else(|| {
+            Failure::usage(format!(
+                "no adaptive solver can run the scene {}, so its models cannot be compared",
+                scene.name
+            ))
+        })?;
+        let enough = (MARGIN * error).max(2.0 * Metric::Position.of(&reference.floor));
+        for tolerance in TOLERANCES {
+            let control = Control::Tolerance(tolerance);
+            let run = measure(&scene, method, control, reference, &interrupt::go_on);
+            let Some(outcome) = run.map_err(Failure::run)? else {
+                return Ok(None);
+            };
+            if outcome.lost.is_some() || outcome.errors.position > enough {
+                continue;
+            }
+            let accurate = (method, control);
+            let whole = match points.follow(&scene, accurate, None)? {
+                None => return Ok(None),
+                Some(Motion::Lost) => continue,
+                Some(Motion::Known(track)) => track,
+            };
+            let frames = &points.frames;
+            let Some(time) = time(&scene, method, control, frames, Some(whole.time))? else {
+                return Ok(None);
+            };
+            let whole = whole.timed(time);
+            return Ok(Some(Self {
+                request,
+                scene,
+                points,
+                whole,
+                accurate,
+            }));
+        }
+        Err(Failure::run(format!(
+            "no run of the scene {} was accurate enough to compare models to {error:e} m: ask for a larger error",
+            scene.name
+        )))
+    }
+
+    /// Models to be measured: without each part, and on each other grid. The second value says why
+    /// the grids are not changed, if they are not.
+    pub fn all(&self) -> (Vec<Model>, Option<String>) {
+        let own = &*self.request.source.description;
+        let without = |part: Part| Model {
+            name: part.name.clone(),
+            description: own.without([&part]),
+            places: None,
+            part: Some(part),
+            factor: 1.0,
+            effect: Err("not measured".into()),
+        };
+        let mut all: Vec<_> = own.parts().into_iter().map(without).collect();
+        let mut why = None;
+        for factor in FACTORS {
+            match own.regridded(factor, self.scene.model.particles()) {
+                Ok(Regridded {
+                    description,
+                    places,
+                }) => {
+                    if all.iter().all(|model| model.description != description) {
+                        all.push(Model {
+                            name: format!("grid of {}", grid(&description)),
+                            description,
+                            places: Some(places),
+                            part: None,
+                            factor,
+                            effect: Err("not measured".into()),
+                        });
+                    }
+                }
+                Err(reason) => why = why.or(Some(reason)),
+            }
+        }
+        let has_grids = all.iter().any(|model| model.places.is_some());
+        (all, why.filter(|_| !has_grids))
+    }
+
+    /// Measures a model. `false` if it was interrupted.
+    pub fn measure(&self, model: &mut Model) -> Result<bool, Failure> {
+        let Some(found) = self.follow(&model.description, model.places.as_deref())? else {
+            return Ok(false);
+        };
+        model.effect = found.map(|track| self.effect(&track));
+        Ok(true)
+    }
+
+    /// Effect of a model whose motion is known.
+    pub fn effect(&self, track: &Track) -> Effect {
+        Effect {
+            change: self.points.distance(&self.whole, track),
+            time: track.time.as_secs_f64() / self.whole.time.as_secs_f64(),
+            work: track.work / self.whole.work,
+        }
+    }
+
+    /// Motion of a model, or the reason why it has none. `None` if it was interrupted.
+    pub fn follow(
+        &self,
+        description: &Description,
+        places: Option<&Places>,
+    ) -> Result<Option<Result<Track, String>>, Failure> {
+        let Ok(scene) = self.build(description) else {
+            return Ok(Some(Err("a scene without it cannot be built".into())));
+        };
+        if self.accurate.0.check(scene.model.system()).is_err() {
+            return Ok(Some(Err("its solver does not serve it".into())));
+        }
+        Ok(match self.points.follow(&scene, self.accurate, places)? {
+            None => None,
+            Some(Motion::Lost) => Some(Err("it blows up".into())),
+            Some(Motion::Known(track)) => {
+                let (method, control) = self.accurate;
+                let frames = &self.points.frames;
+                let time = time(&scene, method, control, frames, Some(track.time))?;
+                time.map(|time| Ok(track.timed(time)))
+            }
+        })
+    }
+
+    /// Builds the scene of another description.
+    pub fn build(&self, description: &Description) -> Result<Scene, Failure> {
+        self.request.with(description.clone()).scene()
+    }
+}
+
+/// Measures all models that can be measured. Returns whether none was interrupted.
+pub fn measure_all(models: &Models, all: &mut [Model], bar: &Bar) -> Result<bool, Failure> {
+    // A model on a finer grid has more particles and, by an explicit method, shorter steps.
+    let weight = |model: &Model| model.factor.powi(4);
+    bar.expect(all.iter().map(weight).sum());
+    bar.start();
+    for model in all {
+        bar.say(format!("{}  ", model.name));
+        if !models.measure(model)? {
+            return Ok(false);
+        }
+        bar.advance(weight(model));
+    }
+    Ok(true)
+}
+
+/// The grids of a scene in words: that of its first body that has one.
+pub fn grid(description: &Description) -> String {
+    let cloth = description.cloth.first().map(|it| it.grid.to_vec());
+    let jelly = || description.jelly.first().map(|it| it.grid.to_vec());
+    let solid = || description.solid.first()?.grid.map(|grid| grid.to_vec());
+    let grid = cloth.or_else(jelly).or_else(solid).unwrap_or_default();
+    let grid = grid.iter().map(ToString::to_string).collect::<Vec<_>>();
+    grid.join(" x ")
+}

@@ -1,0 +1,136 @@
+//! The models as a table, and the leanest scene in words.
+
+use super::lean::{Answer, LeanModel};
+use super::models::{Model, grid};
+use super::own::GridError;
+use crate::commands::chart::table::words;
+use crate::commands::list;
+use a3_scenes::Description;
+
+/// Change of the motion, over the error that is asked for, above which a part is barely needed.
+const BARELY: f64 = 0.1;
+
+/// The table of all models that were measured, with the parts that the leanest scene lacks.
+pub fn text(models: &[Model], motion: f64, error: f64, lean: Option<&LeanModel>) -> String {
+    let heading = [
+        "left out or changed",
+        " changes (m)",
+        " of the motion",
+        " saves",
+        "verdict",
+    ];
+    let mut rows = vec![heading.map(String::from).to_vec()];
+    for model in models {
+        let is_out = lean.is_some_and(|lean| match &model.part {
+            Some(part) => lean.parts.contains(part),
+            None => model.factor < 1.0 && lean.factor == model.factor,
+        });
+        rows.push(match &model.effect {
+            Err(why) => vec![
+                model.name.clone(),
+                "-".into(),
+                "-".into(),
+                "-".into(),
+                why.clone(),
+            ],
+            Ok(effect) => vec![
+                model.name.clone(),
+                number(effect.change),
+                percent(effect.change / motion),
+                percent(1.0 - effect.time),
+                verdict(model, effect.change / error, is_out).into(),
+            ],
+        });
+    }
+    list::table(&rows)
+}
+
+/// Verdict on a model whose change of the motion is this share of the error that is asked for.
+fn verdict(model: &Model, share: f64, is_out: bool) -> &'static str {
+    match (&model.part, share <= 1.0) {
+        (Some(_), _) if is_out => "leave it out",
+        (Some(_), false) => "needed",
+        (Some(_), true) if share > BARELY => "barely needed",
+        (Some(_), true) => "changes little, saves little",
+        (None, _) if is_out => "take it",
+        (None, true) => "fine enough",
+        (None, false) if model.factor < 1.0 => "too coarse",
+        (None, false) => "the grid errs by more than E",
+    }
+}
+
+/// Sentence on the error of the grid in use, from a coarser and a finer one: the observed order,
+/// and the error that this extrapolates to.
+pub fn of_grid(models: &[Model], description: &Description) -> Option<String> {
+    let change = |factor: f64| {
+        let model = models
+            .iter()
+            .find(|m| m.part.is_none() && m.factor == factor)?;
+        model.effect.as_ref().ok().map(|effect| effect.change)
+    };
+    let own = GridError::new(grid(description), change(0.5), change(2.0)?);
+    Some(own.sentence())
+}
+
+/// The leanest scene in words, beside the whole one.
+pub fn of_lean(answer: &Answer) -> String {
+    let Answer {
+        model: lean,
+        solved,
+        whole,
+    } = answer;
+    let times = whole.time / solved.time;
+    let mut parts: Vec<_> = lean.parts.iter().map(|part| part.name.clone()).collect();
+    if lean.factor < 1.0 {
+        parts.push(format!("a grid of {}", grid(&lean.description)));
+    }
+    let what = if parts.is_empty() {
+        "nothing can be left out".to_owned()
+    } else {
+        format!(
+            "leanest scene, {times:.1} times cheaper, without: {}",
+            parts.join(", ")
+        )
+    };
+    format!(
+        "{what}\n  whole  {}, {}: error {} m, {} a simulated second\n  lean   {}, {}: error {} m in all, {} m of it \
+         the model's, {} a simulated second\n",
+        whole.method.title,
+        words(whole.control),
+        number(whole.error),
+        milliseconds(whole.time),
+        solved.method.title,
+        words(solved.control),
+        number(solved.error),
+        number(lean.error),
+        milliseconds(solved.time),
+    )
+}
+
+/// A length with two digits.
+fn number(x: f64) -> String {
+    if x == 0.0 {
+        "0".into()
+    } else {
+        format!("{x:.1e}")
+    }
+}
+
+fn percent(share: f64) -> String {
+    let percent = 100.0 * share;
+    if percent > 999.0 {
+        "> 999 %".into()
+    } else if percent.abs() >= 9.95 {
+        format!("{percent:.0} %")
+    } else if percent.abs() >= 0.095 {
+        format!("{percent:.1} %")
+    } else if percent == 0.0 {
+        "0 %".into()
+    } else {
+        format!("{percent:.0e} %")
+    }
+}
+
+fn milliseconds(seconds: f64) -> String {
+    format!("{:.3} ms", 1e3 * seconds)
+}

@@ -1,0 +1,185 @@
+//! What a scene can do without, judged by runs by hand and by closed forms.
+
+use std::fs;
+use std::path::Path;
+
+use serde_json::Value;
+
+use super::charts::said;
+use crate::common::{a3, complaint, simulate};
+
+/// A cloth in still air, with a useless part of many kinds.
+const USELESS: &str = r#"
+duration = 1
+gravity = [0, -9.81, 0]
+drag = 2e-4
+floor = { height = -20, friction = 0.3 }
+[[cloth]]
+grid = [9, 9]
+width = 1
+density = 0.2
+stiffness = [400, 100, 1e-6]
+damping = 1e-8
+strain_limit = 3.0
+friction = 0.5
+at = [0, 0, 0]
+pin = [{ at = ["top"] }]
+sway = [0, 0, 0.5]
+[[sphere]]
+center = [5, 0, 0]
+radius = 0.3
+[[box]]
+center = [-5, 0, 0]
+size = [1, 1, 1]
+"#;
+
+/// Parts of that scene that change nothing.
+const IDLE: [&str; 7] = [
+    "damping of springs",
+    "bend springs",
+    "limit of strain",
+    "friction",
+    "floor",
+    "sphere",
+    "box",
+];
+
+fn write(folder: &Path, name: &str, text: &str) {
+    fs::write(folder.join(name), text).unwrap();
+}
+
+/// The number in the second column of a row of the table.
+fn change(table: &str, row: &str) -> f64 {
+    let line = table.lines().find(|line| line.starts_with(row));
+    let line = line.unwrap_or_else(|| panic!("{row} in {table}"));
+    let numbers = line[row.len()..].split_whitespace();
+    numbers.flat_map(str::parse).next().unwrap()
+}
+
+/// Positions of a final state, particle by particle.
+fn positions(state: &Value) -> Vec<[f64; 3]> {
+    serde_json::from_value(state["positions"].clone()).unwrap()
+}
+
+/// Root mean square distance of particles.
+fn distance(a: &[[f64; 3]], b: &[[f64; 3]]) -> f64 {
+    assert_eq!(a.len(), b.len());
+    let pairs = a.iter().flatten().zip(b.iter().flatten());
+    (pairs.map(|(a, b)| (a - b).powi(2)).sum::<f64>() / a.len() as f64).sqrt()
+}
+
+#[test]
+fn useless_parts_are_found_and_effects_are_those_of_runs_by_hand() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    write(folder, "useless.toml", USELESS);
+    let words = "simplify --scene useless.toml --error 2e-3 --at-end --until 1 -o lean.toml";
+    let table = said(folder, &words.split(' ').collect::<Vec<_>>());
+    for part in IDLE {
+        let line = table.lines().find(|line| line.starts_with(part)).unwrap();
+        assert!(line.ends_with("leave it out"), "{line}");
+    }
+    for part in ["structural springs", "gravity"] {
+        let line = table.lines().find(|line| line.starts_with(part)).unwrap();
+        assert!(line.ends_with("needed"), "{line}");
+    }
+    let run = |scene: &str| {
+        let words = ["rk4", "0.0005", "--scene", scene, "--until", "1"];
+        positions(&simulate(folder, &words))
+    };
+    let whole = run("useless.toml");
+    let without = |line: &str, part: &str, by: &str| {
+        assert!(USELESS.contains(line));
+        write(folder, "other.toml", &USELESS.replace(line, by));
+        let by_hand = distance(&whole, &run("other.toml"));
+        let found = change(&table, part);
+        // The table has two digits.
+        assert!(
+            (found / by_hand - 1.0).abs() < 0.05,
+            "{part}: {found} {by_hand}"
+        );
+    };
+    without("drag = 2e-4", "drag", "");
+    without("gravity = [0, -9.81, 0]", "gravity", "");
+    without("[400, 100, 1e-6]", "shear springs", "[400, 0, 1e-6]");
+    // The scene that was written, by its own solver.
+    let text = fs::read_to_string(folder.join("lean.toml")).unwrap();
+    for key in ["floor", "sphere", "box", "strain_limit", "friction"] {
+        assert!(!text.contains(key), "{key} in {text}");
+    }
+    let lean = simulate(folder, &["--scene", "lean.toml", "--until", "1"]);
+    let error = distance(&whole, &positions(&lean));
+    assert!(error < 2e-3, "{error} {table}");
+}
+
+/// A cloth that hangs by its own weight. Row j of n rows hangs on springs that bear what is below:
+/// with mass M and n springs of stiffness k beside one another, it is lower by the sum of
+/// (n - i) M g / (n n k) for i up to j. A continuous cloth is lower by M g / k (s - s2 / 2).
+#[test]
+fn the_error_of_a_grid_is_that_of_a_closed_form() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let scene = "duration = 20\ngravity = [0, -9.81, 0]\ndrag_per_mass = 4\n[[cloth]]\ngrid = [9, 9]\nwidth = 1\n\
+         density = 1\nstiffness = [200, 0, 0]\nat = [0, 0, 0]\npin = [{ at = [\"top\"] }]\n";
+    write(folder, "hung.toml", scene);
+    let words = "simplify --scene hung.toml --error 1e-3 --at-end --until 20";
+    let table = said(folder, &words.split(' ').collect::<Vec<_>>());
+    let (n, weight, k) = (9, 9.81, 200.0);
+    let lower = |n: usize, j: usize| -> f64 {
+        let each = |i: usize| (n - i) as f64 * weight / ((n * n) as f64 * k);
+        (1..=j).map(each).sum()
+    };
+    let rms = |exact: &dyn Fn(usize) -> f64| {
+        let squares = (0..n).map(|j| (lower(n, j) - exact(j)).powi(2));
+        (squares.sum::<f64>() / n as f64).sqrt()
+    };
+    // Against a grid twice as fine, exactly.
+    let finer = rms(&|j| lower(2 * n - 1, 2 * j));
+    let found = change(&table, "grid of 17 x 17");
+    assert!((found / finer - 1.0).abs() < 0.05, "{found} {finer}");
+    let truth = rms(&|j| {
+        let s = j as f64 / (n - 1) as f64;
+        weight / k * (s - 0.5 * s * s)
+    });
+    let said = table.split("errs by about ").nth(1).unwrap();
+    let said: f64 = said.split(' ').next().unwrap().parse().unwrap();
+    assert!((said / truth - 1.0).abs() < 0.15, "{said} {truth}\n{table}");
+    let order = table.split("(order ").nth(1).unwrap();
+    let order: f64 = order.split(')').next().unwrap().parse().unwrap();
+    assert!((0.8..1.2).contains(&order), "{order}");
+}
+
+#[test]
+fn what_cannot_be_simplified_is_refused_in_a_line() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    write(folder, "there.toml", "");
+    for (words, why) in [
+        ("simplify", "`--error E` is missing"),
+        (
+            "simplify --scene simple --error 1e-3",
+            "the scene simple is a single equation: there is nothing to leave out",
+        ),
+        (
+            "simplify --error 1e-3 -o there.toml",
+            "there.toml: there is such a file already: give the scene another name",
+        ),
+        (
+            "simplify --error 1e-3 -o lean.json",
+            "lean.json: the name of the file must end in .toml",
+        ),
+        (
+            "simplify --scene chain --error 1e-12",
+            "the motion of this scene over 10 s is itself known to ",
+        ),
+    ] {
+        let words: Vec<_> = words.split(' ').collect();
+        let output = a3(folder, &words);
+        let said = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{said}");
+        assert!(said.contains(why), "{said}");
+    }
+    let said = complaint(&a3(folder, &["simplify", "--error", "0"]), 2);
+    assert!(said.contains("--error 0"), "{said}");
+    assert!(!folder.join("lean.json").exists());
+}

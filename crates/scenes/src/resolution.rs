@@ -1,0 +1,281 @@
+//! The same scene on finer or coarser grids: its materials keep their mass, stiffness and damping.
+
+use crate::assemble::{damping_time, max_thickness};
+use crate::description::{Cloth, Description, Jelly, Pin};
+
+/// A scene on another grid, and where the particles of the first grid are on it.
+#[derive(Clone, Debug)]
+pub struct Regridded {
+    /// The scene.
+    pub description: Description,
+    /// Particles of the first grid, each as a mean of particles of the other grid with these
+    /// weights: by multilinear interpolation in the grid's cells.
+    pub places: Vec<Vec<(usize, f64)>>,
+}
+
+impl Description {
+    /// The same scene with cells about `factor` times as short, and of the same shape. The scene as
+    /// it is has so many `particles`.
+    ///
+    /// A cloth keeps its mass per area, a jelly and a solid their mass per volume, and all keep
+    /// their elastic moduli and their damping times. Drag and wind keep their force per mass.
+    ///
+    /// # Errors
+    /// The scene has no grid, or gives numbers for particles: the reason is returned, in words.
+    pub fn regridded(&self, factor: f64, particles: usize) -> Result<Regridded, String> {
+        self.check_grids()?;
+        let mut other = self.clone();
+        let mut places = Places::default();
+        for (own, other) in self.cloth.iter().zip(&mut other.cloth) {
+            regrid_cloth(own, other, factor)?;
+            places.add(&own.grid, &other.grid);
+        }
+        for (own, other) in self.jelly.iter().zip(&mut other.jelly) {
+            regrid_jelly(own, other, factor);
+            places.add_lattice(own.grid, other.grid);
+        }
+        let mesh_is_before = !self.mesh.is_empty();
+        for (own, other) in self.solid.iter().zip(&mut other.solid) {
+            let Some(grid) = own.grid else {
+                return Err("solids from files have no other grid".into());
+            };
+            if mesh_is_before {
+                return Err("solids beside meshes keep their grids".into());
+            }
+            let finer = finer(grid, factor);
+            other.grid = Some(finer);
+            places.add_lattice(grid, finer);
+        }
+        places.add_others(particles);
+        other.keep_forces_per_mass(self, &places)?;
+        other.trail = None;
+        if places.count == particles {
+            return Err("its cells cannot be larger and keep their shape".into());
+        }
+        Ok(Regridded {
+            description: other,
+            places: places.of,
+        })
+    }
+
+    /// Checks that grids may change: nothing is said of single particles on them.
+    fn check_grids(&self) -> Result<(), String> {
+        let is_gridded = !(self.cloth.is_empty() && self.jelly.is_empty() && self.solid.is_empty());
+        if !is_gridded {
+            return Err("no body has a grid that could be finer".into());
+        }
+        for cloth in &self.cloth {
+            if cloth.spacing.is_some() || cloth.mass.is_some() {
+                return Err("a cloth gives the mass and the distance of its particles, \
+                     not its width and density"
+                    .into());
+            }
+        }
+        if self.jelly.iter().any(|jelly| jelly.mass.is_some()) {
+            return Err("a jelly gives the mass of its particles, not its density".into());
+        }
+        let pins = self.cloth.iter().map(|it| &it.pin);
+        let pins = pins.chain(self.jelly.iter().map(|it| &it.pin));
+        let mut pins = pins.chain(self.solid.iter().map(|it| &it.pin)).flatten();
+        let by_number = |pin: &Pin| !pin.particles.is_empty();
+        let numbers = [
+            (pins.any(by_number) || !self.pin.is_empty(), "pins"),
+            (!self.springs.is_empty(), "springs"),
+            (!self.constraint.is_empty(), "constraints"),
+            (!self.torn.is_empty(), "torn springs"),
+            (self.state.is_some(), "a state"),
+        ];
+        match numbers.iter().find(|(is_there, _)| *is_there) {
+            Some((_, what)) => Err(format!(
+                "the scene has {what} of particles by their numbers"
+            )),
+            None => Ok(()),
+        }
+    }
+
+    /// Lets drag and wind that are given for a particle act on as much mass as before.
+    fn keep_forces_per_mass(&mut self, own: &Self, places: &Places) -> Result<(), String> {
+        let [was, is] = [places.of.len(), places.count].map(|n| n as f64);
+        let by_particle = own.drag.is_some() || own.drag_per_mass.is_some();
+        let wind = self.wind.as_mut();
+        let pushed = wind.filter(|wind| wind.force.is_some() || wind.force_per_mass.is_some());
+        let uneven = places.kept > 0 || self.cloth.len() + self.jelly.len() + self.solid.len() > 1;
+        if uneven && (by_particle || pushed.is_some()) {
+            return Err("drag or wind is the same for each particle of several bodies".into());
+        }
+        // The mean mass falls as the number of particles rises.
+        if let Some(drag) = &mut self.drag {
+            *drag *= was / is;
+        }
+        if let Some(force) = pushed.and_then(|wind| wind.force.as_mut()) {
+            *force = force.map(|f| f * was / is);
+        }
+        Ok(())
+    }
+}
+
+/// Grid with cells of the same shape, about `factor` times as short.
+fn finer<const N: usize>(grid: [usize; N], factor: f64) -> [usize; N] {
+    let cells = grid.map(|n| n.max(2) - 1);
+    let parts = cells.into_iter().fold(0, gcd);
+    let finer = ((parts as f64 * factor).round() as usize).max(1);
+    cells.map(|n| n / parts * finer + 1)
+}
+
+/// Greatest common divisor.
+fn gcd(a: usize, b: usize) -> usize {
+    if b == 0 { a } else { gcd(b, a % b) }
+}
+
+fn regrid_cloth(own: &Cloth, other: &mut Cloth, factor: f64) -> Result<(), String> {
+    let words = |fault: crate::Fault| fault.to_string();
+    let mass = own.checked_mass().map_err(words)?;
+    let time = damping_time(own.damping, own.damping_ratio, mass, own.stiffness[0]);
+    (other.damping, other.damping_ratio) = (Some(time.map_err(words)?), None);
+    other.grid = finer(own.grid, factor);
+    let [usual, most] = [own, &*other].map(Cloth::checked_spacing);
+    let most = max_thickness(most.map_err(words)?);
+    let usual = max_thickness(usual.map_err(words)?);
+    other.thickness = Some(own.thickness.unwrap_or(usual).min(most));
+    Ok(())
+}
+
+fn regrid_jelly(own: &Jelly, other: &mut Jelly, factor: f64) {
+    other.grid = finer(own.grid, factor);
+    let cell = |jelly: &Jelly, axis: usize| jelly.size[axis] / (jelly.grid[axis].max(2) - 1) as f64;
+    let spacing = |jelly: &Jelly| (cell(jelly, 0) * cell(jelly, 1) * cell(jelly, 2)).cbrt();
+    // Young's modulus of a lattice is the stiffness of its springs over their length.
+    let ratio = spacing(other) / spacing(own);
+    other.stiffness = own.stiffness.map(|k| k * ratio);
+    if let Some(ratio) = own.damping_ratio {
+        let particles = own.grid.iter().product::<usize>() as f64;
+        let volume = own.size.iter().product::<f64>();
+        let mass = own.density.unwrap_or_default() * volume / particles;
+        other.damping = Some(2.0 * ratio * (mass / own.stiffness[0]).sqrt());
+        other.damping_ratio = None;
+    }
+    let nearest = |jelly: &Jelly| (0..3).map(|a| cell(jelly, a)).fold(f64::INFINITY, f64::min);
+    let usual = max_thickness(nearest(own));
+    let thickness = own.thickness.unwrap_or(usual);
+    other.thickness = Some(thickness.min(max_thickness(nearest(other))));
+}
+
+/// Places of the particles of one grid on another, body after body.
+#[derive(Default)]
+struct Places {
+    of: Vec<Vec<(usize, f64)>>,
+    /// Number of particles of the other grid.
+    count: usize,
+    /// Number of particles that no grid has.
+    kept: usize,
+}
+
+impl Places {
+    /// Adds a body whose particles along each axis are given, those along the last axis being
+    /// numbered fastest.
+    fn add(&mut self, own: &[usize], other: &[usize]) {
+        let first = self.count;
+        let total: usize = own.iter().product();
+        for number in 0..total {
+            // Place along each axis: the particle before it, and the share of the cell after that.
+            let mut rest = number;
+            let mut along: Vec<(usize, f64)> = own
+                .iter()
+                .zip(other)
+                .rev()
+                .map(|(&n, &m)| {
+                    let i = rest % n;
+                    rest /= n;
+                    let at = i as f64 * (m - 1) as f64 / (n.max(2) - 1) as f64;
+                    let before = (at.floor() as usize).min(m - 2);
+                    (before, at - before as f64)
+                })
+                .collect();
+            along.reverse();
+            let mut corners = vec![(0, 1.0)];
+            for ((before, share), &m) in along.iter().zip(other) {
+                corners = corners
+                    .iter()
+                    .flat_map(|&(at, weight)| {
+                        let at = at * m + before;
+                        [(at, weight * (1.0 - share)), (at + 1, weight * share)]
+                    })
+                    .filter(|(_, weight)| *weight > 1e-12)
+                    .collect();
+            }
+            let corners = corners.into_iter().map(|(at, w)| (first + at, w));
+            self.of.push(corners.collect());
+        }
+        self.count += other.iter().product::<usize>();
+    }
+
+    /// Adds a lattice whose particles along x are numbered fastest.
+    fn add_lattice(&mut self, [x, y, z]: [usize; 3], [i, j, k]: [usize; 3]) {
+        self.add(&[z, y, x], &[k, j, i]);
+    }
+
+    /// Adds the particles that follow, up to this number, which no grid has.
+    fn add_others(&mut self, particles: usize) {
+        self.kept = particles.saturating_sub(self.of.len());
+        for _ in 0..self.kept {
+            self.of.push(vec![(self.count, 1.0)]);
+            self.count += 1;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const CLOTH: &str = "[[cloth]]\ngrid = [11, 16]\nwidth = 1.5\ndensity = 0.2\nstiffness = [100, 50, 10]\ndamping_ratio = 0.05\n";
+
+    #[test]
+    fn a_finer_cloth_has_the_same_size_and_mass() {
+        let own = Description::parse(&format!("drag = 0.01\n{CLOTH}")).unwrap();
+        for (factor, grid) in [(2.0, [21, 31]), (0.5, [7, 10]), (0.2, [3, 4])] {
+            let other = own.regridded(factor, 176).unwrap();
+            let build = |description: &Description| {
+                let setup = description.build(None, &mut |_| Err(String::new()));
+                setup.unwrap().scene
+            };
+            let (a, b) = (build(&own), build(&other.description));
+            let cloth = &other.description.cloth[0];
+            assert_eq!(cloth.grid, grid);
+            let mass = |scene: &a3_core::Scene| {
+                scene.model.network().unwrap().masses().iter().sum::<f64>()
+            };
+            assert!((mass(&a) - mass(&b)).abs() < 1e-12);
+            // Drag on the whole cloth.
+            let drag = |scene: &a3_core::Scene, description: &Description| {
+                description.drag.unwrap() * scene.model.particles() as f64
+            };
+            assert!((drag(&a, &own) / drag(&b, &other.description) - 1.0).abs() < 1e-12);
+            // The places of the particles are where they were at the start.
+            let n = b.model.particles();
+            for (i, corners) in other.places.iter().enumerate() {
+                for axis in 0..3 {
+                    let there: f64 = corners
+                        .iter()
+                        .map(|(k, weight)| weight * b.state[axis * n + k])
+                        .sum();
+                    let here = a.state[axis * 176 + i];
+                    assert!((here - there).abs() < 1e-12, "{i} {axis}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn numbers_of_particles_keep_the_grid() {
+        for more in ["torn = [[0, 1]]\n", "[[pin]]\nparticles = [0]\n"] {
+            let text = if more.starts_with('[') {
+                format!("{CLOTH}{more}")
+            } else {
+                format!("{more}{CLOTH}")
+            };
+            let scene = Description::parse(&text).unwrap();
+            assert!(scene.regridded(2.0, 176).is_err(), "{more}");
+        }
+    }
+}
