@@ -1,5 +1,6 @@
 //! Scenes: models, the states they start from, and what their runs can be disturbed by.
 
+use std::borrow::Cow;
 use std::sync::Arc;
 
 use nalgebra::Vector3;
@@ -25,8 +26,13 @@ pub type FirstOrder = Arc<dyn ParticleSystem + Send + Sync>;
 /// Model of a scene.
 #[derive(Clone)]
 pub enum Model {
-    /// First-order system y' = f(t, y) whose state is n x 3 positions in column-major order.
+    /// First-order system y' = f(t, y) of any length. If it offers its
+    /// [`mechanics`](ParticleSystem::mechanics), it has the particles of these; otherwise it has
+    /// none, and errors are those of its plain numbers.
     FirstOrder(FirstOrder),
+    /// First-order system whose state is the positions (m) of points, n x 3 in column-major order:
+    /// f is their velocity.
+    Points(FirstOrder),
     /// Network of masses and springs.
     Network(Box<Network>),
 }
@@ -36,7 +42,7 @@ impl Model {
     #[must_use]
     pub fn system(&self) -> &dyn ParticleSystem {
         match self {
-            Self::FirstOrder(system) => system.as_ref(),
+            Self::FirstOrder(system) | Self::Points(system) => system.as_ref(),
             Self::Network(network) => network.as_ref(),
         }
     }
@@ -45,20 +51,52 @@ impl Model {
     #[must_use]
     pub fn network(&self) -> Option<&Network> {
         match self {
-            Self::FirstOrder(_) => None,
+            Self::FirstOrder(_) | Self::Points(_) => None,
             Self::Network(network) => Some(network),
         }
     }
 
-    /// Number of particles.
+    /// Number of particles, whose positions the state begins with; 0 where it is plain numbers.
     #[must_use]
     pub fn particles(&self) -> usize {
-        self.network()
-            .map_or(self.system().dim() / 3, Network::particles)
+        match self {
+            Self::FirstOrder(system) => system.mechanics().map_or(0, |m| m.inverse_masses().len()),
+            Self::Points(system) => system.dim() / 3,
+            Self::Network(network) => network.particles(),
+        }
+    }
+
+    /// Number of particles whose velocities follow the positions in the state.
+    pub(crate) fn particles_with_velocities(&self) -> usize {
+        match self {
+            Self::Points(_) => 0,
+            Self::FirstOrder(_) | Self::Network(_) => self.particles(),
+        }
+    }
+
+    /// Number of coordinates that two states differ by, which come first in them: three of each
+    /// particle or, where there are none, all numbers.
+    pub(crate) fn coordinates(&self) -> usize {
+        match self.particles() {
+            0 => self.system().dim(),
+            n => 3 * n,
+        }
+    }
+
+    /// Coordinates of a state y at time t (s), and their rates of change.
+    pub(crate) fn motion<'a>(&self, t: f64, y: &'a [f64]) -> (&'a [f64], Cow<'a, [f64]>) {
+        let n = 3 * self.particles_with_velocities();
+        if n > 0 {
+            return (&y[..n], Cow::Borrowed(&y[n..2 * n]));
+        }
+        let mut rates = vec![0.0; y.len()];
+        self.system().eval_f(t, y, &mut rates);
+        (y, Cow::Owned(rates))
     }
 
     /// Work of an evaluation, with the guard after a step, in evaluations of one particle on
-    /// springs: what searches count to end at the same run on every machine.
+    /// springs: what searches count to end at the same run on every machine. Three plain numbers
+    /// count as a particle.
     #[must_use]
     pub fn work(&self) -> f64 {
         let each = |network: &Network| {
@@ -71,7 +109,8 @@ impl Model {
                 1.0
             }
         };
-        self.particles() as f64 * self.network().map_or(1.0, each)
+        let particles = (self.coordinates() as f64 / 3.0).max(1.0);
+        particles * self.network().map_or(1.0, each)
     }
 }
 
@@ -158,12 +197,20 @@ impl Scene {
     /// that of a ball about this centre with all particles and bodies, or half the rest length of
     /// the longest spring if that is more. Where all is in one place, it is the way that the pins
     /// lead, the distance of the nearest obstacle, or the way of a second at the first speed or by
-    /// gravity; 1 if there is no length at all.
+    /// gravity; 1 if there is no length at all. Without particles, the centre is the origin, and the
+    /// radius the size of the largest number of the state.
     #[must_use]
     pub fn extent(&self) -> (Vector3<f64>, f64) {
         let n = self.model.particles();
         if self.state.len() != self.model.system().dim() {
             return (Vector3::zeros(), 1.0);
+        }
+        if n == 0 {
+            let largest = self
+                .state
+                .iter()
+                .fold(0.0, |most: f64, y| most.max(y.abs()));
+            return (Vector3::zeros(), if largest > 0.0 { largest } else { 1.0 });
         }
         let positions = &self.state[..3 * n];
         let middle = middle(positions);

@@ -63,7 +63,7 @@ pub struct Candidate {
 /// Returns `None` if `go_on` returned false.
 ///
 /// # Errors
-/// The scene cannot be run.
+/// The scene cannot be run, or the metric needs particles that it does not have.
 pub fn choose(
     scene: &Scene,
     reference: &Reference,
@@ -72,6 +72,7 @@ pub fn choose(
     go_on: GoOn,
     mut begin: impl FnMut(&'static Method),
 ) -> Result<Option<Vec<Candidate>>, Error> {
+    metric.check(&scene.model)?;
     let mut found: Vec<Candidate> = vec![];
     let modes = spectrum(scene.model.system(), 0.0, &scene.state);
     // The reference's own uncertainty is part of the error that is allowed.

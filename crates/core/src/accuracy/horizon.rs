@@ -42,7 +42,8 @@ pub struct Horizon {
     /// then it is not chaos that makes small errors grow, but springs that buckle out of the plane
     /// under compression.
     pub buckles: bool,
-    /// Largest root mean square distance of the particles from where they start, until then (m).
+    /// Largest root mean square distance of the particles from where they start, until then (m);
+    /// without particles, that of the numbers of the state.
     pub motion: f64,
 }
 
@@ -99,7 +100,7 @@ impl Ahead {
     ) -> Result<Option<Self>, Error> {
         let control = Control::Step(step);
         let mut run = Simulation::new(scene.clone(), method, control)?;
-        let n = 3 * run.particles();
+        let n = run.model().coordinates();
         let mut random = SplitMix(2);
         let mut beside = scene.clone();
         let size = SEPARATION * run.extent().1;
@@ -131,7 +132,11 @@ impl Ahead {
                     break 'rounds;
                 }
                 most = most.max(distance(run.state(), beside.state()) / first);
-                let moved = distance(run.state(), &scene.state) / (n as f64 / 3.0).sqrt();
+                let count = match run.particles() {
+                    0 => n,
+                    particles => particles,
+                };
+                let moved = distance(run.state(), &scene.state) / (count as f64).sqrt();
                 motion = motion.max(moved);
                 if most > AMPLIFICATION {
                     (grown, parted_at) = ((time, most), Some(time));
@@ -160,6 +165,9 @@ impl Ahead {
 /// Whether particles start in a plane, with velocities in it, and two runs part mostly out of it.
 fn leaves_plane(start: &[f64], run: &Simulation, beside: &Simulation) -> bool {
     let n = run.particles();
+    if n == 0 {
+        return false;
+    }
     let at = |y: &[f64], i: usize| Vector3::new(y[i], y[n + i], y[2 * n + i]);
     let outer = |vectors: &mut dyn Iterator<Item = Vector3<f64>>| {
         vectors.fold(Matrix3::zeros(), |sum, v| sum + v * v.transpose())

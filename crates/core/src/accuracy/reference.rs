@@ -62,7 +62,7 @@ pub struct Precision {
 }
 
 impl Precision {
-    /// The finest precision that double precision allows.
+    /// The finest precision of positions that double precision allows.
     pub const FINEST: Self = Self {
         metric: Metric::Position,
         uncertainty: 0.0,
@@ -85,7 +85,7 @@ pub struct Reference {
     pub(super) start: Snapshot,
     scope: Scope,
     trajectory: Trajectory,
-    /// Uncertainty of the positions at each frame (m).
+    /// Uncertainty at each frame, of the positions (m) or of the state.
     uncertain: Vec<f64>,
 }
 
@@ -96,15 +96,19 @@ impl Reference {
     /// # Errors
     /// The scene cannot be run, or the run of the reference blows up.
     pub fn finest(scene: &Scene, frames: Frames, go_on: GoOn) -> Result<Option<Self>, Error> {
-        Self::new(scene, frames, Scope::default(), Precision::FINEST, go_on)
+        let precision = Precision {
+            metric: Metric::of_motion(&scene.model),
+            ..Precision::FINEST
+        };
+        Self::new(scene, frames, Scope::default(), precision, go_on)
     }
 
     /// Reference of a scene from its start, for errors in a scope, as precise as asked for or as
     /// possible. `None` if `go_on` returned false.
     ///
     /// # Errors
-    /// The scene cannot be run, the run of the reference blows up, or the scope's particle does not
-    /// exist.
+    /// The scene cannot be run, the run of the reference blows up, or the metric or the scope's
+    /// particle is none of the scene's.
     pub fn new(
         scene: &Scene,
         frames: Frames,
@@ -112,13 +116,8 @@ impl Reference {
         precision: Precision,
         go_on: GoOn,
     ) -> Result<Option<Self>, Error> {
-        let particles = scene.model.particles();
-        if let Some(i) = scope.particle.filter(|i| *i >= particles) {
-            return Err(Error::Invalid(format!(
-                "there is no particle {i}: the scene has particles 0 to {}",
-                particles.max(1) - 1
-            )));
-        }
+        precision.metric.check(&scene.model)?;
+        scope.check(scene.model.particles())?;
         let mut making = Making {
             scene,
             precision,
@@ -171,12 +170,12 @@ impl Reference {
         Cow::Owned(self.trajectory.at(start, model, t).positions().to_vec())
     }
 
-    /// Time (s) until which positions are known to less than a ten-thousandth of the
-    /// [`floor`](Self::floor), and their uncertainty (m) until then: something happens afterwards
-    /// that is known less well. `None` if that is so from the beginning.
+    /// Time (s) until which positions, or a state without particles, are known to less than a
+    /// ten-thousandth of the [`floor`](Self::floor), and their uncertainty (m) until then: something
+    /// happens afterwards that is known less well. `None` if that is so from the beginning.
     #[must_use]
     pub fn clear_until(&self) -> Option<(f64, f64)> {
-        let most = CLEAR * self.floor.position;
+        let most = CLEAR * self.floor.of_coordinates();
         let count = self.uncertain.iter().take_while(|u| **u < most).count();
         let worst = self.uncertain[..count].iter().copied().fold(0.0, f64::max);
         (count > 0).then(|| (self.frames.time(count as u64), worst))
@@ -192,7 +191,7 @@ impl Reference {
     fn note_uncertainty(&mut self, others: &[Snapshot]) {
         for (k, (uncertain, other)) in (1..).zip(self.uncertain.iter_mut().zip(others)) {
             let errors = self.trajectory.errors(k, other, self.scope);
-            *uncertain = uncertain.min(errors.position);
+            *uncertain = uncertain.min(errors.of_coordinates());
         }
     }
 
