@@ -11,6 +11,7 @@ mod holding;
 mod matrix;
 mod mechanics;
 mod particles;
+mod parts;
 mod reading;
 mod rigid;
 mod scratch;
@@ -21,7 +22,7 @@ mod sweep;
 mod tearing;
 
 pub(crate) use attraction::{attract, let_go, mass_behind};
-pub use build::Network;
 pub(crate) use energies::{add_wind, energy_of_errors, is_conservative};
 pub(crate) use holding::{contradiction, is_nearly_singular};
+pub use parts::Network;
 pub use surfaces::Touch;

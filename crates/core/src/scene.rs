@@ -124,6 +124,32 @@ pub struct Swing {
 }
 
 /// Scene: a model, the state it starts from, and what a run of it can be disturbed by.
+///
+/// A decay y' = -50 y as a scene: explicit Euler is stable on it up to a step of 2 / 50 s.
+///
+/// ```
+/// use std::sync::Arc;
+///
+/// use a3_core::stability::{largest_step, spectrum};
+/// use a3_core::{Model, ParticleSystem, Scene, integrators};
+///
+/// struct Decay;
+///
+/// impl ParticleSystem for Decay {
+///     fn dim(&self) -> usize { 1 }
+///
+///     fn eval_f(&self, _t: f64, y: &[f64], dydt: &mut [f64]) {
+///         dydt[0] = -50.0 * y[0];
+///     }
+/// }
+///
+/// let scene = Scene::new("decay", Model::FirstOrder(Arc::new(Decay)), vec![1.0]);
+/// let modes = spectrum(scene.model.system(), 0.0, &scene.state);
+/// let euler = integrators::find("euler").unwrap();
+/// let limit = largest_step(euler, &modes)?.unwrap();
+/// assert!((limit.bounded - 0.04).abs() < 1e-8);
+/// # Ok::<(), a3_core::Error>(())
+/// ```
 #[derive(Clone)]
 pub struct Scene {
     /// Name, for messages and files.

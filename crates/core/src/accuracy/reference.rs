@@ -12,7 +12,9 @@
 use std::borrow::Cow;
 
 use super::errors::{Errors, Metric, Scope};
+use super::extrapolation::extrapolate;
 use super::frames::{Frames, GoOn};
+use super::precision::Precision;
 use super::run::{Between, Look, run};
 use super::snapshot::Snapshot;
 use super::trajectory::Trajectory;
@@ -31,8 +33,6 @@ const TOLERANCES: (f64, f64) = (1e-6, 1e-12);
 const LOOSER: f64 = 10.0;
 /// Longest step of the other method over its largest stable step.
 const SHARE: f64 = 0.25;
-/// Order of the other methods.
-const ORDER: i32 = 4;
 /// If both methods differ by less than this fraction of the difference between tolerances, the
 /// reference is trusted: the looser tolerance makes nearly all of that.
 const SURE: f64 = 0.3;
@@ -43,34 +43,37 @@ const BLURRED: f64 = 2.0;
 const REFINEMENTS: usize = 12;
 /// Uncertainty of a reference until something happens, over that afterwards.
 const CLEAR: f64 = 1e-4;
-/// Most powers of the step that are extrapolated away.
-const POWERS: usize = 3;
 /// Disagreement after two refinements over that before them, above which it no longer falls.
 const FALLS: f64 = 0.5;
 
-/// Precision that is asked of a reference: it is made no finer than this.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Precision {
-    /// Quantity that has to be precise.
-    pub metric: Metric,
-    /// Uncertainty that is enough, in the unit of the metric.
-    pub uncertainty: f64,
-    /// Most work of the runs at tolerances, each by what those before it predict, and of all runs
-    /// at steps together, in evaluations. Infinite where the uncertainty has to be reached at any
-    /// cost.
-    pub most: f64,
-}
-
-impl Precision {
-    /// The finest precision of positions that double precision allows.
-    pub const FINEST: Self = Self {
-        metric: Metric::Position,
-        uncertainty: 0.0,
-        most: f64::INFINITY,
-    };
-}
-
 /// Reference solution of a scene at each frame.
+///
+/// Explicit Euler on a decay y' = -y, whose error halves with its step:
+///
+/// ```
+/// # use std::sync::Arc;
+/// use a3_core::accuracy::{Frames, Reference, measure};
+/// # use a3_core::{Control, Model, ParticleSystem, Scene, integrators};
+/// # struct Decay;
+/// # impl ParticleSystem for Decay {
+/// #     fn dim(&self) -> usize { 1 }
+/// #     fn eval_f(&self, _t: f64, y: &[f64], dydt: &mut [f64]) { dydt[0] = -y[0]; }
+/// # }
+/// # let scene = Scene::new("decay", Model::FirstOrder(Arc::new(Decay)), vec![1.0]);
+///
+/// let go_on = || true;
+/// let reference = Reference::finest(&scene, Frames::new(1.0), &go_on)?.unwrap();
+/// assert!(reference.floor.state < 1e-12);
+///
+/// let euler = integrators::find("euler").unwrap();
+/// let error = |step: f64| -> Result<f64, a3_core::Error> {
+///     let outcome = measure(&scene, euler, Control::Step(step), &reference, &go_on)?;
+///     Ok(outcome.unwrap().errors.state)
+/// };
+/// let ratio = error(0.001)? / error(0.0005)?;
+/// assert!((ratio - 2.0).abs() < 0.001);
+/// # Ok::<(), a3_core::Error>(())
+/// ```
 pub struct Reference {
     /// Times of the reference.
     pub frames: Frames,
@@ -383,17 +386,4 @@ fn is_stuck(history: &[f64]) -> bool {
 /// Error for a method of the reference that is not in the table of methods.
 fn missing() -> Error {
     Error::Invalid("the methods that make a reference are not in the table".into())
-}
-
-/// Next row of the extrapolation: the run with half of the step, and its combinations with the row
-/// before, each of which lacks one more power of the step.
-fn extrapolate(row: Vec<Vec<Snapshot>>, halved: Vec<Snapshot>) -> Vec<Vec<Snapshot>> {
-    let mut next = vec![halved];
-    for (power, coarse) in row.into_iter().take(POWERS).enumerate() {
-        let share = 1.0 / (f64::powi(2.0, ORDER + power as i32) - 1.0);
-        let pairs = coarse.iter().zip(&next[power]);
-        let column = pairs.map(|(coarse, fine)| Snapshot::extrapolate(coarse, fine, share));
-        next.push(column.collect());
-    }
-    next
 }

@@ -1,6 +1,6 @@
 //! The hand that attracts a particle which constraints hold.
 
-use super::build::Network;
+use super::parts::Network;
 use crate::elements::{Attraction, Element};
 use crate::path::Path;
 

@@ -1,4 +1,4 @@
-//! A network of particles, and how it is built and changed.
+//! How a network is built and changed.
 
 use std::ops::Range;
 
@@ -7,6 +7,7 @@ use nalgebra::Vector3;
 use super::bodies::Bodies;
 use super::elements::Elements;
 use super::particles::Particles;
+use super::parts::Network;
 use super::strain::StrainLimits;
 use super::surfaces::{Surfaces, Touch};
 use super::tearing::Tears;
@@ -17,19 +18,6 @@ use crate::error::{Error, at_least, positive};
 use crate::path::Path;
 use crate::rigid::Body;
 use crate::spring::Spring;
-
-/// Particles, and the elements and constraints that act on them. What is not asked for costs
-/// nothing.
-#[derive(Clone, Debug)]
-pub struct Network {
-    pub(super) particles: Particles,
-    pub(super) elements: Elements,
-    pub(super) constraints: Constraints,
-    pub(super) bodies: Bodies,
-    pub(super) surfaces: Surfaces,
-    pub(super) tears: Tears,
-    pub(super) strain_limits: StrainLimits,
-}
 
 impl Network {
     /// Free particles of these masses (kg), without any force.

@@ -1,7 +1,7 @@
 //! The energy in a state of a network, and what may change it.
 
-use super::build::Network;
 use super::evaluation::at;
+use super::parts::Network;
 use crate::contact::Obstacle;
 use crate::elements::Element;
 use crate::energy::Energy;

@@ -4,8 +4,8 @@ use std::ops::Range;
 
 use nalgebra::Vector3;
 
-use super::build::Network;
 use super::evaluation::{at, prescribed};
+use super::parts::Network;
 use super::surfaces::Touch;
 use super::{crossings, energies};
 use crate::constraints::Constraint;

@@ -2,8 +2,8 @@
 
 use std::ops::Range;
 
-use super::build::Network;
 use super::evaluation::{drifting, finish, flow};
+use super::parts::Network;
 use crate::elements::force::Carried;
 use crate::elements::sheet::{Advance, LAWS, SPRING_FORCES, begin};
 use crate::elements::{Finish, Flow, Sheet};
