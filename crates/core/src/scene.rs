@@ -223,8 +223,8 @@ impl Scene {
     /// that of a ball about this centre with all particles and bodies, or half the rest length of
     /// the longest spring if that is more. Where all is in one place, it is the way that the pins
     /// lead, the distance of the nearest obstacle, or the way of a second at the first speed or by
-    /// gravity; 1 if there is no length at all. Without particles, the centre is the origin, and the
-    /// radius the size of the largest number of the state.
+    /// gravity; 1 if there is no length at all. Without particles, the centre is the origin, and
+    /// the radius the size of the largest number of the state.
     #[must_use]
     pub fn extent(&self) -> (Vector3<f64>, f64) {
         let n = self.model.particles();

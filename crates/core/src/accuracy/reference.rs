@@ -174,8 +174,9 @@ impl Reference {
     }
 
     /// Time (s) until which positions, or a state without particles, are known to less than a
-    /// ten-thousandth of the [`floor`](Self::floor), and their uncertainty (m) until then: something
-    /// happens afterwards that is known less well. `None` if that is so from the beginning.
+    /// ten-thousandth of the [`floor`](Self::floor), and their uncertainty (m) until then:
+    /// something happens afterwards that is known less well. `None` if that is so from the
+    /// beginning.
     #[must_use]
     pub fn clear_until(&self) -> Option<(f64, f64)> {
         let most = CLEAR * self.floor.of_coordinates();
