@@ -246,9 +246,10 @@ fn plain_numbers_grow_far_and_are_lost_where_they_are_none() {
         let f = |t, _: &[f64], dydt: &mut [f64]| {
             dydt.copy_from_slice(&[0.0, if t > 0.5 { f64::NAN } else { 1.0 }]);
         };
-        let control = match method(name).is_adaptive() {
-            true => Control::Tolerance(1e-6),
-            false => Control::Step(0.1),
+        let control = if method(name).is_adaptive() {
+            Control::Tolerance(1e-6)
+        } else {
+            Control::Step(0.1)
         };
         let mut run = Simulation::new(scene(f, vec![0.0; 2]), method(name), control).unwrap();
         let Err(Error::BlowUp(lost)) = run.advance_to(1.0) else {
