@@ -28,7 +28,7 @@ fn cloth(name: &str, side: usize) -> Scene {
 fn network(scene: &Scene) -> &Network {
     match &scene.model {
         Model::Network(network) => network,
-        Model::FirstOrder(_) => unreachable!("cloth is a network"),
+        Model::FirstOrder(_) | Model::Points(_) => unreachable!("cloth is a network"),
     }
 }
 

@@ -113,6 +113,11 @@ pub enum Cause {
         /// Index of the first such particle.
         particle: usize,
     },
+    /// Number of a state without particles that is not finite, or whose rate of change is not.
+    NumberNotFinite {
+        /// Index of the first such number.
+        index: usize,
+    },
     /// Failure of an adaptive method: no step meets its tolerance.
     StepTooSmall {
         /// Step at which the search for a shorter one ended (s).
@@ -285,6 +290,10 @@ impl fmt::Display for BlowUp {
                     "the position, velocity or acceleration of particle {particle} is not finite"
                 )
             }
+            Cause::NumberNotFinite { index } => write!(
+                f,
+                "number {index} of the state, or its rate of change, is not finite"
+            ),
             Cause::StepTooSmall { step } => {
                 write!(
                     f,

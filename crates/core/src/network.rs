@@ -13,6 +13,7 @@ mod holding;
 mod matrix;
 mod mechanics;
 mod particles;
+mod parts;
 mod reading;
 mod rigid;
 mod springs;
@@ -22,8 +23,8 @@ mod sweep;
 mod tearing;
 
 pub(crate) use attraction::{attract, let_go, mass_behind};
-pub use build::Network;
 pub use element::Element;
 pub(crate) use energies::{add_wind, energy_of_errors, is_conservative};
 pub(crate) use holding::{contradiction, is_nearly_singular};
+pub use parts::Network;
 pub use surfaces::Touch;

@@ -1,5 +1,6 @@
 //! Scenes: models, the states they start from, and the disturbances that their runs allow.
 
+use std::borrow::Cow;
 use std::sync::Arc;
 
 use nalgebra::Vector3;
@@ -26,8 +27,13 @@ pub type FirstOrder = Arc<dyn ParticleSystem + Send + Sync>;
 /// Model of a scene.
 #[derive(Clone)]
 pub enum Model {
-    /// First-order system y' = f(t, y) whose state is n x 3 positions in column-major order.
+    /// First-order system y' = f(t, y) of any length. If it offers its
+    /// [`mechanics`](ParticleSystem::mechanics), it has the particles of these; otherwise it has
+    /// none, and errors are those of its plain numbers.
     FirstOrder(FirstOrder),
+    /// First-order system whose state is the positions (m) of points, n x 3 in column-major order:
+    /// f is their velocity.
+    Points(FirstOrder),
     /// Network of masses and springs.
     Network(Box<Network>),
 }
@@ -37,7 +43,7 @@ impl Model {
     #[must_use]
     pub fn system(&self) -> &dyn ParticleSystem {
         match self {
-            Self::FirstOrder(system) => system.as_ref(),
+            Self::FirstOrder(system) | Self::Points(system) => system.as_ref(),
             Self::Network(network) => network.as_ref(),
         }
     }
@@ -46,21 +52,53 @@ impl Model {
     #[must_use]
     pub fn network(&self) -> Option<&Network> {
         match self {
-            Self::FirstOrder(_) => None,
+            Self::FirstOrder(_) | Self::Points(_) => None,
             Self::Network(network) => Some(network),
         }
     }
 
-    /// Returns the number of particles.
+    /// Returns the number of particles, whose positions the state begins with; 0 where it is plain
+    /// numbers.
     #[must_use]
     pub fn particles(&self) -> usize {
-        self.network()
-            .map_or(self.system().dim() / 3, Network::particles)
+        match self {
+            Self::FirstOrder(system) => system.mechanics().map_or(0, |m| m.inverse_masses().len()),
+            Self::Points(system) => system.dim() / 3,
+            Self::Network(network) => network.particles(),
+        }
+    }
+
+    /// Number of particles whose velocities follow the positions in the state.
+    pub(crate) fn particles_with_velocities(&self) -> usize {
+        match self {
+            Self::Points(_) => 0,
+            Self::FirstOrder(_) | Self::Network(_) => self.particles(),
+        }
+    }
+
+    /// Number of coordinates that two states differ by, which come first in them: three of each
+    /// particle or, where there are none, all numbers.
+    pub(crate) fn coordinates(&self) -> usize {
+        match self.particles() {
+            0 => self.system().dim(),
+            n => 3 * n,
+        }
+    }
+
+    /// Coordinates of a state y at time t (s), and their rates of change.
+    pub(crate) fn motion<'a>(&self, t: f64, y: &'a [f64]) -> (&'a [f64], Cow<'a, [f64]>) {
+        let n = 3 * self.particles_with_velocities();
+        if n > 0 {
+            return (&y[..n], Cow::Borrowed(&y[n..2 * n]));
+        }
+        let mut rates = vec![0.0; y.len()];
+        self.system().eval_f(t, y, &mut rates);
+        (y, Cow::Owned(rates))
     }
 
     /// Returns the cost of an evaluation, with the collision safeguard after a step, in evaluations
     /// of one particle on springs. Searches count it, so that they end at the same run on every
-    /// machine.
+    /// machine. Three plain numbers count as a particle.
     #[must_use]
     pub fn work(&self) -> f64 {
         let each = |network: &Network| {
@@ -72,7 +110,8 @@ impl Model {
                 1.0
             }
         };
-        self.particles() as f64 * self.network().map_or(1.0, each)
+        let particles = (self.coordinates() as f64 / 3.0).max(1.0);
+        particles * self.network().map_or(1.0, each)
     }
 }
 
@@ -86,6 +125,32 @@ pub struct Swing {
 }
 
 /// Scene: a model, the state it starts from, and the disturbances that a run of it allows.
+///
+/// A decay y' = -50 y as a scene: explicit Euler is stable on it up to a step of 2 / 50 s.
+///
+/// ```
+/// use std::sync::Arc;
+///
+/// use a3_core::stability::{largest_step, spectrum};
+/// use a3_core::{Model, ParticleSystem, Scene, integrators};
+///
+/// struct Decay;
+///
+/// impl ParticleSystem for Decay {
+///     fn dim(&self) -> usize { 1 }
+///
+///     fn eval_f(&self, _t: f64, y: &[f64], dydt: &mut [f64]) {
+///         dydt[0] = -50.0 * y[0];
+///     }
+/// }
+///
+/// let scene = Scene::new("decay", Model::FirstOrder(Arc::new(Decay)), vec![1.0]);
+/// let modes = spectrum(scene.model.system(), 0.0, &scene.state);
+/// let euler = integrators::find("euler").unwrap();
+/// let limit = largest_step(euler, &modes)?.unwrap();
+/// assert!((limit.bounded - 0.04).abs() < 1e-8);
+/// # Ok::<(), a3_core::Error>(())
+/// ```
 #[derive(Clone)]
 pub struct Scene {
     /// Name, for messages and files.
@@ -160,11 +225,20 @@ impl Scene {
     /// length of the longest spring if that is more. If all particles are in one place, it is the
     /// first of these that is not 0: the length of the pins' motion, the distance of the nearest
     /// obstacle, the distance moved in a second at the initial speed or by gravity; or else 1.
+    /// Without particles, the centre is the origin, and the radius the size of the largest number
+    /// of the state.
     #[must_use]
     pub fn extent(&self) -> (Vector3<f64>, f64) {
         let n = self.model.particles();
         if self.state.len() != self.model.system().dim() {
             return (Vector3::zeros(), 1.0);
+        }
+        if n == 0 {
+            let largest = self
+                .state
+                .iter()
+                .fold(0.0, |most: f64, y| most.max(y.abs()));
+            return (Vector3::zeros(), if largest > 0.0 { largest } else { 1.0 });
         }
         let positions = &self.state[..3 * n];
         let middle = middle(positions);

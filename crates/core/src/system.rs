@@ -32,6 +32,30 @@ pub enum Measure {
 }
 
 /// A first-order system y' = f(t, y).
+///
+/// Logistic growth y' = y (1 - y), whose solution from 1/2 is 1 / (1 + exp(-t)):
+///
+/// ```
+/// use a3_core::{ParticleSystem, integrators};
+///
+/// struct Logistic;
+///
+/// impl ParticleSystem for Logistic {
+///     fn dim(&self) -> usize { 1 }
+///
+///     fn eval_f(&self, _t: f64, y: &[f64], dydt: &mut [f64]) {
+///         dydt[0] = y[0] * (1.0 - y[0]);
+///     }
+/// }
+///
+/// let mut rk4 = integrators::find("rk4").unwrap().integrator(&Logistic)?;
+/// let mut y = [0.5];
+/// for k in 0..10 {
+///     rk4.step(&Logistic, 0.1 * f64::from(k), 0.1, &mut y)?;
+/// }
+/// assert!((y[0] - 1.0 / (1.0 + f64::exp(-1.0))).abs() < 1e-7);
+/// # Ok::<(), a3_core::Error>(())
+/// ```
 pub trait ParticleSystem {
     /// Returns the length of the state y.
     fn dim(&self) -> usize;
@@ -76,6 +100,28 @@ pub trait ParticleSystem {
 ///
 /// Each of x, v and F holds n x 3 numbers in column-major order: all x, then all y, then all z.
 /// Units are m, kg, s.
+///
+/// A ball that falls under its weight. Every method of order 2 is exact on its parabola:
+///
+/// ```
+/// use a3_core::{Mechanics, integrators};
+///
+/// struct Ball;
+///
+/// impl Mechanics for Ball {
+///     fn inverse_masses(&self) -> &[f64] { &[2.0] }
+///
+///     fn forces(&self, _t: f64, _x: &[f64], _v: &[f64], f: &mut [f64]) {
+///         f.copy_from_slice(&[0.0, -9.81 * 0.5, 0.0]);
+///     }
+/// }
+///
+/// let mut verlet = integrators::find("verlet").unwrap().integrator(&Ball)?;
+/// let mut y = [0.0, 0.0, 0.0, 3.0, 4.0, 0.0];
+/// verlet.step(&Ball, 0.0, 2.0, &mut y)?;
+/// assert_eq!(y[..2], [6.0, -11.62]);
+/// # Ok::<(), a3_core::Error>(())
+/// ```
 pub trait Mechanics {
     /// Returns the inverse mass of each particle (1/kg); 0 pins a particle.
     fn inverse_masses(&self) -> &[f64];

@@ -179,6 +179,26 @@ pub struct Picture<'a> {
     pub dark: bool,
 }
 
+impl Picture<'_> {
+    /// A picture of nothing but the background.
+    #[must_use]
+    pub fn new(camera: Camera) -> Self {
+        Self {
+            camera,
+            style: Style::default(),
+            scale: 1.0,
+            points: &[],
+            balls: &[],
+            solids: &[],
+            lines: &[],
+            liquid: Liquid::default(),
+            floor: None,
+            transparent: false,
+            dark: false,
+        }
+    }
+}
+
 /// A non-empty rectangular part of the target.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Tile {

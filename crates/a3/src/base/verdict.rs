@@ -27,7 +27,9 @@ fn advice(run: &Simulation, error: &Error, until: f64) -> String {
     match (lost.cause, lost.control) {
         (Cause::StepTooSmall { .. }, _) => "; a larger tolerance may do".into(),
         (Cause::ReadsVelocity | Cause::Pinched { .. } | Cause::Contradiction(_), _)
-        | (Cause::NotFinite { .. }, Control::Tolerance(_)) => String::new(),
+        | (Cause::NotFinite { .. } | Cause::NumberNotFinite { .. }, Control::Tolerance(_)) => {
+            String::new()
+        }
         (_, Control::Tolerance(_)) => "; a smaller tolerance may hold".into(),
         (_, Control::Step(_)) => match step_that_holds(run, until) {
             Some(holds) => format!("; a step of {holds} s would have held"),

@@ -9,9 +9,10 @@ use super::values::particle;
 
 /// Creates a parser of the metric of errors.
 pub fn metric() -> impl TypedValueParser<Value = Metric> {
-    choice(&Metric::ALL, |metric| {
+    choice(&Metric::OF_PARTICLES, |metric| {
         let help = match metric {
             Metric::Position => "Positions, root mean square over the particles (m)",
+            Metric::State => "Numbers of a state without particles",
             Metric::Energy => "Total energy (J)",
             Metric::Strain => "Lengths of the springs over their rest lengths, root mean square",
             Metric::Momentum => "Total momentum of the particles that are not pinned (kg m/s)",

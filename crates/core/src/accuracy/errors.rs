@@ -1,19 +1,42 @@
 //! Errors of states, and the scope in which they are taken.
 
+use crate::error::Error;
+use crate::scene::Model;
+
 /// Particles and times at which errors are taken.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Scope {
-    /// The only particle whose position and phase count; `None` for all of them.
+    /// The only particle whose position and phase count; `None` for all of them, or for all numbers
+    /// of a state without particles.
     pub particle: Option<usize>,
     /// Whether only the last frame counts, instead of the largest error of all frames.
     pub at_end: bool,
 }
 
+impl Scope {
+    /// `Ok` if the only particle that counts, if there is one, is one of that many.
+    pub(super) fn check(self, particles: usize) -> Result<(), Error> {
+        match self.particle {
+            Some(i) if i >= particles => Err(Error::Invalid(match particles.checked_sub(1) {
+                Some(last) => {
+                    format!("there is no particle {i}: the scene has particles 0 to {last}")
+                }
+                None => format!("there is no particle {i}: the scene has plain numbers"),
+            })),
+            _ => Ok(()),
+        }
+    }
+}
+
 /// Errors of a state, or the largest ones over the frames of a run.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Errors {
-    /// Root mean square over the particles of the distance from their reference positions (m).
+    /// Root mean square over the particles of the distance from their reference positions (m); 0
+    /// without particles.
     pub position: f64,
+    /// Root mean square over the numbers of the state of their errors, where it has no particles; 0
+    /// otherwise.
+    pub state: f64,
     /// Absolute error of the total energy (J); 0 for a first-order scene.
     pub energy: f64,
     /// Root mean square over the structural springs of the error of length over rest length; 0
@@ -23,7 +46,8 @@ pub struct Errors {
     /// for a first-order scene.
     pub momentum: f64,
     /// Time (s) by which the run is ahead of the reference or behind it: the error of the positions
-    /// along the reference velocities, over the largest speed squared of the reference.
+    /// along the reference velocities, over the largest speed squared of the reference. Without
+    /// particles, those of the numbers of the state.
     pub phase: f64,
     /// Error of the penetration of surfaces in contact: the largest depth over the thickness. 0
     /// where surfaces do not touch.
@@ -44,6 +68,7 @@ impl Errors {
     fn with(self, other: Self, f: impl Fn(f64, f64) -> f64) -> Self {
         Self {
             position: f(self.position, other.position),
+            state: f(self.state, other.state),
             energy: f(self.energy, other.energy),
             strain: f(self.strain, other.strain),
             momentum: f(self.momentum, other.momentum),
@@ -62,6 +87,12 @@ impl Errors {
     pub(super) fn min(self, other: Self) -> Self {
         self.with(other, f64::min)
     }
+
+    /// Error of the positions or, without particles, of the state.
+    pub(super) fn of_coordinates(&self) -> f64 {
+        // One of both is 0.
+        self.position + self.state
+    }
 }
 
 /// Choice of one of the [`Errors`].
@@ -70,6 +101,8 @@ pub enum Metric {
     /// Error of the positions (m).
     #[default]
     Position,
+    /// Error of the numbers of a state without particles, in their unit.
+    State,
     /// Error of the total energy (J).
     Energy,
     /// Error of length over rest length.
@@ -85,8 +118,8 @@ pub enum Metric {
 }
 
 impl Metric {
-    /// All metrics.
-    pub const ALL: [Self; 7] = [
+    /// Metrics of scenes with particles.
+    pub const OF_PARTICLES: [Self; 7] = [
         Self::Position,
         Self::Energy,
         Self::Strain,
@@ -107,7 +140,35 @@ impl Metric {
             Self::Phase => "phase",
             Self::Penetration => "penetration",
             Self::Impact => "impact",
+            Self::State => "state",
         }
+    }
+
+    /// Metric of the motion of a model: the error of its positions or, without particles, of the
+    /// numbers of its state.
+    #[must_use]
+    pub fn of_motion(model: &Model) -> Self {
+        match model.particles() {
+            0 => Self::State,
+            _ => Self::Position,
+        }
+    }
+
+    /// `Ok` if a model has particles, or if the metric does not need any.
+    pub(super) fn check(self, model: &Model) -> Result<(), Error> {
+        let why = match (self, model.particles()) {
+            (Self::State | Self::Phase, 0) => return Ok(()),
+            (_, 0) => {
+                "the scene has no particles, but plain numbers: ask for the error of the state or \
+                 of the phase"
+            }
+            (Self::State, _) => {
+                "the scene has particles: ask for the error of their positions instead of that of \
+                 the state"
+            }
+            _ => return Ok(()),
+        };
+        Err(Error::Invalid(why.into()))
     }
 
     /// Error that the metric chooses, in its unit.
@@ -115,6 +176,7 @@ impl Metric {
     pub fn of(self, errors: &Errors) -> f64 {
         match self {
             Self::Position => errors.position,
+            Self::State => errors.state,
             Self::Energy => errors.energy,
             Self::Strain => errors.strain,
             Self::Momentum => errors.momentum,

@@ -43,7 +43,7 @@ pub struct Horizon {
     /// under compression.
     pub buckles: bool,
     /// Largest root mean square distance of the particles from their start positions, until then
-    /// (m).
+    /// (m); without particles, that of the numbers of the state.
     pub motion: f64,
 }
 
@@ -104,7 +104,7 @@ impl TwoRuns {
     ) -> Result<Option<Self>, Error> {
         let control = Control::Step(step);
         let mut run = Simulation::new(scene.clone(), method, control)?;
-        let n = 3 * run.particles();
+        let n = run.model().coordinates();
         let mut random = SplitMix(2);
         let mut beside = scene.clone();
         let size = SEPARATION * run.extent().1;
@@ -136,7 +136,11 @@ impl TwoRuns {
                     break 'rounds;
                 }
                 most = most.max(distance(run.state(), beside.state()) / first);
-                let moved = distance(run.state(), &scene.state) / (n as f64 / 3.0).sqrt();
+                let count = match run.particles() {
+                    0 => n,
+                    particles => particles,
+                };
+                let moved = distance(run.state(), &scene.state) / (count as f64).sqrt();
                 motion = motion.max(moved);
                 if most > MAX_AMPLIFICATION {
                     (grown, parted_at) = ((time, most), Some(time));
@@ -166,6 +170,9 @@ impl TwoRuns {
 /// it.
 fn leaves_plane(start: &[f64], run: &Simulation, beside: &Simulation) -> bool {
     let n = run.particles();
+    if n == 0 {
+        return false;
+    }
     let at = |y: &[f64], i: usize| Vector3::new(y[i], y[n + i], y[2 * n + i]);
     let outer = |vectors: &mut dyn Iterator<Item = Vector3<f64>>| {
         vectors.fold(Matrix3::zeros(), |sum, v| sum + v * v.transpose())

@@ -46,7 +46,7 @@ pub fn measure(
 
 /// As [`measure`], with the computing time by a clock: a function that returns the time since some
 /// fixed moment. The largest error of each coordinate over the frames that count (m) is written to
-/// `coordinates`, n x 3, unless that is empty.
+/// `coordinates`, n x 3, unless that is empty; without particles, that of each number of the state.
 ///
 /// # Errors
 /// The method does not support the scene or the control, or the run fails without a blow-up.
@@ -71,7 +71,7 @@ pub fn measure_by(
             let mut at = (reference.frames.time(k), last.positions());
             if let Some(step) = &seen.within {
                 let at_end = reference.errors_between(model, k, step);
-                if at_end.position < here.position {
+                if at_end.of_coordinates() < here.of_coordinates() {
                     at = step.nearest;
                 }
                 here = here.min(at_end);

@@ -3,12 +3,14 @@
 
 mod choose;
 mod errors;
+mod extrapolation;
 mod frames;
 mod hermite;
 mod horizon;
 mod impact;
 mod ladder;
 mod measure;
+mod precision;
 mod reference;
 mod run;
 mod snapshot;
@@ -20,5 +22,6 @@ pub use frames::{Frames, GoOn};
 pub use horizon::{Horizon, horizon};
 pub use ladder::{coarser, ladder};
 pub use measure::{Outcome, measure, measure_by};
-pub use reference::{Precision, Reference};
+pub use precision::Precision;
+pub use reference::Reference;
 pub use run::{EnclosingStep, FrameState, Visit, run};

@@ -12,7 +12,9 @@
 use std::borrow::Cow;
 
 use super::errors::{Errors, Metric, Scope};
+use super::extrapolation::extrapolate;
 use super::frames::{Frames, GoOn};
+use super::precision::Precision;
 use super::run::{EnclosingStep, FrameState, run};
 use super::snapshot::Snapshot;
 use super::trajectory::Trajectory;
@@ -31,8 +33,6 @@ const TOLERANCES: (f64, f64) = (1e-6, 1e-12);
 const RATIO: f64 = 10.0;
 /// Longest step of the other method over its largest stable step.
 const MAX_STEP_SHARE: f64 = 0.25;
-/// Order of the other methods.
-const ORDER: i32 = 4;
 /// If both methods differ by less than this fraction of the difference between tolerances, the
 /// reference is trusted: nearly all of that difference is the error of the looser tolerance.
 const TRUSTED_SHARE: f64 = 0.3;
@@ -43,33 +43,37 @@ const STUCK_TRUSTED_SHARE: f64 = 2.0;
 const MAX_REFINEMENTS: usize = 12;
 /// Uncertainty, over the largest of all frames, below which positions count as precisely known.
 const CLEAR_SHARE: f64 = 1e-4;
-/// Largest number of powers of the step that are extrapolated away.
-const MAX_POWERS: usize = 3;
 /// Ratio of disagreements before and after two refinements, above which they no longer fall.
 const STUCK_RATIO: f64 = 0.5;
 
-/// Precision required of a reference; it is made no more precise.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Precision {
-    /// Quantity that the precision is of.
-    pub metric: Metric,
-    /// Sufficient uncertainty, in the unit of the metric.
-    pub uncertainty: f64,
-    /// Largest work, in evaluations: of each run at a tolerance, as predicted by those before it,
-    /// and of all runs at steps together. Infinite if the uncertainty must be reached at any cost.
-    pub max_work: f64,
-}
-
-impl Precision {
-    /// The highest precision that double precision allows.
-    pub const FINEST: Self = Self {
-        metric: Metric::Position,
-        uncertainty: 0.0,
-        max_work: f64::INFINITY,
-    };
-}
-
 /// Reference solution of a scene at each frame.
+///
+/// Explicit Euler on a decay y' = -y, whose error halves with its step:
+///
+/// ```
+/// # use std::sync::Arc;
+/// use a3_core::accuracy::{Frames, Reference, measure};
+/// # use a3_core::{Control, Model, ParticleSystem, Scene, integrators};
+/// # struct Decay;
+/// # impl ParticleSystem for Decay {
+/// #     fn dim(&self) -> usize { 1 }
+/// #     fn eval_f(&self, _t: f64, y: &[f64], dydt: &mut [f64]) { dydt[0] = -y[0]; }
+/// # }
+/// # let scene = Scene::new("decay", Model::FirstOrder(Arc::new(Decay)), vec![1.0]);
+///
+/// let go_on = || true;
+/// let reference = Reference::finest(&scene, Frames::new(1.0), &go_on)?.unwrap();
+/// assert!(reference.floor.state < 1e-12);
+///
+/// let euler = integrators::find("euler").unwrap();
+/// let error = |step: f64| -> Result<f64, a3_core::Error> {
+///     let outcome = measure(&scene, euler, Control::Step(step), &reference, &go_on)?;
+///     Ok(outcome.unwrap().errors.state)
+/// };
+/// let ratio = error(0.001)? / error(0.0005)?;
+/// assert!((ratio - 2.0).abs() < 0.001);
+/// # Ok::<(), a3_core::Error>(())
+/// ```
 pub struct Reference {
     /// Times of the reference.
     pub frames: Frames,
@@ -84,7 +88,7 @@ pub struct Reference {
     pub(super) start: Snapshot,
     scope: Scope,
     trajectory: Trajectory,
-    /// Uncertainty of the positions at each frame (m).
+    /// Uncertainty at each frame, of the positions (m) or of the state.
     uncertain: Vec<f64>,
 }
 
@@ -95,15 +99,19 @@ impl Reference {
     /// # Errors
     /// The scene cannot be run, or the run of the reference blows up.
     pub fn finest(scene: &Scene, frames: Frames, go_on: GoOn) -> Result<Option<Self>, Error> {
-        Self::new(scene, frames, Scope::default(), Precision::FINEST, go_on)
+        let precision = Precision {
+            metric: Metric::of_motion(&scene.model),
+            ..Precision::FINEST
+        };
+        Self::new(scene, frames, Scope::default(), precision, go_on)
     }
 
     /// Reference of a scene from its start, for errors in a scope, with the required precision or
     /// the highest possible. `None` if `go_on` returned false.
     ///
     /// # Errors
-    /// The scene cannot be run, the run of the reference blows up, or the scope's particle does not
-    /// exist.
+    /// The scene cannot be run, the run of the reference blows up, or the metric or the scope's
+    /// particle is none of the scene's.
     pub fn new(
         scene: &Scene,
         frames: Frames,
@@ -111,13 +119,8 @@ impl Reference {
         precision: Precision,
         go_on: GoOn,
     ) -> Result<Option<Self>, Error> {
-        let particles = scene.model.particles();
-        if let Some(i) = scope.particle.filter(|i| *i >= particles) {
-            return Err(Error::Invalid(format!(
-                "there is no particle {i}: the scene has particles 0 to {}",
-                particles.max(1) - 1
-            )));
-        }
+        precision.metric.check(&scene.model)?;
+        scope.check(scene.model.particles())?;
         let mut making = Making {
             scene,
             precision,
@@ -170,12 +173,12 @@ impl Reference {
         Cow::Owned(self.trajectory.at(start, model, t).positions().to_vec())
     }
 
-    /// Time (s) until which positions are known to less than a ten-thousandth of the
-    /// [`floor`](Self::floor), and their uncertainty (m) until then: a later event is less certain.
-    /// `None` if no positions are known so precisely.
+    /// Time (s) until which positions, or a state without particles, are known to less than a
+    /// ten-thousandth of the [`floor`](Self::floor), and their uncertainty (m) until then: a later
+    /// event is less certain. `None` if none are known so precisely.
     #[must_use]
     pub fn clear_until(&self) -> Option<(f64, f64)> {
-        let most = CLEAR_SHARE * self.floor.position;
+        let most = CLEAR_SHARE * self.floor.of_coordinates();
         let count = self.uncertain.iter().take_while(|u| **u < most).count();
         let worst = self.uncertain[..count].iter().copied().fold(0.0, f64::max);
         (count > 0).then(|| (self.frames.time(count as u64), worst))
@@ -191,7 +194,7 @@ impl Reference {
     fn note_uncertainty(&mut self, others: &[Snapshot]) {
         for (k, (uncertain, other)) in (1..).zip(self.uncertain.iter_mut().zip(others)) {
             let errors = self.trajectory.errors(k, other, self.scope);
-            *uncertain = uncertain.min(errors.position);
+            *uncertain = uncertain.min(errors.of_coordinates());
         }
     }
 
@@ -384,17 +387,4 @@ fn is_stuck(history: &[f64]) -> bool {
 /// Error for a method of the reference that is not in the table of methods.
 fn missing() -> Error {
     Error::Invalid("the methods that make a reference are not in the table".into())
-}
-
-/// Next row of the extrapolation: the run with half of the step, and its combinations with the row
-/// before, each of which lacks one more power of the step.
-fn extrapolate(row: Vec<Vec<Snapshot>>, halved: Vec<Snapshot>) -> Vec<Vec<Snapshot>> {
-    let mut next = vec![halved];
-    for (power, coarse) in row.into_iter().take(MAX_POWERS).enumerate() {
-        let share = 1.0 / (f64::powi(2.0, ORDER + power as i32) - 1.0);
-        let pairs = coarse.iter().zip(&next[power]);
-        let column = pairs.map(|(coarse, fine)| Snapshot::extrapolate(coarse, fine, share));
-        next.push(column.collect());
-    }
-    next
 }

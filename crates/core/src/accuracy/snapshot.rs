@@ -15,9 +15,11 @@ use crate::system::Mechanics;
 /// Quantities of a state that are compared.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Snapshot {
-    /// Positions (m): all x, all y, all z.
+    /// Number of particles.
+    particles: usize,
+    /// Positions (m): all x, all y, all z. Without particles, all numbers of the state.
     positions: Vec<f64>,
-    /// Velocities (m/s).
+    /// Velocities (m/s): the rates of change of these.
     velocities: Vec<f64>,
     /// Total energy (J); 0 for a first-order scene.
     energy: f64,
@@ -35,11 +37,11 @@ impl Snapshot {
     /// Quantities of the state y of a model at time t (s), at which a run starts.
     pub fn of(model: &Model, t: f64, y: &[f64]) -> Self {
         let Some(network) = model.network() else {
-            let mut velocities = vec![0.0; y.len()];
-            model.system().eval_f(t, y, &mut velocities);
+            let (positions, velocities) = model.motion(t, y);
             return Self {
-                positions: y.to_vec(),
-                velocities,
+                particles: model.particles(),
+                positions: positions.to_vec(),
+                velocities: velocities.into_owned(),
                 ..Self::default()
             };
         };
@@ -69,6 +71,7 @@ impl Snapshot {
             strains: structural(network)
                 .map(|s| distance(positions, s.i, s.j) / s.law.rest_length)
                 .collect(),
+            particles: inverse_masses.len(),
             positions: positions.to_vec(),
             velocities: velocities.to_vec(),
             ..Self::default()
@@ -116,6 +119,7 @@ impl Snapshot {
         let at = match model.network() {
             Some(network) => Self::of_motion(network, &y),
             None => Self {
+                particles: model.particles(),
                 positions: x.to_vec(),
                 velocities: v.to_vec(),
                 ..Self::default()
@@ -165,8 +169,14 @@ impl Snapshot {
             pairs.map(|(own, other)| other - own)
         };
         let along = moved().zip(&self.velocities).map(|(d, v)| d * v);
+        let distance = self.mean(scope, moved().map(|d| d * d)).sqrt();
+        let (position, state) = match self.particles {
+            0 => (0.0, distance),
+            _ => (distance, 0.0),
+        };
         Errors {
-            position: self.mean(scope, moved().map(|d| d * d)).sqrt(),
+            position,
+            state,
             energy: (self.energy - other.energy).abs(),
             strain: (stretch.map(|(a, b)| (a - b).powi(2)).sum::<f64>() / springs).sqrt(),
             momentum: (self.momentum - other.momentum).norm(),
@@ -181,9 +191,12 @@ impl Snapshot {
         self.mean(scope, self.velocities.iter().map(|v| v * v))
     }
 
-    /// Sum over the axes of the mean over the particles in the scope.
+    /// Sum over the axes of the mean over the particles in the scope; without particles, the mean.
     fn mean(&self, scope: Scope, numbers: impl Iterator<Item = f64>) -> f64 {
-        let n = (self.positions.len() / 3).max(1);
+        let n = match self.particles {
+            0 => self.positions.len(),
+            n => n,
+        };
         match scope.particle {
             None => numbers.sum::<f64>() / n as f64,
             Some(i) => numbers.skip(i).step_by(n).sum(),
@@ -198,6 +211,7 @@ impl Snapshot {
             pairs.map(|(c, f)| both(c, f)).collect()
         };
         Self {
+            particles: fine.particles,
             positions: all(&coarse.positions, &fine.positions),
             velocities: all(&coarse.velocities, &fine.velocities),
             energy: both(&coarse.energy, &fine.energy),

@@ -46,16 +46,16 @@ impl Trajectory {
     ) -> Errors {
         let at = |t: f64| self.at((start, frames), model, t);
         let (t, y) = step.nearest;
-        let errors = self.errors_of(&at(t), &Snapshot::between_frames(model, t, y), scope);
-        let mut position = errors.position;
+        let mut errors = self.errors_of(&at(t), &Snapshot::between_frames(model, t, y), scope);
         if step.times[1] - step.times[0] > frames.spacing() {
             let [begin, end] = step.times.map(|t| (t, at(t)));
             let told = [(begin.0, &begin.1), (end.0, &end.1)];
             let told = Snapshot::interpolated(model, &told, frames.time(k));
-            position = position.max(self.errors(k, &told, scope).position);
+            let told = self.errors(k, &told, scope);
+            errors.position = errors.position.max(told.position);
+            errors.state = errors.state.max(told.state);
         }
         Errors {
-            position,
             penetration: f64::INFINITY,
             impact: f64::INFINITY,
             ..errors

@@ -64,6 +64,29 @@ impl AdaptiveState {
 ///
 /// Besides scratch it remembers the length of its last step, as the first guess for the next, and
 /// the derivative at its end, which [`restart`](Self::restart) forgets.
+///
+/// A decay y' = -y to t = 1 and, by the polynomial of the last step, at a time within it:
+///
+/// ```
+/// use a3_core::integrators::{self, Tolerance};
+/// # use a3_core::ParticleSystem;
+/// # struct Decay;
+/// # impl ParticleSystem for Decay {
+/// #     fn dim(&self) -> usize { 1 }
+/// #     fn eval_f(&self, _t: f64, y: &[f64], dydt: &mut [f64]) { dydt[0] = -y[0]; }
+/// # }
+///
+/// let dopri5 = integrators::find("dopri5").unwrap();
+/// let mut adaptive = dopri5.adaptive(&Decay, Tolerance::new(1e-8)?).unwrap();
+/// let (mut t, mut y) = (0.0, [1.0]);
+/// while t < 1.0 {
+///     t += adaptive.advance(&Decay, t, 1.0 - t, &mut y)?.h;
+/// }
+/// assert!((y[0] - f64::exp(-1.0)).abs() < 1e-8);
+/// adaptive.interpolate(&Decay, 0.95, &mut y);
+/// assert!((y[0] - f64::exp(-0.95)).abs() < 1e-8);
+/// # Ok::<(), a3_core::Error>(())
+/// ```
 pub struct Adaptive {
     trial: Box<dyn Trial>,
     tolerance: Tolerance,

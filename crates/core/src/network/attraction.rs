@@ -1,6 +1,6 @@
 //! The pull of a hand on a particle that constraints hold.
 
-use super::build::Network;
+use super::parts::Network;
 use crate::elements::Attraction;
 use crate::path::Path;
 

@@ -1,4 +1,4 @@
-//! A network of particles, and how it is built and changed.
+//! How a network is built and changed.
 
 use std::ops::Range;
 
@@ -8,6 +8,7 @@ use super::bodies::Bodies;
 use super::element::Element;
 use super::elements::Elements;
 use super::particles::Particles;
+use super::parts::Network;
 use super::strain::StrainLimits;
 use super::surfaces::{Surfaces, Touch};
 use super::tearing::Tears;
@@ -18,19 +19,6 @@ use crate::error::{Error, at_least, positive};
 use crate::path::Path;
 use crate::rigid::Body;
 use crate::spring::Spring;
-
-/// Particles, and the elements and constraints that act on them. Elements that a scene does not use
-/// cost nothing.
-#[derive(Clone, Debug)]
-pub struct Network {
-    pub(super) particles: Particles,
-    pub(super) elements: Elements,
-    pub(super) constraints: Constraints,
-    pub(super) bodies: Bodies,
-    pub(super) surfaces: Surfaces,
-    pub(super) tears: Tears,
-    pub(super) strain_limits: StrainLimits,
-}
 
 impl Network {
     /// Creates a network of free particles of these masses (kg), without any force.

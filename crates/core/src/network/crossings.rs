@@ -4,7 +4,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 
-use super::build::Network;
+use super::parts::Network;
 use crate::contact::{Crossed, is_crowded};
 use crate::error::{Error, Vertex};
 use crate::sets::Sets;

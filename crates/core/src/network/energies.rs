@@ -1,8 +1,8 @@
 //! The energy in a state of a network, and the forces that change it.
 
-use super::build::Network;
 use super::element::Element;
 use super::evaluation::at;
+use super::parts::Network;
 use crate::contact::Obstacle;
 use crate::energy::Energy;
 use crate::path::Path;

@@ -5,7 +5,7 @@ use std::ops::Range;
 
 use nalgebra::Vector3;
 
-use super::build::Network;
+use super::parts::Network;
 use super::surfaces::Prescribed;
 use crate::elements::force::{At, DriftForces};
 use crate::elements::{Finish, Flow, flow_each};

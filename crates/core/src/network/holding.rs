@@ -2,8 +2,8 @@
 
 use nalgebra::Vector3;
 
-use super::build::Network;
 use super::evaluation::other_forces;
+use super::parts::Network;
 use crate::constraints::Turning;
 use crate::error::Unmet;
 

@@ -1,10 +1,10 @@
 //! A network as integrators see it: forces, accelerations, kicks and drifts, couplings and springs.
 
-use super::build::Network;
 use super::element::Element;
 use super::evaluation::{at, finish, flow, other_forces};
 use super::holding::hold_particles;
 use super::matrix;
+use super::parts::Network;
 use crate::columns::columns_mut;
 use crate::coupling::{Coupling, Diagonal, Matrix};
 use crate::elements::{Drag, Finish};

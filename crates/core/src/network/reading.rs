@@ -4,9 +4,9 @@ use std::ops::Range;
 
 use nalgebra::Vector3;
 
-use super::build::Network;
 use super::element::Element;
 use super::evaluation::{at, prescribed};
+use super::parts::Network;
 use super::surfaces::Touch;
 use super::{crossings, energies};
 use crate::constraints::Constraint;

@@ -5,9 +5,9 @@ use std::ops::Range;
 
 use nalgebra::Vector3;
 
-use super::build::Network;
 use super::evaluation::{at, is_split};
 use super::holding::hold;
+use super::parts::Network;
 use crate::constraints::Turning;
 use crate::elements::Finish;
 use crate::elements::force::DriftForces;

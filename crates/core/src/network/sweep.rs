@@ -2,8 +2,8 @@
 
 use std::ops::Range;
 
-use super::build::Network;
 use super::evaluation::{drift_forces, finish, flow};
+use super::parts::Network;
 use crate::elements::force::DriftForces;
 use crate::elements::sheet::{Advance, LAWS, SPRING_FORCES, begin};
 use crate::elements::{Finish, Flow, Sheet};

@@ -47,10 +47,13 @@ impl Bounds {
         contradiction(network, t, network.halves(y).0, self.radius)
     }
 
-    /// The first particle that is farther than this many radii from the middle, or not finite, if
-    /// there is one.
+    /// The first particle that is farther than this many radii from the middle, or the first number
+    /// that is not finite, if there is one. Numbers of a first-order system may grow far.
     fn beyond(&self, radii: f64, model: &Model, y: &[f64]) -> Option<Cause> {
-        let n = model.particles();
+        let n = match model {
+            Model::FirstOrder(_) => 0,
+            Model::Points(_) | Model::Network(_) => model.particles(),
+        };
         let (x, v) = y.split_at(3 * n);
         let c = self.middle;
         let limit = (radii * self.radius).powi(2);
@@ -73,19 +76,22 @@ impl Bounds {
         if v.chunks(BLOCK_LENGTH).all(finite) {
             return None;
         }
-        v.iter()
-            .position(|v| !v.is_finite())
-            .map(|k| Cause::NotFinite {
-                particle: particle_of(model, 3 * n + k),
-            })
+        let first = v.iter().position(|v| !v.is_finite());
+        first.map(|k| not_finite(model, 3 * n + k))
     }
 }
 
-/// Particle to which number k of a state belongs: for the rotation of a rigid body, its centre.
-fn particle_of(model: &Model, k: usize) -> usize {
+/// The cause of a blow-up where number k of a state is not finite: it names the particle that the
+/// number belongs to, which is the centre for the rotation of a rigid body.
+pub(super) fn not_finite(model: &Model, k: usize) -> Cause {
     let n = model.particles();
+    if n == 0 {
+        return Cause::NumberNotFinite { index: k };
+    }
     let body = k.checked_sub(6 * n).map(|k| k / ROTATION);
     let network = model.network();
     let body = body.and_then(|body| network?.bodies().get(body));
-    body.map_or(k % n, Body::center)
+    Cause::NotFinite {
+        particle: body.map_or(k % n, Body::center),
+    }
 }

@@ -207,7 +207,7 @@ impl Driver {
         };
         match &mut self.pipeline.stepper {
             Stepper::Fixed(_) => {
-                let n = network.map_or(0, |_| model.particles());
+                let n = model.particles_with_velocities();
                 self.within.interpolate((system, n), time, y);
             }
             Stepper::Adaptive(adaptive) => {

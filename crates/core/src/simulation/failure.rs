@@ -1,6 +1,8 @@
 //! Failures of steps.
 
+use super::bounds::not_finite;
 use crate::error::{Cause, Error, Refusal};
+use crate::scene::Model;
 
 /// Reason why a run cannot continue.
 pub(super) enum Failure {
@@ -16,13 +18,10 @@ impl From<Error> for Failure {
     }
 }
 
-/// The cause of a blow-up of n particles, if that is why a step failed; any other error is
-/// returned.
-pub(super) fn cause_of(error: Error, n: usize) -> Result<Cause, Error> {
+/// Returns the cause of a blow-up of a model by a step that failed; any other error is returned.
+pub(super) fn cause_of(error: Error, model: &Model) -> Result<Cause, Error> {
     match error {
-        Error::NotFinite { component, .. } => Ok(Cause::NotFinite {
-            particle: component % n,
-        }),
+        Error::NotFinite { component, .. } => Ok(not_finite(model, component)),
         Error::StepTooSmall { step, .. } => Ok(Cause::StepTooSmall { step }),
         Error::NoConvergence { residual } => Ok(Cause::NoConvergence { residual }),
         Error::Unsupported {

@@ -30,7 +30,7 @@ impl Simulation {
         &self.state.y
     }
 
-    /// Number of particles.
+    /// Number of particles; 0 where the state is plain numbers.
     #[must_use]
     pub fn particles(&self) -> usize {
         self.model.particles()
@@ -44,16 +44,21 @@ impl Simulation {
     }
 
     /// Position of particle i (m).
+    ///
+    /// # Panics
+    /// There is no such particle.
     #[must_use]
     pub fn position(&self, i: usize) -> Vector3<f64> {
-        row(&self.state.y, self.particles(), i)
+        let n = self.particles();
+        row(&self.state.y[..3 * n], n, i)
     }
 
-    /// Velocities (m/s), column-major: of a mechanical scene from its state, of a first-order one
-    /// from f.
+    /// Velocities (m/s), n x 3 in column-major order: of particles with masses from the state, of
+    /// points from f. Without particles, the rates of change of the state.
     #[must_use]
     pub fn velocities(&self) -> Vec<f64> {
-        self.state.velocities(&self.model)
+        let (_, velocities) = self.model.motion(self.time(), &self.state.y);
+        velocities.into_owned()
     }
 
     /// The energy (J), if the scene has forces.
@@ -63,7 +68,7 @@ impl Simulation {
         network.map(|network| network.energy_of(self.time(), &self.state.y))
     }
 
-    /// Height of the lowest particle (m).
+    /// Height of the lowest particle (m); 0 without particles.
     #[must_use]
     pub fn lowest(&self) -> f64 {
         self.positions().column(1).min()
@@ -110,7 +115,7 @@ impl Simulation {
         let time = self.time();
         self.stop();
         match &mut self.model {
-            Model::FirstOrder(_) => None,
+            Model::FirstOrder(_) | Model::Points(_) => None,
             Model::Network(network) => Some(change(network, &mut self.state, time)),
         }
     }

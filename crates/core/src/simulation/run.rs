@@ -16,6 +16,30 @@ use crate::network::{Network, is_conservative};
 use crate::scene::{Model, Scene};
 
 /// A run of a scene.
+///
+/// A network falls from where its spring has its rest length, and swings about the place where it
+/// hangs at rest, 0.1 m below:
+///
+/// ```
+/// # use a3_core::{Control, Model, Network, Path, Scene, Simulation, integrators};
+/// # use a3_core::{Spring, SpringKind, SpringLaw, Vector3};
+/// # let mut network = Network::new(vec![1.0; 2])?;
+/// # let law = SpringLaw::new(98.1, 1.0, 0.0)?;
+/// # network.add_spring(Spring { kind: SpringKind::Structural, i: 0, j: 1, law })?;
+/// # network.pin(0, Path::Still(Vector3::zeros()))?;
+/// # network.set_gravity(Vector3::new(0.0, -9.81, 0.0));
+/// # let mut state = vec![0.0; 12];
+/// # state[3] = -1.0;
+/// # let scene = Scene::new("weight", Model::Network(Box::new(network)), state);
+/// let verlet = integrators::find("verlet").unwrap();
+/// let mut run = Simulation::new(scene, verlet, Control::Step(0.001))?;
+/// let before = run.energy().unwrap().total();
+/// let half_period = std::f64::consts::PI / 98.1_f64.sqrt();
+/// run.advance_to(half_period)?;
+/// assert!((run.position(1).y + 1.2).abs() < 1e-5);
+/// assert!((run.energy().unwrap().total() - before).abs() < 1e-4);
+/// # Ok::<(), a3_core::Error>(())
+/// ```
 pub struct Simulation {
     pub(super) scene: Scene,
     pub(super) model: Model,

@@ -55,7 +55,7 @@ impl RunState {
     /// State of a run at the beginning of a scene.
     ///
     /// # Errors
-    /// The scene's state has another length than its model's, or surfaces cross there.
+    /// The scene's state has another length than its model's, or none; or surfaces cross there.
     pub(super) fn begin(
         scene: &Scene,
         method: &'static Method,
@@ -69,9 +69,10 @@ impl RunState {
                 found: y.len(),
             });
         }
-        if dim == 0 || dim % 3 != 0 && model.network().is_none() {
+        if dim == 0 || matches!(model, Model::Points(_)) && dim % 3 != 0 {
             return Err(Error::Invalid(format!(
-                "the state of a scene must be n x 3 numbers, not {dim}"
+                "the state of a scene must be one number or more, and that of points n x 3, not \
+                 {dim}"
             )));
         }
         if let Some(network) = model.network().filter(|n| n.contact_layer().is_some()) {
@@ -119,17 +120,6 @@ impl RunState {
             time,
             cause,
         }
-    }
-
-    /// Velocities (m/s) of a model, column-major: of a mechanical one from the state, of a
-    /// first-order one from f.
-    pub(super) fn velocities(&self, model: &Model) -> Vec<f64> {
-        if let Some(network) = model.network() {
-            return network.halves(&self.y).1.to_vec();
-        }
-        let mut v = vec![0.0; self.y.len()];
-        model.system().eval_f(self.time(), &self.y, &mut v);
-        v
     }
 
     /// Simulated time, which is shown (s).

@@ -230,7 +230,7 @@ impl Pipeline {
                 Ok(reach.part(t, taken.h))
             }
             Err(error) => {
-                let cause = cause_of(error, model.particles());
+                let cause = cause_of(error, model);
                 Err(cause.map_or_else(Setback::Error, Setback::BlowUp))
             }
         }

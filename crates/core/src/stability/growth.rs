@@ -6,6 +6,24 @@ use crate::error::Error;
 use crate::integrators::{Integrator, Method};
 
 /// Growth of a mode in one step of a method.
+///
+/// Explicit Euler lets an undamped mode of frequency w grow by the root of 1 + (h w)^2 in a step,
+/// and symplectic Euler not at all up to h w = 2:
+///
+/// ```
+/// use a3_core::integrators;
+/// use a3_core::stability::{Growth, Mode};
+///
+/// let mode = Mode { stiffness: 4.0, ..Mode::default() };
+/// let growth = |name: &str, h: f64| -> Result<f64, a3_core::Error> {
+///     let method = integrators::find(name).unwrap();
+///     Ok(Growth::new(method, mode)?.of_step(h))
+/// };
+/// assert!((growth("euler", 0.1)? - 1.04_f64.sqrt()).abs() < 1e-15);
+/// assert!((growth("symplectic", 0.99)? - 1.0).abs() < 1e-12);
+/// assert!(growth("symplectic", 1.01)? > 1.3);
+/// # Ok::<(), a3_core::Error>(())
+/// ```
 pub struct Growth {
     system: Tied,
     integrator: Box<dyn Integrator>,

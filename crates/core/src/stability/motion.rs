@@ -87,7 +87,7 @@ impl Motion {
             .ok_or_else(|| Error::Invalid("no accurate method is in the table".into()))?;
         let start = |scene| Simulation::new(scene, accurate, Control::Tolerance(TOLERANCE));
         let mut run = start(scene.clone())?;
-        let n = 3 * run.particles();
+        let n = scene.model.coordinates();
         let mut beside = start(disturbed(scene, SEPARATION * run.extent().1))?;
         let count = MAX_INTERVALS.min(MAX_COORDINATES / (2 * n)).max(50);
         let interval = HORIZON / count as f64;
@@ -148,7 +148,7 @@ impl Motion {
             .max(f64::MIN_POSITIVE);
         motion.most[1] = match scene.model {
             Model::Network(_) => MAX_EXCESS * kinetic,
-            Model::FirstOrder(_) => (GROWTH - 1.0) * kinetic,
+            Model::FirstOrder(_) | Model::Points(_) => (GROWTH - 1.0) * kinetic,
         };
         // The fastest come first, as they set most limits.
         motion
@@ -332,14 +332,14 @@ impl Motion {
     }
 }
 
-/// Scene whose free particles are displaced by up to this distance (m).
+/// Scene whose free particles are displaced by up to this distance (m); without particles, whose
+/// numbers differ by up to that.
 fn disturbed(scene: &Scene, size: f64) -> Scene {
     let mut scene = scene.clone();
-    let n = scene.model.particles();
     let mut random = SplitMix(2);
-    for k in 0..3 * n {
+    for k in 0..scene.model.coordinates() {
         let shift = size * random.between(-1.0, 1.0);
-        let pinned = |network: &Network| network.is_pinned(k % n);
+        let pinned = |network: &Network| network.is_pinned(k % network.particles());
         if !scene.model.network().is_some_and(pinned) {
             scene.state[k] += shift;
         }

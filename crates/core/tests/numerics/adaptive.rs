@@ -252,7 +252,7 @@ fn where_no_step_will_do_it_says_so() {
     }
     // A run that fails like this reports a blow-up: it neither hangs nor panics.
     let mut bare = scene("simple");
-    bare.model = a3_core::Model::FirstOrder(std::sync::Arc::new(Pole));
+    bare.model = a3_core::Model::Points(std::sync::Arc::new(Pole));
     bare.state = vec![1.0, 0.5, 0.25];
     let mut run = Simulation::new(bare, method("dopri5"), Control::Tolerance(1e-6)).unwrap();
     let Err(Error::BlowUp(lost)) = run.advance_to(2.0) else {
@@ -283,7 +283,7 @@ fn a_derivative_that_is_no_number_ends_a_run() {
     for m in integrators::METHODS.iter().filter(serving) {
         for from in [0.0, 0.2] {
             let mut bare = scene("simple");
-            bare.model = a3_core::Model::FirstOrder(std::sync::Arc::new(Undefined(from)));
+            bare.model = a3_core::Model::Points(std::sync::Arc::new(Undefined(from)));
             bare.state = vec![1.0; 3];
             let control = if m.is_adaptive() {
                 Control::Tolerance(1e-6)

@@ -224,7 +224,7 @@ fn what_is_not_finite_is_a_blow_up_that_names_its_particle() {
         || 1e300,
     ] {
         for entry in [0, 1, 4] {
-            let model = Model::FirstOrder(Arc::new(Failing(value, entry)));
+            let model = Model::Points(Arc::new(Failing(value, entry)));
             let mut run = Simulation::new(
                 bare(model, vec![0.5; 6]),
                 method("euler"),
@@ -270,7 +270,7 @@ fn the_state_goes_back_to_the_time_it_had_whatever_the_step_is_by_then() {
 fn scenes_that_do_not_fit_their_model_are_refused() {
     let scene = |length: usize| {
         bare(
-            Model::FirstOrder(Arc::new(Failing(|| 0.0, 0))),
+            Model::Points(Arc::new(Failing(|| 0.0, 0))),
             vec![0.0; length],
         )
     };

@@ -165,7 +165,7 @@ fn rods_keep_their_lengths_and_do_not_cross() {
 fn network(scene: &mut Scene) -> &mut Network {
     match &mut scene.model {
         Model::Network(network) => network,
-        Model::FirstOrder(_) => unreachable!(),
+        Model::FirstOrder(_) | Model::Points(_) => unreachable!(),
     }
 }
 

@@ -17,7 +17,7 @@ use crate::style::{CurveStyle, Filling};
 use panel::{Drawing, front_pen, shade_paint};
 
 /// A work-precision diagram. Accurate runs are on the left of it, and fast ones below.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct WorkPrecision {
     /// The title.
     pub title: String,

@@ -3,7 +3,7 @@
 use crate::style::CurveStyle;
 
 /// The error and the work of one run of a method.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Measurement {
     /// The error, on the horizontal axis.
     pub error: f64,
@@ -32,7 +32,7 @@ pub struct Curve {
 }
 
 /// A problem that methods were run on: one panel of the diagram.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Problem {
     /// The title of the panel; none if it is empty.
     pub title: String,

@@ -93,7 +93,7 @@ impl Description {
     ) -> Result<Setup, Fault> {
         let (model, mut state, surface, tanks, touch) = if let Some(circle) = &self.circle {
             let start = Vector3::from(circle.start);
-            let model = Model::FirstOrder(Arc::new(Circling));
+            let model = Model::Points(Arc::new(Circling));
             let start = start.as_slice().to_vec();
             (model, start, Surface::default(), vec![], None)
         } else {

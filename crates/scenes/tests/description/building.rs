@@ -111,7 +111,7 @@ fn every_cloth_has_its_springs() {
 fn a_state_stands_for_that_of_the_bodies() {
     let text = "[state]\npositions = [[3, 4, 0]]\n\n[circle]\nstart = [1, 0, 0]\n";
     let scene = build(text).unwrap();
-    assert!(matches!(scene.model, Model::FirstOrder(_)));
+    assert!(matches!(scene.model, Model::Points(_)));
     assert_eq!(scene.state, [3.0, 4.0, 0.0]);
     let of = |rows: usize| {
         format!(

@@ -325,8 +325,8 @@ pub fn stiffened(scene: &Scene, factor: f64) -> Result<Scene, Failure> {
         Model::Network(network) => network
             .scale_springs(factor, factor.sqrt())
             .map_err(Failure::usage)?,
-        Model::FirstOrder(_) if factor == 1.0 => {}
-        Model::FirstOrder(_) => {
+        Model::FirstOrder(_) | Model::Points(_) if factor == 1.0 => {}
+        Model::FirstOrder(_) | Model::Points(_) => {
             return Err(Failure::usage(format!(
                 "the scene {} has no springs: leave out --stiffness",
                 scene.name

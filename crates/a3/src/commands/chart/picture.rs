@@ -147,6 +147,7 @@ pub fn x_label(metric: Metric, scope: Scope) -> String {
     let what = match (metric, scope.particle) {
         (Metric::Position, None) => "RMS error of the positions".to_owned(),
         (Metric::Position, Some(i)) => format!("error of the position of particle {i}"),
+        (Metric::State, _) => "RMS error of the state".to_owned(),
         (Metric::Energy, _) => "error of the energy".to_owned(),
         (Metric::Strain, _) => "RMS error of the springs' stretch".to_owned(),
         (Metric::Momentum, _) => "error of the momentum".to_owned(),

@@ -133,6 +133,7 @@ impl Record {
         let or_lost = |error: Option<f64>| error.unwrap_or(f64::INFINITY);
         metric.of(&Errors {
             position: or_lost(self.error_position),
+            state: 0.0,
             energy: or_lost(self.error_energy),
             strain: or_lost(self.error_strain),
             momentum: or_lost(self.error_momentum),
@@ -151,6 +152,7 @@ impl Record {
     pub fn floor(&self, metric: Metric) -> f64 {
         metric.of(&Errors {
             position: self.floor_position,
+            state: 0.0,
             energy: self.floor_energy,
             strain: self.floor_strain,
             momentum: self.floor_momentum,
@@ -168,7 +170,7 @@ impl Record {
             Metric::Strain => self.still_strain,
             Metric::Penetration => self.still_penetration,
             Metric::Impact => self.still_impact,
-            Metric::Energy | Metric::Momentum | Metric::Phase => f64::INFINITY,
+            Metric::Energy | Metric::Momentum | Metric::Phase | Metric::State => f64::INFINITY,
         }
     }
 }

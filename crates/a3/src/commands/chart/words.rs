@@ -9,6 +9,7 @@ use crate::cli::What;
 pub fn unit(metric: Metric) -> &'static str {
     match metric {
         Metric::Position => "m",
+        Metric::State => "in its unit",
         Metric::Energy => "J",
         Metric::Strain => "of length",
         Metric::Momentum => "kg m/s",

@@ -103,9 +103,9 @@ impl Sweep {
         let error = match &text.error {
             None => Metric::default(),
             Some(error) => {
-                let mut all = Metric::ALL.into_iter();
+                let mut all = Metric::OF_PARTICLES.into_iter();
                 all.find(|metric| metric.name() == error).ok_or_else(|| {
-                    let all = Metric::ALL.map(Metric::name).join(", ");
+                    let all = Metric::OF_PARTICLES.map(Metric::name).join(", ");
                     format!("error: the choices are {all}, not {error}")
                 })?
             }
