@@ -64,8 +64,10 @@ mod geometry;
 mod grid;
 pub mod integrators;
 mod linear;
+mod measure;
 mod network;
 mod path;
+mod products;
 mod random;
 pub mod rigid;
 mod rows;
@@ -92,15 +94,15 @@ pub use energy::Energy;
 pub use error::{BlowUp, Cause, ConstraintName, Error, Refusal, Unmet, Vertex};
 pub use grid::{Grid, MAX_PARTICLES};
 pub use integrators::{Integrator, Method, Work};
+pub use measure::Measure;
 pub use nalgebra::Vector3;
 pub use network::{Element, Network, Touch};
 pub use path::{Orientation, Path, Place, Pose, Turn, rotation};
+pub use products::{Products, SolverHints};
 pub use scene::{FirstOrder, Model, Scene, StepLimits, Swing};
 pub use simulation::{Balance, Checkpoint, Gain, Grabbed, Progress, RunState, Simulation, Span};
 pub use spring::{Spring, SpringKind, SpringLaw};
-pub use system::{
-    Compliant, Linearized, Measure, Mechanics, ParticleSystem, Products, SolverHints, Splitting,
-};
+pub use system::{Compliant, Linearized, Mechanics, ParticleSystem, Splitting};
 
 /// Example of the README, compiled as a documentation test.
 #[cfg(doctest)]

@@ -4,32 +4,13 @@
 
 use std::ops::Range;
 
-use crate::coupling::{Coupling, Diagonal, Matrix};
+use crate::coupling::Coupling;
+use crate::measure::Measure;
 use crate::path::Place;
+use crate::products::{Products, SolverHints};
 use crate::rows::{Rows, Terms};
 use crate::spring::SpringLaw;
 use crate::threads::copy;
-
-/// Quantity that numbers of a state stand for. Errors of different quantities are not compared.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Measure {
-    /// Numbers of any unit.
-    Plain,
-    /// Positions (m).
-    Position,
-    /// Velocities (m/s).
-    Velocity,
-    /// Quaternion of a rigid body, of any length but 0.
-    Rotation {
-        /// Radius of the body (m).
-        radius: f64,
-    },
-    /// Angular momentum of a rigid body (kg m2/s).
-    Momentum {
-        /// Speed of the body's surface over the angular momentum (1/(kg m)).
-        speed: f64,
-    },
-}
 
 /// A first-order system y' = f(t, y).
 ///
@@ -271,53 +252,6 @@ pub trait Linearized: Mechanics {
     /// Returns the numbers by which methods choose how to solve.
     fn hints(&self) -> SolverHints {
         SolverHints::default()
-    }
-}
-
-/// Products with the matrix of an implicit step, for the first [`Coupling::Axial`] ones of a
-/// system's [couplings](Linearized::couplings). Each method treats as many of these.
-pub trait Products {
-    /// Writes the product of the matrix with p to `out`: that of the masses and of these couplings.
-    /// Returns the number of the couplings.
-    fn multiply(&self, matrix: &Matrix, p: &[f64], out: &mut [f64]) -> usize;
-
-    /// Adds the blocks that these couplings contribute to the diagonal of the matrix. Returns the
-    /// number of the couplings.
-    fn add_diagonal(&self, matrix: &Matrix, diagonal: &mut Diagonal) -> usize;
-
-    /// Visits all other couplings.
-    fn other_couplings(&self, t: f64, x: &[f64], clamped: bool, visit: &mut dyn FnMut(Coupling));
-}
-
-/// Numbers by which methods choose how to solve with the forces of a system.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SolverHints {
-    /// Length (m) of a motion in which forces may begin and end again, as those of contact do. An
-    /// iteration of Newton's method moves particles no farther. Infinite by default.
-    pub reach: f64,
-    /// Time of an evaluation of the forces coupling by coupling, over the time of the system's own
-    /// evaluation. Prices of linear algebra are relative to the former. 1 by default.
-    pub speed: f64,
-    /// Cost of the assembly of the matrix, in evaluations of the forces. 4 by default.
-    pub assembly: f64,
-}
-
-impl Default for SolverHints {
-    fn default() -> Self {
-        Self {
-            reach: f64::INFINITY,
-            speed: 1.0,
-            assembly: 4.0,
-        }
-    }
-}
-
-impl SolverHints {
-    /// Whether the same particles are coupled at all x, because no force begins and ends within its
-    /// reach. If not, no factorisation is tried, because the pattern of each would have to be
-    /// analysed.
-    pub(crate) fn pattern_is_fixed(&self) -> bool {
-        self.reach.is_infinite()
     }
 }
 

@@ -4,6 +4,7 @@ pub mod chart;
 pub mod choose;
 pub mod list;
 pub mod manual;
+mod motion;
 #[cfg(feature = "window")]
 pub mod render;
 pub mod simplify;

@@ -8,8 +8,9 @@
 use std::ops::Range;
 
 use crate::error::{Error, positive};
+use crate::measure::Measure;
 use crate::sums::{OnBlock, add_up, dot};
-use crate::system::{Measure, ParticleSystem};
+use crate::system::ParticleSystem;
 use crate::threads::{Columns, threads};
 
 /// Error that a step is allowed to make.

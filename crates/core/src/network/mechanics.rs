@@ -9,11 +9,11 @@ use crate::columns::columns_mut;
 use crate::coupling::{Coupling, Diagonal, Matrix};
 use crate::elements::{Drag, Finish};
 use crate::path::Place;
+use crate::products::{Products, SolverHints};
 use crate::rows::Terms;
 use crate::spring::SpringLaw;
 use crate::system::{
-    Compliant, Linearized, Mechanics, Products, RigidView, RowsView, SolverHints, Splitting,
-    divide_by_masses, place_pins,
+    Compliant, Linearized, Mechanics, RigidView, RowsView, Splitting, divide_by_masses, place_pins,
 };
 
 impl Mechanics for Network {

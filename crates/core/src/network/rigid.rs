@@ -11,9 +11,10 @@ use super::parts::Network;
 use crate::constraints::Turning;
 use crate::elements::Finish;
 use crate::elements::force::DriftForces;
+use crate::measure::Measure;
 use crate::rigid::{Body, ROTATION, Rotation};
 use crate::rows::Terms;
-use crate::system::{Measure, Mechanics, Rigid, Splitting, place_pins};
+use crate::system::{Mechanics, Rigid, Splitting, place_pins};
 
 /// Force (N) and torque about the centre (N m) on a body.
 #[derive(Clone, Copy, Default)]

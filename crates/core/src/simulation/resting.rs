@@ -16,9 +16,10 @@ use super::events::{Event, EventKind};
 use crate::columns::{row, set_row};
 use crate::contact::Obstacle;
 use crate::geometry::Shape;
+use crate::measure::Measure;
 use crate::network::Network;
 use crate::scene::Model;
-use crate::system::{Measure, ParticleSystem};
+use crate::system::ParticleSystem;
 
 /// Distance (m) in which friction or weight stops a motion that counts as rest, over the tolerated
 /// error. If it were larger, users would see particles stop; if smaller, particles that friction

@@ -16,7 +16,7 @@ use crate::base::failure::Failure;
 use crate::base::progress::Bar;
 use crate::base::{interrupt, terminal};
 use crate::cli::{Chart, WorkMeasure};
-use crate::commands::simplify::grid_error;
+use crate::commands::motion::grid_error;
 use crate::files::output;
 use crate::files::setup::Request;
 

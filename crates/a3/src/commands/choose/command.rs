@@ -14,7 +14,7 @@ use crate::commands::chart::single::{precision, reference};
 use crate::commands::chart::{
     check_contact, check_metric, check_motion, look_ahead, methods, scope, unit,
 };
-use crate::commands::simplify::grid_error;
+use crate::commands::motion::grid_error;
 use crate::files::setup::Request;
 
 /// Finds and prints what the command line asks for.

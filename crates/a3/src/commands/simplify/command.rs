@@ -7,13 +7,13 @@ use a3_core::accuracy::{Frames, Metric, Precision, Reference};
 use super::lean::{Answer, LeanModel, MOST_TIME, Solved, assemble, solve, solve_whole};
 use super::models::{Model, Models, measure_all};
 use super::table;
-use super::track::Points;
 use crate::base::failure::Failure;
 use crate::base::progress::Bar;
 use crate::base::{interrupt, terminal};
 use crate::cli::Simplify;
 use crate::commands::chart::single::reference;
 use crate::commands::chart::{check_motion, describe, look_ahead, scope};
+use crate::commands::motion::Points;
 use crate::files::output;
 use crate::files::setup::Request;
 

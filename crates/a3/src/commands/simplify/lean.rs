@@ -6,10 +6,10 @@ use a3_core::{Control, Method, Scene};
 use a3_scenes::{Description, Part, Regridded};
 
 use super::models::{Model, Models};
-use super::track::Motion;
 use crate::base::failure::Failure;
 use crate::base::interrupt;
 use crate::commands::chart::single::time;
+use crate::commands::motion::Motion;
 
 /// Share of the error that the model may make; the time steps may make the rest.
 const MODEL_SHARE: f64 = 0.6;

@@ -5,9 +5,6 @@
 mod command;
 mod lean;
 mod models;
-mod own;
 mod table;
-mod track;
 
 pub use command::run;
-pub use own::grid_error;

@@ -5,11 +5,11 @@ use a3_core::integrators::find;
 use a3_core::{Control, Method, Scene};
 use a3_scenes::{Description, Part, Regridded};
 
-use super::track::{Motion, Places, Points, Track};
 use crate::base::failure::Failure;
 use crate::base::interrupt;
 use crate::base::progress::Bar;
 use crate::commands::chart::single::time;
+use crate::commands::motion::{Motion, Places, Points, Track, grid};
 use crate::files::setup::Request;
 
 /// Tolerances at which models are integrated, from the largest on.
@@ -212,14 +212,4 @@ pub fn measure_all(models: &Models, all: &mut [Model], bar: &Bar) -> Result<bool
         bar.advance(weight(model));
     }
     Ok(true)
-}
-
-/// The grids of a scene in words: that of its first body that has one.
-pub fn grid(description: &Description) -> String {
-    let cloth = description.cloth.first().map(|it| it.grid.to_vec());
-    let jelly = || description.jelly.first().map(|it| it.grid.to_vec());
-    let solid = || description.solid.first()?.grid.map(|grid| grid.to_vec());
-    let grid = cloth.or_else(jelly).or_else(solid).unwrap_or_default();
-    let grid = grid.iter().map(ToString::to_string).collect::<Vec<_>>();
-    grid.join(" x ")
 }

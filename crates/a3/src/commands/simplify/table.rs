@@ -1,10 +1,10 @@
 //! The models as a table, and the leanest scene in words.
 
 use super::lean::{Answer, LeanModel};
-use super::models::{Model, grid};
-use super::own::GridError;
+use super::models::Model;
 use crate::commands::chart::table::words;
 use crate::commands::list;
+use crate::commands::motion::{GridError, grid};
 use a3_scenes::Description;
 
 /// Change of the motion, over the error that is asked for, above which a part is barely needed.

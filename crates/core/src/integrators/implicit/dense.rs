@@ -7,7 +7,8 @@ use crate::error::Error;
 use crate::integrators::arithmetic::add_scaled;
 use crate::integrators::integrator::check_dim;
 use crate::integrators::method::MAX_DENSE;
-use crate::system::{Measure, ParticleSystem, rigid_of};
+use crate::measure::Measure;
+use crate::system::{ParticleSystem, rigid_of};
 use crate::work::Work;
 
 /// Half the step of a difference quotient, over the unit of the number.

@@ -3,9 +3,8 @@
 use a3_core::accuracy::{Frames, Scope};
 use a3_core::integrators::find;
 use a3_core::{Control, Scene};
-use a3_scenes::Regridded;
+use a3_scenes::{Description, Regridded};
 
-use super::models::grid;
 use super::track::{Motion, Points};
 use crate::base::failure::Failure;
 use crate::files::setup::Request;
@@ -103,4 +102,14 @@ pub fn grid_error(
     };
     let finer = points.distance(&whole, &finer);
     Ok(Some(GridError::new(grid(own), coarser, finer)))
+}
+
+/// The grids of a scene in words: that of its first body that has one.
+pub fn grid(description: &Description) -> String {
+    let cloth = description.cloth.first().map(|it| it.grid.to_vec());
+    let jelly = || description.jelly.first().map(|it| it.grid.to_vec());
+    let solid = || description.solid.first()?.grid.map(|grid| grid.to_vec());
+    let grid = cloth.or_else(jelly).or_else(solid).unwrap_or_default();
+    let grid = grid.iter().map(ToString::to_string).collect::<Vec<_>>();
+    grid.join(" x ")
 }
