@@ -15,7 +15,7 @@ use a3_render::{Ball, Camera, Gpu, Line, OFFSCREEN_FORMAT, Offscreen, Picture, R
 /// Mass of the moon over that of both.
 const MOON: f64 = 0.012_277_471;
 /// Period of the orbit, in months over 2 pi.
-const PERIOD: f64 = 17.065_216_560_157_962;
+const PERIOD: f64 = 17.065_216_560_157_96;
 /// State at the start, in distances of the moon: x, y, x', y'.
 const START: [f64; 4] = [0.994, 0.0, 0.0, -2.001_585_106_379_082_5];
 
