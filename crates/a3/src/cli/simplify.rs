@@ -6,7 +6,7 @@ use clap::Args;
 
 use super::measures::ErrorScope;
 use super::run::What;
-use super::values::{error, horizon};
+use super::values::{error, horizon, picture_size};
 
 #[derive(Args)]
 pub struct Simplify {
@@ -28,4 +28,12 @@ pub struct Simplify {
     /// File for the leanest scene, ending in .toml, with its solver and step
     #[arg(long, short, value_name = "FILE.toml")]
     pub output: Option<PathBuf>,
+    /// Chart of the error against the cost, with the grid and the step both varied, ending in .svg,
+    /// .pdf or .png
+    #[arg(long, value_name = "FILE")]
+    pub chart: Option<PathBuf>,
+    /// Width and height of the chart in pixels, 96 to the inch, or `column`, 340x360, for a column
+    /// of a paper
+    #[arg(long, value_name = "WxH", default_value = "1200x800", value_parser = picture_size, allow_hyphen_values = true)]
+    pub size: (u32, u32),
 }

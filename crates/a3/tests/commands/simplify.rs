@@ -122,7 +122,7 @@ fn the_error_of_a_grid_is_that_of_a_closed_form() {
     let scene = "duration = 20\ngravity = [0, -9.81, 0]\ndrag_per_mass = 4\n[[cloth]]\ngrid = [9, 9]\nwidth = 1\n\
          density = 1\nstiffness = [200, 0, 0]\nat = [0, 0, 0]\npin = [{ at = [\"top\"] }]\n";
     write(folder, "hung.toml", scene);
-    let words = "simplify --scene hung.toml --error 1e-3 --at-end --until 20";
+    let words = "simplify --scene hung.toml --error 1e-3 --at-end --until 20 --chart models.svg";
     let table = said(folder, &words.split(' ').collect::<Vec<_>>());
     let (n, weight, k) = (9, 9.81, 200.0);
     let lower = |n: usize, j: usize| -> f64 {
@@ -144,6 +144,15 @@ fn the_error_of_a_grid_is_that_of_a_closed_form() {
     let said = table.split("errs by about ").nth(1).unwrap();
     let said: f64 = said.split(' ').next().unwrap().parse().unwrap();
     assert!((said / truth - 1.0).abs() < 0.15, "{said} {truth}\n{table}");
+    let chart = fs::read_to_string(folder.join("models.svg")).unwrap();
+    for word in [
+        "Models: hung",
+        "grid of 3 x 3",
+        "grid of 9 x 9",
+        "grid of 17 x 17",
+    ] {
+        assert!(chart.contains(word), "{word}");
+    }
     let order = table.split("(order ").nth(1).unwrap();
     let order: f64 = order.split(')').next().unwrap().parse().unwrap();
     assert!((0.8..1.2).contains(&order), "{order}");
@@ -163,6 +172,10 @@ fn what_cannot_be_simplified_is_refused_in_a_line() {
         (
             "simplify --error 1e-3 -o there.toml",
             "there.toml: there is such a file already: give the scene another name",
+        ),
+        (
+            "simplify --error 1e-3 --chart models.txt",
+            "models.txt: the name of the file must end in .svg, .pdf or .png",
         ),
         (
             "simplify --error 1e-3 -o lean.json",

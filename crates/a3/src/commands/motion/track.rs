@@ -31,6 +31,20 @@ pub struct Track {
 }
 
 impl Track {
+    /// Extrapolates the motion past a finer model, by a share of its difference from a coarser one.
+    pub fn extrapolated(coarse: &Self, fine: &Self, share: f64) -> Self {
+        let frames = coarse.positions.iter().zip(&fine.positions);
+        let positions = frames.map(|(coarse, fine)| {
+            let pairs = coarse.iter().zip(fine);
+            pairs.map(|(c, f)| f + share * (f - c)).collect()
+        });
+        Self {
+            positions: positions.collect(),
+            time: Duration::ZERO,
+            work: 0.0,
+        }
+    }
+
     /// The same motion with another computing time.
     pub fn timed(self, time: Duration) -> Self {
         Self { time, ..self }

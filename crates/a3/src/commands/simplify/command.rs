@@ -4,6 +4,7 @@ use std::path::Path;
 
 use a3_core::accuracy::{Frames, Metric, Precision, Reference};
 
+use super::chart::chart;
 use super::lean::{Answer, LeanModel, MOST_TIME, Solved, assemble, solve, solve_whole};
 use super::models::{Model, Models, measure_all};
 use super::table;
@@ -12,7 +13,7 @@ use crate::base::progress::Bar;
 use crate::base::{interrupt, terminal};
 use crate::cli::Simplify;
 use crate::commands::chart::single::reference;
-use crate::commands::chart::{check_motion, describe, look_ahead, scope};
+use crate::commands::chart::{PICTURES, check_motion, describe, look_ahead, scope, write_picture};
 use crate::commands::motion::Points;
 use crate::files::output;
 use crate::files::setup::Request;
@@ -33,6 +34,9 @@ pub fn run(options: &Simplify) -> Result<(), Failure> {
     } else {
         None
     };
+    if let (Some(answer), Some(path)) = (&answer, &options.chart) {
+        draw(path, options, &models, answer, &bar)?;
+    }
     bar.clear();
     interrupt::write_on();
     print(options, &models, &all, why.as_deref(), answer.as_ref())?;
@@ -45,12 +49,33 @@ pub fn run(options: &Simplify) -> Result<(), Failure> {
     }
 }
 
+/// Draws the chart of models, and says where it is.
+fn draw(
+    path: &Path,
+    options: &Simplify,
+    models: &Models,
+    answer: &Answer,
+    bar: &Bar,
+) -> Result<(), Failure> {
+    let title = format!("Models: {}", describe(&options.what, &models.scene));
+    let Some(chart) = chart(models, &answer.whole, title, bar)? else {
+        return bar.pause(|| terminal::say("no chart: the scene has one grid only\n"));
+    };
+    let (width, height) = options.size;
+    let figure = chart.draw(f64::from(width), f64::from(height));
+    write_picture(path, &figure.map_err(Failure::usage)?)?;
+    bar.pause(|| terminal::say(&format!("chart: {}\n", path.display())))
+}
+
 /// Reads the scene, with the options of the command line in its description.
 fn request(options: &Simplify) -> Result<Request, Failure> {
     let given = Request::read(&options.what)?;
     // What the scene lacks is refused.
     given.scene()?;
     let request = given.described();
+    if let Some(path) = &options.chart {
+        output::check(path, PICTURES)?;
+    }
     if let Some(path) = &options.output {
         output::check(path, &["toml"])?;
         if path.exists() {
@@ -134,6 +159,13 @@ fn whole<'a>(
         centre: options.centre,
     };
     let models = Models::new(request, scene, points, &reference, error)?.ok_or_else(stopped)?;
+    let motion = points.way(&models.whole);
+    if error > motion {
+        bar.warn(&format!(
+            "warning: nothing moves further than {motion:.0e} m in {} s: an error of {error:e} m says nothing",
+            frames.until
+        ));
+    }
     Ok((models, reference))
 }
 

@@ -2,6 +2,7 @@
 //! finer and coarser; each model is integrated accurately, and its motion is compared with that of
 //! the whole scene. Then the leanest scene is put together, and measured as a whole.
 
+mod chart;
 mod command;
 mod lean;
 mod models;

@@ -1,0 +1,198 @@
+//! The chart of models: the error of runs against their cost, with the grid and the step both varied.
+//! Errors are taken from the motion that the two finest grids extrapolate to.
+
+use a3_core::accuracy::{coarser, ladder};
+use a3_core::stability::spectrum;
+use a3_core::{Control, Method, Scene};
+use a3_plot::{Curve, CurveStyle, Marker, Measurement, Problem, WorkPrecision};
+use a3_scenes::Regridded;
+
+use super::lean::Solved;
+use super::models::{FACTORS, Models};
+use crate::base::failure::Failure;
+use crate::base::progress::Bar;
+use crate::commands::chart::single::time;
+use crate::commands::motion::{GridError, Motion, Places, Track, grid};
+
+/// Styles of the grids, from the coarsest to the finest.
+const STYLES: [(&str, Marker); 5] = [
+    ("#e69f00", Marker::Polygon(3, 0.0)),
+    ("#d55e00", Marker::Polygon(4, 0.125)),
+    ("#cc79a7", Marker::Polygon(5, 0.0)),
+    ("#0072b2", Marker::Polygon(32, 0.0)),
+    ("#332288", Marker::Polygon(6, 0.0)),
+];
+
+/// Largest number of runs on a grid.
+const MAX_RUNS: usize = 7;
+/// Ratio of the error of a run to that of its grid, above which the time steps make more of it.
+const BALANCE: f64 = std::f64::consts::SQRT_2;
+/// Largest number of particles of a grid in the chart, and largest work of a run (evaluations).
+const MAX_WORK: u64 = 200_000;
+
+/// Grid of the chart.
+struct Grid {
+    name: String,
+    scene: Scene,
+    places: Option<Vec<Vec<(usize, f64)>>>,
+    /// Motion of an accurate run.
+    motion: Track,
+}
+
+/// Measures the runs of the chart, by the solver that is cheapest for the whole scene. `None` if
+/// the scene has one grid only, or the command was interrupted.
+pub fn chart(
+    models: &Models,
+    whole: &Solved,
+    title: String,
+    bar: &Bar,
+) -> Result<Option<WorkPrecision>, Failure> {
+    let Some(grids) = grids(models)? else {
+        return Ok(None);
+    };
+    let [.., own, finest] = &grids[..] else {
+        return Ok(None);
+    };
+    let difference = |grid: &Grid| models.points.distance(&own.motion, &grid.motion);
+    let half = grids
+        .iter()
+        .find(|grid| 2 * grid.scene.model.particles() < own.scene.model.particles());
+    let estimate = GridError::new(String::new(), half.map(difference), difference(finest));
+    // The finest grid errs by 2^-p of what the grid in use does.
+    let share = estimate
+        .order
+        .map_or(0.0, |order| 1.0 / (order.exp2() - 1.0));
+    let truth = Track::extrapolated(&own.motion, &finest.motion, share);
+    bar.expect((grids.len() * MAX_RUNS) as f64);
+    let mut curves = vec![];
+    let styles = STYLES.iter().skip(STYLES.len() - grids.len());
+    for (grid, (colour, marker)) in grids.iter().zip(styles) {
+        bar.say(format!("{}  ", grid.name));
+        let least = models.points.distance(&truth, &grid.motion);
+        let Some(runs) = runs(models, grid, whole.method, &truth, least, bar)? else {
+            return Ok(None);
+        };
+        curves.push(Curve {
+            style: CurveStyle {
+                colour,
+                dash: &[],
+                marker: *marker,
+            },
+            name: grid.name.clone(),
+            runs,
+        });
+    }
+    let until = models.points.frames.until;
+    Ok(Some(WorkPrecision {
+        title,
+        subtitle: format!(
+            "{until} s of motion by {}; each point is a run on a grid with another {}",
+            whole.method.title,
+            if whole.control.step().is_some() { "step" } else { "tolerance" }
+        ),
+        x_label: "largest RMS error of positions, of grid and time steps together (m)".into(),
+        y_label: "computing time per simulated second (s)".into(),
+        problems: vec![Problem {
+            curves,
+            still: Some(models.points.way(&models.whole)),
+            ..Problem::default()
+        }],
+        foot: "Half-filled: the time steps err more than the grid, so a shorter step helps. Filled: the grid errs more, \
+               and a shorter step is wasted. Errors are differences from the motion that the two finest grids \
+               extrapolate to."
+            .into(),
+        held: "the time steps err more than the grid".into(),
+    }))
+}
+
+/// The grids from the coarsest to one twice as fine, with their accurate motions.
+fn grids(models: &Models) -> Result<Option<Vec<Grid>>, Failure> {
+    let own = &*models.request.source.description;
+    let particles = models.scene.model.particles();
+    let mut all: Vec<Grid> = vec![];
+    for factor in FACTORS.into_iter().chain([1.0]) {
+        let regridded = own
+            .regridded(factor, particles)
+            .ok()
+            .filter(|_| factor != 1.0);
+        let (description, places) = match regridded {
+            Some(Regridded {
+                description,
+                places,
+            }) => (description, Some(places)),
+            None if factor == 1.0 => (own.clone(), None),
+            None => continue,
+        };
+        let Some(Ok(motion)) = models.follow(&description, places.as_deref())? else {
+            continue;
+        };
+        let name = format!("grid of {}", grid(&description));
+        if all.iter().all(|grid| grid.name != name) {
+            all.push(Grid {
+                name,
+                scene: models.build(&description)?,
+                places,
+                motion,
+            });
+        }
+    }
+    all.sort_by_key(|grid| grid.scene.model.particles());
+    let has_finer = all
+        .last()
+        .is_some_and(|last| last.scene.model.particles() > particles);
+    Ok((all.len() > 1 && has_finer).then_some(all))
+}
+
+/// Runs on a grid at several steps or tolerances, from the coarsest on, until the grid makes nearly
+/// all of the error. `least` is the error of its accurate run (m). `None` if it was interrupted.
+fn runs(
+    models: &Models,
+    grid: &Grid,
+    method: &'static Method,
+    truth: &Track,
+    least: f64,
+    bar: &Bar,
+) -> Result<Option<Vec<Measurement>>, Failure> {
+    let (scene, points) = (&grid.scene, models.points);
+    let modes = spectrum(scene.model.system(), 0.0, &scene.state);
+    let rungs = ladder(&modes, method, &points.frames, MAX_WORK).map_err(Failure::run)?;
+    // The limit of stability is that of the start, and may be longer in motion.
+    let first = rungs
+        .first()
+        .and_then(|control| coarser(*control, &points.frames));
+    let mut found = vec![];
+    let places: Option<&Places> = grid.places.as_deref();
+    for control in first.into_iter().chain(rungs).take(MAX_RUNS) {
+        let measured = match points.follow(scene, (method, control), places)? {
+            None => return Ok(None),
+            Some(Motion::Lost) => None,
+            Some(Motion::Known(track)) => {
+                let frames = &points.frames;
+                let Some(time) = time(scene, method, control, frames, Some(track.time))? else {
+                    return Ok(None);
+                };
+                Some((points.distance(truth, &track), time))
+            }
+        };
+        bar.advance(1.0);
+        let Some((error, time)) = measured else {
+            continue;
+        };
+        found.push(Measurement {
+            error,
+            work: time.as_secs_f64() / points.frames.until,
+            held: error > BALANCE * least,
+            label: Some(label(control)),
+            ..Measurement::default()
+        });
+        if error < 1.01 * least && found.len() > 2 {
+            break;
+        }
+    }
+    Ok(Some(found))
+}
+
+/// A step or a tolerance as the label of a point.
+fn label(control: Control) -> String {
+    crate::commands::chart::table::words(control)
+}
