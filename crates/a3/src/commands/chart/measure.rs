@@ -1,6 +1,6 @@
-//! Measurement of the runs of a chart: each method at all steps or tolerances between the motion's
-//! own size and the error of the reference. Runs are taken one at a time, so that their computing
-//! times are comparable.
+//! Measurement of the runs of a chart: each method at smaller and smaller steps or tolerances, until
+//! the reference cannot tell its errors from 0 or a run takes too much work. Runs are taken one at a
+//! time, so that their computing times are comparable.
 
 use a3_core::accuracy::{Frames, Metric, Reference, Scope, coarser, ladder};
 use a3_core::stability::{Mode, largest_step, spectrum};
@@ -170,8 +170,8 @@ impl<'a> Study<'a> {
                     return Ok(false);
                 }
                 coarser_run = Some(record.clone());
-                // The ladder begins at the largest stable step at the start of the motion. Later, a
-                // longer one may be stable too.
+                // The ladder begins just beyond the stability limit at the start of the motion. Later,
+                // longer steps may be stable too.
                 let mut longest = (control, record.clone());
                 while i == 0
                     && longest.1.lost_at.is_none()

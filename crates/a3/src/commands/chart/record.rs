@@ -74,10 +74,10 @@ pub struct Record {
     /// Number of impulses of the collision safeguard.
     #[serde(default)]
     pub guard_impulses: usize,
-    /// Number of vertices' motions that the collision safeguard shortened.
+    /// Number of times that the collision safeguard shortened the displacement of a vertex.
     #[serde(default)]
     pub guard_cuts: usize,
-    /// Momentum that these shortened motions lost (N s).
+    /// Momentum that was lost by this (N s).
     #[serde(default)]
     pub guard_lost: f64,
     /// Computing time of the whole run (s), if it was measured.
