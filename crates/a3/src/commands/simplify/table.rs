@@ -57,7 +57,7 @@ fn verdict(model: &Model, share: f64, is_out: bool) -> &'static str {
         (None, _) if is_out => "take it",
         (None, true) => "fine enough",
         (None, false) if model.factor < 1.0 => "too coarse",
-        (None, false) => "the grid errs by more than E",
+        (None, false) => "the scene's grid errs by more than --error",
     }
 }
 
