@@ -1,6 +1,6 @@
-//! Measurement of the runs of a chart: each method at smaller and smaller steps or tolerances, until
-//! the reference cannot tell its errors from 0 or a run takes too much work. Runs are taken one at a
-//! time, so that their computing times are comparable.
+//! Measurement of the runs of a chart: each method at smaller and smaller steps or tolerances,
+//! until the reference cannot tell its errors from 0 or a run takes too much work. Runs are taken
+//! one at a time, so that their computing times are comparable.
 
 use a3_core::accuracy::{Frames, Metric, Reference, Scope, coarser, ladder};
 use a3_core::stability::{Mode, largest_step, spectrum};
@@ -51,8 +51,8 @@ pub struct Measured {
 
 impl<'a> Study<'a> {
     /// Creates a study of a scene until `until` (s). `name` and the flags of `what` describe the
-    /// scene in the records; errors are of a metric in a scope, and `motion` is the largest distance
-    /// of the particles from where they start (m).
+    /// scene in the records; errors are of a metric in a scope, and `motion` is the largest
+    /// distance of the particles from where they start (m).
     pub fn new(
         scene: Scene,
         (name, what): (&str, &What),
@@ -170,8 +170,8 @@ impl<'a> Study<'a> {
                     return Ok(false);
                 }
                 coarser_run = Some(record.clone());
-                // The ladder begins just beyond the stability limit at the start of the motion. Later,
-                // longer steps may be stable too.
+                // The ladder begins just beyond the stability limit at the start of the motion.
+                // Later, longer steps may be stable too.
                 let mut longest = (control, record.clone());
                 while i == 0
                     && longest.1.lost_at.is_none()
@@ -241,9 +241,9 @@ impl<'a> Study<'a> {
         }
     }
 
-    /// Returns the run of a method with the setting of `like`. A run that the data do not have yet is
-    /// measured and added, with the order between it and a coarser run. `None` if the command was
-    /// interrupted.
+    /// Returns the run of a method with the setting of `like`. A run that the data do not have yet
+    /// is measured and added, with the order between it and a coarser run. `None` if the command
+    /// was interrupted.
     fn record(
         &mut self,
         method: &'static Method,

@@ -73,8 +73,8 @@ pub fn chart(
 /// Letters of the solvers whose steps turn rigid bodies by a composition of order 6.
 const TURNING: [char; 3] = ['s', 'v', 'p'];
 
-/// Keeps the curves of the methods that are cheapest for some error in some panel, and of those that
-/// the course teaches.
+/// Keeps the curves of the methods that are cheapest for some error in some panel, and of those
+/// that the course teaches.
 pub fn keep_best(chart: &mut WorkPrecision, methods: &[&'static Method], scene: &Scene) {
     let mut kept: Vec<_> = methods
         .iter()
@@ -195,8 +195,8 @@ pub fn problem(
             .filter(|r| r.lost_at.is_some() || r.error(metric) <= MAX_ERROR_RATIO * r.still(metric))
             .collect();
         records.sort_by(|a, b| b.setting.total_cmp(&a.setting));
-        // A run that blew up is drawn at the work that it would have taken until the end. It was not
-        // timed: its computing time is estimated from the other runs of the method.
+        // A run that blew up is drawn at the work that it would have taken until the end. It was
+        // not timed: its computing time is estimated from the other runs of the method.
         let price = records
             .iter()
             .filter_map(|r| Some(r.seconds? / r.work))

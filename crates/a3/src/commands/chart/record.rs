@@ -95,12 +95,12 @@ pub struct Record {
     /// Number of steps that were rejected.
     pub rejections: u64,
     /// Observed order p from the errors of the positions in this run and the next coarser one:
-    /// their ratio is that of the steps or, for an adaptive method, of the evaluations, to the power
-    /// p.
+    /// their ratio is that of the steps or, for an adaptive method, of the evaluations, to the
+    /// power p.
     #[serde(default)]
     pub order: Option<f64>,
-    /// For a run of `--spread`: the tolerance whose spread of errors it shows. That of the run itself
-    /// is within 4 % of it.
+    /// For a run of `--spread`: the tolerance whose spread of errors it shows. That of the run
+    /// itself is within 4 % of it.
     #[serde(default)]
     pub beside: Option<f64>,
     /// Checksum of the file up to this run, as it was read.

@@ -1,7 +1,7 @@
-//! The style of each method, on every chart. The family of a method is shown by the hue, by the dash
-//! and by the kind of marker. The colours are after Okabe and Ito and after Tol. If two methods on a
-//! chart have colours that look alike to some kind of colour vision, one of them gets another colour
-//! there.
+//! The style of each method, on every chart. The family of a method is shown by the hue, by the
+//! dash and by the kind of marker. The colours are after Okabe and Ito and after Tol. If two
+//! methods on a chart have colours that look alike to some kind of colour vision, one of them gets
+//! another colour there.
 
 use a3_core::Method;
 use a3_plot::{CurveStyle, Marker};

@@ -178,8 +178,8 @@ fn resolved(study: &Study, data: &Data, metric: Metric) -> f64 {
     of_runs.fold(0.0, f64::max)
 }
 
-/// Writes a line for each error with the cheapest method, below a note on the collision safeguard if
-/// it acted.
+/// Writes a line for each error with the cheapest method, below a note on the collision safeguard
+/// if it acted.
 fn winners(
     study: &Study,
     data: &Data,

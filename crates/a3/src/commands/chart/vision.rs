@@ -32,14 +32,14 @@ const WITHOUT: [Matrix; 3] = [
         [0.004_733, 0.691_367, 0.303_9],
     ],
 ];
-/// Weight of the difference that people with all cones see: thin lines need a larger difference to be
-/// told apart at a glance.
+/// Weight of the difference that people with all cones see: thin lines need a larger difference to
+/// be told apart at a glance.
 const FULL_VISION: f64 = 0.6;
 
 type Matrix = [[f64; 3]; 3];
 
-/// Returns the difference of two colours, each `#` and six hexadecimal digits, to the kind of colour
-/// vision to which it is smallest. Black and white differ by 60.
+/// Returns the difference of two colours, each `#` and six hexadecimal digits, to the kind of
+/// colour vision to which it is smallest. Black and white differ by 60.
 pub fn difference(a: &str, b: &str) -> f64 {
     let [a, b] = [a, b].map(linear);
     let apart = |[a, b]: [[f64; 3]; 2]| {

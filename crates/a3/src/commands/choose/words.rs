@@ -72,8 +72,8 @@ pub fn report(
 }
 
 /// Writes a step or a tolerance for a command line. A step of a run of `until` (s) is exact: a
-/// fraction if it has too many decimals. A tolerance has four digits and is rounded down, so that the
-/// run is no less accurate.
+/// fraction if it has too many decimals. A tolerance has four digits and is rounded down, so that
+/// the run is no less accurate.
 fn typed(control: Control, until: f64) -> String {
     let value = control.value();
     if let Control::Step(step) = control {

@@ -113,8 +113,8 @@ impl Points {
         }
     }
 
-    /// Returns the root mean square distance (m) between the points of two motions: the largest over
-    /// the frames, or that at the end if the scope says so.
+    /// Returns the root mean square distance (m) between the points of two motions: the largest
+    /// over the frames, or that at the end if the scope says so.
     pub fn distance(self, a: &Track, b: &Track) -> f64 {
         let pairs = a.positions.iter().zip(&b.positions);
         let from = if self.scope.at_end {

@@ -142,8 +142,8 @@ fn whole<'a>(
     Ok((models, reference))
 }
 
-/// Assembles the leanest scene, and finds the cheapest solvers for it and for the whole scene. `None`
-/// if the command was interrupted.
+/// Assembles the leanest scene, and finds the cheapest solvers for it and for the whole scene.
+/// `None` if the command was interrupted.
 fn leanest(
     models: &Models,
     all: &[Model],

@@ -10,8 +10,8 @@ use a3_scenes::Description;
 /// Change of the motion, over the error that is asked for, above which a part is barely needed.
 const BARELY_NEEDED: f64 = 0.1;
 
-/// Writes the table of all models, with a verdict on each. `motion` is the distance (m) by which the
-/// points move, and `error` the error (m) that is asked for.
+/// Writes the table of all models, with a verdict on each. `motion` is the distance (m) by which
+/// the points move, and `error` the error (m) that is asked for.
 pub fn text(models: &[Model], motion: f64, error: f64, lean: Option<&LeanModel>) -> String {
     let heading = [
         "left out or changed",

@@ -133,8 +133,8 @@ fn limits(
     (rest, seen_at_rest, short_at_rest): (Option<Limit>, Option<Observation>, bool),
     (mut bounded, accurate, short_in_motion): (Option<Observation>, Option<f64>, bool),
 ) -> MethodLimits {
-    // With a step that is unstable at rest, a run from the start may stay bounded, but it never comes
-    // to rest.
+    // With a step that is unstable at rest, a run from the start may stay bounded, but it never
+    // comes to rest.
     if let (Some(seen), Some(limit)) = (&mut bounded, rest)
         && seen.held > 1.1 * limit.step
     {

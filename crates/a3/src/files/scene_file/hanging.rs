@@ -1,5 +1,5 @@
-//! How a mesh hangs: the points that are pinned, the depth of its fall, and the sizes from which its
-//! stiffness is chosen.
+//! How a mesh hangs: the points that are pinned, the depth of its fall, and the sizes from which
+//! its stiffness is chosen.
 
 use std::collections::BTreeSet;
 
@@ -24,8 +24,8 @@ pub struct Hanging {
     pub parts: usize,
     /// Number of parts that are pinned.
     pub held: usize,
-    /// Largest distance that a level part may fall below the lowest point of the mesh, in the unit of
-    /// the file.
+    /// Largest distance that a level part may fall below the lowest point of the mesh, in the unit
+    /// of the file.
     pub fall: f64,
     /// Necks of the parts that hang by pins.
     pub necks: Vec<Neck>,
@@ -95,8 +95,8 @@ impl Part {
         })
     }
 
-    /// Returns the points by which the part hangs, and whether it is level: a level part hangs by an
-    /// edge, any other by its highest points.
+    /// Returns the points by which the part hangs, and whether it is level: a level part hangs by
+    /// an edge, any other by its highest points.
     fn held(&self, mesh: &Mesh) -> (Vec<usize>, bool) {
         let size = [0, 1, 2]
             .map(|axis| self.extent(mesh, axis))

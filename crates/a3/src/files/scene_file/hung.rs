@@ -24,9 +24,9 @@ pub fn is_mesh(extension: &str) -> bool {
     mesh::ENDINGS.contains(&extension)
 }
 
-/// Writes the text of a scene in which the mesh of a file hangs: a cloth if it is made of triangles,
-/// a solid if it is made of tetrahedra. Mesh files give no unit of length, so the mesh is scaled: its
-/// longest side is 2 m.
+/// Writes the text of a scene in which the mesh of a file hangs: a cloth if it is made of
+/// triangles, a solid if it is made of tetrahedra. Mesh files give no unit of length, so the mesh
+/// is scaled: its longest side is 2 m.
 ///
 /// # Errors
 /// The file cannot be read, or the mesh has no size.

@@ -192,8 +192,8 @@ impl Source {
         &self.text
     }
 
-    /// Returns a text that identifies the scene that was last built: its name, and for a file also a
-    /// hash of its text, of its mesh files and of its state at the start.
+    /// Returns a text that identifies the scene that was last built: its name, and for a file also
+    /// a hash of its text, of its mesh files and of its state at the start.
     pub fn fingerprint(&self, scene: &Scene) -> String {
         if self.path.is_none() {
             return scene.name.clone();
