@@ -15,7 +15,7 @@ pub struct Place {
 }
 
 impl Place {
-    /// Returns the place of a point at rest at `position` (m).
+    /// Creates the place of a point at rest at `position` (m).
     #[must_use]
     pub fn still(position: Vector3<f64>) -> Self {
         Self {
@@ -270,7 +270,7 @@ impl Path {
     }
 
     /// Returns the longest step (s) that resolves the motion in an interval (s): a quarter of its
-    /// period.
+    /// period; infinite if the motion has none then.
     pub(crate) fn quarter_period(&self, times: [f64; 2]) -> f64 {
         let rate = match self {
             Self::Sine { rate, .. } => *rate,
@@ -280,7 +280,7 @@ impl Path {
         0.5 * std::f64::consts::PI / rate.abs()
     }
 
-    /// Returns the bounds on the speed (m/s) and on the acceleration (m/s2) in an interval (s). The
+    /// Returns bounds on the speed (m/s) and on the acceleration (m/s2) in an interval (s). The
     /// acceleration is infinite where the motion begins or ends within it.
     pub(crate) fn bounds(&self, [from, to]: [f64; 2]) -> [f64; 2] {
         let uniform = |way: Vector3<f64>, start: f64, end: f64| {

@@ -6,11 +6,11 @@ use crate::coupling::{Coupling, Diagonal, Matrix};
 /// system's [couplings](crate::Linearized::couplings). Each method treats as many of these.
 pub trait Products {
     /// Writes the product of the matrix with p to `out`: that of the masses and of these couplings.
-    /// Returns the number of the couplings.
+    /// Returns the number of these couplings.
     fn multiply(&self, matrix: &Matrix, p: &[f64], out: &mut [f64]) -> usize;
 
     /// Adds the blocks that these couplings contribute to the diagonal of the matrix. Returns the
-    /// number of the couplings.
+    /// number of these couplings.
     fn add_diagonal(&self, matrix: &Matrix, diagonal: &mut Diagonal) -> usize;
 
     /// Visits all other couplings.

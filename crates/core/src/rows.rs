@@ -108,7 +108,7 @@ pub(crate) trait Rows: Sync {
     /// Returns the number of columns that each stage keeps from row to row.
     fn kept_columns(&self) -> usize;
 
-    /// Returns the count of numbers that all rows and stages of a sweep share.
+    /// Returns the number of values that all rows and stages of a sweep share.
     fn shared_numbers(&self) -> usize;
 
     /// Prepares the scratch of a sweep over some rows of a patch.
@@ -185,7 +185,7 @@ impl Registers {
         array::from_fn(|column| self.stage.column(row, column))
     }
 
-    /// Returns the columns of a row of the current stage.
+    /// Returns the columns of a row of the current stage, to be changed.
     pub fn stage_mut(&mut self, row: usize) -> [&mut [f64]; 6] {
         self.stage.columns_mut(row)
     }
@@ -211,12 +211,13 @@ impl SweepScratch {
         }
     }
 
-    /// Returns the numbers that all rows and stages share.
+    /// Returns the values that all rows and stages share, to be changed.
     pub fn shared_mut(&mut self) -> &mut [f64] {
         self.shared.column_mut(0, 0)
     }
 
-    /// Returns the forces on the current row that are added to those of springs, by axis.
+    /// Returns the forces on the current row that are added to those of springs, by axis, to be
+    /// changed.
     pub(crate) fn addends_mut(&mut self) -> [&mut [f64]; 3] {
         let [x, y, z, ..] = self.addends.columns_mut(0);
         [x, y, z]
@@ -293,7 +294,7 @@ impl Window {
         to[cols..].fill(0.0);
     }
 
-    /// Returns the first six columns of a row.
+    /// Returns the first six columns of a row, to be changed.
     pub fn columns_mut(&mut self, row: usize) -> [&mut [f64]; 6] {
         let (stride, cols) = (self.stride, self.cols);
         let mut columns = self.row_mut(row).chunks_exact_mut(stride);

@@ -1,11 +1,11 @@
-//! Parts of a scene that can be left out, or replaced by simpler ones, and the scene without them.
+//! Parts of a scene that can be left out or replaced by simpler ones.
 
 use crate::assemble::damping_time;
 use crate::description::{
     Chain, Cloth, Description, Floor, FloorSpec, Jelly, MeshCloth, Solid, WindSpec,
 };
 
-/// Part of a scene that can be left out.
+/// Part of a scene that can be left out or replaced by a simpler one.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Part {
     /// Name of the part, in words.
@@ -13,47 +13,52 @@ pub struct Part {
     change: Change,
 }
 
-/// Change of a description that leaves a part out.
+/// Change of a description that leaves a part out, or replaces it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Change {
     Gravity,
     Drag,
     Damping,
-    /// Springs of a kind: structural, shear and bend.
+    /// Springs of a kind, by its index in [`SPRINGS`].
     Springs(usize),
     Buckling,
     StrainLimit,
     Tear,
     Viscosity,
     Wind,
+    /// Wind that blows on triangles, replaced by forces on particles.
     WindByParticles,
     Friction,
     Restitution,
     SelfCollision,
     Floor,
-    /// An obstacle of a kind, in the order of [`OBSTACLES`], by its number.
+    /// Obstacle: the index of its kind in [`OBSTACLES`], and its index among those of its kind.
     Obstacle(usize, usize),
+    /// Springs of chains, replaced by rods.
     Rods,
+    /// Boxes of elastic solids, replaced by jellies.
     Jelly,
 }
 
-/// Kinds of obstacles, as their keys name them.
+/// Keys of the kinds of obstacles.
 const OBSTACLES: [&str; 4] = ["sphere", "box", "capsule", "obstacle"];
 
-/// Kinds of springs.
+/// Names of the kinds of springs.
 const SPRINGS: [&str; 3] = ["structural springs", "shear springs", "bend springs"];
 
-/// Density of air (kg/m3) and drag coefficient of a wind that names none.
-const AIR: (f64, f64) = (1.2, 1.2);
+/// Default density of air (kg/m3).
+const AIR_DENSITY: f64 = 1.2;
+/// Default drag coefficient of a wind.
+const AIR_DRAG: f64 = 1.2;
 
-/// Stiffness (N/m) of structural and of shear springs of a cubic lattice, over Young's modulus
-/// times the spacing: with these, the lattice is isotropic. Sums over the springs of a cell give
-/// C11 = (k1 + 10/3 ks) / a and C12 = C44 = 7/3 ks / a, so C11 - C12 = 2 C44 where k1 = 11/3 ks,
-/// and E = 5/2 C44.
+/// Stiffness of the structural and the shear springs of a cubic lattice, over Young's modulus times
+/// the spacing. With these, the lattice is isotropic: sums over the springs of a cell give
+/// C11 = (k1 + 10/3 ks) / a and C12 = C44 = 7/3 ks / a, so C11 - C12 = 2 C44 if k1 = 11/3 ks, and
+/// E = 5/2 C44.
 const LATTICE: (f64, f64) = (22.0 / 35.0, 6.0 / 35.0);
 
 impl Description {
-    /// Parts that the scene has and that can be left out, or replaced by simpler ones.
+    /// Lists the parts of the scene that can be left out or replaced by simpler ones.
     #[must_use]
     pub fn parts(&self) -> Vec<Part> {
         let named = |change, name: &str| Part {
@@ -97,7 +102,7 @@ impl Description {
         all
     }
 
-    /// The scene without some of its [`parts`](Self::parts).
+    /// Returns the scene without some of its [`parts`](Self::parts).
     #[must_use]
     pub fn without<'a>(&self, parts: impl IntoIterator<Item = &'a Part>) -> Self {
         let mut changed = self.clone();
@@ -108,7 +113,7 @@ impl Description {
                 change => changed.leave_out(change),
             }
         }
-        // From the last on, so that the numbers of the others stay.
+        // The last is removed first, so that the indices of the others stay.
         obstacles.sort_unstable();
         for (kind, k) in obstacles.into_iter().rev() {
             match kind {
@@ -121,6 +126,7 @@ impl Description {
         changed
     }
 
+    /// Returns the number of obstacles of a kind, by its index in [`OBSTACLES`].
     fn obstacles(&self, kind: usize) -> usize {
         match kind {
             0 => self.sphere.len(),
@@ -130,6 +136,7 @@ impl Description {
         }
     }
 
+    /// Makes a change, except for obstacles, whose indices depend on one another.
     fn leave_out(&mut self, change: Change) {
         match change {
             Change::Gravity => self.gravity = None,
@@ -184,30 +191,16 @@ impl Description {
         }
     }
 
+    /// Sets the damping of all springs and solids to zero.
     fn leave_out_damping(&mut self) {
-        for Cloth {
-            damping,
-            damping_ratio,
-            ..
-        } in &mut self.cloth
-        {
-            (*damping, *damping_ratio) = (None, None);
+        for cloth in &mut self.cloth {
+            (cloth.damping, cloth.damping_ratio) = (None, None);
         }
-        for Jelly {
-            damping,
-            damping_ratio,
-            ..
-        } in &mut self.jelly
-        {
-            (*damping, *damping_ratio) = (None, None);
+        for jelly in &mut self.jelly {
+            (jelly.damping, jelly.damping_ratio) = (None, None);
         }
-        for MeshCloth {
-            damping,
-            damping_ratio,
-            ..
-        } in &mut self.mesh
-        {
-            (*damping, *damping_ratio) = (None, None);
+        for mesh in &mut self.mesh {
+            (mesh.damping, mesh.damping_ratio) = (None, None);
         }
         for Solid { damping, .. } in &mut self.solid {
             *damping = 0.0;
@@ -222,8 +215,8 @@ impl Description {
         }
     }
 
-    /// Leaves out the springs of a kind. Meshes have no shear springs. The others are damped as
-    /// before, also where their damping is relative to structural springs.
+    /// Leaves out the springs of a kind, by its index in [`SPRINGS`]. Meshes have no shear springs.
+    /// The other springs keep their damping, also if it was given relative to structural springs.
     fn leave_out_springs(&mut self, kind: usize) {
         for cloth in self.cloth.iter_mut().filter(|_| kind == 0) {
             let mass = cloth.checked_mass().unwrap_or_default();
@@ -292,8 +285,8 @@ impl Description {
         }
     }
 
-    /// Lets a wind that blows on the triangles of cloths push each particle instead, by the drag of
-    /// a cloth that stands across the wind.
+    /// Replaces a wind on the triangles of cloths by forces on particles: the drag of a cloth that
+    /// stands across the wind.
     fn simplify_wind(&mut self) {
         let is_cloth_alone = !self.cloth.is_empty()
             && [self.jelly.len(), self.mesh.len(), self.solid.len()] == [0; 3]
@@ -315,7 +308,10 @@ impl Description {
             return;
         };
         let speed = velocity.iter().map(|v| v * v).sum::<f64>().sqrt();
-        let (density, drag) = (wind.density.unwrap_or(AIR.0), wind.drag.unwrap_or(AIR.1));
+        let (density, drag) = (
+            wind.density.unwrap_or(AIR_DENSITY),
+            wind.drag.unwrap_or(AIR_DRAG),
+        );
         let each = 0.5 * density * drag * speed * area / mass;
         *wind = WindSpec {
             on: wind.on,
@@ -326,9 +322,10 @@ impl Description {
         };
     }
 
-    /// Replaces boxes of elastic solids by jellies that are as stiff under small strains.
+    /// Replaces boxes of elastic solids by jellies that are equally stiff under small strains. It
+    /// changes nothing if there are meshes, whose particles would get other numbers, or solids from
+    /// files.
     fn replace_solids(&mut self) {
-        // Particles are numbered through all bodies: jellies come before meshes.
         if !self.mesh.is_empty() || self.solid.iter().any(|solid| solid.file.is_some()) {
             return;
         }

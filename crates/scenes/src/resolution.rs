@@ -1,27 +1,29 @@
-//! The same scene on finer or coarser grids: its materials keep their mass, stiffness and damping.
+//! The same scene on finer or coarser grids, with the same mass, stiffness and damping of its
+//! materials.
 
 use crate::assemble::{damping_time, max_thickness};
 use crate::description::{Cloth, Description, Jelly, Pin};
 
-/// A scene on another grid, and where the particles of the first grid are on it.
+/// Scene on another grid, with the places of the first grid's particles there.
 #[derive(Clone, Debug)]
 pub struct Regridded {
-    /// The scene.
+    /// Description of the scene on the other grid.
     pub description: Description,
-    /// Particles of the first grid, each as a mean of particles of the other grid with these
-    /// weights: by multilinear interpolation in the grid's cells.
+    /// Particles of the first grid, each as a weighted mean of particles of the other grid, by
+    /// multilinear interpolation in its cells: their numbers and weights.
     pub places: Vec<Vec<(usize, f64)>>,
 }
 
 impl Description {
-    /// The same scene with cells about `factor` times as short, and of the same shape. The scene as
-    /// it is has so many `particles`.
+    /// Returns the same scene on grids whose cells are about `factor` times shorter, or longer for
+    /// a factor below 1, and have the same shape. `particles` is the number of the scene's own
+    /// particles.
     ///
     /// A cloth keeps its mass per area, a jelly and a solid their mass per volume, and all keep
     /// their elastic moduli and their damping times. Drag and wind keep their force per mass.
     ///
     /// # Errors
-    /// The scene has no grid, or gives numbers for particles: the reason is returned, in words.
+    /// The scene has no grid, or names particles by their numbers: the reason in words.
     pub fn regridded(&self, factor: f64, particles: usize) -> Result<Regridded, String> {
         self.check_grids()?;
         let mut other = self.clone();
@@ -58,7 +60,7 @@ impl Description {
         })
     }
 
-    /// Checks that grids may change: nothing is said of single particles on them.
+    /// Checks that a body has a grid, and that nothing in the scene refers to single particles.
     fn check_grids(&self) -> Result<(), String> {
         let is_gridded = !(self.cloth.is_empty() && self.jelly.is_empty() && self.solid.is_empty());
         if !is_gridded {
@@ -87,13 +89,13 @@ impl Description {
         ];
         match numbers.iter().find(|(is_there, _)| *is_there) {
             Some((_, what)) => Err(format!(
-                "the scene has {what} of particles by their numbers"
+                "the scene has {what} that name particles by their numbers"
             )),
             None => Ok(()),
         }
     }
 
-    /// Lets drag and wind that are given for a particle act on as much mass as before.
+    /// Keeps the force per mass of drag and wind that are given for each particle.
     fn keep_forces_per_mass(&mut self, own: &Self, places: &Places) -> Result<(), String> {
         let [was, is] = [places.of.len(), places.count].map(|n| n as f64);
         let by_particle = own.drag.is_some() || own.drag_per_mass.is_some();
@@ -114,7 +116,7 @@ impl Description {
     }
 }
 
-/// Grid with cells of the same shape, about `factor` times as short.
+/// Returns a grid with cells of the same shape, about `factor` times shorter.
 fn finer<const N: usize>(grid: [usize; N], factor: f64) -> [usize; N] {
     let cells = grid.map(|n| n.max(2) - 1);
     let parts = cells.into_iter().fold(0, gcd);
@@ -122,24 +124,26 @@ fn finer<const N: usize>(grid: [usize; N], factor: f64) -> [usize; N] {
     cells.map(|n| n / parts * finer + 1)
 }
 
-/// Greatest common divisor.
+/// Returns the greatest common divisor.
 fn gcd(a: usize, b: usize) -> usize {
     if b == 0 { a } else { gcd(b, a % b) }
 }
 
+/// Puts a cloth on a grid with cells about `factor` times shorter.
 fn regrid_cloth(own: &Cloth, other: &mut Cloth, factor: f64) -> Result<(), String> {
     let words = |fault: crate::Fault| fault.to_string();
     let mass = own.checked_mass().map_err(words)?;
     let time = damping_time(own.damping, own.damping_ratio, mass, own.stiffness[0]);
     (other.damping, other.damping_ratio) = (Some(time.map_err(words)?), None);
     other.grid = finer(own.grid, factor);
-    let [usual, most] = [own, &*other].map(Cloth::checked_spacing);
-    let most = max_thickness(most.map_err(words)?);
-    let usual = max_thickness(usual.map_err(words)?);
-    other.thickness = Some(own.thickness.unwrap_or(usual).min(most));
+    let [default, max] = [own, &*other].map(Cloth::checked_spacing);
+    let max = max_thickness(max.map_err(words)?);
+    let default = max_thickness(default.map_err(words)?);
+    other.thickness = Some(own.thickness.unwrap_or(default).min(max));
     Ok(())
 }
 
+/// Puts a jelly on a grid with cells about `factor` times shorter.
 fn regrid_jelly(own: &Jelly, other: &mut Jelly, factor: f64) {
     other.grid = finer(own.grid, factor);
     let cell = |jelly: &Jelly, axis: usize| jelly.size[axis] / (jelly.grid[axis].max(2) - 1) as f64;
@@ -155,29 +159,31 @@ fn regrid_jelly(own: &Jelly, other: &mut Jelly, factor: f64) {
         other.damping_ratio = None;
     }
     let nearest = |jelly: &Jelly| (0..3).map(|a| cell(jelly, a)).fold(f64::INFINITY, f64::min);
-    let usual = max_thickness(nearest(own));
-    let thickness = own.thickness.unwrap_or(usual);
+    let default = max_thickness(nearest(own));
+    let thickness = own.thickness.unwrap_or(default);
     other.thickness = Some(thickness.min(max_thickness(nearest(other))));
 }
 
-/// Places of the particles of one grid on another, body after body.
+/// Places of the particles of one grid on another, body by body.
 #[derive(Default)]
 struct Places {
+    /// Place of each particle, as in [`Regridded`].
     of: Vec<Vec<(usize, f64)>>,
-    /// Number of particles of the other grid.
+    /// Number of particles of the scene on the other grid.
     count: usize,
-    /// Number of particles that no grid has.
+    /// Number of particles that belong to no grid.
     kept: usize,
 }
 
 impl Places {
-    /// Adds a body whose particles along each axis are given, those along the last axis being
-    /// numbered fastest.
+    /// Adds a body with its numbers of particles along each axis, on its own grid and on the other.
+    /// The index along the last axis varies fastest.
     fn add(&mut self, own: &[usize], other: &[usize]) {
         let first = self.count;
         let total: usize = own.iter().product();
         for number in 0..total {
-            // Place along each axis: the particle before it, and the share of the cell after that.
+            // The place along each axis: the index of the particle before it, and the distance from
+            // there in cells.
             let mut rest = number;
             let mut along: Vec<(usize, f64)> = own
                 .iter()
@@ -209,12 +215,12 @@ impl Places {
         self.count += other.iter().product::<usize>();
     }
 
-    /// Adds a lattice whose particles along x are numbered fastest.
+    /// Adds a lattice, in which the index along x varies fastest.
     fn add_lattice(&mut self, [x, y, z]: [usize; 3], [i, j, k]: [usize; 3]) {
         self.add(&[z, y, x], &[k, j, i]);
     }
 
-    /// Adds the particles that follow, up to this number, which no grid has.
+    /// Adds the other particles of the scene, up to this number in all, which belong to no grid.
     fn add_others(&mut self, particles: usize) {
         self.kept = particles.saturating_sub(self.of.len());
         for _ in 0..self.kept {

@@ -19,7 +19,7 @@ use super::sweep::Sweep;
 use super::window::{Compare, Render, WindowOptions};
 
 /// Number of lessons.
-pub const LESSONS: u8 = 7;
+pub const LESSONS: u8 = 8;
 
 /// End of the help.
 #[cfg(feature = "window")]

@@ -6,12 +6,13 @@ use std::process::Command;
 
 use crate::common::{a3, asked, complaint, is_missing, text};
 
-const COMMANDS: [&str; 12] = [
+const COMMANDS: [&str; 13] = [
     "simulate",
     "render",
     "chart",
     "stability",
     "choose",
+    "simplify",
     "sweep",
     "compare",
     "scenes",
@@ -66,7 +67,7 @@ fn bash_takes_its_script() {
         );
         asked(folder.path(), "bash", &["-c", &words])
     };
-    assert_eq!(complete("a3 sim", 1).trim(), "simulate");
+    assert_eq!(complete("a3 simu", 1).trim(), "simulate");
     assert_eq!(complete("a3 render --tr", 2).trim(), "--transparent");
     assert_eq!(complete("a3 --scene mi", 2).trim(), "mit mit-sphere");
     assert_eq!(complete("a3 chart --scene dom", 3).trim(), "dominoes");

@@ -100,7 +100,7 @@ impl WithSimd for Apply<'_> {
     }
 }
 
-/// Returns the phi = (1 - e^-a) / a and psi = (1 - phi) / a, by their series where the differences
+/// Returns phi = (1 - e^-a) / a and psi = (1 - phi) / a, by their series where the differences
 /// would cancel.
 fn phi_psi(a: f64) -> (f64, f64) {
     if a.abs() < 1e-2 {

@@ -45,7 +45,7 @@ impl Springs {
         self.change().sort_by_key(ends);
     }
 
-    /// Returns the springs, to be changed.
+    /// Returns the springs, to be changed, and drops their packed copy.
     fn change(&mut self) -> &mut Vec<Spring> {
         self.packed = OnceLock::new();
         &mut self.all

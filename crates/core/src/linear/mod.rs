@@ -88,8 +88,8 @@ impl Solver {
         self.analysed = true;
     }
 
-    /// Returns the lower bound on the number of products in a factorisation for each coupling,
-    /// known without an analysis.
+    /// Returns a lower bound on the number of products in a factorisation for each coupling, known
+    /// without an analysis.
     fn least_products(&self) -> f64 {
         let particles = self.tangent.particles() as f64;
         if self.tangent.couplings() as f64 > 1.5 * particles {
@@ -128,7 +128,7 @@ impl Solver {
         }
     }
 
-    /// Returns the bound of a2 w2 for the fastest motion: the stiffness of the step.
+    /// Returns the stiffness of the step: an upper bound on a2 w2 for the fastest motion.
     pub fn stiffness(&self) -> f64 {
         self.stiffness
     }

@@ -273,7 +273,7 @@ impl Tangent {
         }
     }
 
-    /// Returns the upper bound of a2 w2, the square of the step's length over the time scale of the
+    /// Returns an upper bound on a2 w2, the square of the step's length over the time scale of the
     /// fastest motion.
     pub fn stiffness(&self) -> f64 {
         let sums = &self.diagonal[6 * self.particles()..];

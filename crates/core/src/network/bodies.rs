@@ -92,7 +92,7 @@ impl Bodies {
         Some((self.all[k].center(), k))
     }
 
-    /// Returns the numbers of the rotation of body k in a state.
+    /// Returns the places of the numbers of body k's rotation in a state.
     pub fn numbers(&self, k: usize) -> Range<usize> {
         let first = 6 * self.particles + ROTATION * k;
         first..first + ROTATION

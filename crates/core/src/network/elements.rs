@@ -275,7 +275,8 @@ impl Elements {
         self.all.iter().map(|element| number(element.force())).sum()
     }
 
-    /// Returns the time of the forces coupling by coupling, over the time that they take.
+    /// Returns the time of an evaluation of the forces coupling by coupling, over that of an
+    /// evaluation by the elements' own kernels; 1 without couplings.
     pub fn speed(&self) -> f64 {
         let couplings = self.sum_of(|force| force.cost().couplings);
         if couplings > 0.0 {

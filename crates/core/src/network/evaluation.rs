@@ -34,7 +34,7 @@ pub(super) fn is_split(network: &Network, terms: Terms) -> bool {
     terms == Terms::KickForces && network.constraints.all().is_empty()
 }
 
-/// Returns the gravity and drag that a drift applies.
+/// Returns gravity and drag where drifts apply them; otherwise nothing.
 pub(super) fn drift_forces(network: &Network, terms: Terms) -> DriftForces {
     if is_split(network, terms) {
         network.elements.drift_forces()
@@ -43,7 +43,7 @@ pub(super) fn drift_forces(network: &Network, terms: Terms) -> DriftForces {
     }
 }
 
-/// Returns the gravity and drag that no drift applies, to be added last.
+/// Returns gravity and drag where no drift applies them, to be added last; otherwise nothing.
 pub(super) fn finish(network: &Network, terms: Terms) -> Finish<'_> {
     if is_split(network, terms) {
         return Finish::default();

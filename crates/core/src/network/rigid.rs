@@ -119,7 +119,7 @@ fn accelerate(network: &Network, f: &[f64], a: &mut [f64]) {
     }
 }
 
-/// Returns the row of particle i.
+/// Returns row i of an n x 3 matrix.
 fn row(a: &[f64], i: usize) -> Vector3<f64> {
     let n = a.len() / 3;
     Vector3::new(a[i], a[n + i], a[2 * n + i])

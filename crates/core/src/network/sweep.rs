@@ -28,7 +28,7 @@ fn place_row(
     }
 }
 
-/// Returns the sheet that is a patch of rows.
+/// Returns the sheet whose rows are this patch, if there is one.
 fn patch_sheet(network: &Network, patch: usize) -> Option<&Sheet> {
     network.elements.sheets().nth(patch)
 }

@@ -18,7 +18,8 @@ impl From<Error> for Failure {
     }
 }
 
-/// Returns the cause of a blow-up of a model by a step that failed; any other error is returned.
+/// Returns the cause of a model's blow-up, if a failed step with this error is one; otherwise the
+/// error.
 pub(super) fn cause_of(error: Error, model: &Model) -> Result<Cause, Error> {
     match error {
         Error::NotFinite { component, .. } => Ok(not_finite(model, component)),

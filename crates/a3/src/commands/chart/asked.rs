@@ -1,5 +1,5 @@
-//! What the command line asks for, if the scene has it: methods, the metric, and where errors are
-//! taken.
+//! Checks of the command line against the scene: the solvers, the metric, and the particles and
+//! times at which errors are taken.
 
 use a3_core::accuracy::{Metric, Scope};
 use a3_core::{Method, Scene, integrators};
@@ -7,8 +7,11 @@ use a3_core::{Method, Scene, integrators};
 use crate::base::failure::Failure;
 use crate::cli::ErrorScope;
 
-/// The methods that were asked for, or else all that can integrate the scene, as where one of those
-/// asked for is none in particular.
+/// Returns the methods that were asked for, each once. If none was named, these are all that
+/// support the scene.
+///
+/// # Errors
+/// A method that was asked for does not support the scene.
 pub fn methods(
     scene: &Scene,
     asked: &[Option<&'static Method>],
@@ -31,7 +34,8 @@ pub fn methods(
     Ok(methods)
 }
 
-/// Refuses a metric that the scene does not have.
+/// Checks that the metric is defined for the scene: springs, energy and momentum need a network,
+/// penetration and impacts need surfaces that touch.
 pub fn check_metric(metric: Metric, scene: &Scene) -> Result<(), Failure> {
     let of_contact = matches!(metric, Metric::Penetration | Metric::Impact);
     let network = scene.model.network();
@@ -52,7 +56,10 @@ pub fn check_metric(metric: Metric, scene: &Scene) -> Result<(), Failure> {
     }
 }
 
-/// Where errors were asked to be taken.
+/// Returns the particles and times at which errors were asked to be taken.
+///
+/// # Errors
+/// The scene has no such particle.
 pub fn scope(asked: &ErrorScope, scene: &Scene) -> Result<Scope, Failure> {
     let particles = scene.model.particles();
     match asked.particle {
@@ -68,8 +75,9 @@ pub fn scope(asked: &ErrorScope, scene: &Scene) -> Result<Scope, Failure> {
     }
 }
 
-/// Refuses a metric of contact whose error is 0 for a run in which nothing moves: then there is no
-/// impact, or nothing within a thickness.
+/// Checks that a metric of contact measures something until `until` (s). `still` is the error of a
+/// run in which nothing moves: if it is 0, there is no impact, or no surfaces come within a
+/// thickness.
 pub fn check_contact(metric: Metric, still: f64, until: f64) -> Result<(), Failure> {
     match metric {
         Metric::Impact if still == 0.0 => Err(Failure::usage(format!(

@@ -1,4 +1,4 @@
-//! The command: measures, prints and draws.
+//! The command `a3 chart`: measures the runs, prints the tables, and draws the chart.
 
 use std::path::PathBuf;
 
@@ -44,7 +44,7 @@ pub fn run(options: &Chart) -> Result<(), Failure> {
     }
 }
 
-/// What the command line asks for, once the scene is known to have it.
+/// Request of the command line, checked against the scene.
 struct Asked<'a> {
     options: &'a Chart,
     request: Request,
@@ -58,6 +58,7 @@ struct Asked<'a> {
 }
 
 impl<'a> Asked<'a> {
+    /// Reads the scene, and checks the options against it.
     fn new(options: &'a Chart) -> Result<Self, Failure> {
         let request = Request::read(&options.what)?;
         let scene = request.scene()?;
@@ -80,12 +81,12 @@ impl<'a> Asked<'a> {
         })
     }
 
+    /// Whether the chart shows computing times, and not work.
     fn timed(&self) -> bool {
         self.options.work == WorkMeasure::Time
     }
 
-    /// Creates a study for each stiffness. All have the shortest horizon, which is that of the
-    /// stiffest scene.
+    /// Creates a study for each stiffness. All end at the shortest of their horizons.
     fn studies(&self, bar: &Bar) -> Result<Vec<Study<'_>>, Failure> {
         let mut scenes = vec![];
         let mut until = self.options.until;
@@ -112,7 +113,7 @@ impl<'a> Asked<'a> {
         Ok(studies.collect())
     }
 
-    /// Prints the table, and advice where the reference knows little.
+    /// Prints the tables, advice where the reference is uncertain, and the error of the grid.
     fn print(&self, studies: &[Study], data: &Data) -> Result<(), Failure> {
         let (methods, metric, timed) = (&self.methods, self.metric, self.timed());
         terminal::say(&table::text(studies, data, methods, metric, timed))?;
@@ -125,19 +126,19 @@ impl<'a> Asked<'a> {
         Ok(())
     }
 
-    /// Says how much the grid of the scene errs.
+    /// Prints the error of the scene's grid, unless `--no-model` was given.
     fn print_grid_error(&self, studies: &[Study]) -> Result<(), Failure> {
         if self.options.no_model || !interrupt::go_on() {
             return Ok(());
         }
-        let until = studies[0].frames.until;
-        match grid_error(&self.request, &self.scene, until)? {
+        let frames = studies[0].frames;
+        match grid_error(&self.request, &self.scene, frames, self.scope)? {
             Some(own) => terminal::say(&own.sentence()),
             None => Ok(()),
         }
     }
 
-    /// Draws the chart, and says where it is.
+    /// Draws the chart, writes it to its file, and prints the path.
     fn draw(&self, studies: &[Study], data: &Data, complete: bool) -> Result<(), Failure> {
         let (methods, metric, timed) = (&self.methods, self.metric, self.timed());
         let mut chart = picture::chart(studies, data, methods, metric, timed, &self.options.what);
@@ -158,7 +159,8 @@ impl<'a> Asked<'a> {
     }
 }
 
-/// Measures the runs that the data lack, and saves them. Returns whether all of them were measured.
+/// Measures the runs that the data lack, and saves the data. Returns whether all were measured;
+/// `false` if the command was interrupted.
 fn measure(studies: &mut [Study], data: &mut Data, bar: &Bar) -> Result<bool, Failure> {
     let mut expected = 0.0;
     for study in &*studies {
@@ -181,7 +183,7 @@ fn measure(studies: &mut [Study], data: &mut Data, bar: &Bar) -> Result<bool, Fa
     Ok(complete)
 }
 
-/// Creates the failure of a command that was interrupted too early.
+/// Creates the failure of a command that was interrupted before its first run ended.
 fn nothing() -> Failure {
     Failure::Interrupted("interrupted before anything was measured".into())
 }

@@ -1,4 +1,4 @@
-//! Data behind a chart: its runs, in a file from which a later chart goes on.
+//! Data of a chart: its runs, in a file that a later chart continues.
 
 use std::fmt::Display;
 use std::fs;
@@ -10,21 +10,24 @@ use super::text;
 use crate::base::failure::Failure;
 use crate::files::output;
 
-/// Size of the largest data file that is read (bytes).
-const LARGEST_FILE: u64 = 64 << 20;
+/// Largest size of a data file that is read (bytes).
+const MAX_FILE_SIZE: u64 = 64 << 20;
 
-/// The runs so far, and the file that keeps them.
+/// Runs that are known, and the file in which they are saved.
 pub struct Data {
     path: Option<PathBuf>,
     pub records: Vec<Record>,
-    /// The file for the errors of each particle of the runs that are measured, if there is one.
+    /// File for the errors of each particle in the runs that are measured, if it was asked for.
     pub each: Option<Each>,
-    /// The text of the file when it was last read or written.
+    /// Text of the file when it was last read or written.
     seen: String,
 }
 
 impl Data {
-    /// The runs in the file; none if there is no file, or an empty one.
+    /// Reads the runs in a file; none if there is no file, or an empty one.
+    ///
+    /// # Errors
+    /// The file holds something else, or cannot be read.
     pub fn open(path: Option<&Path>) -> Result<Self, Failure> {
         let mut data = Self {
             path: path.map(Path::to_owned),
@@ -38,7 +41,8 @@ impl Data {
         Ok(data)
     }
 
-    /// Adds the runs in the file that are not known, if another chart has written it.
+    /// Reads the file again if it has changed, and adds the runs that are not known yet, such as
+    /// those of another chart.
     fn look(&mut self, path: &Path) -> Result<(), String> {
         let wrong = |why: &dyn Display| {
             let path = path.display();
@@ -49,7 +53,7 @@ impl Data {
         let Ok(there) = fs::metadata(path) else {
             return Ok(());
         };
-        if !there.is_file() || there.len() > LARGEST_FILE {
+        if !there.is_file() || there.len() > MAX_FILE_SIZE {
             return Err(wrong(&"it is not an ordinary file, or it is too large"));
         }
         let text = fs::read_to_string(path).map_err(|e| wrong(&e))?;
@@ -66,21 +70,21 @@ impl Data {
         Ok(())
     }
 
-    /// The run of the same scene, method, setting and version, if there is one; if `timed`, only
-    /// one that was timed or lost.
+    /// Finds the run of the same scene, method, setting and version; if `timed`, only one that was
+    /// timed, or that blew up.
     pub fn find(&self, like: &Record, timed: bool) -> Option<&Record> {
         self.records
             .iter()
             .find(|r| r.same_run(like) && (!timed || r.seconds.is_some() || r.lost_at.is_some()))
     }
 
-    /// Adds a run, and removes an older one of the same scene, method and setting.
+    /// Adds a run, in place of an older one of the same scene, method and setting.
     pub fn add(&mut self, record: Record) {
         self.records.retain(|r| !r.same_run(&record));
         self.records.push(record);
     }
 
-    /// Writes the file, if the runs have one, with what another chart has added to it meanwhile.
+    /// Writes the file, if there is one, with the runs that another chart has added meanwhile.
     pub fn save(&mut self) -> Result<(), Failure> {
         let Some(path) = self.path.clone().filter(|_| !self.records.is_empty()) else {
             return Ok(());

@@ -6,13 +6,13 @@ use super::record::Record;
 use crate::base::failure::Failure;
 use crate::files::output::{self, Draft};
 
-/// A CSV file in the making: a row for each run and particle.
+/// CSV file that is being written, with a row for each run and particle.
 pub struct Each {
     writer: csv::Writer<Draft>,
 }
 
 impl Each {
-    /// A file with a heading.
+    /// Begins a file with its heading.
     pub fn new(path: &Path) -> Result<Self, Failure> {
         output::check(path, &["csv"])?;
         let mut each = Self {
@@ -22,7 +22,7 @@ impl Each {
         Ok(each)
     }
 
-    /// Writes the largest errors of a run (m), of all x, all y, all z.
+    /// Writes the largest error of each coordinate in a run (m), n x 3: all x, all y, all z.
     pub fn add(&mut self, run: &Record, coordinates: &[f64]) -> Result<(), Failure> {
         let n = coordinates.len() / 3;
         for i in 0..n {
@@ -32,13 +32,14 @@ impl Each {
         Ok(())
     }
 
-    /// Puts the file in its place.
+    /// Completes the file, and moves it to its place.
     pub fn finish(mut self) -> Result<(), Failure> {
         let flushed = self.writer.flush();
         flushed.map_err(|e| self.writer.get_ref().failure(&e))?;
         self.writer.into_inner().map_err(Failure::run)?.place()
     }
 
+    /// Writes a row.
     fn row(&mut self, row: impl serde::Serialize) -> Result<(), Failure> {
         let written = self.writer.serialize(row);
         written.map_err(|e| self.writer.get_ref().failure(&e.into()))

@@ -1,4 +1,4 @@
-//! The files of pictures of charts.
+//! Files for pictures of charts.
 
 use std::path::Path;
 
@@ -7,7 +7,7 @@ use a3_plot::Figure;
 use crate::base::failure::Failure;
 use crate::files::output;
 
-/// Extensions of the formats of charts.
+/// Extensions of the picture formats.
 pub const PICTURES: &[&str] = &["svg", "pdf", "png"];
 
 /// Writes a figure as SVG, PDF or PNG, by the extension of the path.

@@ -1,4 +1,4 @@
-//! How far a motion can be predicted.
+//! The time up to which the motion of a scene can be predicted.
 
 use a3_core::Scene;
 use a3_core::accuracy::{Horizon, horizon};
@@ -7,8 +7,9 @@ use crate::base::failure::Failure;
 use crate::base::progress::Bar;
 use crate::base::{interrupt, terminal};
 
-/// How far the motion of a scene can be predicted, with the end of its runs: the one that was asked
-/// for, or else the predicted one. Prints that time and the reason. `None` if it was interrupted.
+/// Finds the time up to which the motion of a scene can be predicted. `until` of the result is the
+/// end of the runs: `asked` (s), or else that time. Prints the end and its reason if it was not
+/// asked for, and warns of one that is too late. `None` if the command was interrupted.
 pub fn look_ahead(
     scene: &Scene,
     asked: Option<f64>,
@@ -53,7 +54,7 @@ pub fn look_ahead(
     }))
 }
 
-/// Refuses a scene in which nothing moves.
+/// Checks that something moves in the scene.
 pub fn check_motion(scene: &Scene, horizon: &Horizon) -> Result<(), Failure> {
     if horizon.motion > 0.0 {
         return Ok(());

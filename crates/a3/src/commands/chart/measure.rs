@@ -1,5 +1,6 @@
-//! Measurement of the runs of a chart: every method at every step or tolerance that tells
-//! something, one run at a time, so that computing times are comparable.
+//! Measurement of the runs of a chart: each method at smaller and smaller steps or tolerances,
+//! until the reference cannot tell its errors from 0 or a run takes too much work. Runs are taken
+//! one at a time, so that their computing times are comparable.
 
 use a3_core::accuracy::{Frames, Metric, Reference, Scope, coarser, ladder};
 use a3_core::stability::{Mode, largest_step, spectrum};
@@ -13,44 +14,45 @@ use crate::base::failure::Failure;
 use crate::base::progress::Bar;
 use crate::cli::What;
 
-/// Most work of a run, in evaluations. A run that fails may take more.
-const MOST_EVALUATIONS: f64 = 20_000.0;
-/// Least ratio of the longest step of a method to its shortest, however much work that is.
-const RANGE: f64 = 6.0;
-/// Work of a step of an implicit method, in evaluations, within a factor of three.
-const IMPLICIT: f64 = 25.0;
-/// Tolerances beside one, over it, whose runs show how much errors vary.
-const BESIDE: [f64; 3] = [0.96, 0.98, 1.02];
+/// Largest work of a run, in evaluations. A run that blows up may take more.
+const MAX_EVALUATIONS: f64 = 20_000.0;
+/// Smallest ratio of the longest step of a method to its shortest, whatever the work.
+const MIN_STEP_RATIO: f64 = 6.0;
+/// Estimated work of a step of an implicit method, in evaluations, right within a factor of three.
+const IMPLICIT_WORK: f64 = 25.0;
+/// Neighbouring tolerances over a tolerance, at which `--spread` measures how much errors vary.
+const NEIGHBOURS: [f64; 3] = [0.96, 0.98, 1.02];
 
-/// A scene at one stiffness, and how it is measured.
+/// Scene at one stiffness, with all that its runs share.
 pub struct Study<'a> {
     pub scene: Scene,
     pub frames: Frames,
     modes: Vec<Mode>,
     scope: Scope,
-    /// Largest distance of the particles from their start, on average (m).
+    /// Largest distance of the particles from where they start, root mean square over them (m).
     pub motion: f64,
-    /// A record of the scene, whose other fields are filled in for each run.
+    /// Record of the scene, whose other fields are filled in for each run.
     blank: Record,
     pub reference: Option<Reference>,
     methods: &'a [&'static Method],
     metric: Metric,
-    /// What is measured beside errors and work.
+    /// Measurements besides errors and work.
     measured: Measured,
 }
 
-/// What is measured of runs beside their errors and their work.
+/// Measurements of runs besides their errors and their work.
 #[derive(Clone, Copy)]
 pub struct Measured {
-    /// Computing times.
+    /// Whether computing times are measured.
     pub timed: bool,
-    /// Errors at tolerances beside each one.
+    /// Whether errors at neighbouring tolerances are measured.
     pub spread: bool,
 }
 
 impl<'a> Study<'a> {
-    /// A study of the scene. `name` and the flags of `what` describe it in the records; errors are
-    /// of a metric in a scope, on a scene whose particles move so far (m).
+    /// Creates a study of a scene until `until` (s). `name` and the flags of `what` describe the
+    /// scene in the records; errors are of a metric in a scope, and `motion` is the largest
+    /// distance of the particles from where they start (m).
     pub fn new(
         scene: Scene,
         (name, what): (&str, &What),
@@ -88,45 +90,46 @@ impl<'a> Study<'a> {
         }
     }
 
-    /// Stiffness of the springs, as a factor of the scene's own.
+    /// Returns the stiffness of the springs, over that of the scene itself.
     pub fn stiffness(&self) -> f64 {
         self.blank.stiffness
     }
 
-    /// Where errors are taken.
+    /// Returns the particles and times at which errors are taken.
     pub fn scope(&self) -> Scope {
         self.scope
     }
 
-    /// The runs of this study.
+    /// Returns the runs of this study, without those at neighbouring tolerances.
     pub fn records<'d>(&'d self, data: &'d Data) -> impl Iterator<Item = &'d Record> {
         self.all(data).filter(|r| r.beside.is_none())
     }
 
-    /// The runs at tolerances beside those, where they were asked for.
+    /// Returns the runs at neighbouring tolerances, if they were asked for.
     pub fn beside<'d>(&'d self, data: &'d Data) -> impl Iterator<Item = &'d Record> {
         self.all(data)
             .filter(|r| self.measured.spread && r.beside.is_some())
     }
 
+    /// Returns all runs of this study's scene.
     fn all<'d>(&'d self, data: &'d Data) -> impl Iterator<Item = &'d Record> {
         data.records.iter().filter(|r| r.same_scene(&self.blank))
     }
 
-    /// The steps or tolerances at which a method is run, from the coarsest on.
+    /// Returns the steps or tolerances at which a method is run, the coarsest first.
     fn rungs(&self, method: &'static Method) -> Result<Vec<Control>, Failure> {
-        let most = self.most(method)? / each(method);
-        ladder(&self.modes, method, &self.frames, most as u64).map_err(Failure::run)
+        let max_steps = self.max_work(method)? / each(method);
+        ladder(&self.modes, method, &self.frames, max_steps as u64).map_err(Failure::run)
     }
 
-    /// Most work of a run of a method, in evaluations.
-    fn most(&self, method: &'static Method) -> Result<f64, Failure> {
+    /// Returns the largest work of a run of a method, in evaluations.
+    fn max_work(&self, method: &'static Method) -> Result<f64, Failure> {
         let limit = largest_step(method, &self.modes).map_err(Failure::run)?;
-        let steps = limit.map_or(0.0, |limit| RANGE * self.frames.until / limit.step);
-        Ok(MOST_EVALUATIONS.max(steps * each(method)))
+        let steps = limit.map_or(0.0, |limit| MIN_STEP_RATIO * self.frames.until / limit.step);
+        Ok(MAX_EVALUATIONS.max(steps * each(method)))
     }
 
-    /// Expected work of all runs, in evaluations.
+    /// Estimates the work of all runs, in evaluations.
     pub fn expected(&self) -> Result<f64, Failure> {
         let mut sum = 0.0;
         for method in self.methods {
@@ -139,11 +142,11 @@ impl<'a> Study<'a> {
         Ok(sum)
     }
 
-    /// Expected work of a run, in evaluations.
+    /// Estimates the work of a run, in evaluations.
     fn expected_of(&self, method: &Method, control: Control) -> f64 {
         let steps = match control {
             Control::Step(step) => self.frames.until / step,
-            // An estimate that holds on most scenes within a factor of three.
+            // On most scenes this is right within a factor of three.
             Control::Tolerance(tolerance) => {
                 20.0 * self.frames.until * tolerance.powf(-0.9 / f64::from(method.order))
             }
@@ -151,10 +154,11 @@ impl<'a> Study<'a> {
         steps * each(method) + 100.0
     }
 
-    /// Measures the runs that the data do not have yet. `false` if it was interrupted.
+    /// Measures the runs that the data do not have yet. Returns `false` if the command was
+    /// interrupted.
     pub fn run(&mut self, data: &mut Data, bar: &Bar) -> Result<bool, Failure> {
         for &method in self.methods {
-            let (rungs, most) = (self.rungs(method)?, self.most(method)?);
+            let (rungs, max_work) = (self.rungs(method)?, self.max_work(method)?);
             let mut coarser_run: Option<Record> = None;
             for (i, &control) in rungs.iter().enumerate() {
                 let like = self.like(method, control);
@@ -166,7 +170,8 @@ impl<'a> Study<'a> {
                     return Ok(false);
                 }
                 coarser_run = Some(record.clone());
-                // The limit of stability is that of the start, and may be longer in motion.
+                // The ladder begins just beyond the stability limit at the start of the motion.
+                // Later, longer steps may be stable too.
                 let mut longest = (control, record.clone());
                 while i == 0
                     && longest.1.lost_at.is_none()
@@ -180,14 +185,15 @@ impl<'a> Study<'a> {
                     longest = (longer, record);
                 }
                 bar.advance(self.expected_of(method, control));
-                // Errors below that of the reference tell nothing. The work of linear algebra is
-                // known only after a run.
+                // Errors that the reference cannot tell from 0 end the ladder, and so does too much
+                // work: that of linear algebra is known only after a run.
                 let enough = record.resolved(self.metric).max(1e-12);
                 let next = rungs
                     .get(i + 1)
                     .map_or(1.0, |next| control.value() / next.value());
-                let dear = control.step().is_some() && record.work * next > most;
-                if record.lost_at.is_none() && (record.error(self.metric) < enough || dear) {
+                let is_expensive = control.step().is_some() && record.work * next > max_work;
+                if record.lost_at.is_none() && (record.error(self.metric) < enough || is_expensive)
+                {
                     let rest = rungs[i + 1..].iter();
                     bar.advance(rest.map(|s| self.expected_of(method, *s)).sum());
                     break;
@@ -198,8 +204,8 @@ impl<'a> Study<'a> {
         Ok(true)
     }
 
-    /// Measures the runs at tolerances beside one, if they were asked for. `false` if it was
-    /// interrupted.
+    /// Measures the runs at the neighbours of a tolerance, if they were asked for. Returns `false`
+    /// if the command was interrupted.
     fn look_beside(
         &mut self,
         method: &'static Method,
@@ -214,7 +220,7 @@ impl<'a> Study<'a> {
         if record.lost_at.is_some() || !self.measured.spread {
             return Ok(true);
         }
-        for factor in BESIDE {
+        for factor in NEIGHBOURS {
             let like = Record {
                 beside: Some(tolerance),
                 ..self.like(method, Control::Tolerance(factor * tolerance))
@@ -226,7 +232,7 @@ impl<'a> Study<'a> {
         Ok(true)
     }
 
-    /// The record of a run that is not measured yet: its scene, method and setting.
+    /// Creates the record of a run that is not measured yet: its scene, method and setting.
     fn like(&self, method: &Method, control: Control) -> Record {
         Record {
             solver: method.name.into(),
@@ -235,8 +241,9 @@ impl<'a> Study<'a> {
         }
     }
 
-    /// The run of a method like a record, measured now if the data do not have it yet, with the
-    /// order between it and a coarser run. `None` if it was interrupted.
+    /// Returns the run of a method with the setting of `like`. A run that the data do not have yet
+    /// is measured and added, with the order between it and a coarser run. `None` if the command
+    /// was interrupted.
     fn record(
         &mut self,
         method: &'static Method,
@@ -266,7 +273,7 @@ impl<'a> Study<'a> {
         Ok(record)
     }
 
-    /// Measures one run. `None` if it was interrupted.
+    /// Measures one run, and the reference before the first. `None` if the command was interrupted.
     fn measure(
         &mut self,
         method: &'static Method,
@@ -309,16 +316,20 @@ impl<'a> Study<'a> {
     }
 }
 
-/// Expected work of a step, in evaluations.
+/// Estimates the work of a step, in evaluations.
 fn each(method: &Method) -> f64 {
     if method.is_implicit() && !method.needs_springs() {
-        IMPLICIT
+        IMPLICIT_WORK
     } else {
         f64::from(method.damped_evaluations.max(method.evaluations))
     }
 }
 
-/// The scene with the stiffness of its springs multiplied by a factor.
+/// Returns the scene with the stiffness of its springs multiplied by a factor, and their damping by
+/// its square root, which keeps the damping ratios.
+///
+/// # Errors
+/// The scene has no springs, unless the factor is 1; or the stiffness is out of range.
 pub fn stiffened(scene: &Scene, factor: f64) -> Result<Scene, Failure> {
     let mut scene = scene.clone();
     match &mut scene.model {
@@ -336,7 +347,7 @@ pub fn stiffened(scene: &Scene, factor: f64) -> Result<Scene, Failure> {
     Ok(scene)
 }
 
-/// A scope in words.
+/// Describes a scope in words.
 pub fn words(scope: Scope) -> String {
     let when = if scope.at_end { " at the end" } else { "" };
     match scope.particle {

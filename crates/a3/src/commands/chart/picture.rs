@@ -13,13 +13,13 @@ use super::words::{describe, unit};
 use super::{style, table};
 use crate::cli::What;
 
-/// Error of a run over that of a run in which nothing moves, above which it is not drawn.
-const BEYOND: f64 = 10.0;
+/// Largest error of a run that is drawn, over the error of a run in which nothing moves.
+const MAX_ERROR_RATIO: f64 = 10.0;
 
-/// What the vertical axis shows where nothing is timed.
+/// Label of the vertical axis where work is shown, and not computing time.
 pub const WORK: &str = "evaluations per simulated second, linear algebra included";
 
-/// The diagram, with a panel for each study.
+/// Creates the diagram, with a panel for each study.
 pub fn chart(
     studies: &[Study],
     data: &Data,
@@ -70,11 +70,11 @@ pub fn chart(
     }
 }
 
-/// Solvers whose steps turn rigid bodies by a composition of order 6.
+/// Letters of the solvers whose steps turn rigid bodies by a composition of order 6.
 const TURNING: [char; 3] = ['s', 'v', 'p'];
 
-/// Keeps the curves of the methods that are cheapest for some error on some problem, and those of
-/// the course.
+/// Keeps the curves of the methods that are cheapest for some error in some panel, and of those
+/// that the course teaches.
 pub fn keep_best(chart: &mut WorkPrecision, methods: &[&'static Method], scene: &Scene) {
     let mut kept: Vec<_> = methods
         .iter()
@@ -110,7 +110,7 @@ pub fn keep_best(chart: &mut WorkPrecision, methods: &[&'static Method], scene: 
     );
 }
 
-/// What the errors are, and which methods solve another model.
+/// Explains below the chart how errors are measured, and which methods soften the springs.
 pub fn foot(methods: &[&'static Method]) -> String {
     let errors = "Errors are true ones, against DOP853 at two tolerances and a method of another \
                   family. Those below ten times their disagreement are shaded.";
@@ -124,7 +124,8 @@ pub fn foot(methods: &[&'static Method]) -> String {
     }
 }
 
-/// Note on methods that turn rigid bodies more accurately than their order says.
+/// Returns a note on the methods that turn rigid bodies more accurately than their order says, if
+/// the chart has both.
 fn turning(scene: &Scene, methods: &[&'static Method]) -> &'static str {
     let has_bodies = scene
         .model
@@ -142,7 +143,7 @@ fn turning(scene: &Scene, methods: &[&'static Method]) -> &'static str {
     }
 }
 
-/// What the horizontal axis shows.
+/// Returns the label of the horizontal axis.
 pub fn x_label(metric: Metric, scope: Scope) -> String {
     let what = match (metric, scope.particle) {
         (Metric::Position, None) => "RMS error of the positions".to_owned(),
@@ -164,18 +165,20 @@ pub fn x_label(metric: Metric, scope: Scope) -> String {
     }
 }
 
-/// The least and the largest error of a run and those beside it, if there are any.
+/// Returns the smallest and the largest error of a run and its neighbours in tolerance; `None`
+/// without neighbours.
 fn spread(run: &Record, beside: &[&Record], metric: Metric) -> Option<[f64; 2]> {
     let own = run.error(metric);
     let is_near = |r: &&&Record| r.solver == run.solver && r.beside == Some(run.setting);
     let errors = beside.iter().filter(is_near).map(|r| r.error(metric));
     errors.fold(None, |ends, error| {
-        let [least, most] = ends.unwrap_or([own, own]);
-        Some([least.min(error), most.max(error)])
+        let [min, max] = ends.unwrap_or([own, own]);
+        Some([min.min(error), max.max(error)])
     })
 }
 
-/// The panel of the runs of a scene, without a title; the errors of the runs beside them are bands.
+/// Creates the panel of a scene's runs, without a title. The errors of the runs at neighbouring
+/// tolerances become bands.
 pub fn problem(
     all: &[&Record],
     beside: &[&Record],
@@ -189,11 +192,11 @@ pub fn problem(
             .iter()
             .copied()
             .filter(|r| r.solver == method.name)
-            .filter(|r| r.lost_at.is_some() || r.error(metric) <= BEYOND * r.still(metric))
+            .filter(|r| r.lost_at.is_some() || r.error(metric) <= MAX_ERROR_RATIO * r.still(metric))
             .collect();
         records.sort_by(|a, b| b.setting.total_cmp(&a.setting));
-        // A lost run is drawn at the work that all of it would have taken. Its computing time is
-        // found from that of the other runs of the method.
+        // A run that blew up is drawn at the work that it would have taken until the end. It was
+        // not timed: its computing time is estimated from the other runs of the method.
         let price = records
             .iter()
             .filter_map(|r| Some(r.seconds? / r.work))

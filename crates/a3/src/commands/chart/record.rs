@@ -1,32 +1,39 @@
-//! A run of a chart: what was asked for, its errors and its work.
+//! A run of a chart: its scene, its setting, its errors and its work. The names of the fields are
+//! the keys of data files.
 
 use a3_core::accuracy::{Errors, Metric};
 use serde::{Deserialize, Serialize};
 
-/// A run, with its error and its work.
+/// Run of a method on a scene, with its errors and its work.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Record {
-    /// Version of the program that measured it.
+    /// Version of the program that measured the run.
     pub version: String,
+    /// Name of the scene; for one from a file, with a hash of its files.
     pub scene: String,
+    /// Number of rows of the first cloth; 0 without one.
     pub rows: usize,
+    /// Number of columns of the first cloth; 0 without one.
     pub cols: usize,
+    /// Whether `--wind` was given.
     pub wind: bool,
+    /// Whether `--swing` was given.
     pub swing: bool,
-    /// Whether surfaces were made to touch that pass through one another in the scene itself.
+    /// Whether `--self-collision` was given.
     #[serde(default)]
     pub self_collision: bool,
-    /// Stiffness of the springs, as a factor of the scene's own.
+    /// Stiffness of the springs, over that of the scene itself.
     pub stiffness: f64,
     /// Simulated time (s).
     pub until: f64,
+    /// Name of the solver.
     pub solver: String,
     /// Step (s), or relative tolerance.
     pub setting: f64,
-    /// Particles and times that count, in words.
+    /// Particles and times at which errors are taken, in words.
     pub scope: String,
-    /// Error of the positions over all frames (m); none of a run that blew up.
+    /// Error of the positions (m); none if the run blew up, like the other errors.
     pub error_position: Option<f64>,
     /// Error of the energy (J).
     pub error_energy: Option<f64>,
@@ -64,33 +71,39 @@ pub struct Record {
     pub still_impact: f64,
     /// Simulated time at which the run blew up (s).
     pub lost_at: Option<f64>,
-    /// Impulses by which the guard of surfaces held the run.
+    /// Number of impulses of the collision safeguard.
     #[serde(default)]
     pub guard_impulses: usize,
-    /// Ways of vertices that the guard cut.
+    /// Number of times that the collision safeguard shortened the displacement of a vertex.
     #[serde(default)]
     pub guard_cuts: usize,
-    /// Momentum that cuts took (N s).
+    /// Momentum that was lost by this (N s).
     #[serde(default)]
     pub guard_lost: f64,
     /// Computing time of the whole run (s), if it was measured.
     pub seconds: Option<f64>,
     /// Work of the whole run in evaluations, including linear algebra.
     pub work: f64,
+    /// Number of evaluations of the forces.
     pub evaluations: u64,
+    /// Number of linear systems that were solved.
     pub solves: u64,
+    /// Number of iterations of conjugate gradients.
     pub iterations: u64,
+    /// Number of factorisations.
     pub factorizations: u64,
+    /// Number of steps that were rejected.
     pub rejections: u64,
-    /// Order by the errors of the positions of this run and the next coarser one: their ratio, as a
-    /// power of the ratio of the steps or, for an adaptive method, of the evaluations.
+    /// Observed order p from the errors of the positions in this run and the next coarser one:
+    /// their ratio is that of the steps or, for an adaptive method, of the evaluations, to the
+    /// power p.
     #[serde(default)]
     pub order: Option<f64>,
-    /// For a run of `--spread`: the tolerance whose spread of errors it shows, within 4 % of its
-    /// own.
+    /// For a run of `--spread`: the tolerance whose spread of errors it shows. That of the run
+    /// itself is within 4 % of it.
     #[serde(default)]
     pub beside: Option<f64>,
-    /// Checksum of the file up to here, as it was read.
+    /// Checksum of the file up to this run, as it was read.
     #[serde(default, skip_serializing)]
     pub check: String,
 }
@@ -111,7 +124,7 @@ impl Record {
         self.same_scene(other) && self.solver == other.solver && self.setting == other.setting
     }
 
-    /// The order between a coarser run of the same method and this one.
+    /// Returns the observed order between a coarser run of the same method and this one.
     pub fn order_from(&self, coarser: &Self) -> Option<f64> {
         let is_adaptive = a3_core::integrators::find(&self.solver)?.is_adaptive();
         let refined = if is_adaptive {
@@ -123,32 +136,32 @@ impl Record {
         order.is_finite().then_some(order)
     }
 
-    /// Whether the guard of surfaces held the run.
+    /// Whether the collision safeguard acted in the run.
     pub fn is_held(&self) -> bool {
         self.guard_impulses + self.guard_cuts > 0
     }
 
-    /// The error of the run; infinite if it blew up.
+    /// Returns the error of the run; infinite if it blew up.
     pub fn error(&self, metric: Metric) -> f64 {
-        let or_lost = |error: Option<f64>| error.unwrap_or(f64::INFINITY);
+        let or_infinite = |error: Option<f64>| error.unwrap_or(f64::INFINITY);
         metric.of(&Errors {
-            position: or_lost(self.error_position),
+            position: or_infinite(self.error_position),
             state: 0.0,
-            energy: or_lost(self.error_energy),
-            strain: or_lost(self.error_strain),
-            momentum: or_lost(self.error_momentum),
-            phase: or_lost(self.error_phase),
-            penetration: or_lost(self.error_penetration),
-            impact: or_lost(self.error_impact),
+            energy: or_infinite(self.error_energy),
+            strain: or_infinite(self.error_strain),
+            momentum: or_infinite(self.error_momentum),
+            phase: or_infinite(self.error_phase),
+            penetration: or_infinite(self.error_penetration),
+            impact: or_infinite(self.error_impact),
         })
     }
 
-    /// The least error that the reference can tell from 0: ten times its own.
+    /// Returns the smallest error that the reference can tell from 0: ten times its own.
     pub fn resolved(&self, metric: Metric) -> f64 {
         10.0 * self.floor(metric)
     }
 
-    /// The error of the reference itself.
+    /// Returns the error of the reference itself.
     pub fn floor(&self, metric: Metric) -> f64 {
         metric.of(&Errors {
             position: self.floor_position,
@@ -162,8 +175,8 @@ impl Record {
         })
     }
 
-    /// The error of a run in which nothing moves, beyond which an error says nothing; infinite for
-    /// quantities that motion may conserve.
+    /// Returns the error of a run in which nothing moves, beyond which an error says nothing;
+    /// infinite for the energy, the momentum and the phase.
     pub fn still(&self, metric: Metric) -> f64 {
         match metric {
             Metric::Position => self.still_position,

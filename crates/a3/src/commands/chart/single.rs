@@ -9,22 +9,24 @@ use super::record::Record;
 use crate::base::failure::Failure;
 use crate::base::interrupt;
 
-/// Work of the runs of the reference at which it is no longer refined: in evaluations, and in those
-/// times the length of the state, whichever is more work.
-const MOST_OF_REFERENCE: (f64, f64) = (80_000.0, 1.5e8);
-/// Uncertainty of the reference over the motion of the scene, below which it is fine enough for any
-/// run.
-const FINE: f64 = 1e-10;
-/// Most times that a run is timed, with the run that is compared. The shortest time counts.
-const RUNS: u32 = 3;
-/// Total computing time after which a run is timed no more, if it was timed twice.
-const TOGETHER: Duration = Duration::from_millis(20);
-/// Computing time of a single run after which it is timed no more.
-const ALONE: Duration = Duration::from_millis(50);
+/// Largest work of a reference, in evaluations. Small scenes may take more, see
+/// [`MAX_REFERENCE_NUMBERS`].
+const MAX_REFERENCE_EVALUATIONS: f64 = 80_000.0;
+/// Largest work of the reference of a small scene, in evaluations times the length of the state.
+const MAX_REFERENCE_NUMBERS: f64 = 1.5e8;
+/// Uncertainty of a reference, over the motion of the scene, that suffices for any run.
+const UNCERTAINTY: f64 = 1e-10;
+/// Largest number of times that a run is timed, including the run whose errors are measured. The
+/// shortest time counts.
+const MAX_TIMINGS: u32 = 3;
+/// Total computing time of two or more runs after which no other is timed.
+const MAX_TOTAL: Duration = Duration::from_millis(20);
+/// Computing time of a single run after which no other is timed.
+const MAX_SINGLE: Duration = Duration::from_millis(50);
 
-/// The record of a run by a method with the setting of `like`, compared with the reference of its
-/// scene, and the computing time of that run. `coordinates` receives the largest error of each
-/// coordinate (m), n x 3, unless it is empty. `None` if it was interrupted.
+/// Runs a method with the setting of `like`, and compares the run with the reference of its scene.
+/// Returns its record and its computing time; `None` if the command was interrupted. `coordinates`
+/// receives the largest error of each coordinate (m), n x 3, unless it is empty.
 pub fn compared(
     like: Record,
     scene: &Scene,
@@ -57,7 +59,7 @@ pub fn compared(
     };
     let Errors {
         position,
-        // Scenes of files have particles.
+        // All scenes of the program have particles, so their errors are those of positions.
         state: _,
         energy,
         strain,
@@ -102,18 +104,17 @@ pub fn compared(
     Ok(Some((record, time)))
 }
 
-/// Precision of a reference for all errors that a chart may show, of a scene whose particles move
-/// so far (m).
+/// Returns the precision of a reference for all errors that a chart may show. `motion` is the
+/// largest distance of the particles from where they start (m).
 pub fn precision(scene: &Scene, motion: f64) -> Precision {
-    let (evaluations, numbers) = MOST_OF_REFERENCE;
     Precision {
         metric: Metric::Position,
-        uncertainty: FINE * motion,
-        max_work: evaluations.max(numbers / scene.state.len() as f64),
+        uncertainty: UNCERTAINTY * motion,
+        max_work: MAX_REFERENCE_EVALUATIONS.max(MAX_REFERENCE_NUMBERS / scene.state.len() as f64),
     }
 }
 
-/// Reference of a scene from its start. `None` if it was interrupted.
+/// Computes the reference of a scene from its start. `None` if the command was interrupted.
 pub fn reference(
     scene: &Scene,
     frames: Frames,
@@ -124,8 +125,8 @@ pub fn reference(
         .map_err(|e| Failure::run(format!("the reference could not be computed: {e}")))
 }
 
-/// Computing time of a run: the shortest of several, `before` among them, if that is given. `None`
-/// if it was interrupted.
+/// Measures the computing time of a run: the shortest of several, including `before` if it is
+/// given. `None` if the command was interrupted.
 pub fn time(
     scene: &Scene,
     method: &'static Method,
@@ -134,8 +135,8 @@ pub fn time(
     before: Option<Duration>,
 ) -> Result<Option<Duration>, Failure> {
     let (mut best, mut sum) = (before.unwrap_or(Duration::MAX), before.unwrap_or_default());
-    for runs in u32::from(before.is_some())..RUNS {
-        if runs > 0 && sum > if runs == 1 { ALONE } else { TOGETHER } {
+    for runs in u32::from(before.is_some())..MAX_TIMINGS {
+        if runs > 0 && sum > if runs == 1 { MAX_SINGLE } else { MAX_TOTAL } {
             break;
         }
         let mut run = Simulation::new(scene.clone(), method, control).map_err(Failure::run)?;

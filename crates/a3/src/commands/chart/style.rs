@@ -1,7 +1,7 @@
-//! The style of each method, on every chart. The family of a method shows three times: in the hue,
-//! the dash and the kind of marker. The colours are after Okabe and Ito and after Tol. A method
-//! whose colour looks like that of another on the chart, to any kind of colour vision, has another
-//! one there.
+//! The style of each method, on every chart. The family of a method is shown by the hue, by the
+//! dash and by the kind of marker. The colours are after Okabe and Ito and after Tol. If two
+//! methods on a chart have colours that look alike to some kind of colour vision, one of them gets
+//! another colour there.
 
 use a3_core::Method;
 use a3_plot::{CurveStyle, Marker};
@@ -13,23 +13,23 @@ const EXPLICIT_2: &[f64] = &[4.0, 4.0];
 const SYMPLECTIC: &[f64] = &[7.0, 2.5];
 const ADAPTIVE: &[f64] = &[1.5, 1.8];
 const IMPLICIT: &[f64] = &[7.0, 2.0, 1.5, 2.0];
-/// Methods that solve spring by spring and stop before they have solved.
-const UNSOLVED: &[f64] = &[3.5, 3.5];
+/// Methods that solve spring by spring with a fixed number of iterations.
+const ITERATED: &[f64] = &[3.5, 3.5];
 
-/// Solvers of the course, whose curves are always drawn.
+/// Letters of the solvers that the course teaches, whose curves are always drawn.
 pub const COURSE: [char; 4] = ['e', 't', 'r', 'i'];
 
-/// Least [difference] of two colours on a chart, where there are enough colours.
-const APART: f64 = 8.0;
-/// Colours for methods whose own look like others, the best to see first.
+/// Smallest [difference] of two colours on a chart, if there are enough colours.
+const MIN_DIFFERENCE: f64 = 8.0;
+/// Colours for methods whose own colours look like others, the most visible first.
 const SPARE: [&str; 18] = [
     "#0072b2", "#009e73", "#cc79a7", "#332288", "#56b4e9", "#117733", "#000000", "#777777",
     "#5c3317", "#aa4499", "#0000cc", "#004d40", "#8bc34a", "#cc6677", "#999933", "#bb99ff",
     "#d55e00", "#e69f00",
 ];
 
-/// The styles of methods that are drawn together, in their order. Those of the course keep their
-/// colours.
+/// Returns the styles of methods that are drawn together, in their order. The solvers of the course
+/// keep their colours.
 pub fn together(methods: &[&Method]) -> Vec<CurveStyle> {
     let mut styles: Vec<_> = methods.iter().map(|method| of(method.letter)).collect();
     let mut places: Vec<_> = (0..methods.len()).collect();
@@ -42,14 +42,14 @@ pub fn together(methods: &[&Method]) -> Vec<CurveStyle> {
             distances.fold(f64::INFINITY, f64::min)
         };
         let own = styles[k].colour;
-        if nearest(own) < APART {
+        if nearest(own) < MIN_DIFFERENCE {
             let spare = || {
                 SPARE
                     .into_iter()
                     .filter(|spare| !own_colours.contains(spare))
             };
             let farthest = || spare().max_by(|a, b| nearest(a).total_cmp(&nearest(b)));
-            let apart = spare().find(|spare| nearest(spare) >= APART);
+            let apart = spare().find(|spare| nearest(spare) >= MIN_DIFFERENCE);
             styles[k].colour = apart.or_else(farthest).unwrap_or(own);
         }
         taken.push(styles[k].colour);
@@ -57,7 +57,7 @@ pub fn together(methods: &[&Method]) -> Vec<CurveStyle> {
     styles
 }
 
-/// The style of a method by its letter; grey for one without a style of its own.
+/// Returns the style of a method by its letter; the default style for a method that has none.
 pub fn of(letter: char) -> CurveStyle {
     use Marker::{Cross, Polygon, Star};
     let (colour, dash, marker) = match letter {
@@ -80,9 +80,9 @@ pub fn of(letter: char) -> CurveStyle {
         'b' => ("#009e73", IMPLICIT, Cross(0.125)),
         'n' => ("#117733", IMPLICIT, Polygon(6, 0.0)),
         'o' => ("#5a7f1e", IMPLICIT, Star(3, 0.4)),
-        'c' => ("#b3703c", UNSOLVED, Polygon(8, 0.0)),
-        'j' => ("#7a4419", UNSOLVED, Polygon(8, 0.0625)),
-        'y' => ("#8a8d91", UNSOLVED, Star(3, 0.4)),
+        'c' => ("#b3703c", ITERATED, Polygon(8, 0.0)),
+        'j' => ("#7a4419", ITERATED, Polygon(8, 0.0625)),
+        'y' => ("#8a8d91", ITERATED, Star(3, 0.4)),
         _ => return CurveStyle::default(),
     };
     CurveStyle {
@@ -120,7 +120,12 @@ mod tests {
                 assert!(k > 3 || style.colour == of(shown[k].letter).colour);
                 for other in &styles[..k] {
                     let apart = difference(style.colour, other.colour);
-                    assert!(apart >= APART, "{} {} {apart}", style.colour, other.colour);
+                    assert!(
+                        apart >= MIN_DIFFERENCE,
+                        "{} {} {apart}",
+                        style.colour,
+                        other.colour
+                    );
                 }
             }
         }

@@ -1,4 +1,4 @@
-//! The chart as tables: the work that each method needs for each error, and the cheapest methods.
+//! The chart as tables: the cost of each method for each error, and the cheapest method.
 
 use std::fmt::Write;
 
@@ -11,19 +11,19 @@ use super::record::Record;
 use super::words::unit;
 use crate::commands::list;
 
-/// Decimal digits of the errors in the table, from 1e-2 to 1e-8.
-const ERRORS: std::ops::RangeInclusive<i32> = 2..=8;
+/// Decimal digits of the errors in the table, which are 1e-2 to 1e-8.
+const DIGITS: std::ops::RangeInclusive<i32> = 2..=8;
 
-/// Uncertainty of a reference over the motion, above which a chart tells little.
-const USEFUL: f64 = 1e-5;
+/// Uncertainty of a reference, over the motion, above which a shorter run is advised.
+const MAX_UNCERTAINTY: f64 = 1e-5;
 
-/// Shortest run that is advised, over the one that was made.
-const SHORTEST: f64 = 0.02;
+/// Shortest run that is advised, over the run that was made.
+const MIN_DURATION_RATIO: f64 = 0.02;
 
 /// Largest numerator of a step that is written as a fraction.
-const SHORT: f64 = 9.0;
+const MAX_NUMERATOR: f64 = 9.0;
 
-/// The cheapest run whose error is at most `error`.
+/// Finds the cheapest run whose error is at most `error`.
 fn cheapest<'a>(
     records: impl Iterator<Item = &'a Record>,
     metric: Metric,
@@ -35,7 +35,7 @@ fn cheapest<'a>(
         .min_by(|a, b| cost(a, timed).total_cmp(&cost(b, timed)))
 }
 
-/// Cost of a run: computing time (ms) if it is timed, or else work in evaluations.
+/// Returns the cost of a run: its computing time (ms) if `timed`, or else its work in evaluations.
 fn cost(record: &Record, timed: bool) -> f64 {
     if timed {
         record.seconds.map_or(f64::INFINITY, |s| 1e3 * s)
@@ -44,7 +44,7 @@ fn cost(record: &Record, timed: bool) -> f64 {
     }
 }
 
-/// A cost, to three digits.
+/// Writes a cost to three digits.
 fn short(cost: f64) -> String {
     if cost < 9.995 {
         format!("{cost:.2}")
@@ -55,7 +55,7 @@ fn short(cost: f64) -> String {
     }
 }
 
-/// A step with its unit, or a tolerance, in words.
+/// Writes a step with its unit, or a tolerance.
 pub fn words(control: Control) -> String {
     let step = match control {
         Control::Tolerance(tolerance) => return format!("tolerance {tolerance:.0e}"),
@@ -67,29 +67,30 @@ pub fn words(control: Control) -> String {
         ("ms", 1e3)
     };
     let rounded = (1e3 * per_second * step).round() / 1e3;
-    match fraction(step, SHORT) {
+    match fraction(step, MAX_NUMERATOR) {
         Some(fraction) if (10.0 * rounded).fract() != 0.0 => format!("step {fraction} s"),
         _ => format!("step {rounded} {unit}"),
     }
 }
 
-/// A step as a fraction of seconds, such as 1/97, whose numerator is the least, and at most `most`.
-pub fn fraction(step: f64, most: f64) -> Option<String> {
+/// Writes a step (s) as a fraction such as 1/97, with the smallest numerator up to `max_numerator`;
+/// `None` if there is none.
+pub fn fraction(step: f64, max_numerator: f64) -> Option<String> {
     let part = (1..=100).map(f64::from).find(|part| {
         let steps = part / step;
-        *part <= most && (steps - steps.round()).abs() < 1e-9 * steps
+        *part <= max_numerator && (steps - steps.round()).abs() < 1e-9 * steps
     })?;
     Some(format!("{part}/{}", (part / step).round()))
 }
 
-/// Sentence on when the reference of a study becomes much worse, and until when a chart would tell
-/// more; none if it tells enough, or was not made.
+/// Advises an earlier end if the reference of a study becomes much worse from some time on. `None`
+/// if the reference is good enough, or was not computed.
 pub fn advice(study: &Study) -> Option<String> {
     let reference = study.reference.as_ref()?;
     let whole = reference.floor.position;
     let (time, floor) = reference.clear_until()?;
     let until = (1e2 * time).floor() / 1e2;
-    (whole > USEFUL * study.motion && until >= SHORTEST * study.frames.until).then(|| {
+    (whole > MAX_UNCERTAINTY * study.motion && until >= MIN_DURATION_RATIO * study.frames.until).then(|| {
         format!(
             "positions are known to {whole:.0e} m only, because of what happens after {time:.2} s, such as an \
              impact: with --until {until} they are known to {floor:.0e} m\n"
@@ -97,7 +98,7 @@ pub fn advice(study: &Study) -> Option<String> {
     })
 }
 
-/// The tables of all studies.
+/// Writes the tables of all studies, each with its cheapest methods.
 pub fn text(
     studies: &[Study],
     data: &Data,
@@ -128,7 +129,7 @@ pub fn text(
     parts.collect::<Vec<_>>().concat()
 }
 
-/// The rows of a study's table: a heading, and the cost of each method for each error.
+/// Returns the rows of a study's table: a heading, and the cost of each method for each error.
 fn rows(
     study: &Study,
     data: &Data,
@@ -141,7 +142,7 @@ fn rows(
     let mut rows = vec![
         ["solver".to_owned()]
             .into_iter()
-            .chain(ERRORS.map(heading))
+            .chain(DIGITS.map(heading))
             .collect::<Vec<_>>(),
     ];
     let resolved = resolved(study, data, metric);
@@ -164,20 +165,21 @@ fn rows(
         rows.push(
             [method.name.to_owned()]
                 .into_iter()
-                .chain(ERRORS.map(cell))
+                .chain(DIGITS.map(cell))
                 .collect(),
         );
     }
     rows
 }
 
-/// The least error that the reference of a study can tell from 0.
+/// Returns the smallest error that the reference of a study can tell from 0.
 fn resolved(study: &Study, data: &Data, metric: Metric) -> f64 {
     let of_runs = study.records(data).map(|r| r.resolved(metric));
     of_runs.fold(0.0, f64::max)
 }
 
-/// The cheapest method for each error, a line each.
+/// Writes a line for each error with the cheapest method, below a note on the collision safeguard
+/// if it acted.
 fn winners(
     study: &Study,
     data: &Data,
@@ -197,12 +199,12 @@ fn winners(
         let all = study.records(data).count();
         let _ = writeln!(
             text,
-            "of {all} runs, the guard of surfaces held {held}, whose order is 1 there (half-filled \
+            "the collision safeguard acted in {held} of {all} runs, whose order is 1 there (half-filled \
              markers)"
         );
     }
     text.push_str("* cheapest:\n");
-    for digits in ERRORS {
+    for digits in DIGITS {
         let error = 10f64.powi(-digits);
         let line = if error < resolved {
             format!("the reference tells errors above {resolved:.0e} {unit} only")

@@ -1,25 +1,25 @@
-//! Data behind a chart as text: CSV, or a JSON array, with a line for each run. The last value of a
-//! line, `check`, is the CRC-32 of all that stands before it in the file, so that the last one
-//! tells whether any byte has changed.
+//! Data of a chart as text: CSV, or a JSON array, with a line for each run. The last value of a
+//! line, `check`, is the CRC-32 of all bytes before it in the file. So that of the last line shows
+//! whether any byte has changed.
 
 use super::record::Record;
 
-/// Name of the checksums.
+/// Key of the checksums.
 const CHECK: &str = "check";
 /// Number of digits of a checksum.
 const DIGITS: usize = 8;
 
-/// What stands after the last checksum.
+/// Returns the text after the last checksum.
 fn end(json: bool) -> &'static str {
     if json { "\"}\n]\n" } else { "\n" }
 }
 
-/// A checksum in hexadecimal digits.
+/// Writes a checksum in hexadecimal digits.
 fn digits(sum: u32) -> String {
     format!("{sum:0DIGITS$x}")
 }
 
-/// The text of these runs.
+/// Writes runs as text.
 pub fn write(records: &[Record], json: bool) -> Result<String, String> {
     let mut text = String::new();
     let (mut sum, mut summed) = (crc32fast::Hasher::new(), 0);
@@ -44,7 +44,7 @@ pub fn write(records: &[Record], json: bool) -> Result<String, String> {
     Ok(text + end(json))
 }
 
-/// The line of a run in CSV, below the names of its values if they are asked for.
+/// Writes the line of a run in CSV, below a line of keys if `names`.
 pub fn csv_lines(record: &Record, names: bool) -> Result<String, String> {
     let mut writer = csv::WriterBuilder::new()
         .has_headers(names)
@@ -56,12 +56,16 @@ pub fn csv_lines(record: &Record, names: bool) -> Result<String, String> {
     Ok(lines)
 }
 
+/// Names the line of a text that cannot be read.
 fn see_line(line: u64) -> String {
     format!("see line {line}")
 }
 
-/// The runs in a text. One that has no checksums, because an older version wrote it or somebody
-/// took them out, is believed.
+/// Reads the runs in a text. A text without checksums is accepted: an older version wrote it, or
+/// somebody took them out.
+///
+/// # Errors
+/// The text does not hold runs, or its last checksum is wrong.
 pub fn read(text: &str, json: bool) -> Result<Vec<Record>, String> {
     let mut records: Vec<Record> = if json && !text.is_empty() {
         serde_json::from_str(text).map_err(|e| see_line(e.line() as u64))?
@@ -141,14 +145,14 @@ mod tests {
                 for other in [1, 2, 4, 7, 0x20, 0x80, 0xff] {
                     let mut bytes = text.clone().into_bytes();
                     bytes[at] ^= other;
-                    // What is no text is refused where the file is read.
+                    // Bytes that are no UTF-8 are refused where the file is read.
                     if let Ok(changed) = String::from_utf8(bytes) {
                         assert!(read(&changed, json).is_err(), "byte {at}: {changed}");
                     }
                 }
             }
             for length in 1..text.len() {
-                // Whole lines of CSV are what was written earlier.
+                // Cut after a whole line, CSV is a text that was written earlier.
                 let Some(short) = text.get(..length) else {
                     continue;
                 };

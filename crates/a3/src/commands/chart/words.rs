@@ -5,7 +5,7 @@ use a3_core::accuracy::Metric;
 
 use crate::cli::What;
 
-/// Unit of a metric, in words.
+/// Returns the unit of a metric, in words.
 pub fn unit(metric: Metric) -> &'static str {
     match metric {
         Metric::Position => "m",
@@ -18,7 +18,7 @@ pub fn unit(metric: Metric) -> &'static str {
     }
 }
 
-/// The scene in words: its name, its grid, and what is switched on.
+/// Describes the scene in words: its name, its grid, and the options that are on.
 pub fn describe(what: &What, scene: &Scene) -> String {
     let grid = scene
         .grid()

@@ -1,9 +1,9 @@
-//! The command: looks ahead, computes a reference, searches, and prints.
+//! The command `a3 choose`: finds the end of the runs, computes a reference, searches, and prints.
 
 use a3_core::Scene;
 use a3_core::accuracy::{Candidate, Frames, Metric, Precision, Reference, Scope};
 
-use super::search::{MARGIN, cheapest, within};
+use super::search::{ENOUGH_MARGIN, cheapest, within};
 use super::words::{command, report, set_by};
 use crate::base::failure::Failure;
 use crate::base::progress::Bar;
@@ -17,7 +17,7 @@ use crate::commands::chart::{
 use crate::commands::motion::grid_error;
 use crate::files::setup::Request;
 
-/// Finds and prints what the command line asks for.
+/// Finds and prints the solvers that the command line asks for.
 pub fn run(options: &Choose) -> Result<(), Failure> {
     interrupt::listen();
     let asked = Asked::new(options)?;
@@ -27,15 +27,15 @@ pub fn run(options: &Choose) -> Result<(), Failure> {
     asked.print(&reference, &found)
 }
 
-/// What is asked for of a solver.
+/// Demand on the solver.
 enum Goal {
-    /// The largest error, in the unit of the metric.
+    /// Largest error, in the unit of the metric.
     Error(f64),
-    /// The longest computing time of a frame (ms).
+    /// Longest computing time of a frame (ms).
     Budget(f64),
 }
 
-/// What the command line asks for, once the scene is known to have it.
+/// Request of the command line, checked against the scene.
 struct Asked<'a> {
     options: &'a Choose,
     request: Request,
@@ -46,6 +46,7 @@ struct Asked<'a> {
 }
 
 impl<'a> Asked<'a> {
+    /// Reads the scene, and checks the options against it.
     fn new(options: &'a Choose) -> Result<Self, Failure> {
         let request = Request::read(&options.what)?;
         let scene = request.scene()?;
@@ -64,7 +65,7 @@ impl<'a> Asked<'a> {
         })
     }
 
-    /// Computes the reference, as far as errors mean something and as precisely as the goal needs.
+    /// Computes the reference, up to the end of the runs and as precisely as the goal needs.
     fn reference(&self, bar: &Bar) -> Result<Reference, Failure> {
         let scene = &self.scene;
         bar.say("looking ahead  ".into());
@@ -75,7 +76,7 @@ impl<'a> Asked<'a> {
         let precision = match self.goal {
             Goal::Error(error) => Precision {
                 metric: self.metric,
-                uncertainty: error / MARGIN.1,
+                uncertainty: error / ENOUGH_MARGIN,
                 max_work: f64::INFINITY,
             },
             Goal::Budget(_) => precision(scene, horizon.motion),
@@ -109,7 +110,7 @@ impl<'a> Asked<'a> {
         }))
     }
 
-    /// The goal in words.
+    /// Describes the goal in words.
     fn goal(&self) -> String {
         match self.goal {
             Goal::Error(error) => format!(
@@ -128,27 +129,29 @@ impl<'a> Asked<'a> {
         let floor = self.metric.of(&reference.floor);
         let note = match self.goal {
             Goal::Error(_) => set_by(best),
-            Goal::Budget(_) if self.metric.of(&best.outcome.errors) < MARGIN.1 * floor => format!(
-                "the reference, known to {floor:.0e} {}, is the limit, not the budget: finer runs were not tried\n",
-                unit(self.metric)
-            ),
+            Goal::Budget(_) if self.metric.of(&best.outcome.errors) < ENOUGH_MARGIN * floor => {
+                format!(
+                    "the reference, known to {floor:.0e} {}, is the limit, not the budget: finer runs were not tried\n",
+                    unit(self.metric)
+                )
+            }
             Goal::Budget(_) => String::new(),
         };
         let table = report(what, &self.scene, until, &self.goal(), (self.metric, found));
         terminal::say(&(table + &note))?;
         let line = command(what, best.method, best.control, until);
         terminal::say(&format!("run it:  {line}\n"))?;
-        self.print_grid_error(best, until)
+        self.print_grid_error(best, reference.frames)
     }
 }
 
 impl Asked<'_> {
-    /// Says how much the grid of the scene errs, where that is more than the solver.
-    fn print_grid_error(&self, best: &Candidate, until: f64) -> Result<(), Failure> {
+    /// Prints the error of the scene's grid, if it is larger than that of the solver.
+    fn print_grid_error(&self, best: &Candidate, frames: Frames) -> Result<(), Failure> {
         if self.options.no_model || self.metric != Metric::Position {
             return Ok(());
         }
-        match grid_error(&self.request, &self.scene, until)? {
+        match grid_error(&self.request, &self.scene, frames, self.scope)? {
             Some(own) if own.error > best.outcome.errors.position => terminal::say(&own.sentence()),
             _ => Ok(()),
         }

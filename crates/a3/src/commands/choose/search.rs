@@ -1,4 +1,4 @@
-//! The search for candidates, which are timed as they are found.
+//! The search for the cheapest solvers, and their computing times.
 
 use a3_core::accuracy::{Candidate, Metric, Reference, SetBy, choose, ladder, measure};
 use a3_core::stability::spectrum;
@@ -11,16 +11,20 @@ use crate::cli::WorkMeasure;
 use crate::commands::chart::single::time;
 use crate::commands::chart::{methods, unit};
 
-/// Error that is asked for over the uncertainty of the reference: at least, and where the reference
-/// is fine enough.
-pub const MARGIN: (f64, f64) = (3.0, 100.0);
+/// Smallest error that may be asked for, over the uncertainty of the reference.
+const MIN_MARGIN: f64 = 3.0;
+/// Error over the uncertainty of the reference at which the reference is precise enough.
+pub const ENOUGH_MARGIN: f64 = 100.0;
 /// Number of candidates that are shown.
 const SHOWN: usize = 3;
 /// Simulated time of a frame (s).
-const FRAME: f64 = 1.0 / 60.0;
+const FRAME_TIME: f64 = 1.0 / 60.0;
 
-/// The cheapest methods for an error, with the computing times of their frames (ms). `None` if it
-/// was interrupted.
+/// Finds the cheapest methods for an error, with the computing times of their frames (ms). `None`
+/// if the command was interrupted.
+///
+/// # Errors
+/// The error is too small for the reference, or a run fails.
 pub fn cheapest(
     scene: &Scene,
     reference: &Reference,
@@ -30,11 +34,11 @@ pub fn cheapest(
 ) -> Result<Option<Vec<(Candidate, f64)>>, Failure> {
     let (floor, still) = (metric.of(&reference.floor), metric.of(&reference.still));
     let (unit, until) = (unit(metric), reference.frames.until);
-    if error < MARGIN.0 * floor {
+    if error < MIN_MARGIN * floor {
         return Err(Failure::usage(format!(
             "the reference of this scene over {until} s is itself known to {floor:.0e} {unit} only: ask for an error \
              of at least {:.0e}",
-            MARGIN.0 * floor
+            MIN_MARGIN * floor
         )));
     }
     if metric == Metric::Position && error > still {
@@ -70,7 +74,8 @@ pub fn cheapest(
     Ok(timed)
 }
 
-/// Computing time of a frame (ms), averaged over the whole run. `None` if it was interrupted.
+/// Measures the computing time of a frame (ms), averaged over the whole run. `None` if the command
+/// was interrupted.
 fn milliseconds(
     scene: &Scene,
     candidate: &Candidate,
@@ -83,11 +88,11 @@ fn milliseconds(
         &reference.frames,
         None,
     )?;
-    Ok(time.map(|time| 1e3 * time.as_secs_f64() * FRAME / reference.frames.until))
+    Ok(time.map(|time| 1e3 * time.as_secs_f64() * FRAME_TIME / reference.frames.until))
 }
 
-/// The three most accurate methods, each at its most accurate step or tolerance whose frames take
-/// no longer than the budget (ms). `None` if it was interrupted.
+/// Finds the three most accurate methods, each at its most accurate step or tolerance whose frames
+/// take no longer than the budget (ms). `None` if the command was interrupted.
 pub fn within(
     scene: &Scene,
     reference: &Reference,
@@ -99,7 +104,7 @@ pub fn within(
     let modes = spectrum(scene.model.system(), 0.0, &scene.state);
     let error = |c: &Candidate| metric.of(&c.outcome.errors);
     let conserved = matches!(metric, Metric::Energy | Metric::Momentum | Metric::Phase);
-    let most = if conserved {
+    let max_error = if conserved {
         f64::INFINITY
     } else {
         metric.of(&reference.still)
@@ -128,14 +133,14 @@ pub fn within(
             }
             // An error larger than the motion says nothing.
             if outcome.lost.is_none()
-                && error(&candidate) < most
+                && error(&candidate) < max_error
                 && best
                     .as_ref()
                     .is_none_or(|(best, _)| error(&candidate) < error(best))
             {
                 best = Some((candidate, cost));
             }
-            if error(&candidate) < MARGIN.1 * metric.of(&reference.floor) {
+            if error(&candidate) < ENOUGH_MARGIN * metric.of(&reference.floor) {
                 break;
             }
         }

@@ -10,7 +10,7 @@ use crate::commands::chart::table::fraction;
 use crate::commands::chart::{describe, unit};
 use crate::commands::list;
 
-/// Sentence on what keeps the best candidate's step or tolerance from being larger.
+/// Says why the best candidate's step or tolerance is not larger.
 pub fn set_by(best: &Candidate) -> String {
     let what = if best.control.step().is_some() {
         "step"
@@ -19,12 +19,14 @@ pub fn set_by(best: &Candidate) -> String {
     };
     match best.set_by {
         SetBy::Accuracy => format!("accuracy sets the {what}: a larger one misses the error\n"),
-        SetBy::Stability => format!("stability sets the {what}: the run grows with a larger one\n"),
+        SetBy::Stability => {
+            format!("stability sets the {what}: with a larger one the run is unstable\n")
+        }
         SetBy::Nothing => format!("nothing sets the {what}: no larger one was tried\n"),
     }
 }
 
-/// The table of candidates and their costs (ms).
+/// Writes the table of candidates, with the computing times of their frames (ms).
 pub fn report(
     what: &What,
     scene: &Scene,
@@ -69,9 +71,9 @@ pub fn report(
     )
 }
 
-/// A step or a tolerance as it would be typed: a step of a run of `until` (s) exactly, as a
-/// fraction if a few digits do not tell it; a tolerance to four digits, rounded down, so that the
-/// run is no coarser.
+/// Writes a step or a tolerance for a command line. A step of a run of `until` (s) is exact: a
+/// fraction if it has too many decimals. A tolerance has four digits and is rounded down, so that
+/// the run is no less accurate.
 fn typed(control: Control, until: f64) -> String {
     let value = control.value();
     if let Control::Step(step) = control {
@@ -91,7 +93,7 @@ fn typed(control: Control, until: f64) -> String {
     }
 }
 
-/// The command line that runs the scene with a method at a step or a tolerance.
+/// Writes the command line that runs the scene with a method at a step or a tolerance.
 pub fn command(what: &What, method: &Method, control: Control, until: f64) -> String {
     let mut words = format!("a3 {} {}", method.letter, typed(control, until));
     if what.scene != "cloth" {

@@ -1,4 +1,4 @@
-//! The error of a scene's own grids, which no solver makes smaller.
+//! The error that a scene's grids cause, which no solver makes smaller.
 
 use a3_core::accuracy::{Frames, Scope};
 use a3_core::integrators::find;
@@ -9,32 +9,34 @@ use super::track::{Motion, Points};
 use crate::base::failure::Failure;
 use crate::files::setup::Request;
 
-/// Relative tolerance of the runs: far below what grids err by.
+/// Relative tolerance of the runs, whose errors are far below those of grids.
 const TOLERANCE: f64 = 1e-5;
-/// Most particles of a scene whose grid is made finer without being asked for.
-const MOST_PARTICLES: usize = 1500;
+/// Largest number of particles of a scene whose grid error is measured: more would take too long.
+const MAX_PARTICLES: usize = 1500;
 
-/// Error of a grid.
+/// Error that a grid causes.
 pub struct GridError {
-    /// The grid in words.
+    /// Numbers of particles along each axis, in words.
     pub grid: String,
-    /// Estimated error of the positions (m), or the difference from a grid twice as fine, where
-    /// grids do not converge yet.
+    /// Estimated error of the positions (m); if grids do not converge yet, the difference from a
+    /// grid twice as fine.
     pub error: f64,
-    /// Observed order, where grids converge.
+    /// Observed order, if grids converge.
     pub order: Option<f64>,
 }
 
-/// Least order that is taken for convergence, and the largest that is extrapolated by.
-const ORDERS: (f64, f64) = (0.3, 4.0);
+/// Observed order above which grids count as convergent.
+const MIN_ORDER: f64 = 0.3;
+/// Largest order with which the error is extrapolated.
+const MAX_ORDER: f64 = 4.0;
 
 impl GridError {
-    /// Estimates the error of a grid from the differences (m) of one half and one twice as fine
-    /// from it (Richardson).
+    /// Estimates the error of a grid by Richardson's extrapolation, from the differences (m) of a
+    /// grid half as fine and of one twice as fine from it.
     pub fn new(grid: String, coarser: Option<f64>, finer: f64) -> Self {
         let order = coarser.map(|coarser| (coarser / finer).log2());
-        let order = order.filter(|order| *order > ORDERS.0);
-        let share = order.map_or(1.0, |order| 1.0 - (-order.min(ORDERS.1)).exp2());
+        let order = order.filter(|order| *order > MIN_ORDER);
+        let share = order.map_or(1.0, |order| 1.0 - (-order.min(MAX_ORDER)).exp2());
         Self {
             grid,
             error: finer / share,
@@ -42,7 +44,7 @@ impl GridError {
         }
     }
 
-    /// Sentence on the error.
+    /// Describes the error in a sentence.
     pub fn sentence(&self) -> String {
         let Self { grid, error, order } = self;
         let how = match order {
@@ -57,12 +59,13 @@ impl GridError {
     }
 }
 
-/// Measures the error of the grids of a scene up to a time (s). `None` if the scene has no grid
-/// that could be finer, or too many particles, or its runs are lost or interrupted.
+/// Measures the error of a scene's grids at frames, in a scope. `None` if the scene has no grid that can
+/// be made finer or has too many particles, if a run fails, or if the command was interrupted.
 pub fn grid_error(
     request: &Request,
     scene: &Scene,
-    until: f64,
+    frames: Frames,
+    scope: Scope,
 ) -> Result<Option<GridError>, Failure> {
     let request = &request.described();
     let own = &*request.source.description;
@@ -70,12 +73,12 @@ pub fn grid_error(
     let Some(method) = find("verner65").filter(|m| m.check(scene.model.system()).is_ok()) else {
         return Ok(None);
     };
-    if particles > MOST_PARTICLES {
+    if particles > MAX_PARTICLES {
         return Ok(None);
     }
     let points = Points {
-        frames: Frames::new(until),
-        scope: Scope::default(),
+        frames,
+        scope,
         centre: false,
     };
     let accurate = (method, Control::Tolerance(TOLERANCE));
@@ -104,7 +107,7 @@ pub fn grid_error(
     Ok(Some(GridError::new(grid(own), coarser, finer)))
 }
 
-/// The grids of a scene in words: that of its first body that has one.
+/// Describes the grid of a scene's first body that has one, as in `9 x 9`.
 pub fn grid(description: &Description) -> String {
     let cloth = description.cloth.first().map(|it| it.grid.to_vec());
     let jelly = || description.jelly.first().map(|it| it.grid.to_vec());

@@ -1,4 +1,4 @@
-//! Motion of points in different models of a scene, and the error of a scene's own grids.
+//! Motion of particles in different models of a scene, and the error that the scene's grids cause.
 
 mod grid_error;
 mod track;

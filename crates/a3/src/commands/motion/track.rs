@@ -1,4 +1,4 @@
-//! Motion of the points that are compared, in one model and in another.
+//! Motion of points in a run, to compare one model with another.
 
 use std::time::{Duration, Instant};
 
@@ -8,13 +8,15 @@ use a3_core::{Control, Method, Scene, Simulation};
 use crate::base::failure::Failure;
 use crate::base::interrupt;
 
-/// Particles of one grid as means of those of another, with their weights.
+/// Particles of one grid, each as a weighted mean of particles of another grid.
 pub type Places = [Vec<(usize, f64)>];
 
 /// Points whose motion is compared.
 #[derive(Clone, Copy)]
 pub struct Points {
+    /// Times at which positions are taken.
     pub frames: Frames,
+    /// Particles and times that count.
     pub scope: Scope,
     /// Whether the centre of mass is compared, instead of the particles.
     pub centre: bool,
@@ -45,21 +47,23 @@ impl Track {
         }
     }
 
-    /// The same motion with another computing time.
+    /// Replaces the computing time.
     pub fn timed(self, time: Duration) -> Self {
         Self { time, ..self }
     }
 }
 
-/// Motion of a model, or that its run was lost.
+/// Motion of a model.
 pub enum Motion {
+    /// Motion of the points in the whole run.
     Known(Track),
-    Lost,
+    /// The run blew up.
+    Failed,
 }
 
 impl Points {
-    /// Runs a scene by a method, and follows the points. `places` tells where they are on the grids
-    /// of the scene, if these are others. `None` if it was interrupted.
+    /// Runs a scene by a method, and records the positions of the points. On other grids than those
+    /// of the points, `places` gives the points there. `None` if the command was interrupted.
     pub fn follow(
         self,
         scene: &Scene,
@@ -86,7 +90,7 @@ impl Points {
         let time = begun.elapsed().saturating_sub(spent);
         Ok(match end.map_err(Failure::run)? {
             None => None,
-            Some(Some(_)) => Some(Motion::Lost),
+            Some(Some(_)) => Some(Motion::Failed),
             Some(None) => Some(Motion::Known(Track {
                 positions,
                 time,
@@ -95,7 +99,7 @@ impl Points {
         })
     }
 
-    /// The points in a state of a run.
+    /// Returns the positions of the points in a state of a run.
     fn of(self, run: &Simulation, state: &[f64], places: Option<&Places>) -> Vec<f64> {
         let n = run.particles();
         let columns = (0..3).map(|axis| &state[axis * n..(axis + 1) * n]);
@@ -123,8 +127,8 @@ impl Points {
         }
     }
 
-    /// Root mean square distance of the points of two motions (m), the largest over the frames that
-    /// count.
+    /// Returns the root mean square distance (m) between the points of two motions: the largest
+    /// over the frames, or that at the end if the scope says so.
     pub fn distance(self, a: &Track, b: &Track) -> f64 {
         let pairs = a.positions.iter().zip(&b.positions);
         let from = if self.scope.at_end {
@@ -139,8 +143,8 @@ impl Points {
         distances.fold(0.0, f64::max)
     }
 
-    /// Distance of the points from where they start (m), as
-    /// [`distance`](Self::distance).
+    /// Returns the distance (m) of the points from where they start, as
+    /// [`distance`](Self::distance) does.
     pub fn way(self, track: &Track) -> f64 {
         let still = Track {
             positions: vec![track.positions[0].clone(); track.positions.len()],

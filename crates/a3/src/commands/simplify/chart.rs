@@ -165,7 +165,7 @@ fn runs(
     for control in first.into_iter().chain(rungs).take(MAX_RUNS) {
         let measured = match points.follow(scene, (method, control), places)? {
             None => return Ok(None),
-            Some(Motion::Lost) => None,
+            Some(Motion::Failed) => None,
             Some(Motion::Known(track)) => {
                 let frames = &points.frames;
                 let Some(time) = time(scene, method, control, frames, Some(track.time))? else {

@@ -1,11 +1,11 @@
-//! The command: measures the models, and puts the leanest scene together.
+//! The command `a3 simplify`: measures the models, and assembles the leanest scene.
 
 use std::path::Path;
 
 use a3_core::accuracy::{Frames, Metric, Precision, Reference};
 
 use super::chart::chart;
-use super::lean::{Answer, LeanModel, MOST_TIME, Solved, assemble, solve, solve_whole};
+use super::lean::{Answer, LeanModel, MAX_TIME_RATIO, Solved, assemble, solve, solve_whole};
 use super::models::{Model, Models, measure_all};
 use super::table;
 use crate::base::failure::Failure;
@@ -18,8 +18,10 @@ use crate::commands::motion::Points;
 use crate::files::output;
 use crate::files::setup::Request;
 
-/// Uncertainty of the reference over the error that is asked for, and the most that it may be.
-const UNCERTAINTY: (f64, f64) = (0.01, 0.3);
+/// Uncertainty of the reference that is sought, over the error that is asked for.
+const GOAL_UNCERTAINTY: f64 = 0.01;
+/// Largest uncertainty of the reference that is accepted, over the error that is asked for.
+const MAX_UNCERTAINTY: f64 = 0.3;
 
 /// Measures models of a scene, prints them, and writes the leanest.
 pub fn run(options: &Simplify) -> Result<(), Failure> {
@@ -67,10 +69,11 @@ fn draw(
     bar.pause(|| terminal::say(&format!("chart: {}\n", path.display())))
 }
 
-/// Reads the scene, with the options of the command line in its description.
+/// Reads the scene, with the options of the command line in its description, and checks that the
+/// leanest scene can be written.
 fn request(options: &Simplify) -> Result<Request, Failure> {
     let given = Request::read(&options.what)?;
-    // What the scene lacks is refused.
+    // This refuses options that the scene does not support.
     given.scene()?;
     let request = given.described();
     if let Some(path) = &options.chart {
@@ -89,7 +92,8 @@ fn request(options: &Simplify) -> Result<Request, Failure> {
     Ok(request)
 }
 
-/// Refuses to write a scene with meshes to another folder: their files are found beside it.
+/// Checks that a scene with meshes in files is written to its own folder, because these files are
+/// found relative to it.
 fn check_folder(path: &Path, request: &Request) -> Result<(), Failure> {
     let description = &request.source.description;
     let parts = description.body.iter().flat_map(|body| &body.parts);
@@ -118,7 +122,8 @@ fn check_folder(path: &Path, request: &Request) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Integrates the whole scene accurately, as far as errors mean something.
+/// Integrates the whole scene accurately, up to the end of the runs. Returns its models, which are
+/// not measured yet, and the reference.
 fn whole<'a>(
     options: &Simplify,
     request: &'a Request,
@@ -140,17 +145,17 @@ fn whole<'a>(
     bar.say("reference  ".into());
     let precision = Precision {
         metric: Metric::Position,
-        uncertainty: UNCERTAINTY.0 * error,
+        uncertainty: GOAL_UNCERTAINTY * error,
         max_work: f64::INFINITY,
     };
     let reference = reference(&scene, frames, scope, precision)?.ok_or_else(stopped)?;
     let floor = reference.floor.position;
-    if floor > UNCERTAINTY.1 * error {
+    if floor > MAX_UNCERTAINTY * error {
         return Err(Failure::usage(format!(
             "the motion of this scene over {} s is itself known to {floor:.0e} m only: ask for an error of at least \
              {:.0e}, or for a shorter --until",
             frames.until,
-            floor / UNCERTAINTY.1
+            floor / MAX_UNCERTAINTY
         )));
     }
     let points = Points {
@@ -169,8 +174,8 @@ fn whole<'a>(
     Ok((models, reference))
 }
 
-/// Puts the leanest scene together, with the whole scene's own solver beside it. `None` if it was
-/// interrupted.
+/// Assembles the leanest scene, and finds the cheapest solvers for it and for the whole scene.
+/// `None` if the command was interrupted.
 fn leanest(
     models: &Models,
     all: &[Model],
@@ -196,9 +201,10 @@ fn leanest(
     if !interrupt::go_on() {
         return Ok(None);
     }
-    // What is left out has to pay, or at least to cost nothing.
+    // The leanest scene has to save time, or at least to cost no more.
     let pays = |solved: &Solved| {
-        solved.time <= MOST_TIME * whole.time || model.factor == 1.0 && solved.work <= whole.work
+        solved.time <= MAX_TIME_RATIO * whole.time
+            || model.factor == 1.0 && solved.work <= whole.work
     };
     let found = solved.filter(pays).map(|solved| (model, solved));
     let (model, solved) = found.unwrap_or_else(|| (LeanModel::whole(models), whole));
@@ -209,7 +215,7 @@ fn leanest(
     }))
 }
 
-/// `None` if the command was interrupted, or else the failure.
+/// Returns `None` if the command was interrupted, or else the failure.
 fn stop_or<T>(why: String) -> Result<Option<T>, Failure> {
     if interrupt::go_on() {
         Err(Failure::run(why))
@@ -218,6 +224,7 @@ fn stop_or<T>(why: String) -> Result<Option<T>, Failure> {
     }
 }
 
+/// Prints the table of the models, the error of the grid, and the leanest scene.
 fn print(
     options: &Simplify,
     models: &Models,
@@ -253,7 +260,7 @@ fn print(
     }
 }
 
-/// Writes the leanest scene with its solver and its step.
+/// Writes the leanest scene, with its solver and its step, to a file.
 fn write(path: &Path, models: &Models, answer: &Answer) -> Result<(), Failure> {
     let mut description = answer.model.description.clone();
     description.solver = Some(answer.solved.method.name.into());
@@ -272,7 +279,7 @@ fn write(path: &Path, models: &Models, answer: &Answer) -> Result<(), Failure> {
     terminal::say(&format!("scene: {}\n", path.display()))
 }
 
-/// Creates the failure of a command that was interrupted too early.
+/// Creates the failure of a command that was interrupted before any model was measured.
 fn stopped() -> Failure {
     Failure::Interrupted("interrupted before anything was measured".into())
 }

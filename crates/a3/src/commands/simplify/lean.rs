@@ -1,5 +1,5 @@
 //! The leanest scene for an error: parts left out together, a coarser grid, and the cheapest solver
-//! for what is left of the error. It is measured as a whole.
+//! for the rest of the error. All of it is measured in one run.
 
 use a3_core::accuracy::{Candidate, Frames, Metric, Precision, Reference, Scope, choose};
 use a3_core::{Control, Method, Scene};
@@ -11,17 +11,18 @@ use crate::base::interrupt;
 use crate::commands::chart::single::time;
 use crate::commands::motion::Motion;
 
-/// Share of the error that the model may make; the time steps may make the rest.
+/// Share of the error that the model may cause; the time steps may cause the rest.
 const MODEL_SHARE: f64 = 0.6;
-/// Most work of a model without a part, over that of the whole scene: less damping, for example,
-/// may take more steps.
-const MOST_WORK: f64 = 1.05;
-/// Most time of the leanest scene over that of the whole scene: the clock is no better.
-pub const MOST_TIME: f64 = 1.05;
-/// Share of what is left of the error that the solver is first asked for, and then after each run
-/// of the whole that erred too much.
-const SHARES: [f64; 4] = [1.0, 0.8, 0.4, 0.2];
-/// Uncertainty of the reference over the error.
+/// Largest work of a model without a part, over that of the whole scene: without damping, for
+/// example, more steps may be necessary.
+const MAX_WORK_RATIO: f64 = 1.05;
+/// Largest computing time of the leanest scene, over that of the whole scene. It is above 1 because
+/// computing times vary by a few percent.
+pub const MAX_TIME_RATIO: f64 = 1.05;
+/// Shares of the rest of the error that the solver may cause, tried in turn until the error of the
+/// whole is small enough.
+const SOLVER_SHARES: [f64; 4] = [1.0, 0.8, 0.4, 0.2];
+/// Uncertainty of the reference over the error of the solver.
 const UNCERTAINTY: f64 = 0.01;
 
 /// Cheapest solver of a scene.
@@ -29,7 +30,7 @@ const UNCERTAINTY: f64 = 0.01;
 pub struct Solved {
     pub method: &'static Method,
     pub control: Control,
-    /// Error (m) of the run with all that is left out.
+    /// Error (m) of the run: that of the model and that of the time steps.
     pub error: f64,
     /// Computing time of a simulated second (s).
     pub time: f64,
@@ -42,14 +43,14 @@ pub struct LeanModel {
     pub description: Description,
     /// Parts that are left out.
     pub parts: Vec<Part>,
-    /// Factor by which its cells are shorter.
+    /// Factor by which the cells of its grids are shorter; below 1 for coarser grids.
     pub factor: f64,
     /// Error of the model alone (m).
     pub error: f64,
 }
 
 impl LeanModel {
-    /// The whole scene.
+    /// Creates the model that is the whole scene.
     pub fn whole(models: &Models) -> Self {
         Self {
             description: Description::clone(&models.request.source.description),
@@ -59,29 +60,31 @@ impl LeanModel {
         }
     }
 
-    /// Whether it is the whole scene.
+    /// Whether nothing is left out, and the grids are those of the scene.
     pub fn is_whole(&self) -> bool {
         self.parts.is_empty() && self.factor == 1.0
     }
 }
 
-/// The leanest scene that was found, beside the whole one.
+/// Leanest scene that was found, with its solver and that of the whole scene.
 pub struct Answer {
     pub model: LeanModel,
     pub solved: Solved,
     pub whole: Solved,
 }
 
-/// Puts the leanest model together that changes the motion by less than the model's share of the
-/// error (m). `None` if it was interrupted.
+/// Assembles the leanest model that changes the motion by at most the model's share of the error
+/// (m). `None` if the command was interrupted.
 pub fn assemble(models: &Models, all: &[Model], error: f64) -> Result<Option<LeanModel>, Failure> {
-    let most = MODEL_SHARE * error;
+    let max_change = MODEL_SHARE * error;
     let own = &*models.request.source.description;
     let particles = models.scene.model.particles();
     let change = |model: &Model| model.effect.as_ref().map_or(f64::INFINITY, |e| e.change);
     let pays = |model: &&Model| {
         let effect = model.effect.as_ref();
-        effect.is_ok_and(|e| e.change <= most && (e.work <= MOST_WORK || model.factor < 1.0))
+        effect.is_ok_and(|e| {
+            e.change <= max_change && (e.work <= MAX_WORK_RATIO || model.factor < 1.0)
+        })
     };
     let mut small: Vec<_> = all.iter().filter(pays).collect();
     small.sort_by(|a, b| change(a).total_cmp(&change(b)));
@@ -112,7 +115,7 @@ pub fn assemble(models: &Models, all: &[Model], error: f64) -> Result<Option<Lea
                 Some(Err(_)) => f64::INFINITY,
             }
         };
-        if found <= most {
+        if found <= max_change {
             return Ok(Some(LeanModel {
                 description,
                 parts: left_out,
@@ -120,15 +123,15 @@ pub fn assemble(models: &Models, all: &[Model], error: f64) -> Result<Option<Lea
                 error: found,
             }));
         }
-        // What changes most comes back first: a part, or the grid where all parts are back.
+        // The part that changes the motion most is restored first, and the grid last.
         if parts.pop().is_none() {
             factor = 1.0;
         }
     }
 }
 
-/// Finds the cheapest solver for the whole scene, at the error (m) that is asked for. `None` if it
-/// was interrupted.
+/// Finds the cheapest solver for the whole scene, at the error (m) that is asked for. `None` if no
+/// solver meets it, or the command was interrupted.
 pub fn solve_whole(
     models: &Models,
     reference: &Reference,
@@ -148,8 +151,8 @@ pub fn solve_whole(
     }))
 }
 
-/// Finds the cheapest solver for a lean model, so that a run of the whole errs by at most the error
-/// (m). `None` if it was interrupted, or no solver was found.
+/// Finds the cheapest solver for a lean model whose run differs from the motion of the whole scene
+/// by at most the error (m). `None` if no solver was found, or the command was interrupted.
 pub fn solve(models: &Models, model: &LeanModel, error: f64) -> Result<Option<Solved>, Failure> {
     let scene = models.build(&model.description)?;
     let own = &*models.request.source.description;
@@ -166,7 +169,7 @@ pub fn solve(models: &Models, model: &LeanModel, error: f64) -> Result<Option<So
         uncertainty: UNCERTAINTY * left,
         max_work: f64::INFINITY,
     };
-    // Where another grid has other particles, one of them cannot be followed by its number.
+    // On another grid, a particle of the scene cannot be followed by its number.
     let scope = Scope {
         particle: models.points.scope.particle.filter(|_| places.is_none()),
         ..models.points.scope
@@ -175,7 +178,7 @@ pub fn solve(models: &Models, model: &LeanModel, error: f64) -> Result<Option<So
     let Some(reference) = reference.map_err(Failure::run)? else {
         return Ok(None);
     };
-    for share in SHARES {
+    for share in SOLVER_SHARES {
         let Some(best) = cheapest(&scene, &reference, share * left)? else {
             return Ok(None);
         };
@@ -183,7 +186,7 @@ pub fn solve(models: &Models, model: &LeanModel, error: f64) -> Result<Option<So
         let places = places.as_deref();
         let track = match models.points.follow(&scene, (method, control), places)? {
             None => return Ok(None),
-            Some(Motion::Lost) => continue,
+            Some(Motion::Failed) => continue,
             Some(Motion::Known(track)) => track,
         };
         let found = models.effect(&track).change;
@@ -201,7 +204,8 @@ pub fn solve(models: &Models, model: &LeanModel, error: f64) -> Result<Option<So
     Ok(None)
 }
 
-/// The cheapest solver of a scene for an error (m). `None` if it was interrupted.
+/// Finds the cheapest solver of a scene for an error (m). `None` if no solver meets it, or the
+/// command was interrupted.
 fn cheapest(
     scene: &Scene,
     reference: &Reference,
@@ -219,7 +223,7 @@ fn cheapest(
     Ok(found.and_then(|found| found.into_iter().next()))
 }
 
-/// Computing time of a simulated second (s). `None` if it was interrupted.
+/// Measures the computing time of a simulated second (s). `None` if the command was interrupted.
 fn seconds(scene: &Scene, best: &Candidate, frames: Frames) -> Result<Option<f64>, Failure> {
     let time = time(scene, best.method, best.control, &frames, None)?;
     Ok(time.map(|time| time.as_secs_f64() / frames.until))

@@ -1,6 +1,7 @@
-//! `a3 simplify`: what a scene can do without. Each part is left out in turn, and grids are made
-//! finer and coarser; each model is integrated accurately, and its motion is compared with that of
-//! the whole scene. Then the leanest scene is put together, and measured as a whole.
+//! `a3 simplify`: finds the parts that a scene does not need. Each part is left out in turn, and
+//! grids are made finer and coarser. Each such model is integrated accurately, and its motion is
+//! compared with that of the whole scene. Then the leanest scene is assembled, and measured as a
+//! whole.
 
 mod chart;
 mod command;

@@ -12,19 +12,22 @@ use crate::commands::chart::single::time;
 use crate::commands::motion::{Motion, Places, Points, Track, grid};
 use crate::files::setup::Request;
 
-/// Tolerances at which models are integrated, from the largest on.
+/// Relative tolerances at which the whole scene is tried, the largest first. The first that is
+/// accurate enough is that of all models.
 const TOLERANCES: [f64; 10] = [
     1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11, 1e-12,
 ];
-/// Error in time of a model over the error that is asked for.
-const MARGIN: f64 = 0.02;
-/// Factors by which the cells of grids are shortened.
+/// Largest error of the time steps in a model, over the error that is asked for.
+const TIME_ERROR: f64 = 0.02;
+/// Factors by which the cells of grids are shorter; below 1 for coarser grids.
 pub const FACTORS: [f64; 4] = [0.25, 0.5, 0.75, 2.0];
 
-/// Models of a scene, compared with the whole scene.
+/// Comparison of models of a scene with the whole scene.
 pub struct Models<'a> {
     pub request: &'a Request,
+    /// Whole scene.
     pub scene: Scene,
+    /// Points whose motion is compared.
     pub points: Points,
     /// Motion of the whole scene.
     pub whole: Track,
@@ -32,7 +35,7 @@ pub struct Models<'a> {
     accurate: (&'static Method, Control),
 }
 
-/// Effect of a model.
+/// Effect of a model, compared with the whole scene.
 #[derive(Clone, Copy, Debug)]
 pub struct Effect {
     /// Change of the motion (m).
@@ -43,24 +46,27 @@ pub struct Effect {
     pub work: f64,
 }
 
-/// Model of a scene.
+/// Model of a scene: without a part, or on another grid.
 pub struct Model {
     /// Name in the table.
     pub name: String,
     pub description: Description,
-    /// Places of the particles on its grids, if these are others.
+    /// Particles of the scene on the model's grids, if these are others.
     pub places: Option<Vec<Vec<(usize, f64)>>>,
     /// Part that is left out; none for another grid.
     pub part: Option<Part>,
-    /// Factor by which its cells are shorter; 1 for the grids of the scene.
+    /// Factor by which the cells of its grids are shorter; 1 for the grids of the scene.
     pub factor: f64,
-    /// Its effect, or why there is none.
+    /// Effect of the model, or the reason why it was not measured.
     pub effect: Result<Effect, String>,
 }
 
 impl<'a> Models<'a> {
-    /// Integrates the whole scene more accurately than the error (m) that is asked for. `None` if
-    /// it was interrupted.
+    /// Integrates the whole scene much more accurately than to the error (m) that is asked for.
+    /// `None` if the command was interrupted.
+    ///
+    /// # Errors
+    /// No adaptive solver supports the scene, or none is accurate enough.
     pub fn new(
         request: &'a Request,
         scene: Scene,
@@ -69,15 +75,15 @@ impl<'a> Models<'a> {
         error: f64,
     ) -> Result<Option<Self>, Failure> {
         let names = ["verner65", "dopri5"];
-        let serves = |method: &&'static Method| method.check(scene.model.system()).is_ok();
-        let method = names.into_iter().filter_map(find).find(serves);
+        let supports = |method: &&'static Method| method.check(scene.model.system()).is_ok();
+        let method = names.into_iter().filter_map(find).find(supports);
         let method = method.ok_or_else(|| {
             Failure::usage(format!(
                 "no adaptive solver can run the scene {}, so its models cannot be compared",
                 scene.name
             ))
         })?;
-        let enough = (MARGIN * error).max(2.0 * Metric::Position.of(&reference.floor));
+        let enough = (TIME_ERROR * error).max(2.0 * Metric::Position.of(&reference.floor));
         for tolerance in TOLERANCES {
             let control = Control::Tolerance(tolerance);
             let run = measure(&scene, method, control, reference, &interrupt::go_on);
@@ -90,7 +96,7 @@ impl<'a> Models<'a> {
             let accurate = (method, control);
             let whole = match points.follow(&scene, accurate, None)? {
                 None => return Ok(None),
-                Some(Motion::Lost) => continue,
+                Some(Motion::Failed) => continue,
                 Some(Motion::Known(track)) => track,
             };
             let frames = &points.frames;
@@ -112,8 +118,8 @@ impl<'a> Models<'a> {
         )))
     }
 
-    /// Models to be measured: without each part, and on each other grid. The second value says why
-    /// the grids are not changed, if they are not.
+    /// Lists the models to be measured: without each part, and on each other grid. The second value
+    /// gives the reason if the grids cannot be changed.
     pub fn all(&self) -> (Vec<Model>, Option<String>) {
         let own = &*self.request.source.description;
         let without = |part: Part| Model {
@@ -150,7 +156,7 @@ impl<'a> Models<'a> {
         (all, why.filter(|_| !has_grids))
     }
 
-    /// Measures a model. `false` if it was interrupted.
+    /// Measures a model. Returns `false` if the command was interrupted.
     pub fn measure(&self, model: &mut Model) -> Result<bool, Failure> {
         let Some(found) = self.follow(&model.description, model.places.as_deref())? else {
             return Ok(false);
@@ -159,7 +165,7 @@ impl<'a> Models<'a> {
         Ok(true)
     }
 
-    /// Effect of a model whose motion is known.
+    /// Returns the effect of a model whose motion is known.
     pub fn effect(&self, track: &Track) -> Effect {
         Effect {
             change: self.points.distance(&self.whole, track),
@@ -168,7 +174,8 @@ impl<'a> Models<'a> {
         }
     }
 
-    /// Motion of a model, or the reason why it has none. `None` if it was interrupted.
+    /// Integrates a model. Returns its motion, or the reason why it cannot be integrated; `None` if
+    /// the command was interrupted.
     pub fn follow(
         &self,
         description: &Description,
@@ -178,11 +185,13 @@ impl<'a> Models<'a> {
             return Ok(Some(Err("a scene without it cannot be built".into())));
         };
         if self.accurate.0.check(scene.model.system()).is_err() {
-            return Ok(Some(Err("its solver does not serve it".into())));
+            return Ok(Some(Err(
+                "the solver of this comparison does not support it".into(),
+            )));
         }
         Ok(match self.points.follow(&scene, self.accurate, places)? {
             None => None,
-            Some(Motion::Lost) => Some(Err("it blows up".into())),
+            Some(Motion::Failed) => Some(Err("it blows up".into())),
             Some(Motion::Known(track)) => {
                 let (method, control) = self.accurate;
                 let frames = &self.points.frames;
@@ -198,7 +207,7 @@ impl<'a> Models<'a> {
     }
 }
 
-/// Measures all models that can be measured. Returns whether none was interrupted.
+/// Measures all models that can be measured. Returns `false` if the command was interrupted.
 pub fn measure_all(models: &Models, all: &mut [Model], bar: &Bar) -> Result<bool, Failure> {
     // A model on a finer grid has more particles and, by an explicit method, shorter steps.
     let weight = |model: &Model| model.factor.powi(4);

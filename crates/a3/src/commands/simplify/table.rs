@@ -1,4 +1,4 @@
-//! The models as a table, and the leanest scene in words.
+//! The table of the models, and the leanest scene in words.
 
 use super::lean::{Answer, LeanModel};
 use super::models::Model;
@@ -8,9 +8,10 @@ use crate::commands::motion::{GridError, grid};
 use a3_scenes::Description;
 
 /// Change of the motion, over the error that is asked for, above which a part is barely needed.
-const BARELY: f64 = 0.1;
+const BARELY_NEEDED: f64 = 0.1;
 
-/// The table of all models that were measured, with the parts that the leanest scene lacks.
+/// Writes the table of all models, with a verdict on each. `motion` is the distance (m) by which
+/// the points move, and `error` the error (m) that is asked for.
 pub fn text(models: &[Model], motion: f64, error: f64, lean: Option<&LeanModel>) -> String {
     let heading = [
         "left out or changed",
@@ -45,22 +46,23 @@ pub fn text(models: &[Model], motion: f64, error: f64, lean: Option<&LeanModel>)
     list::table(&rows)
 }
 
-/// Verdict on a model whose change of the motion is this share of the error that is asked for.
+/// Returns the verdict on a model. `share` is its change of the motion over the error that is asked
+/// for; `is_out` says whether the leanest scene makes this change.
 fn verdict(model: &Model, share: f64, is_out: bool) -> &'static str {
     match (&model.part, share <= 1.0) {
         (Some(_), _) if is_out => "leave it out",
         (Some(_), false) => "needed",
-        (Some(_), true) if share > BARELY => "barely needed",
+        (Some(_), true) if share > BARELY_NEEDED => "barely needed",
         (Some(_), true) => "changes little, saves little",
         (None, _) if is_out => "take it",
         (None, true) => "fine enough",
         (None, false) if model.factor < 1.0 => "too coarse",
-        (None, false) => "the grid errs by more than E",
+        (None, false) => "the scene's grid errs by more than --error",
     }
 }
 
-/// Sentence on the error of the grid in use, from a coarser and a finer one: the observed order,
-/// and the error that this extrapolates to.
+/// Describes the error of the scene's grid, estimated from a coarser and a finer one. `None` if no
+/// finer grid was measured.
 pub fn of_grid(models: &[Model], description: &Description) -> Option<String> {
     let change = |factor: f64| {
         let model = models
@@ -72,7 +74,7 @@ pub fn of_grid(models: &[Model], description: &Description) -> Option<String> {
     Some(own.sentence())
 }
 
-/// The leanest scene in words, beside the whole one.
+/// Describes the leanest scene in words, beside the whole scene.
 pub fn of_lean(answer: &Answer) -> String {
     let Answer {
         model: lean,
@@ -107,7 +109,7 @@ pub fn of_lean(answer: &Answer) -> String {
     )
 }
 
-/// A length with two digits.
+/// Writes a length (m) with two digits.
 fn number(x: f64) -> String {
     if x == 0.0 {
         "0".into()
@@ -116,6 +118,7 @@ fn number(x: f64) -> String {
     }
 }
 
+/// Writes a share in percent.
 fn percent(share: f64) -> String {
     let percent = 100.0 * share;
     if percent > 999.0 {
@@ -131,6 +134,7 @@ fn percent(share: f64) -> String {
     }
 }
 
+/// Writes a time (s) in ms.
 fn milliseconds(seconds: f64) -> String {
     format!("{:.3} ms", 1e3 * seconds)
 }

@@ -1,4 +1,4 @@
-//! The command: measures, prints and draws.
+//! The command `a3 stability`: measures the limits, prints the table, and draws the chart.
 
 use std::path::{Path, PathBuf};
 
@@ -43,7 +43,7 @@ pub fn run(options: &Stability) -> Result<(), Failure> {
     }
 }
 
-/// Checks that the outputs can be written. Returns the path of the picture.
+/// Checks that the output files can be written. Returns the path of the picture.
 fn check_outputs(options: &Stability, scene: &Scene) -> Result<PathBuf, Failure> {
     let picture = match &options.output {
         Some(path) => path.clone(),
@@ -56,7 +56,7 @@ fn check_outputs(options: &Stability, scene: &Scene) -> Result<PathBuf, Failure>
     Ok(picture)
 }
 
-/// Draws the chart, and says where it is.
+/// Draws the chart, writes it to its file, and prints the path.
 fn draw(options: &Stability, scene: &Scene, found: &Found, path: &Path) -> Result<(), Failure> {
     let title = format!("Where solvers fail: {}", describe(&options.what, scene));
     // By default a step is one radian of the fastest motion.

@@ -6,38 +6,45 @@ use serde::Serialize;
 use super::limits::MethodLimits;
 use crate::base::failure::Failure;
 
-/// Limits of a method (s). Null stands for a limit that is not known.
+/// Limits of a method (s), as the object of a line. Null stands for a limit that is not known.
 #[derive(Serialize)]
 struct Row {
     solver: &'static str,
+    /// Largest step at which no mode at rest grows.
     rest_bounded: Option<Step>,
+    /// Step at which a mode at rest grows tenfold in the time that the table names.
     rest_tenfold: Option<Step>,
+    /// The same, as runs have shown.
     rest_observed: Option<Observed>,
+    /// Largest step with which runs from the start stay bounded.
     moving_bounded: Option<Observed>,
+    /// Largest step of an accurate run.
     moving_accurate: Option<f64>,
-    /// Whether runs were shorter or fewer than they should be.
+    /// Whether the work limit made runs shorter or fewer than usual.
     short: bool,
 }
 
-/// A limit by the modes (s).
+/// Limit computed from the modes (s).
 #[derive(Serialize)]
 #[serde(untagged)]
 enum Step {
     Seconds(f64),
-    /// "any": every step is stable.
+    /// The word "any": every step is stable.
     Any(&'static str),
 }
 
-/// A limit that runs have shown (s).
+/// Limit observed in runs (s).
 #[derive(Serialize)]
 struct Observed {
+    /// Longest step that held.
     longest_held: f64,
-    /// Null where no step failed.
+    /// Shortest step that failed; null if none did.
     shortest_failed: Option<f64>,
+    /// Whether the shortest step that failed is just above the longest that held.
     sharp: bool,
 }
 
-/// The limits as a JSON array of objects, one a line.
+/// Writes the limits as a JSON array of objects, one a line.
 pub fn json(rows: &[MethodLimits]) -> Result<String, Failure> {
     let row = |row: &MethodLimits| {
         serde_json::to_string(&Row {
@@ -55,6 +62,7 @@ pub fn json(rows: &[MethodLimits]) -> Result<String, Failure> {
     Ok(format!("[\n{}\n]\n", lines.join(",\n")))
 }
 
+/// Converts a limit by the modes (s), which is infinite if every step is stable.
 fn step(seconds: f64) -> Step {
     if seconds.is_finite() {
         Step::Seconds(seconds)
@@ -63,6 +71,7 @@ fn step(seconds: f64) -> Step {
     }
 }
 
+/// Converts an observed limit.
 fn observed(seen: Observation) -> Observed {
     Observed {
         longest_held: seen.held,

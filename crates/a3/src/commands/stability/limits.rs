@@ -5,25 +5,28 @@ use a3_core::stability::{Limit, Mode, Motion, Observation, RestState};
 
 /// Measurements of a scene.
 pub struct Found {
+    /// Limits of each method.
     pub rows: Vec<MethodLimits>,
+    /// Accurate motion from the start.
     pub motion: Motion,
+    /// State of rest, if the scene has one.
     pub hanging: Option<RestState>,
     /// Modes at the start.
     pub at_start: Vec<Mode>,
 }
 
-/// The limits of a method.
+/// Limits of a method.
 #[derive(Clone, Copy)]
 pub struct MethodLimits {
     pub method: &'static Method,
-    /// The limit by the modes at rest, if the scene comes to rest.
+    /// Limit by the modes at rest, if the scene comes to rest.
     pub rest: Option<Limit>,
-    /// The step at which a disturbance at rest was seen to grow tenfold.
+    /// Step at which a disturbance at rest grew tenfold in runs.
     pub seen_at_rest: Option<Observation>,
-    /// The limit of runs from the start.
+    /// Step up to which runs from the start stay bounded.
     pub bounded: Option<Observation>,
-    /// The largest step of an accurate run (s).
+    /// Largest step of an accurate run (s).
     pub accurate: Option<f64>,
-    /// Whether runs were shorter or fewer than they should be, for the time that they take.
+    /// Whether the work limit made runs shorter or fewer than usual.
     pub is_short: bool,
 }

@@ -1,4 +1,4 @@
-//! The limits of all methods on a scene, measured at rest and in motion.
+//! Measurement of the limits of all methods on a scene, at rest and in motion.
 
 use a3_core::stability::{
     Budget, Limit, Motion, Observation, RestState, observe_at_rest, rest, spectrum,
@@ -11,19 +11,22 @@ use crate::base::failure::Failure;
 use crate::base::interrupt;
 use crate::base::progress::Bar;
 
-/// Work of all searches in motion, and of those at rest, in that of a [`Budget`].
-const MOST_WORK: [f64; 2] = [1.5e9, 8e8];
-/// Share of it that all searches together may do before those that need more get the rest.
-const FIRST: f64 = 0.3;
+/// Largest work of all searches in motion, in the unit of a [`Budget`].
+const MAX_WORK_IN_MOTION: f64 = 1.5e9;
+/// Largest work of all searches at rest, in the unit of a [`Budget`].
+const MAX_WORK_AT_REST: f64 = 8e8;
+/// Share of the work that is divided equally among all methods first. Those that need more are
+/// measured again with the rest.
+const FIRST_SHARE: f64 = 0.3;
 
-/// The end of a command that was interrupted too early.
+/// Creates the failure of a command that was interrupted before any limit was measured.
 pub fn nothing() -> Failure {
     Failure::Interrupted("interrupted before anything was measured".into())
 }
 
-/// Measures the limits of all methods, at rest and in motion at once.
+/// Measures the limits of all methods, at rest and in motion at the same time.
 pub fn measure(scene: &Scene, methods: &[&'static Method]) -> Result<Found, Failure> {
-    // The fixed steps of two adaptive solvers may be the same: they are measured once.
+    // Two adaptive solvers may take the same fixed steps, whose limits are measured once.
     let first = |method: &Method| methods.iter().position(|m| m.shares_integrator(method));
     let measured: Vec<_> = (methods.iter().enumerate())
         .filter_map(|(k, &method)| (first(method) == Some(k)).then_some(method))
@@ -33,11 +36,11 @@ pub fn measure(scene: &Scene, methods: &[&'static Method]) -> Result<Found, Fail
     bar.say("the true motion and the state of rest ".into());
     let at_start = spectrum(scene.model.system(), 0.0, &scene.state);
     let say = |method: &Method, stage| bar.say(format!("{} {stage} ", method.name));
-    // Nothing is timed here, so methods may be measured beside one another.
+    // Nothing is timed here, so methods may be measured in parallel.
     let in_motion = || {
         let motion = Motion::of(scene, interrupt::go_on)?;
         bar.advance(1.0);
-        let limits = each(&measured, MOST_WORK[0], |method, budget| {
+        let limits = each(&measured, MAX_WORK_IN_MOTION, |method, budget| {
             let Some(motion) = &motion else {
                 return Ok(None);
             };
@@ -58,7 +61,7 @@ pub fn measure(scene: &Scene, methods: &[&'static Method]) -> Result<Found, Fail
     let at_rest = || {
         let hanging = rest(scene, interrupt::go_on)?;
         bar.advance(1.0);
-        let limits = each(&measured, MOST_WORK[1], |method, budget| {
+        let limits = each(&measured, MAX_WORK_AT_REST, |method, budget| {
             say(method, "at rest");
             let by_modes = |rest: &RestState| rest.largest_step(method);
             let limit = hanging.as_ref().map(by_modes).transpose()?.flatten();
@@ -94,9 +97,9 @@ pub fn measure(scene: &Scene, methods: &[&'static Method]) -> Result<Found, Fail
     })
 }
 
-/// Results of all methods, in their order, within a budget of work. The runs of implicit
-/// methods take longest, so they begin first. Methods that need more than their share of the work
-/// are measured again, with what the others have left.
+/// Calls `find` for each method in parallel, within a budget of work. Returns the results in the
+/// order of the methods. The runs of implicit methods take longest, so they begin first. Methods
+/// that need more than their share of the work are measured again with the work that is left.
 fn each<T: Send>(
     methods: &[&'static Method],
     work: f64,
@@ -112,7 +115,7 @@ fn each<T: Send>(
         });
         found.collect::<Result<Vec<_>, _>>()
     };
-    let mut found = measure(places, FIRST * work)?;
+    let mut found = measure(places, FIRST_SHARE * work)?;
     let spent: f64 = found.iter().map(|(_, _, budget)| budget.spent()).sum();
     let limited = |budget: &Budget| budget.limits() && interrupt::go_on();
     let again: Vec<_> = (found.iter())
@@ -124,13 +127,14 @@ fn each<T: Send>(
     Ok(found.into_iter().map(|(_, found, _)| found).collect())
 }
 
-/// The limits of a method, from those at rest and those in motion.
+/// Combines the limits of a method at rest and in motion.
 fn limits(
     method: &'static Method,
     (rest, seen_at_rest, short_at_rest): (Option<Limit>, Option<Observation>, bool),
     (mut bounded, accurate, short_in_motion): (Option<Observation>, Option<f64>, bool),
 ) -> MethodLimits {
-    // What fails at rest at a shorter step may not blow up from the start, but it never rests.
+    // With a step that is unstable at rest, a run from the start may stay bounded, but it never
+    // comes to rest.
     if let (Some(seen), Some(limit)) = (&mut bounded, rest)
         && seen.held > 1.1 * limit.step
     {

@@ -8,7 +8,7 @@ use super::limits::MethodLimits;
 use super::table::{INTERVAL, is_interval, observation, step};
 use crate::commands::chart::style;
 
-/// The chart of stability regions, with the eigenvalues of the modes times the step h (s).
+/// Creates the chart of stability regions, with the eigenvalues of the modes times the step h (s).
 pub fn chart(title: String, rows: &[MethodLimits], modes: &[Mode], h: f64) -> StabilityRegions {
     StabilityRegions {
         title,
@@ -29,7 +29,7 @@ pub fn chart(title: String, rows: &[MethodLimits], modes: &[Mode], h: f64) -> St
     }
 }
 
-/// The stability region of a method.
+/// Creates the stability region of a method.
 fn region(row: &MethodLimits, modes: &[Mode], h: f64) -> Region {
     let method = row.method;
     let is_bdf = method.name == "bdf";
@@ -51,7 +51,7 @@ fn region(row: &MethodLimits, modes: &[Mode], h: f64) -> Region {
         .map_or(0.0, |m| m.damping / (m.drag + m.damping).max(1e-300));
     let reads_velocity = modes.first().is_some_and(|m| m.reads_velocity);
     let radius = move |re: f64, im: f64| {
-        // Its fixed steps are those of TR-BDF2, but its own are not.
+        // The fixed steps of BDF are those of TR-BDF2, but the chart shows its adaptive formulas.
         if is_bdf {
             return bdf_growth(re, im);
         }

@@ -8,7 +8,7 @@ use a3_core::stability::{Limit, Mode, Observation};
 use super::limits::{Found, MethodLimits};
 use crate::commands::list;
 
-/// A step in words, to three digits (ms).
+/// Writes a step (s) in ms, to three digits.
 pub fn step(seconds: f64) -> String {
     let ms = 1e3 * seconds;
     match ms {
@@ -21,7 +21,7 @@ pub fn step(seconds: f64) -> String {
     }
 }
 
-/// The step up to which no mode grows, in words (ms).
+/// Writes the largest step at which no mode grows (ms).
 fn bounded(limit: Option<Limit>) -> String {
     match limit {
         None => "-".into(),
@@ -30,7 +30,7 @@ fn bounded(limit: Option<Limit>) -> String {
     }
 }
 
-/// An observed limit in words (ms): a step, or the interval of those that hold or fail.
+/// Writes an observed limit (ms): a step, or the interval in which some steps hold and some fail.
 pub fn observation(seen: Option<Observation>) -> String {
     seen.map_or("-".into(), |seen| {
         if seen.is_open() {
@@ -43,7 +43,7 @@ pub fn observation(seen: Option<Observation>) -> String {
     })
 }
 
-/// The table of all limits, with the fastest motion above it.
+/// Writes the table of all limits, below the fastest motion and above the meaning of the columns.
 pub fn text(scene: &Scene, found: &Found) -> String {
     let Found {
         rows,
@@ -117,16 +117,16 @@ pub fn text(scene: &Scene, found: &Found) -> String {
     text
 }
 
-/// Meaning of an interval in place of a limit.
+/// Meaning of an interval where the table shows one instead of a limit.
 pub const INTERVAL: &str = "not sharp: the shortest step that failed and the longest that held, between which some do either";
 
-/// Whether any limit that was observed is of this kind.
+/// Whether any observed limit is of this kind.
 pub fn any_observed(rows: &[MethodLimits], is: fn(&Observation) -> bool) -> bool {
     let observed = rows.iter().flat_map(|row| [row.seen_at_rest, row.bounded]);
     observed.flatten().any(|seen| is(&seen))
 }
 
-/// Whether a limit is an interval.
+/// Whether a limit is not sharp, and so shown as an interval.
 pub fn is_interval(seen: &Observation) -> bool {
     !seen.is_open() && !seen.is_sharp()
 }

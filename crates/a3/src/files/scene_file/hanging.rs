@@ -1,45 +1,51 @@
-//! How a mesh hangs: which of its points are pinned, how far it falls, and how stiff it is so that
-//! it is not drawn into threads.
+//! How a mesh hangs: the points that are pinned, the depth of its fall, and the sizes from which
+//! its stiffness is chosen.
 
 use std::collections::BTreeSet;
 
 use a3_scenes::Mesh;
 
-/// Height over width up to which a part is level.
-const LEVEL: f64 = 0.02;
-/// Points as high as the highest one, or as far out at an edge, as a share of the part.
-const NEAR: f64 = 0.01;
+/// Largest height of a part that counts as level, over its longest side.
+const MAX_LEVEL_HEIGHT: f64 = 0.02;
+/// Largest distance of pinned points from the highest point or from the edge, over the size of the
+/// part in that direction.
+const PIN_DISTANCE: f64 = 0.01;
 /// Largest number of points that are pinned.
-const MOST_PINS: usize = 20_000;
-/// Number of connected parts beyond which each is pinned at one point only.
-const MOST_WIDE: usize = 1000;
+const MAX_PINS: usize = 20_000;
+/// Largest number of connected parts that are pinned at several points; if there are more, each is
+/// pinned at one.
+const MAX_WIDE_PARTS: usize = 1000;
 
-/// What holds a mesh.
+/// Pins of a mesh, and what follows from them.
 pub struct Hanging {
-    /// Pinned points; `None` if they are the highest ones of the whole.
+    /// Numbers of the pinned points; `None` if the scene can ask for its highest points instead.
     pub pins: Option<Vec<usize>>,
-    /// Number of parts, and of those that hang.
+    /// Number of connected parts.
     pub parts: usize,
+    /// Number of parts that are pinned.
     pub held: usize,
-    /// How far below its lowest point the mesh may fall.
+    /// Largest distance that a level part may fall below the lowest point of the mesh, in the unit
+    /// of the file.
     pub fall: f64,
-    /// Stretches of what hangs by its pins.
+    /// Necks of the parts that hang by pins.
     pub necks: Vec<Neck>,
 }
 
-/// What is between the pinned points of a part and the others.
+/// Edges of a part between its pinned points and the others, which carry its weight. Lengths are in
+/// the unit of the file.
 pub struct Neck {
     /// Area or volume of the part.
     pub size: f64,
-    /// Number of edges, and their mean length.
+    /// Number of these edges.
     pub edges: f64,
+    /// Mean length of these edges.
     pub length: f64,
 }
 
-/// Part of a mesh: its points, in order.
+/// Connected part of a mesh: the numbers of its points, in order.
 struct Part(Vec<usize>);
 
-/// How a mesh hangs whose points are all in triangles or tetrahedra.
+/// Chooses how a mesh hangs. All its points are in triangles or tetrahedra.
 pub fn hang(mesh: &Mesh) -> Hanging {
     let parts = parts(mesh);
     let count = parts.len();
@@ -50,15 +56,15 @@ pub fn hang(mesh: &Mesh) -> Hanging {
     let lowest = lowest.fold(f64::INFINITY, f64::min);
     for part in &parts {
         let (mut own, is_level) = part.held(mesh);
-        if count > MOST_WIDE {
+        if count > MAX_WIDE_PARTS {
             own.truncate(1);
         }
-        if pins.len() + own.len() > MOST_PINS {
+        if pins.len() + own.len() > MAX_PINS {
             continue;
         }
         held += 1;
         is_top &= !is_level;
-        // What is level swings down from its edge.
+        // A level part swings down from its edge.
         let height = mesh.positions[own[0]][1];
         let width = [0, 2]
             .map(|axis| part.extent(mesh, axis))
@@ -81,7 +87,7 @@ pub fn hang(mesh: &Mesh) -> Hanging {
 }
 
 impl Part {
-    /// Least and greatest coordinate along an axis.
+    /// Returns the smallest and the largest coordinate along an axis.
     fn extent(&self, mesh: &Mesh, axis: usize) -> [f64; 2] {
         let along = self.0.iter().map(|i| mesh.positions[*i][axis]);
         along.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| {
@@ -89,8 +95,8 @@ impl Part {
         })
     }
 
-    /// The points by which it hangs, and whether it is level: its highest ones, or those of an
-    /// edge.
+    /// Returns the points by which the part hangs, and whether it is level: a level part hangs by
+    /// an edge, any other by its highest points.
     fn held(&self, mesh: &Mesh) -> (Vec<usize>, bool) {
         let size = [0, 1, 2]
             .map(|axis| self.extent(mesh, axis))
@@ -98,17 +104,27 @@ impl Part {
         let longest = size.into_iter().fold(0.0, f64::max);
         let end = |axis: usize, is_high: bool| {
             let [low, high] = self.extent(mesh, axis);
-            let (at, near) = (if is_high { high } else { low }, NEAR * (high - low));
+            let (at, near) = (
+                if is_high { high } else { low },
+                PIN_DISTANCE * (high - low),
+            );
             let there = self
                 .0
                 .iter()
                 .filter(|i| (mesh.positions[**i][axis] - at).abs() <= near);
             there.copied().collect::<Vec<_>>()
         };
-        let is_level = size[1] <= LEVEL * longest;
+        let is_level = size[1] <= MAX_LEVEL_HEIGHT * longest;
         let mut held = if is_level {
-            // The edge at the back, or at a side of what has no depth.
-            end(if size[2] > LEVEL * longest { 2 } else { 0 }, false)
+            // The edge at the back, or one at the side if the part has no depth.
+            end(
+                if size[2] > MAX_LEVEL_HEIGHT * longest {
+                    2
+                } else {
+                    0
+                },
+                false,
+            )
         } else {
             end(1, true)
         };
@@ -119,7 +135,7 @@ impl Part {
     }
 }
 
-/// Edges of triangles and tetrahedra.
+/// Returns the edges of all triangles and tetrahedra; shared ones occur more than once.
 fn edges(mesh: &Mesh) -> impl Iterator<Item = [u32; 2]> {
     let triangles = mesh
         .triangles
@@ -131,7 +147,7 @@ fn edges(mesh: &Mesh) -> impl Iterator<Item = [u32; 2]> {
     triangles.chain(inner)
 }
 
-/// The connected parts, by their first points.
+/// Finds the connected parts, in the order of their first points.
 fn parts(mesh: &Mesh) -> Vec<Part> {
     let mut first: Vec<_> = (0..mesh.positions.len()).collect();
     let find = |first: &mut Vec<usize>, mut i: usize| {
@@ -158,7 +174,7 @@ fn parts(mesh: &Mesh) -> Vec<Part> {
     parts
 }
 
-/// What is between pinned points and others, of each part that has both.
+/// Measures the neck of each part that has both pinned points and others.
 fn necks(mesh: &Mesh, parts: &[Part], is_pinned: &[bool]) -> Vec<Neck> {
     let mut part_of = vec![0; mesh.positions.len()];
     for (k, part) in parts.iter().enumerate() {

@@ -1,6 +1,6 @@
 //! A hash of bytes, the same on every platform: FNV-1a.
 
-/// Hash of what was added to it.
+/// Hash of the bytes that were added to it.
 #[derive(Clone, Copy)]
 pub struct Hash(u64);
 
@@ -18,7 +18,7 @@ impl Hash {
         }
     }
 
-    /// The hash of what was added so far.
+    /// Returns the hash of the bytes so far.
     pub fn value(self) -> u64 {
         self.0
     }

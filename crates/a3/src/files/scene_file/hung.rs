@@ -1,4 +1,5 @@
-//! Scenes of a mesh alone: it hangs by its highest points, or by an edge where it is level.
+//! Scenes made from a mesh file alone: the mesh hangs by its highest points, or by an edge if it is
+//! level.
 
 use std::path::Path;
 
@@ -11,19 +12,24 @@ use crate::base::terminal;
 const SIDE: f64 = 2.0;
 /// Acceleration of gravity (m/s2).
 const GRAVITY: f64 = 9.81;
-/// Strain of what hangs by the pins, about which stiffness is chosen.
+/// Largest strain of the edges at the pins under the weight, by which the stiffness is chosen.
 const STRAIN: f64 = 0.1;
-/// Density of a cloth (kg/m2) and of a solid (kg/m3).
-const DENSITIES: [f64; 2] = [0.3, 1000.0];
+/// Density of a cloth (kg/m2).
+const CLOTH_DENSITY: f64 = 0.3;
+/// Density of a solid (kg/m3).
+const SOLID_DENSITY: f64 = 1000.0;
 
 /// Whether a file with this ending is a mesh.
 pub fn is_mesh(extension: &str) -> bool {
     mesh::ENDINGS.contains(&extension)
 }
 
-/// The text of a scene in which the mesh of a file hangs: a cloth if it is made of triangles, a
-/// solid if it is made of tetrahedra. Files say nothing of their unit: the longest side of the mesh
-/// is 2 m.
+/// Writes the text of a scene in which the mesh of a file hangs: a cloth if it is made of
+/// triangles, a solid if it is made of tetrahedra. Mesh files give no unit of length, so the mesh
+/// is scaled: its longest side is 2 m.
+///
+/// # Errors
+/// The file cannot be read, or the mesh has no size.
 pub fn scene(path: &Path) -> Result<String, String> {
     let mut mesh = mesh::load(path, &mut mesh::Reader::new(1))?;
     if mesh.tetrahedra.is_empty() {
@@ -49,7 +55,7 @@ pub fn scene(path: &Path) -> Result<String, String> {
         let Hanging { held, parts, .. } = hanging;
         terminal::warn(&format!("note: {name}: {held} of {parts} parts are pinned"));
     }
-    // What JSON quotes, TOML reads.
+    // A string in JSON is one in TOML too.
     let file = serde_json::Value::from(&*name);
     let body = if mesh.tetrahedra.is_empty() {
         let stiffness = stiffness(&hanging, scale);
@@ -96,22 +102,22 @@ pub fn scene(path: &Path) -> Result<String, String> {
     ))
 }
 
-/// Stiffness of structural springs (N/m), by which what hangs by few pins is not drawn into
-/// threads.
+/// Returns the stiffness of the structural springs (N/m), with which edges at few pins are not
+/// stretched far by the weight below them. `scale` is that from the unit of the file to metres.
 fn stiffness(hanging: &Hanging, scale: f64) -> f64 {
     let needed = |neck: &Neck| {
-        let weight = DENSITIES[0] * GRAVITY * neck.size * scale.powi(2);
+        let weight = CLOTH_DENSITY * GRAVITY * neck.size * scale.powi(2);
         weight / (STRAIN * neck.edges * neck.length * scale)
     };
     let needed = hanging.necks.iter().map(needed).fold(0.0, f64::max);
     round_up(needed.clamp(120.0, 1e6), MANY)
 }
 
-/// Young's modulus (Pa) by which the same holds of a solid.
+/// Returns Young's modulus (Pa) of a solid, chosen in the same way.
 fn young(hanging: &Hanging, scale: f64) -> f64 {
     let needed = |neck: &Neck| {
-        let weight = DENSITIES[1] * GRAVITY * neck.size * scale.powi(3);
-        // An edge is that of a prism as wide as half its length.
+        let weight = SOLID_DENSITY * GRAVITY * neck.size * scale.powi(3);
+        // Each edge stands for a prism half as wide as it is long.
         let area = neck.edges * (0.5 * neck.length * scale).powi(2);
         weight / (STRAIN * area)
     };
@@ -119,7 +125,8 @@ fn young(hanging: &Hanging, scale: f64) -> f64 {
     round_up(needed.clamp(1e5, 1e8), MANY)
 }
 
-/// The line of a camera that sees where the mesh falls, if it falls far.
+/// Writes the key of a camera that sees the whole fall of the mesh; an empty text if the mesh does
+/// not fall far.
 fn camera(hanging: &Hanging, size: [f64; 3], scale: f64) -> String {
     let fall = hanging.fall * scale;
     if fall <= 0.1 * SIDE {
@@ -234,7 +241,7 @@ mod tests {
         assert!(source.text().contains("hangs by points of each part"));
     }
 
-    /// What hangs by a point is as stiff as its weight asks for.
+    /// A mesh that hangs by few edges is stiffer, in proportion to its weight.
     #[test]
     fn stiffness_fits_the_weight() {
         let stiffness = |text: &str| pinned(text).2.description.mesh[0].stiffness[0];

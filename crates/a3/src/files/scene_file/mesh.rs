@@ -1,4 +1,4 @@
-//! Meshes of triangles from OBJ and glTF files, and of tetrahedra from those of Gmsh and
+//! Meshes of triangles from OBJ, glTF, STL and PLY files, and of tetrahedra from those of Gmsh and
 //! `TetGen`.
 
 use std::path::Path;
@@ -9,34 +9,34 @@ use super::files::beside;
 use super::hash::Hash;
 use super::read::read;
 
-/// Length of the files of a scene's meshes and of their buffers, all together (bytes).
-const LONGEST: u64 = 64 << 20;
+/// Largest total size of the files of a scene's meshes and of their buffers (bytes).
+const MAX_SIZE: u64 = 64 << 20;
 
-/// The files of a scene's meshes and of their buffers, as they are read.
+/// Reader of the mesh files of a scene, which limits their total size.
 pub struct Reader {
-    /// Length of the files that may still be read (bytes).
+    /// Number of bytes that may still be read.
     left: u64,
-    /// Hash of what was read.
+    /// Hash of the bytes that were read.
     pub hash: Hash,
 }
 
 impl Reader {
-    /// Reads the files of a scene so many times.
+    /// Creates a reader for a scene that is built a number of times.
     pub fn new(times: u64) -> Self {
         Self {
-            left: LONGEST * times,
+            left: MAX_SIZE * times,
             hash: Hash::default(),
         }
     }
 
-    /// The bytes of a file.
+    /// Reads the bytes of a file.
     fn bytes(&mut self, path: &Path) -> Result<Vec<u8>, String> {
-        let bytes = read(path, LONGEST)?;
+        let bytes = read(path, MAX_SIZE)?;
         let left = self.left.checked_sub(bytes.len() as u64);
         self.left = left.ok_or_else(|| {
             format!(
                 "the meshes of the scene are larger than {} MiB together",
-                LONGEST >> 20
+                MAX_SIZE >> 20
             )
         })?;
         self.hash.add(bytes.iter().copied());
@@ -44,10 +44,10 @@ impl Reader {
     }
 }
 
-/// Endings of files that are read as meshes.
+/// Endings of mesh files.
 pub const ENDINGS: [&str; 7] = ["obj", "gltf", "glb", "stl", "ply", "msh", "ele"];
 
-/// What is said of a file with an ending that is not read.
+/// Returns the error of a file whose ending is not that of a mesh.
 pub fn not_read(extension: Option<&str>) -> String {
     let all = "a3 reads meshes from files that end in .obj, .gltf, .glb, .stl, .ply, .msh or .ele";
     match extension {
@@ -56,7 +56,7 @@ pub fn not_read(extension: Option<&str>) -> String {
     }
 }
 
-/// The triangles or tetrahedra of all objects in a file.
+/// Reads the triangles or tetrahedra of all objects in a file.
 pub fn load(path: &Path, reader: &mut Reader) -> Result<Mesh, String> {
     let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase());
     match extension.as_deref() {

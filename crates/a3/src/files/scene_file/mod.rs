@@ -1,4 +1,4 @@
-//! Scenes by name, or from files: TOML, the JSON of particles and springs, or a mesh alone.
+//! Scenes by name or from files: TOML, JSON, or a mesh alone.
 
 mod files;
 mod hanging;

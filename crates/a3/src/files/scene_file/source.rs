@@ -1,4 +1,4 @@
-//! Scenes as they are asked for: by name or by file.
+//! Sources of scenes: the name of a built-in scene, or a file.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -14,23 +14,23 @@ use super::hung;
 use super::mesh;
 use crate::base::input_error::InputError;
 
-/// What stands for standard input in place of a file.
+/// Argument that stands for standard input.
 const INPUT: &str = "-";
 
-/// A scene, by name or in a file.
+/// Source of a scene: its name or file, with the text and the description that were read.
 #[derive(Clone)]
 pub struct Source {
-    /// The name or the path, as it was typed.
+    /// Name or path, as it was typed.
     pub typed: String,
-    /// The path, if the scene is in a file.
+    /// Path, if the scene is not a built-in one.
     pub path: Option<PathBuf>,
-    /// The description in the text.
+    /// Description of the scene.
     pub description: Arc<Description>,
-    /// The text of the file, also of a built-in scene.
+    /// Text of the scene.
     text: Arc<str>,
-    /// The places of the keys in that text. It has no lines if nobody wrote it.
+    /// Lines of the keys in that text; none if the program wrote the text.
     places: Arc<Places>,
-    /// The hash of the files of its meshes when it was last built.
+    /// Hash of the mesh files when the scene was last built.
     meshes: Arc<AtomicU64>,
 }
 
@@ -106,7 +106,8 @@ impl Source {
         })
     }
 
-    /// The scene with other values for some keys, which `change` sets in its table.
+    /// Returns the scene with other values for some keys, which `change` sets in the table of its
+    /// keys.
     pub fn with(
         &self,
         change: impl FnOnce(&mut Value) -> Result<(), String>,
@@ -127,7 +128,7 @@ impl Source {
             let text = toml::to_string(&table).map_err(|e| e.to_string())?;
             (text.clone(), parse_toml(&text))
         };
-        // Lines of a text that nobody wrote tell nobody anything.
+        // The program wrote this text, so its lines mean nothing to the user.
         let parsed = parsed.map_err(|fault| Fault {
             line: None,
             ..fault
@@ -145,7 +146,7 @@ impl Source {
         })
     }
 
-    /// The scene with another description, which its text does not have.
+    /// Returns the scene with another description. The text stays as it is.
     pub fn described(&self, description: Description) -> Self {
         Self {
             description: Arc::new(description),
@@ -154,14 +155,14 @@ impl Source {
         }
     }
 
-    /// Whether the scene came by standard input, which is no file to read again.
+    /// Whether the scene came by standard input, which cannot be read again.
     pub fn is_input(&self) -> bool {
         self.typed == INPUT
     }
 
-    /// Builds the scene, with this grid of its cloth or with its own.
+    /// Builds the scene, with its own grid of the first cloth or with another one.
     pub fn build(&self, grid: Option<Grid>) -> Result<Setup, InputError> {
-        // With a grid of its own, a scene is built with both.
+        // With another grid, the scene is built twice: with its own grid too.
         let mut reader = mesh::Reader::new(if grid.is_some() { 2 } else { 1 });
         let mut mesh = |name: &str| {
             let path = beside(self.path.as_deref(), name)?;
@@ -176,8 +177,8 @@ impl Source {
         })
     }
 
-    /// The solver that was asked for, or else the scene's own, or else the explicit trapezoid,
-    /// which serves every scene.
+    /// Returns the solver that was asked for, or else that of the scene, or else the explicit
+    /// trapezoid, which supports every scene.
     pub fn solver_or(&self, asked: Option<&'static Method>) -> &'static Method {
         let own = || integrators::find(self.description.solver.as_deref()?);
         asked
@@ -186,13 +187,13 @@ impl Source {
             .unwrap_or(&integrators::METHODS[0])
     }
 
-    /// The text of the file.
+    /// Returns the text of the scene.
     pub fn text(&self) -> &str {
         &self.text
     }
 
-    /// A text by which the scene that was last built differs from others: its name, and for a file
-    /// a hash of its text, of the files of its meshes, and of its state.
+    /// Returns a text that identifies the scene that was last built: its name, and for a file also
+    /// a hash of its text, of its mesh files and of its state at the start.
     pub fn fingerprint(&self, scene: &Scene) -> String {
         if self.path.is_none() {
             return scene.name.clone();
@@ -205,7 +206,7 @@ impl Source {
     }
 }
 
-/// The error of an unknown name.
+/// Writes the error of an unknown name.
 fn unknown(typed: &str) -> String {
     let names: Vec<_> = a3_scenes::SCENES.iter().map(|entry| entry.name).collect();
     let near = a3_scenes::nearest(typed, names.iter().copied());

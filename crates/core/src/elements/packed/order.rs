@@ -97,7 +97,7 @@ impl Order {
         (self.panel * TILE + self.reach).next_multiple_of(8)
     }
 
-    /// Returns the particles of some numbers.
+    /// Returns the particles at some places of the order.
     pub fn places(&self, of: Range<usize>) -> Places<'_> {
         let all = &self.particles[of];
         match (all.first(), all.last()) {

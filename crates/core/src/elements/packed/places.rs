@@ -14,7 +14,7 @@ impl Columns {
         self.0.as_ptr().align_offset(LINE)
     }
 
-    /// Returns the columns, resized to a length each.
+    /// Resizes each column to a length, and returns the columns.
     pub fn of_length(&mut self, len: usize) -> &mut [f64] {
         self.0.resize(3 * len + LINE / size_of::<f64>(), 0.0);
         let start = self.start();

@@ -254,7 +254,8 @@ mod tests {
     use crate::grid::Grid;
     use crate::random::SplitMix;
 
-    /// Returns the forces by scalar code, and by every kind of vector that this processor has.
+    /// Compares the forces by scalar code with those by every kind of vector that this processor
+    /// has.
     #[test]
     fn vectors_of_any_length_give_the_same_bits() {
         let sizes = [(2, 2), (5, 3), (9, 33), (4, 140), (3, 515), (3, 1050)];

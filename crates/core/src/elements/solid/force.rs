@@ -199,7 +199,7 @@ impl<S: Simd> Rest<Vector<S>> {
 }
 
 impl<N: Number> Rest<N> {
-    /// Returns the same shape as numbers with differential 0.
+    /// Returns the same shape in dual numbers, whose differentials are 0.
     #[inline(always)]
     fn dual(&self) -> Rest<Dual<N>> {
         let Self { gradients, volume } = self;

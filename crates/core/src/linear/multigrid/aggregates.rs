@@ -58,7 +58,7 @@ impl Aggregates {
     }
 }
 
-/// Returns the aggregate of each particle, and their number.
+/// Returns the aggregate of each particle, and the number of aggregates.
 fn choose(neighbours: &Lists<(u32, f64)>, n: usize) -> (Vec<u32>, usize) {
     let (mut of, mut count) = (vec![NONE; n], 0);
     let is_alone = |i: usize| neighbours.of(i).is_empty();
