@@ -1,5 +1,5 @@
-//! The chart of models: the error of runs against their cost, with the grid and the step both varied.
-//! Errors are taken from the motion that the two finest grids extrapolate to.
+//! The chart of models: the error of runs against their cost, with the grid and the step both
+//! varied. Errors are taken from the motion that the two finest grids extrapolate to.
 
 use a3_core::accuracy::{coarser, ladder};
 use a3_core::stability::spectrum;
