@@ -39,10 +39,10 @@ impl Description {
         let mesh_is_before = !self.mesh.is_empty();
         for (own, other) in self.solid.iter().zip(&mut other.solid) {
             let Some(grid) = own.grid else {
-                return Err("solids from files have no other grid".into());
+                return Err("a solid from a file has no grid".into());
             };
             if mesh_is_before {
-                return Err("solids beside meshes keep their grids".into());
+                return Err("a solid keeps its grid if the scene has meshes".into());
             }
             let finer = finer(grid, factor);
             other.grid = Some(finer);

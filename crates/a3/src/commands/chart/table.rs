@@ -207,7 +207,7 @@ fn winners(
     for digits in DIGITS {
         let error = 10f64.powi(-digits);
         let line = if error < resolved {
-            format!("the reference tells errors above {resolved:.0e} {unit} only")
+            format!("the reference is exact enough for errors above {resolved:.0e} {unit} only")
         } else if error > still {
             format!("nothing moves further than {still:.0e} {unit}: such an error says nothing")
         } else {

@@ -89,8 +89,8 @@ pub fn read(text: &str, json: bool) -> Result<Vec<Record>, String> {
             || open[begin..] != digits(crc32fast::hash(&open.as_bytes()[..begin]))
         {
             return Err(format!(
-                "it is damaged, or was changed: its last checksum does not fit what stands before; without `{CHECK}` \
-                 in any line it would be believed"
+                "it is damaged, or was changed: its last checksum is not that of the text before it; without `{CHECK}` \
+                 in any line it would be accepted"
             ));
         }
     }

@@ -18,11 +18,13 @@ pub fn set_by(best: &Candidate) -> String {
         "tolerance"
     };
     match best.set_by {
-        SetBy::Accuracy => format!("accuracy sets the {what}: a larger one misses the error\n"),
-        SetBy::Stability => {
-            format!("stability sets the {what}: with a larger one the run is unstable\n")
+        SetBy::Accuracy => {
+            format!("accuracy limits the {what}: with a larger one the error is too large\n")
         }
-        SetBy::Nothing => format!("nothing sets the {what}: no larger one was tried\n"),
+        SetBy::Stability => {
+            format!("stability limits the {what}: with a larger one the run is unstable\n")
+        }
+        SetBy::Nothing => format!("nothing limits the {what}: no larger one was tried\n"),
     }
 }
 

@@ -270,7 +270,7 @@ fn write(path: &Path, models: &Models, answer: &Answer) -> Result<(), Failure> {
         .get_or_insert(models.points.frames.until);
     let text = description.to_toml().map_err(Failure::run)?;
     let head = format!(
-        "# The scene {} without what changes its motion by less than {:.1e} m, by a3 {}.\n\n",
+        "# The scene {} without parts that change its motion by less than {:.1e} m, by a3 {}.\n\n",
         models.scene.name.replace(char::is_control, " "),
         answer.solved.error,
         env!("CARGO_PKG_VERSION")
