@@ -300,7 +300,8 @@ impl Met<'_> {
     /// Share of a slip along the surface that friction leaves, where contact changed the motion
     /// along the normal by `normal`.
     fn kept(&self, slip: Vector3<f64>, normal: f64) -> f64 {
-        let (slip, most) = (slip.norm(), self.friction * normal);
+        // A particle on the surface may be moved inwards, by rounding: friction is 0 then.
+        let (slip, most) = (slip.norm(), self.friction * normal.max(0.0));
         if slip > most { 1.0 - most / slip } else { 0.0 }
     }
 }
