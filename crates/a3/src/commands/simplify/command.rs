@@ -5,7 +5,9 @@ use std::path::Path;
 use a3_core::accuracy::{Frames, Metric, Precision, Reference};
 
 use super::chart::chart;
-use super::lean::{Answer, LeanModel, MAX_TIME_RATIO, Solved, assemble, solve, solve_whole};
+use super::lean::{
+    Answer, LeanModel, MAX_TIME_RATIO, Solved, assemble, solve, solve_whole, time_in_turns,
+};
 use super::models::{Model, Models, measure_all};
 use super::table;
 use crate::base::failure::Failure;
@@ -184,7 +186,7 @@ fn leanest(
     bar: &Bar,
 ) -> Result<Option<Answer>, Failure> {
     bar.say("cheapest solver  ".into());
-    let Some(whole) = solve_whole(models, reference, error)? else {
+    let Some(mut whole) = solve_whole(models, reference, error)? else {
         return stop_or(format!(
             "no solver meets an error of {error:e} m on the whole scene"
         ));
@@ -193,11 +195,14 @@ fn leanest(
     let Some(model) = assemble(models, all, error)? else {
         return Ok(None);
     };
-    let solved = if model.is_whole() {
+    let mut solved = if model.is_whole() {
         None
     } else {
         solve(models, &model, error)?
     };
+    if let Some(solved) = &mut solved {
+        time_in_turns(models, &model, solved, &mut whole)?;
+    }
     if !interrupt::go_on() {
         return Ok(None);
     }

@@ -1,6 +1,8 @@
 //! The leanest scene for an error: parts left out together, a coarser grid, and the cheapest solver
 //! for the rest of the error. All of it is measured in one run.
 
+use std::time::Duration;
+
 use a3_core::accuracy::{Candidate, Frames, Metric, Precision, Reference, Scope, choose};
 use a3_core::{Control, Method, Scene};
 use a3_scenes::{Description, Part, Regridded};
@@ -37,6 +39,9 @@ pub struct Solved {
     /// Work of the run, in evaluations.
     pub work: f64,
 }
+
+/// Number of times that both scenes are timed again, in turns.
+const TURNS: u32 = 5;
 
 /// Scene without some of its parts, perhaps on a coarser grid.
 pub struct LeanModel {
@@ -202,6 +207,28 @@ pub fn solve(models: &Models, model: &LeanModel, error: f64) -> Result<Option<So
         }
     }
     Ok(None)
+}
+
+/// Times the runs of both scenes again in turns, so that other work of the machine slows both
+/// alike, and keeps the shortest time of each. Stops if the command is interrupted.
+pub fn time_in_turns(
+    models: &Models,
+    model: &LeanModel,
+    lean: &mut Solved,
+    whole: &mut Solved,
+) -> Result<(), Failure> {
+    let (scene, frames) = (models.build(&model.description)?, models.points.frames);
+    for _ in 0..TURNS {
+        for (scene, solved) in [(&scene, &mut *lean), (&models.scene, &mut *whole)] {
+            let before = Duration::from_secs_f64(solved.time * frames.until);
+            let (method, control) = (solved.method, solved.control);
+            let Some(best) = time(scene, method, control, &frames, Some(before))? else {
+                return Ok(());
+            };
+            solved.time = best.as_secs_f64() / frames.until;
+        }
+    }
+    Ok(())
 }
 
 /// Finds the cheapest solver of a scene for an error (m). `None` if no solver meets it, or the
