@@ -57,302 +57,300 @@ const AIR_DRAG: f64 = 1.2;
 /// E = 5/2 C44.
 const LATTICE: (f64, f64) = (22.0 / 35.0, 6.0 / 35.0);
 
-impl Description {
-    /// Lists the parts of the scene that can be left out or replaced by simpler ones.
-    #[must_use]
-    pub fn parts(&self) -> Vec<Part> {
-        let named = |change, name: &str| Part {
-            name: name.into(),
-            change,
-        };
-        let mut all = vec![
-            named(Change::Drag, "drag"),
-            named(Change::Damping, "damping of springs and solids"),
-        ];
-        all.extend((0..3).map(|kind| named(Change::Springs(kind), SPRINGS[kind])));
-        all.extend([
-            named(Change::Buckling, "buckling of bend springs"),
-            named(Change::StrainLimit, "limit of strain"),
-            named(Change::Tear, "tearing"),
-            named(Change::Viscosity, "viscosity"),
-            named(Change::Gravity, "gravity"),
-            named(Change::Wind, "wind"),
-            named(Change::WindByParticles, "wind on triangles: on particles"),
-            named(Change::Friction, "friction"),
-            named(Change::Restitution, "restitution"),
-            named(Change::SelfCollision, "self-collision"),
-            named(Change::Floor, "floor"),
-        ]);
-        for (kind, name) in OBSTACLES.iter().enumerate() {
-            let count = self.obstacles(kind);
-            all.extend((0..count).map(|k| Part {
-                name: if count > 1 {
-                    format!("{name} {}", k + 1)
-                } else {
-                    (*name).into()
-                },
-                change: Change::Obstacle(kind, k),
-            }));
-        }
-        all.extend([
-            named(Change::Rods, "springs of chains: rods"),
-            named(Change::Jelly, "solids: jellies of springs"),
-        ]);
-        all.retain(|part| self.without([part]) != *self);
-        all
+/// Lists the parts of the scene that can be left out or replaced by simpler ones.
+#[must_use]
+pub fn parts(scene: &Description) -> Vec<Part> {
+    let named = |change, name: &str| Part {
+        name: name.into(),
+        change,
+    };
+    let mut all = vec![
+        named(Change::Drag, "drag"),
+        named(Change::Damping, "damping of springs and solids"),
+    ];
+    all.extend((0..3).map(|kind| named(Change::Springs(kind), SPRINGS[kind])));
+    all.extend([
+        named(Change::Buckling, "buckling of bend springs"),
+        named(Change::StrainLimit, "limit of strain"),
+        named(Change::Tear, "tearing"),
+        named(Change::Viscosity, "viscosity"),
+        named(Change::Gravity, "gravity"),
+        named(Change::Wind, "wind"),
+        named(Change::WindByParticles, "wind on triangles: on particles"),
+        named(Change::Friction, "friction"),
+        named(Change::Restitution, "restitution"),
+        named(Change::SelfCollision, "scene-collision"),
+        named(Change::Floor, "floor"),
+    ]);
+    for (kind, name) in OBSTACLES.iter().enumerate() {
+        let count = obstacles(scene, kind);
+        all.extend((0..count).map(|k| Part {
+            name: if count > 1 {
+                format!("{name} {}", k + 1)
+            } else {
+                (*name).into()
+            },
+            change: Change::Obstacle(kind, k),
+        }));
     }
+    all.extend([
+        named(Change::Rods, "springs of chains: rods"),
+        named(Change::Jelly, "solids: jellies of springs"),
+    ]);
+    all.retain(|part| without(scene, [part]) != *scene);
+    all
+}
 
-    /// Returns the scene without some of its [`parts`](Self::parts).
-    #[must_use]
-    pub fn without<'a>(&self, parts: impl IntoIterator<Item = &'a Part>) -> Self {
-        let mut changed = self.clone();
-        let mut obstacles = vec![];
-        for part in parts {
-            match part.change {
-                Change::Obstacle(kind, k) => obstacles.push((kind, k)),
-                change => changed.leave_out(change),
-            }
+/// Returns the scene without some of its [`parts`].
+#[must_use]
+pub fn without<'a>(scene: &Description, parts: impl IntoIterator<Item = &'a Part>) -> Description {
+    let mut changed = scene.clone();
+    let mut obstacles = vec![];
+    for part in parts {
+        match part.change {
+            Change::Obstacle(kind, k) => obstacles.push((kind, k)),
+            change => leave_out(&mut changed, change),
         }
-        // The last is removed first, so that the indices of the others stay.
-        obstacles.sort_unstable();
-        for (kind, k) in obstacles.into_iter().rev() {
-            match kind {
-                0 => drop(changed.sphere.remove(k)),
-                1 => drop(changed.boxes.remove(k)),
-                2 => drop(changed.capsule.remove(k)),
-                _ => drop(changed.obstacle.remove(k)),
-            }
-        }
-        changed
     }
-
-    /// Returns the number of obstacles of a kind, by its index in [`OBSTACLES`].
-    fn obstacles(&self, kind: usize) -> usize {
+    // The last is removed first, so that the indices of the others stay.
+    obstacles.sort_unstable();
+    for (kind, k) in obstacles.into_iter().rev() {
         match kind {
-            0 => self.sphere.len(),
-            1 => self.boxes.len(),
-            2 => self.capsule.len(),
-            _ => self.obstacle.len(),
+            0 => drop(changed.sphere.remove(k)),
+            1 => drop(changed.boxes.remove(k)),
+            2 => drop(changed.capsule.remove(k)),
+            _ => drop(changed.obstacle.remove(k)),
         }
     }
+    changed
+}
 
-    /// Makes a change, except for obstacles, whose indices depend on one another.
-    fn leave_out(&mut self, change: Change) {
-        match change {
-            Change::Gravity => self.gravity = None,
-            Change::Drag => (self.drag, self.drag_per_mass) = (None, None),
-            Change::Damping => self.leave_out_damping(),
-            Change::Springs(kind) => self.leave_out_springs(kind),
-            Change::Buckling => {
-                for law in self.cloth.iter_mut().map(|it| &mut it.buckling) {
-                    *law = None;
-                }
-                for law in self.chain.iter_mut().map(|it| &mut it.buckling) {
-                    *law = None;
+/// Returns the number of obstacles of a kind, by its index in [`OBSTACLES`].
+fn obstacles(scene: &Description, kind: usize) -> usize {
+    match kind {
+        0 => scene.sphere.len(),
+        1 => scene.boxes.len(),
+        2 => scene.capsule.len(),
+        _ => scene.obstacle.len(),
+    }
+}
+
+/// Makes a change, except for obstacles, whose indices depend on one another.
+fn leave_out(scene: &mut Description, change: Change) {
+    match change {
+        Change::Gravity => scene.gravity = None,
+        Change::Drag => (scene.drag, scene.drag_per_mass) = (None, None),
+        Change::Damping => leave_out_damping(scene),
+        Change::Springs(kind) => leave_out_springs(scene, kind),
+        Change::Buckling => {
+            for law in scene.cloth.iter_mut().map(|it| &mut it.buckling) {
+                *law = None;
+            }
+            for law in scene.chain.iter_mut().map(|it| &mut it.buckling) {
+                *law = None;
+            }
+        }
+        Change::StrainLimit => {
+            for Cloth { strain_limit, .. } in &mut scene.cloth {
+                *strain_limit = None;
+            }
+            for Jelly { strain_limit, .. } in &mut scene.jelly {
+                *strain_limit = None;
+            }
+            for MeshCloth { strain_limit, .. } in &mut scene.mesh {
+                *strain_limit = None;
+            }
+        }
+        Change::Tear => scene.tear = None,
+        Change::Viscosity => {
+            for fluid in &mut scene.fluid {
+                fluid.viscosity = 0.0;
+            }
+        }
+        Change::Wind => {
+            if let Some(wind) = &mut scene.wind {
+                wind.on = false;
+            }
+        }
+        Change::WindByParticles => simplify_wind(scene),
+        Change::Friction => each_contact(scene, |[friction, _]| *friction = 0.0),
+        Change::Restitution => each_contact(scene, |[_, restitution]| *restitution = 0.0),
+        Change::SelfCollision => scene.self_collision = false,
+        Change::Floor => scene.floor = None,
+        Change::Obstacle(..) => {}
+        Change::Rods => {
+            for chain in &mut scene.chain {
+                chain.rigid |= chain.stiffness > 0.0 && chain.buckling.is_none();
+                if chain.rigid {
+                    (chain.stiffness, chain.damping) = (0.0, 0.0);
                 }
             }
-            Change::StrainLimit => {
-                for Cloth { strain_limit, .. } in &mut self.cloth {
-                    *strain_limit = None;
-                }
-                for Jelly { strain_limit, .. } in &mut self.jelly {
-                    *strain_limit = None;
-                }
-                for MeshCloth { strain_limit, .. } in &mut self.mesh {
-                    *strain_limit = None;
-                }
-            }
-            Change::Tear => self.tear = None,
-            Change::Viscosity => {
-                for fluid in &mut self.fluid {
-                    fluid.viscosity = 0.0;
-                }
-            }
-            Change::Wind => {
-                if let Some(wind) = &mut self.wind {
-                    wind.on = false;
-                }
-            }
-            Change::WindByParticles => self.simplify_wind(),
-            Change::Friction => self.each_contact(|[friction, _]| *friction = 0.0),
-            Change::Restitution => self.each_contact(|[_, restitution]| *restitution = 0.0),
-            Change::SelfCollision => self.self_collision = false,
-            Change::Floor => self.floor = None,
-            Change::Obstacle(..) => {}
-            Change::Rods => {
-                for chain in &mut self.chain {
-                    chain.rigid |= chain.stiffness > 0.0 && chain.buckling.is_none();
-                    if chain.rigid {
-                        (chain.stiffness, chain.damping) = (0.0, 0.0);
-                    }
-                }
-            }
-            Change::Jelly => self.replace_solids(),
+        }
+        Change::Jelly => replace_solids(scene),
+    }
+}
+
+/// Sets the damping of all springs and solids to zero.
+fn leave_out_damping(scene: &mut Description) {
+    for cloth in &mut scene.cloth {
+        (cloth.damping, cloth.damping_ratio) = (None, None);
+    }
+    for jelly in &mut scene.jelly {
+        (jelly.damping, jelly.damping_ratio) = (None, None);
+    }
+    for mesh in &mut scene.mesh {
+        (mesh.damping, mesh.damping_ratio) = (None, None);
+    }
+    for Solid { damping, .. } in &mut scene.solid {
+        *damping = 0.0;
+    }
+    for Chain { damping, .. } in &mut scene.chain {
+        *damping = 0.0;
+    }
+    let particles = scene.particles.iter_mut();
+    let own = particles.flat_map(|particles| &mut particles.springs);
+    for spring in own.chain(&mut scene.springs) {
+        spring.4 = 0.0;
+    }
+}
+
+/// Leaves out the springs of a kind, by its index in [`SPRINGS`]. Meshes have no shear springs.
+/// The other springs keep their damping, also if it was given relative to structural springs.
+fn leave_out_springs(scene: &mut Description, kind: usize) {
+    for cloth in scene.cloth.iter_mut().filter(|_| kind == 0) {
+        let mass = cloth.checked_mass().unwrap_or_default();
+        let (damping, ratio) = (cloth.damping, cloth.damping_ratio);
+        if let Ok(time) = damping_time(damping, ratio, mass, cloth.stiffness[0]) {
+            (cloth.damping, cloth.damping_ratio) = (Some(time), None);
         }
     }
-
-    /// Sets the damping of all springs and solids to zero.
-    fn leave_out_damping(&mut self) {
-        for cloth in &mut self.cloth {
-            (cloth.damping, cloth.damping_ratio) = (None, None);
-        }
-        for jelly in &mut self.jelly {
-            (jelly.damping, jelly.damping_ratio) = (None, None);
-        }
-        for mesh in &mut self.mesh {
-            (mesh.damping, mesh.damping_ratio) = (None, None);
-        }
-        for Solid { damping, .. } in &mut self.solid {
-            *damping = 0.0;
-        }
-        for Chain { damping, .. } in &mut self.chain {
-            *damping = 0.0;
-        }
-        let particles = self.particles.iter_mut();
-        let own = particles.flat_map(|particles| &mut particles.springs);
-        for spring in own.chain(&mut self.springs) {
-            spring.4 = 0.0;
-        }
-    }
-
-    /// Leaves out the springs of a kind, by its index in [`SPRINGS`]. Meshes have no shear springs.
-    /// The other springs keep their damping, also if it was given relative to structural springs.
-    fn leave_out_springs(&mut self, kind: usize) {
-        for cloth in self.cloth.iter_mut().filter(|_| kind == 0) {
-            let mass = cloth.checked_mass().unwrap_or_default();
-            let (damping, ratio) = (cloth.damping, cloth.damping_ratio);
-            if let Ok(time) = damping_time(damping, ratio, mass, cloth.stiffness[0]) {
-                (cloth.damping, cloth.damping_ratio) = (Some(time), None);
-            }
-        }
-        for Cloth {
-            stiffness,
-            buckling,
-            ..
-        } in &mut self.cloth
-        {
-            stiffness[kind] = 0.0;
-            if kind == 2 {
-                *buckling = None;
-            }
-        }
-        for Jelly { stiffness, .. } in &mut self.jelly {
-            stiffness[kind] = 0.0;
-        }
-        for MeshCloth { stiffness, .. } in &mut self.mesh {
-            match kind {
-                0 => stiffness[0] = 0.0,
-                2 => stiffness[1] = 0.0,
-                _ => {}
-            }
-        }
+    for Cloth {
+        stiffness,
+        buckling,
+        ..
+    } in &mut scene.cloth
+    {
+        stiffness[kind] = 0.0;
         if kind == 2 {
-            for Chain { buckling, .. } in &mut self.chain {
-                *buckling = None;
-            }
+            *buckling = None;
         }
     }
-
-    /// Calls a function with the friction and the restitution of each body and obstacle.
-    fn each_contact(&mut self, mut change: impl FnMut([&mut f64; 2])) {
-        macro_rules! change {
-            ($($bodies:expr),*) => {
-                $(for it in $bodies {
-                    change([&mut it.friction, &mut it.restitution]);
-                })*
-            };
+    for Jelly { stiffness, .. } in &mut scene.jelly {
+        stiffness[kind] = 0.0;
+    }
+    for MeshCloth { stiffness, .. } in &mut scene.mesh {
+        match kind {
+            0 => stiffness[0] = 0.0,
+            2 => stiffness[1] = 0.0,
+            _ => {}
         }
-        change!(
-            &mut self.cloth,
-            &mut self.jelly,
-            &mut self.mesh,
-            &mut self.solid,
-            &mut self.chain,
-            self.particles.iter_mut(),
-            &mut self.body,
-            &mut self.sphere,
-            &mut self.boxes,
-            &mut self.capsule,
-            &mut self.obstacle
+    }
+    if kind == 2 {
+        for Chain { buckling, .. } in &mut scene.chain {
+            *buckling = None;
+        }
+    }
+}
+
+/// Calls a function with the friction and the restitution of each body and obstacle.
+fn each_contact(scene: &mut Description, mut change: impl FnMut([&mut f64; 2])) {
+    macro_rules! change {
+        ($($bodies:expr),*) => {
+            $(for it in $bodies {
+                change([&mut it.friction, &mut it.restitution]);
+            })*
+        };
+    }
+    change!(
+        &mut scene.cloth,
+        &mut scene.jelly,
+        &mut scene.mesh,
+        &mut scene.solid,
+        &mut scene.chain,
+        scene.particles.iter_mut(),
+        &mut scene.body,
+        &mut scene.sphere,
+        &mut scene.boxes,
+        &mut scene.capsule,
+        &mut scene.obstacle
+    );
+    if let Some(Floor::Table(FloorSpec {
+        friction,
+        restitution,
+        ..
+    })) = &mut scene.floor
+    {
+        change([friction, restitution]);
+    }
+}
+
+/// Replaces a wind on the triangles of cloths by forces on particles: the drag of a cloth that
+/// stands across the wind.
+fn simplify_wind(scene: &mut Description) {
+    let is_cloth_alone = !scene.cloth.is_empty()
+        && [scene.jelly.len(), scene.mesh.len(), scene.solid.len()] == [0; 3]
+        && [scene.chain.len(), scene.body.len(), scene.fluid.len()] == [0; 3]
+        && scene.particles.is_none();
+    let (mut area, mut mass) = (0.0, 0.0);
+    for cloth in &scene.cloth {
+        let (Ok(spacing), Ok(share)) = (cloth.checked_spacing(), cloth.checked_mass()) else {
+            return;
+        };
+        let [rows, cols] = cloth.grid.map(|n| n as f64);
+        area += spacing * spacing * (rows - 1.0) * (cols - 1.0);
+        mass += share * rows * cols;
+    }
+    let Some(wind) = scene.wind.as_mut().filter(|wind| wind.on && is_cloth_alone) else {
+        return;
+    };
+    let Some(velocity) = wind.velocity else {
+        return;
+    };
+    let speed = velocity.iter().map(|v| v * v).sum::<f64>().sqrt();
+    let (density, drag) = (
+        wind.density.unwrap_or(AIR_DENSITY),
+        wind.drag.unwrap_or(AIR_DRAG),
+    );
+    let each = 0.5 * density * drag * speed * area / mass;
+    *wind = WindSpec {
+        on: wind.on,
+        seed: wind.seed,
+        force_per_mass: Some(velocity.map(|v| each * v)),
+        ahead: wind.ahead,
+        ..WindSpec::default()
+    };
+}
+
+/// Replaces boxes of elastic solids by jellies that are equally stiff under small strains. It
+/// changes nothing if there are meshes, whose particles would get other numbers, or solids from
+/// files.
+fn replace_solids(scene: &mut Description) {
+    if !scene.mesh.is_empty() || scene.solid.iter().any(|solid| solid.file.is_some()) {
+        return;
+    }
+    for solid in std::mem::take(&mut scene.solid) {
+        let (grid, size) = (
+            solid.grid.unwrap_or_default(),
+            solid.size.unwrap_or_default(),
         );
-        if let Some(Floor::Table(FloorSpec {
-            friction,
-            restitution,
-            ..
-        })) = &mut self.floor
-        {
-            change([friction, restitution]);
-        }
-    }
-
-    /// Replaces a wind on the triangles of cloths by forces on particles: the drag of a cloth that
-    /// stands across the wind.
-    fn simplify_wind(&mut self) {
-        let is_cloth_alone = !self.cloth.is_empty()
-            && [self.jelly.len(), self.mesh.len(), self.solid.len()] == [0; 3]
-            && [self.chain.len(), self.body.len(), self.fluid.len()] == [0; 3]
-            && self.particles.is_none();
-        let (mut area, mut mass) = (0.0, 0.0);
-        for cloth in &self.cloth {
-            let (Ok(spacing), Ok(share)) = (cloth.checked_spacing(), cloth.checked_mass()) else {
-                return;
-            };
-            let [rows, cols] = cloth.grid.map(|n| n as f64);
-            area += spacing * spacing * (rows - 1.0) * (cols - 1.0);
-            mass += share * rows * cols;
-        }
-        let Some(wind) = self.wind.as_mut().filter(|wind| wind.on && is_cloth_alone) else {
-            return;
-        };
-        let Some(velocity) = wind.velocity else {
-            return;
-        };
-        let speed = velocity.iter().map(|v| v * v).sum::<f64>().sqrt();
-        let (density, drag) = (
-            wind.density.unwrap_or(AIR_DENSITY),
-            wind.drag.unwrap_or(AIR_DRAG),
-        );
-        let each = 0.5 * density * drag * speed * area / mass;
-        *wind = WindSpec {
-            on: wind.on,
-            seed: wind.seed,
-            force_per_mass: Some(velocity.map(|v| each * v)),
-            ahead: wind.ahead,
-            ..WindSpec::default()
-        };
-    }
-
-    /// Replaces boxes of elastic solids by jellies that are equally stiff under small strains. It
-    /// changes nothing if there are meshes, whose particles would get other numbers, or solids from
-    /// files.
-    fn replace_solids(&mut self) {
-        if !self.mesh.is_empty() || self.solid.iter().any(|solid| solid.file.is_some()) {
-            return;
-        }
-        for solid in std::mem::take(&mut self.solid) {
-            let (grid, size) = (
-                solid.grid.unwrap_or_default(),
-                solid.size.unwrap_or_default(),
-            );
-            let cell = |axis: usize| size[axis] / (grid[axis].max(2) - 1) as f64;
-            let spacing = (cell(0) * cell(1) * cell(2)).cbrt();
-            let [structural, shear] = [LATTICE.0, LATTICE.1].map(|k| k * solid.young * spacing);
-            self.jelly.push(Jelly {
-                grid,
-                size,
-                density: Some(solid.density),
-                stiffness: [structural, shear, 0.0],
-                damping: Some(solid.damping),
-                at: solid.at,
-                rotation: solid.rotation,
-                velocity: solid.velocity,
-                thickness: solid.thickness,
-                friction: solid.friction,
-                restitution: solid.restitution,
-                pin: solid.pin,
-                ..Jelly::default()
-            });
-        }
+        let cell = |axis: usize| size[axis] / (grid[axis].max(2) - 1) as f64;
+        let spacing = (cell(0) * cell(1) * cell(2)).cbrt();
+        let [structural, shear] = [LATTICE.0, LATTICE.1].map(|k| k * solid.young * spacing);
+        scene.jelly.push(Jelly {
+            grid,
+            size,
+            density: Some(solid.density),
+            stiffness: [structural, shear, 0.0],
+            damping: Some(solid.damping),
+            at: solid.at,
+            rotation: solid.rotation,
+            velocity: solid.velocity,
+            thickness: solid.thickness,
+            friction: solid.friction,
+            restitution: solid.restitution,
+            pin: solid.pin,
+            ..Jelly::default()
+        });
     }
 }
 
@@ -361,7 +359,7 @@ mod tests {
     use super::*;
 
     fn names(text: &str) -> Vec<String> {
-        let parts = Description::parse(text).unwrap().parts();
+        let parts = parts(&Description::parse(text).unwrap());
         parts.into_iter().map(|part| part.name).collect()
     }
 
@@ -388,8 +386,8 @@ mod tests {
     fn obstacles_are_left_out_by_their_numbers() {
         let ball = |x: i32| format!("[[sphere]]\ncenter = [{x}, 0, 0]\nradius = 1\n");
         let scene = Description::parse(&(0..3).map(ball).collect::<String>()).unwrap();
-        let parts = scene.parts();
-        let left = scene.without([&parts[0], &parts[2]]);
+        let parts = parts(&scene);
+        let left = without(&scene, [&parts[0], &parts[2]]);
         assert_eq!(left.sphere, [scene.sphere[1].clone()]);
     }
 }

@@ -14,106 +14,108 @@ pub struct Regridded {
     pub places: Vec<Vec<(usize, f64)>>,
 }
 
-impl Description {
-    /// Returns the same scene on grids whose cells are about `factor` times shorter, or longer for
-    /// a factor below 1, and have the same shape. `particles` is the number of the scene's own
-    /// particles.
-    ///
-    /// A cloth keeps its mass per area, a jelly and a solid their mass per volume, and all keep
-    /// their elastic moduli and their damping times. Drag and wind keep their force per mass.
-    ///
-    /// # Errors
-    /// The scene has no grid, or names particles by their numbers: the reason in words.
-    pub fn regridded(&self, factor: f64, particles: usize) -> Result<Regridded, String> {
-        self.check_grids()?;
-        let mut other = self.clone();
-        let mut places = Places::default();
-        for (own, other) in self.cloth.iter().zip(&mut other.cloth) {
-            regrid_cloth(own, other, factor)?;
-            places.add(&own.grid, &other.grid);
-        }
-        for (own, other) in self.jelly.iter().zip(&mut other.jelly) {
-            regrid_jelly(own, other, factor);
-            places.add_lattice(own.grid, other.grid);
-        }
-        let mesh_is_before = !self.mesh.is_empty();
-        for (own, other) in self.solid.iter().zip(&mut other.solid) {
-            let Some(grid) = own.grid else {
-                return Err("a solid from a file has no grid".into());
-            };
-            if mesh_is_before {
-                return Err("a solid keeps its grid if the scene has meshes".into());
-            }
-            let finer = finer(grid, factor);
-            other.grid = Some(finer);
-            places.add_lattice(grid, finer);
-        }
-        places.add_others(particles);
-        other.keep_forces_per_mass(self, &places)?;
-        other.trail = None;
-        if places.count == particles {
-            return Err("its cells cannot be larger and keep their shape".into());
-        }
-        Ok(Regridded {
-            description: other,
-            places: places.of,
-        })
+/// Returns the same scene on grids whose cells are about `factor` times shorter, or longer for
+/// a factor below 1, and have the same shape. `particles` is the number of the scene's own
+/// particles.
+///
+/// A cloth keeps its mass per area, a jelly and a solid their mass per volume, and all keep
+/// their elastic moduli and their damping times. Drag and wind keep their force per mass.
+///
+/// # Errors
+/// The scene has no grid, or names particles by their numbers: the reason in words.
+pub fn regridded(scene: &Description, factor: f64, particles: usize) -> Result<Regridded, String> {
+    check_grids(scene)?;
+    let mut other = scene.clone();
+    let mut places = Places::default();
+    for (own, other) in scene.cloth.iter().zip(&mut other.cloth) {
+        regrid_cloth(own, other, factor)?;
+        places.add(&own.grid, &other.grid);
     }
+    for (own, other) in scene.jelly.iter().zip(&mut other.jelly) {
+        regrid_jelly(own, other, factor);
+        places.add_lattice(own.grid, other.grid);
+    }
+    let mesh_is_before = !scene.mesh.is_empty();
+    for (own, other) in scene.solid.iter().zip(&mut other.solid) {
+        let Some(grid) = own.grid else {
+            return Err("a solid from a file has no grid".into());
+        };
+        if mesh_is_before {
+            return Err("a solid keeps its grid if the scene has meshes".into());
+        }
+        let finer = finer(grid, factor);
+        other.grid = Some(finer);
+        places.add_lattice(grid, finer);
+    }
+    places.add_others(particles);
+    keep_forces_per_mass(&mut other, scene, &places)?;
+    other.trail = None;
+    if places.count == particles {
+        return Err("its cells cannot be larger and keep their shape".into());
+    }
+    Ok(Regridded {
+        description: other,
+        places: places.of,
+    })
+}
 
-    /// Checks that a body has a grid, and that nothing in the scene refers to single particles.
-    fn check_grids(&self) -> Result<(), String> {
-        let is_gridded = !(self.cloth.is_empty() && self.jelly.is_empty() && self.solid.is_empty());
-        if !is_gridded {
-            return Err("no body has a grid that could be finer".into());
-        }
-        for cloth in &self.cloth {
-            if cloth.spacing.is_some() || cloth.mass.is_some() {
-                return Err("a cloth gives the mass and the distance of its particles, \
-                     not its width and density"
-                    .into());
-            }
-        }
-        if self.jelly.iter().any(|jelly| jelly.mass.is_some()) {
-            return Err("a jelly gives the mass of its particles, not its density".into());
-        }
-        let pins = self.cloth.iter().map(|it| &it.pin);
-        let pins = pins.chain(self.jelly.iter().map(|it| &it.pin));
-        let mut pins = pins.chain(self.solid.iter().map(|it| &it.pin)).flatten();
-        let by_number = |pin: &Pin| !pin.particles.is_empty();
-        let numbers = [
-            (pins.any(by_number) || !self.pin.is_empty(), "pins"),
-            (!self.springs.is_empty(), "springs"),
-            (!self.constraint.is_empty(), "constraints"),
-            (!self.torn.is_empty(), "torn springs"),
-            (self.state.is_some(), "a state"),
-        ];
-        match numbers.iter().find(|(is_there, _)| *is_there) {
-            Some((_, what)) => Err(format!(
-                "the scene has {what} that name particles by their numbers"
-            )),
-            None => Ok(()),
+/// Checks that a body has a grid, and that nothing in the scene refers to single particles.
+fn check_grids(scene: &Description) -> Result<(), String> {
+    let is_gridded = !(scene.cloth.is_empty() && scene.jelly.is_empty() && scene.solid.is_empty());
+    if !is_gridded {
+        return Err("no body has a grid that could be finer".into());
+    }
+    for cloth in &scene.cloth {
+        if cloth.spacing.is_some() || cloth.mass.is_some() {
+            return Err("a cloth gives the mass and the distance of its particles, \
+                 not its width and density"
+                .into());
         }
     }
+    if scene.jelly.iter().any(|jelly| jelly.mass.is_some()) {
+        return Err("a jelly gives the mass of its particles, not its density".into());
+    }
+    let pins = scene.cloth.iter().map(|it| &it.pin);
+    let pins = pins.chain(scene.jelly.iter().map(|it| &it.pin));
+    let mut pins = pins.chain(scene.solid.iter().map(|it| &it.pin)).flatten();
+    let by_number = |pin: &Pin| !pin.particles.is_empty();
+    let numbers = [
+        (pins.any(by_number) || !scene.pin.is_empty(), "pins"),
+        (!scene.springs.is_empty(), "springs"),
+        (!scene.constraint.is_empty(), "constraints"),
+        (!scene.torn.is_empty(), "torn springs"),
+        (scene.state.is_some(), "a state"),
+    ];
+    match numbers.iter().find(|(is_there, _)| *is_there) {
+        Some((_, what)) => Err(format!(
+            "the scene has {what} that name particles by their numbers"
+        )),
+        None => Ok(()),
+    }
+}
 
-    /// Keeps the force per mass of drag and wind that are given for each particle.
-    fn keep_forces_per_mass(&mut self, own: &Self, places: &Places) -> Result<(), String> {
-        let [was, is] = [places.of.len(), places.count].map(|n| n as f64);
-        let by_particle = own.drag.is_some() || own.drag_per_mass.is_some();
-        let wind = self.wind.as_mut();
-        let pushed = wind.filter(|wind| wind.force.is_some() || wind.force_per_mass.is_some());
-        let uneven = places.kept > 0 || self.cloth.len() + self.jelly.len() + self.solid.len() > 1;
-        if uneven && (by_particle || pushed.is_some()) {
-            return Err("drag or wind is the same for each particle of several bodies".into());
-        }
-        // The mean mass falls as the number of particles rises.
-        if let Some(drag) = &mut self.drag {
-            *drag *= was / is;
-        }
-        if let Some(force) = pushed.and_then(|wind| wind.force.as_mut()) {
-            *force = force.map(|f| f * was / is);
-        }
-        Ok(())
+/// Keeps the force per mass of drag and wind that are given for each particle.
+fn keep_forces_per_mass(
+    scene: &mut Description,
+    own: &Description,
+    places: &Places,
+) -> Result<(), String> {
+    let [was, is] = [places.of.len(), places.count].map(|n| n as f64);
+    let by_particle = own.drag.is_some() || own.drag_per_mass.is_some();
+    let wind = scene.wind.as_mut();
+    let pushed = wind.filter(|wind| wind.force.is_some() || wind.force_per_mass.is_some());
+    let uneven = places.kept > 0 || scene.cloth.len() + scene.jelly.len() + scene.solid.len() > 1;
+    if uneven && (by_particle || pushed.is_some()) {
+        return Err("drag or wind is the same for each particle of several bodies".into());
     }
+    // The mean mass falls as the number of particles rises.
+    if let Some(drag) = &mut scene.drag {
+        *drag *= was / is;
+    }
+    if let Some(force) = pushed.and_then(|wind| wind.force.as_mut()) {
+        *force = force.map(|f| f * was / is);
+    }
+    Ok(())
 }
 
 /// Returns a grid with cells of the same shape, about `factor` times shorter.
@@ -240,7 +242,7 @@ mod tests {
     fn a_finer_cloth_has_the_same_size_and_mass() {
         let own = Description::parse(&format!("drag = 0.01\n{CLOTH}")).unwrap();
         for (factor, grid) in [(2.0, [21, 31]), (0.5, [7, 10]), (0.2, [3, 4])] {
-            let other = own.regridded(factor, 176).unwrap();
+            let other = regridded(&own, factor, 176).unwrap();
             let build = |description: &Description| {
                 let setup = description.build(None, &mut |_| Err(String::new()));
                 setup.unwrap().scene
@@ -281,7 +283,7 @@ mod tests {
                 format!("{more}{CLOTH}")
             };
             let scene = Description::parse(&text).unwrap();
-            assert!(scene.regridded(2.0, 176).is_err(), "{more}");
+            assert!(regridded(&scene, 2.0, 176).is_err(), "{more}");
         }
     }
 }

@@ -3,7 +3,7 @@
 use a3_core::accuracy::{Frames, Scope};
 use a3_core::integrators::find;
 use a3_core::{Control, Scene};
-use a3_scenes::{Description, Regridded};
+use a3_scenes::{Description, Regridded, regridded};
 
 use super::track::{Motion, Points};
 use crate::base::failure::Failure;
@@ -87,7 +87,7 @@ pub fn grid_error(
         let Ok(Regridded {
             description,
             places,
-        }) = own.regridded(factor, particles)
+        }) = regridded(own, factor, particles)
         else {
             return Ok(None);
         };

@@ -5,7 +5,7 @@ use a3_core::accuracy::{coarser, ladder};
 use a3_core::stability::spectrum;
 use a3_core::{Control, Method, Scene};
 use a3_plot::{Curve, CurveStyle, Marker, Measurement, Problem, WorkPrecision};
-use a3_scenes::Regridded;
+use a3_scenes::{Regridded, regridded};
 
 use super::lean::Solved;
 use super::models::{FACTORS, Models};
@@ -111,8 +111,7 @@ fn grids(models: &Models) -> Result<Option<Vec<Grid>>, Failure> {
     let particles = models.scene.model.particles();
     let mut all: Vec<Grid> = vec![];
     for factor in FACTORS.into_iter().chain([1.0]) {
-        let regridded = own
-            .regridded(factor, particles)
+        let regridded = regridded(own, factor, particles)
             .ok()
             .filter(|_| factor != 1.0);
         let (description, places) = match regridded {

@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use a3_core::accuracy::{Candidate, Frames, Metric, Precision, Reference, Scope, choose};
 use a3_core::{Control, Method, Scene};
-use a3_scenes::{Description, Part, Regridded};
+use a3_scenes::{Description, Part, regridded, without};
 
 use super::models::{Model, Models};
 use crate::base::failure::Failure;
@@ -99,17 +99,11 @@ pub fn assemble(models: &Models, all: &[Model], error: f64) -> Result<Option<Lea
     let mut factor = coarsest.map_or(1.0, |model| model.factor);
     loop {
         let left_out: Vec<Part> = parts.iter().filter_map(|m| m.part.clone()).collect();
-        let without = own.without(&left_out);
-        let (description, places) = if factor < 1.0 {
-            match without.regridded(factor, particles) {
-                Ok(Regridded {
-                    description,
-                    places,
-                }) => (description, Some(places)),
-                Err(_) => (without, None),
-            }
-        } else {
-            (without, None)
+        let lean = without(own, &left_out);
+        let other = (factor < 1.0).then(|| regridded(&lean, factor, particles).ok());
+        let (description, places) = match other.flatten() {
+            Some(other) => (other.description, Some(other.places)),
+            None => (lean, None),
         };
         let found = if left_out.is_empty() && places.is_none() {
             0.0
@@ -162,7 +156,7 @@ pub fn solve(models: &Models, model: &LeanModel, error: f64) -> Result<Option<So
     let scene = models.build(&model.description)?;
     let own = &*models.request.source.description;
     let places = if model.factor < 1.0 {
-        let other = own.regridded(model.factor, models.scene.model.particles());
+        let other = regridded(own, model.factor, models.scene.model.particles());
         other.ok().map(|other| other.places)
     } else {
         None

@@ -3,7 +3,7 @@
 use a3_core::accuracy::{Metric, Reference, measure};
 use a3_core::integrators::find;
 use a3_core::{Control, Method, Scene};
-use a3_scenes::{Description, Part, Regridded};
+use a3_scenes::{Description, Part, Regridded, parts, regridded, without};
 
 use crate::base::failure::Failure;
 use crate::base::interrupt;
@@ -122,18 +122,18 @@ impl<'a> Models<'a> {
     /// gives the reason if the grids cannot be changed.
     pub fn all(&self) -> (Vec<Model>, Option<String>) {
         let own = &*self.request.source.description;
-        let without = |part: Part| Model {
+        let model = |part: Part| Model {
             name: part.name.clone(),
-            description: own.without([&part]),
+            description: without(own, [&part]),
             places: None,
             part: Some(part),
             factor: 1.0,
             effect: Err("not measured".into()),
         };
-        let mut all: Vec<_> = own.parts().into_iter().map(without).collect();
+        let mut all: Vec<_> = parts(own).into_iter().map(model).collect();
         let mut why = None;
         for factor in FACTORS {
-            match own.regridded(factor, self.scene.model.particles()) {
+            match regridded(own, factor, self.scene.model.particles()) {
                 Ok(Regridded {
                     description,
                     places,
