@@ -110,7 +110,7 @@ fn unknown(arg: &str, similar: &str) -> String {
     format!("{arg} is one word too many; --help shows what is expected")
 }
 
-/// Message for two arguments of which only one may be given.
+/// Message for two arguments that exclude each other.
 fn conflict(error: &clap::Error, arg: &str) -> String {
     let others = list(error, ContextKind::PriorArg);
     let both = [&[arg.to_owned()], &others[..]].concat();

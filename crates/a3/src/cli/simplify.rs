@@ -12,8 +12,8 @@ use super::values::{error, horizon, picture_size};
 pub struct Simplify {
     #[command(flatten)]
     pub what: What,
-    /// Largest error of the positions that is allowed, in m, such as 1e-2: that of what is left
-    /// out, of a coarser grid and of the time steps together
+    /// Largest allowed error of the positions, in m, such as 1e-2; it covers omitted parts, a
+    /// coarser grid and the time steps together
     #[arg(long, value_name = "E", value_parser = error, allow_negative_numbers = true)]
     pub error: f64,
     #[command(flatten)]

@@ -97,8 +97,8 @@ fn write(folder: &Path) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Opens a file with a program, without waiting for it, and returns a message that says what was
-/// opened, or where the file is.
+/// Opens a file with a program, without waiting for it. Returns a message with the path of the
+/// file.
 fn open_with(opener: &str, path: &Path) -> String {
     let child = Command::new(opener)
         .arg(path)

@@ -16,7 +16,7 @@ use crate::cli::What;
 
 /// Largest work of a run, in evaluations. A run that blows up may take more.
 const MAX_EVALUATIONS: f64 = 20_000.0;
-/// Smallest ratio of the longest step of a method to its shortest, whatever the work.
+/// Smallest ratio of the longest step of a method to its shortest, even if the runs take long.
 const MIN_STEP_RATIO: f64 = 6.0;
 /// Estimated work of a step of an implicit method, in evaluations, right within a factor of three.
 const IMPLICIT_WORK: f64 = 25.0;

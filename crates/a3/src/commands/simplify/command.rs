@@ -206,7 +206,7 @@ fn leanest(
     if !interrupt::go_on() {
         return Ok(None);
     }
-    // The leanest scene has to save time, or at least to cost no more.
+    // The leanest scene has to save time, or to take no more work.
     let pays = |solved: &Solved| {
         solved.time <= MAX_TIME_RATIO * whole.time
             || model.factor == 1.0 && solved.work <= whole.work
@@ -251,7 +251,9 @@ fn print(
         options.error
     ))?;
     let lean = answer.map(|answer| &answer.model);
-    terminal::say(&table::text(all, motion, options.error, lean))?;
+    if !all.is_empty() {
+        terminal::say(&table::text(all, motion, options.error, lean))?;
+    }
     let description = &models.request.source.description;
     if let Some(of_grid) = table::of_grid(all, description) {
         terminal::say(&of_grid)?;

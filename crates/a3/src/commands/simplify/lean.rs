@@ -18,9 +18,9 @@ const MODEL_SHARE: f64 = 0.6;
 /// Largest work of a model without a part, over that of the whole scene: without damping, for
 /// example, more steps may be necessary.
 const MAX_WORK_RATIO: f64 = 1.05;
-/// Largest computing time of the leanest scene, over that of the whole scene. It is above 1 because
-/// computing times vary by a few percent.
-pub const MAX_TIME_RATIO: f64 = 1.05;
+/// Largest computing time, over that of the whole scene, of a leanest scene that takes more work or
+/// has other grids. Computing times vary by a few percent.
+pub const MAX_TIME_RATIO: f64 = 0.95;
 /// Shares of the rest of the error that the solver may cause, tried in turn until the error of the
 /// whole is small enough.
 const SOLVER_SHARES: [f64; 4] = [1.0, 0.8, 0.4, 0.2];

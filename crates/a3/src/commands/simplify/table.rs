@@ -86,21 +86,20 @@ pub fn of_lean(answer: &Answer) -> String {
     if lean.factor < 1.0 {
         parts.push(format!("a grid of {}", grid(&lean.description)));
     }
-    let what = if parts.is_empty() {
-        "nothing can be left out".to_owned()
-    } else {
-        format!(
-            "leanest scene, {times:.1} times cheaper, without: {}",
-            parts.join(", ")
-        )
-    };
-    format!(
-        "{what}\n  whole  {}, {}: error {} m, {} a simulated second\n  lean   {}, {}: error {} m in all, {} m of it \
-         the model's, {} a simulated second\n",
+    let of_whole = format!(
+        "  whole  {}, {}: error {} m, {} a simulated second\n",
         whole.method.title,
         words(whole.control),
         number(whole.error),
         milliseconds(whole.time),
+    );
+    if parts.is_empty() {
+        return format!("nothing can be left out that would save time\n{of_whole}");
+    }
+    format!(
+        "leanest scene, {times:.1} times cheaper, without: {}\n{of_whole}  lean   {}, {}: error {} m in all, {} m of it \
+         the model's, {} a simulated second\n",
+        parts.join(", "),
         solved.method.title,
         words(solved.control),
         number(solved.error),

@@ -21,7 +21,7 @@ impl Keeper {
     /// write.
     pub fn new(path: &Path, every: Duration) -> Result<Self, Failure> {
         output::check(path, &[ENDING])?;
-        // Only checkpoints are overwritten, whatever the file is called.
+        // Only checkpoints are overwritten. The name of the file does not matter.
         if path.is_file() && !bytes_of(path).is_ok_and(|bytes| bytes.starts_with(TITLE)) {
             return Err(Failure::usage(format!(
                 "{}: this is no checkpoint of a3, and would be overwritten: give another name",
