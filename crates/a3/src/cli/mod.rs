@@ -31,7 +31,7 @@ pub use explain::explain;
 pub use measures::{ErrorScope, WorkMeasure};
 pub use run::{RunOptions, What};
 pub use scenes::Scenes;
-pub use simplify::Simplify;
+pub use simplify::{Quantity, Simplify};
 pub use simulate::Simulate;
 pub use stability::Stability;
 #[cfg(not(target_arch = "wasm32"))]

@@ -5,8 +5,9 @@ use a3_core::integrators::find;
 use a3_core::{Control, Scene};
 use a3_scenes::{Description, Regridded, regridded};
 
-use super::track::{Motion, Points};
+use super::track::{Compared, Motion};
 use crate::base::failure::Failure;
+use crate::cli::Quantity;
 use crate::files::setup::Request;
 
 /// Relative tolerance of the runs, whose errors are far below those of grids.
@@ -77,10 +78,10 @@ pub fn grid_error(
     if particles > MAX_PARTICLES {
         return Ok(None);
     }
-    let points = Points {
+    let compared = Compared {
+        quantity: Quantity::Position,
         frames,
         scope,
-        centre: false,
     };
     let accurate = (method, Control::Tolerance(TOLERANCE));
     let follow = |factor: f64| {
@@ -92,19 +93,23 @@ pub fn grid_error(
             return Ok(None);
         };
         let scene = request.with(description).scene()?;
-        points.follow(&scene, accurate, Some(&places))
+        let motion = compared.follow(&scene, accurate, Some(&places));
+        motion.map_err(Failure::run)
     };
     let Some(Motion::Known(finer)) = follow(2.0)? else {
         return Ok(None);
     };
-    let Some(Motion::Known(whole)) = points.follow(scene, accurate, None)? else {
+    let Some(Motion::Known(whole)) = compared
+        .follow(scene, accurate, None)
+        .map_err(Failure::run)?
+    else {
         return Ok(None);
     };
     let coarser = match follow(0.5)? {
-        Some(Motion::Known(coarser)) => Some(points.distance(&whole, &coarser)),
+        Some(Motion::Known(coarser)) => Some(compared.distance(&whole, &coarser)),
         _ => None,
     };
-    let finer = points.distance(&whole, &finer);
+    let finer = compared.distance(&whole, &finer);
     Ok(Some(GridError::new(grid(own), coarser, finer)))
 }
 

@@ -53,7 +53,7 @@ pub fn chart(
     let [.., own, finest] = &grids[..] else {
         return Ok(None);
     };
-    let difference = |grid: &Grid| models.points.distance(&own.motion, &grid.motion);
+    let difference = |grid: &Grid| models.compared.distance(&own.motion, &grid.motion);
     let half = grids
         .iter()
         .find(|grid| 2 * grid.scene.model.particles() < own.scene.model.particles());
@@ -68,7 +68,7 @@ pub fn chart(
     let styles = STYLES.iter().skip(STYLES.len() - grids.len());
     for (grid, (colour, marker)) in grids.iter().zip(styles) {
         bar.say(format!("{}  ", grid.name));
-        let least = models.points.distance(&truth, &grid.motion);
+        let least = models.compared.distance(&truth, &grid.motion);
         let Some(runs) = runs(models, grid, whole.method, &truth, least, bar)? else {
             return Ok(None);
         };
@@ -82,7 +82,7 @@ pub fn chart(
             runs,
         });
     }
-    let until = models.points.frames.until;
+    let until = models.compared.frames.until;
     Ok(Some(WorkPrecision {
         title,
         subtitle: format!(
@@ -94,7 +94,7 @@ pub fn chart(
         y_label: "computing time per simulated second (s)".into(),
         problems: vec![Problem {
             curves,
-            still: Some(models.points.way(&models.whole)),
+            still: Some(models.compared.way(&models.whole)),
             ..Problem::default()
         }],
         foot: "Half-filled: the time steps err more than the grid, so a shorter step helps. Filled: the grid errs more, \
@@ -152,25 +152,26 @@ fn runs(
     least: f64,
     bar: &Bar,
 ) -> Result<Option<Vec<Measurement>>, Failure> {
-    let (scene, points) = (&grid.scene, models.points);
+    let (scene, compared) = (&grid.scene, models.compared);
     let modes = spectrum(scene.model.system(), 0.0, &scene.state);
-    let rungs = ladder(&modes, method, &points.frames, MAX_WORK).map_err(Failure::run)?;
+    let rungs = ladder(&modes, method, &compared.frames, MAX_WORK).map_err(Failure::run)?;
     // The limit of stability is that of the start, and may be longer in motion.
     let first = rungs
         .first()
-        .and_then(|control| coarser(*control, &points.frames));
+        .and_then(|control| coarser(*control, &compared.frames));
     let mut found = vec![];
     let places: Option<&Places> = grid.places.as_deref();
     for control in first.into_iter().chain(rungs).take(MAX_RUNS) {
-        let measured = match points.follow(scene, (method, control), places)? {
+        let run = compared.follow(scene, (method, control), places);
+        let measured = match run.map_err(Failure::run)? {
             None => return Ok(None),
             Some(Motion::Failed) => None,
             Some(Motion::Known(track)) => {
-                let frames = &points.frames;
+                let frames = &compared.frames;
                 let Some(time) = time(scene, method, control, frames, Some(track.time))? else {
                     return Ok(None);
                 };
-                Some((points.distance(truth, &track), time))
+                Some((compared.distance(truth, &track), time))
             }
         };
         bar.advance(1.0);
@@ -179,7 +180,7 @@ fn runs(
         };
         found.push(Measurement {
             error,
-            work: time.as_secs_f64() / points.frames.until,
+            work: time.as_secs_f64() / compared.frames.until,
             held: error > BALANCE * least,
             label: Some(label(control)),
             ..Measurement::default()
