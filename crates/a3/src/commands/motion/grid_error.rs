@@ -113,12 +113,23 @@ pub fn grid_error(
     Ok(Some(GridError::new(grid(own), coarser, finer)))
 }
 
-/// Describes the grid of a scene's first body that has one, as in `9 x 9`.
+/// Describes the grid of a scene's first body that has one, as in `9 x 9`; of a fluid, the numbers
+/// of particles along the edges of its box.
 pub fn grid(description: &Description) -> String {
     let cloth = description.cloth.first().map(|it| it.grid.to_vec());
     let jelly = || description.jelly.first().map(|it| it.grid.to_vec());
     let solid = || description.solid.first()?.grid.map(|grid| grid.to_vec());
-    let grid = cloth.or_else(jelly).or_else(solid).unwrap_or_default();
+    let fluid = || {
+        let fluid = description.fluid.first()?;
+        let edges = fluid.size[..fluid.dimensions.into()].iter();
+        Some(
+            edges
+                .map(|edge| (edge / fluid.spacing).round() as usize)
+                .collect(),
+        )
+    };
+    let grid = cloth.or_else(jelly).or_else(solid).or_else(fluid);
+    let grid = grid.unwrap_or_default();
     let grid = grid.iter().map(ToString::to_string).collect::<Vec<_>>();
     grid.join(" x ")
 }

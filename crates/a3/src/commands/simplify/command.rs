@@ -12,6 +12,7 @@ use crate::base::failure::Failure;
 use crate::base::progress::Bar;
 use crate::base::{interrupt, terminal};
 use crate::cli::{Quantity, Simplify};
+use crate::commands::chart::table::words;
 use crate::commands::chart::{PICTURES, check_motion, describe, look_ahead, scope, write_picture};
 use crate::commands::motion::Compared;
 use crate::files::output;
@@ -234,6 +235,13 @@ fn print(
         compared.frames.until,
         options.error,
         changing(compared.quantity),
+    ))?;
+    let (method, control) = models.accurate;
+    terminal::say(&format!(
+        "each model is run by {} at {}, which is accurate to {:.0e} {unit} on the whole scene\n",
+        method.title,
+        words(control),
+        models.uncertainty
     ))?;
     let lean = answer.map(|answer| &answer.model);
     if !all.is_empty() {

@@ -36,7 +36,7 @@ pub struct Models<'a> {
     /// Motion of the whole scene.
     pub whole: Track,
     /// Method and tolerance by which all models are integrated.
-    accurate: (&'static Method, Control),
+    pub accurate: (&'static Method, Control),
     /// Error of that run, by its distance from a run of another method.
     pub uncertainty: f64,
 }

@@ -88,9 +88,13 @@ pub fn of_lean(answer: &Answer, unit: &str) -> String {
         whole,
     } = answer;
     let times = whole.time / solved.time;
-    let mut parts: Vec<_> = lean.parts.iter().map(|part| part.name.clone()).collect();
+    let mut changes = vec![];
+    if !lean.parts.is_empty() {
+        let names: Vec<_> = lean.parts.iter().map(|part| &*part.name).collect();
+        changes.push(format!("without {}", names.join(", ")));
+    }
     if lean.factor < 1.0 {
-        parts.push(format!("a grid of {}", grid(&lean.description)));
+        changes.push(format!("on a grid of {}", grid(&lean.description)));
     }
     let of_whole = format!(
         "  whole  {}, {}: error {} {unit}, {} a simulated second\n",
@@ -99,13 +103,13 @@ pub fn of_lean(answer: &Answer, unit: &str) -> String {
         number(whole.error),
         milliseconds(whole.time),
     );
-    if parts.is_empty() {
+    if changes.is_empty() {
         return format!("nothing can be left out that would save time\n{of_whole}");
     }
     format!(
-        "leanest scene, {times:.1} times cheaper, without: {}\n{of_whole}  lean   {}, {}: error {} {unit} in all, {} {unit} of it \
+        "leanest scene, {times:.1} times cheaper: {}\n{of_whole}  lean   {}, {}: error {} {unit} in all, {} {unit} of it \
          the model's, {} a simulated second\n",
-        parts.join(", "),
+        changes.join("; "),
         solved.method.title,
         words(solved.control),
         number(solved.error),
