@@ -125,45 +125,50 @@ pub fn choose(
             outcome,
         }))
     };
-    choose_by(scene, &reference.frames, error, measure, begin)
-}
-
-/// As [`choose`], for errors that the caller measures: `measure` runs the scene, or a variant of
-/// it, by a method with a step or a tolerance, and returns `None` to end the search. Methods that
-/// do not support the scene are left out.
-///
-/// # Errors
-/// Those of `measure`, or the scene cannot be run.
-pub fn choose_by<T: Copy, E: From<Error>>(
-    scene: &Scene,
-    frames: &Frames,
-    error: f64,
-    mut measure: impl FnMut(&'static Method, Control) -> Result<Option<Trial<T>>, E>,
-    mut begin: impl FnMut(&'static Method),
-) -> Result<Option<Vec<Candidate<T>>>, E> {
-    let mut found: Vec<Candidate<T>> = vec![];
-    let modes = spectrum(scene.model.system(), 0.0, &scene.state);
     let is_small = scene.model.work() < SMALL_WORK;
     let max_ratio = if is_small {
         SMALL_MAX_COST_RATIO
     } else {
         MAX_COST_RATIO
     };
+    let max_cost = |found: &[Candidate]| found.get(1).map(|second| max_ratio * second.work);
     // Methods of high order come first: their cost limits the runs of methods of low order.
     let mut methods: Vec<_> = METHODS.iter().collect();
     methods.sort_by_key(|method| std::cmp::Reverse(method.order));
-    for method in methods {
+    let frames = &reference.frames;
+    choose_by(&methods, scene, frames, error, max_cost, measure, begin)
+}
+
+/// As [`choose`], for errors that the caller measures: `measure` runs the scene, or a variant of
+/// it, by one of the methods with a step or a tolerance, and returns `None` to end the search. The
+/// methods are tried in their order. A method is
+/// given up if it would cost more than `max_cost` evaluations, which may depend on what is found so
+/// far. Methods that do not support the scene are left out.
+///
+/// # Errors
+/// Those of `measure`, or the scene cannot be run.
+pub fn choose_by<T: Copy, E: From<Error>>(
+    methods: &[&'static Method],
+    scene: &Scene,
+    frames: &Frames,
+    error: f64,
+    max_cost: impl Fn(&[Candidate<T>]) -> Option<f64>,
+    mut measure: impl FnMut(&'static Method, Control) -> Result<Option<Trial<T>>, E>,
+    mut begin: impl FnMut(&'static Method),
+) -> Result<Option<Vec<Candidate<T>>>, E> {
+    let mut found: Vec<Candidate<T>> = vec![];
+    let modes = spectrum(scene.model.system(), 0.0, &scene.state);
+    for &method in methods {
         if method.check(scene.model.system()).is_err() {
             continue;
         }
         begin(method);
-        let second = found.get(1);
         let mut search = Search {
             modes: &modes,
             frames,
             error,
             method,
-            max_cost: second.map_or(f64::INFINITY, |c| max_ratio * c.work),
+            max_cost: max_cost(&found).unwrap_or(f64::INFINITY),
             measure: &mut measure,
         };
         match search.run()? {

@@ -18,6 +18,9 @@ use crate::commands::motion::Compared;
 use crate::files::output;
 use crate::files::setup::Request;
 
+/// Method that is often the cheapest, and is tried first.
+const OFTEN_CHEAPEST: &str = "verlet";
+
 /// Measures models of a scene, prints them, and writes the leanest.
 pub fn run(options: &Simplify) -> Result<(), Failure> {
     interrupt::listen();
@@ -174,7 +177,7 @@ fn leanest(
     bar: &Bar,
 ) -> Result<Option<Answer>, Failure> {
     bar.say("cheapest solver  ".into());
-    let Some(mut whole) = solve(models, &LeanModel::whole(models), error)? else {
+    let Some(mut whole) = solve(models, &LeanModel::whole(models), error, OFTEN_CHEAPEST)? else {
         return stop_or(format!(
             "no solver meets an error of {error:e} {} on the whole scene",
             models.compared.unit()
@@ -187,7 +190,7 @@ fn leanest(
     let mut solved = if model.is_whole() {
         None
     } else {
-        solve(models, &model, error)?
+        solve(models, &model, error, whole.method.name)?
     };
     if let Some(solved) = &mut solved {
         time_in_turns(models, &model, solved, &mut whole)?;

@@ -1,9 +1,11 @@
 //! The leanest scene for an error: parts left out together, a coarser grid, and the cheapest solver
 //! for the rest of the error. All of it is measured in one run.
 
+use std::cmp::Reverse;
 use std::time::Duration;
 
-use a3_core::accuracy::{Trial, choose_by};
+use a3_core::accuracy::{Candidate, Trial, choose_by};
+use a3_core::integrators::METHODS;
 use a3_core::{Control, Error, Method};
 use a3_scenes::{Description, Part, regridded, without};
 
@@ -125,7 +127,14 @@ pub fn assemble(models: &Models, all: &[Model], error: f64) -> Result<Option<Lea
 /// Finds the cheapest solver for a model whose run differs from the motion of the whole scene by
 /// at most the error: that of the model and of the time steps together. `None` if no solver was
 /// found, or the command was interrupted.
-pub fn solve(models: &Models, model: &LeanModel, error: f64) -> Result<Option<Solved>, Failure> {
+/// `first` is the method that is tried first: the cheaper it is, the fewer runs of others are
+/// necessary.
+pub fn solve(
+    models: &Models,
+    model: &LeanModel,
+    error: f64,
+    first: &str,
+) -> Result<Option<Solved>, Failure> {
     let scene = models.build(&model.description)?;
     let own = &*models.request.source.description;
     let places = if model.factor < 1.0 {
@@ -156,7 +165,15 @@ pub fn solve(models: &Models, model: &LeanModel, error: f64) -> Result<Option<So
         }))
     };
     let most = error - models.uncertainty;
-    let found = choose_by(&scene, &frames, most, measure, |_| {}).map_err(Failure::run)?;
+    // The accurate run of the whole scene is a candidate, too.
+    let max_cost = |found: &[Candidate<f64>]| {
+        let least = found.first().map_or(f64::INFINITY, |best| best.work);
+        Some(least.min(models.whole.work))
+    };
+    let mut methods: Vec<_> = METHODS.iter().collect();
+    methods.sort_by_key(|method| (method.name != first, Reverse(method.order)));
+    let found = choose_by(&methods, &scene, &frames, most, max_cost, measure, |_| {});
+    let found = found.map_err(Failure::run)?;
     let Some(best) = found.and_then(|found| found.into_iter().next()) else {
         return Ok(None);
     };
