@@ -20,6 +20,17 @@ pub enum Quantity {
     Energy,
 }
 
+impl Quantity {
+    /// Returns the name of the quantity.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Position => "position",
+            Self::Centre => "centre",
+            Self::Energy => "energy",
+        }
+    }
+}
+
 #[derive(Args)]
 pub struct Simplify {
     #[command(flatten)]
@@ -40,6 +51,10 @@ pub struct Simplify {
     /// File for the leanest scene, ending in .toml, with its solver and step
     #[arg(long, short, value_name = "FILE.toml")]
     pub output: Option<PathBuf>,
+    /// File for the effects of all models, ending in .csv or .json; if it exists, models in it are
+    /// not measured again
+    #[arg(long, value_name = "FILE")]
+    pub data: Option<PathBuf>,
     /// Chart of the error against the cost, with the grid and the step both varied, ending in .svg,
     /// .pdf or .png
     #[arg(long, value_name = "FILE")]

@@ -233,5 +233,6 @@ pub fn problem(
         curves: curves.collect(),
         resolved,
         still: Some(still).filter(|still| still.is_finite()),
+        guide: None,
     }
 }

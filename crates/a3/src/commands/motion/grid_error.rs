@@ -5,9 +5,11 @@ use a3_core::integrators::find;
 use a3_core::{Control, Scene};
 use a3_scenes::{Description, Regridded, regridded};
 
+use super::known::Known;
 use super::track::{Compared, Motion};
 use crate::base::failure::Failure;
 use crate::cli::Quantity;
+use crate::files::rows::Rows;
 use crate::files::setup::Request;
 
 /// Relative tolerance of the runs, whose errors are far below those of grids.
@@ -60,7 +62,7 @@ impl GridError {
     }
 }
 
-/// Measures the error of a scene's grids at frames, in a scope. `None` if the scene has no grid
+/// Measures the error of a scene's grids at frames, in a scope, unless it is known. `None` if the scene has no grid
 /// that can be made finer or has too many particles, if a run fails, or if the command was
 /// interrupted.
 pub fn grid_error(
@@ -68,6 +70,7 @@ pub fn grid_error(
     scene: &Scene,
     frames: Frames,
     scope: Scope,
+    known: &mut Rows<Known>,
 ) -> Result<Option<GridError>, Failure> {
     let request = &request.described();
     let own = &*request.source.description;
@@ -84,7 +87,9 @@ pub fn grid_error(
         scope,
     };
     let accurate = (method, Control::Tolerance(TOLERANCE));
-    let follow = |factor: f64| {
+    let like = Known::new(request, scene, compared, accurate);
+    let mut whole = None;
+    let mut change = |factor: f64| {
         let Ok(Regridded {
             description,
             places,
@@ -92,25 +97,40 @@ pub fn grid_error(
         else {
             return Ok(None);
         };
-        let scene = request.with(description).scene()?;
-        let motion = compared.follow(&scene, accurate, Some(&places));
-        motion.map_err(Failure::run)
+        let like = Known {
+            model: format!("grid of {}", grid(&description)),
+            ..like.clone()
+        };
+        if let Some(known) = known.find(&like) {
+            return Ok(Some(known.change));
+        }
+        let other = request.with(description).scene()?;
+        let other = compared.follow(&other, accurate, Some(&places));
+        let Some(Motion::Known(other)) = other.map_err(Failure::run)? else {
+            return Ok(None);
+        };
+        if whole.is_none() {
+            whole = compared
+                .follow(scene, accurate, None)
+                .map_err(Failure::run)?;
+        }
+        let Some(Motion::Known(whole)) = &whole else {
+            return Ok(None);
+        };
+        let change = compared.distance(whole, &other);
+        known.add(Known {
+            change,
+            time: other.time.as_secs_f64() / whole.time.as_secs_f64(),
+            work: other.work / whole.work,
+            ..like
+        });
+        known.save()?;
+        Ok::<_, Failure>(Some(change))
     };
-    let Some(Motion::Known(finer)) = follow(2.0)? else {
+    let Some(finer) = change(2.0)? else {
         return Ok(None);
     };
-    let Some(Motion::Known(whole)) = compared
-        .follow(scene, accurate, None)
-        .map_err(Failure::run)?
-    else {
-        return Ok(None);
-    };
-    let coarser = match follow(0.5)? {
-        Some(Motion::Known(coarser)) => Some(compared.distance(&whole, &coarser)),
-        _ => None,
-    };
-    let finer = compared.distance(&whole, &finer);
-    Ok(Some(GridError::new(grid(own), coarser, finer)))
+    Ok(Some(GridError::new(grid(own), change(0.5)?, finer)))
 }
 
 /// Describes the grid of a scene's first body that has one, as in `9 x 9`; of a fluid, the numbers

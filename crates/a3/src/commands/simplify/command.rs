@@ -14,7 +14,7 @@ use crate::base::{interrupt, terminal};
 use crate::cli::{Quantity, Simplify};
 use crate::commands::chart::table::words;
 use crate::commands::chart::{PICTURES, check_motion, describe, look_ahead, scope, write_picture};
-use crate::commands::motion::Compared;
+use crate::commands::motion::{Compared, open};
 use crate::files::output;
 use crate::files::setup::Request;
 
@@ -25,10 +25,11 @@ const OFTEN_CHEAPEST: &str = "verlet";
 pub fn run(options: &Simplify) -> Result<(), Failure> {
     interrupt::listen();
     let request = request(options)?;
+    let mut known = open(options.data.as_deref())?;
     let bar = Bar::new(1.0);
     let models = whole(options, &request, &bar)?;
     let (mut all, why) = models.all();
-    let complete = measure_all(&models, &mut all, &bar)?;
+    let complete = measure_all(&models, &mut all, &mut known, &bar)?;
     let answer = if complete {
         leanest(&models, &all, options.error, &bar)?
     } else {

@@ -1,5 +1,7 @@
 //! Models of a scene: without one of its parts, and on other grids.
 
+use std::cmp::Ordering;
+
 use a3_core::integrators::find;
 use a3_core::{Control, Method, Scene};
 use a3_scenes::{Description, Part, Regridded, parts, regridded, without};
@@ -7,7 +9,8 @@ use a3_scenes::{Description, Part, Regridded, parts, regridded, without};
 use crate::base::failure::Failure;
 use crate::base::progress::Bar;
 use crate::commands::chart::single::time;
-use crate::commands::motion::{Compared, Motion, Places, Track, grid};
+use crate::commands::motion::{Compared, Known, Motion, Places, Track, grid};
+use crate::files::rows::Rows;
 use crate::files::setup::Request;
 
 /// Relative tolerances at which the whole scene is tried, the largest first. The first that is
@@ -23,8 +26,9 @@ const GOAL_UNCERTAINTY: f64 = 0.02;
 const MAX_UNCERTAINTY: f64 = 0.3;
 /// Number of tolerances that bring no better agreement, after which none does.
 const MAX_STUCK: usize = 3;
-/// Factors by which the cells of grids are shorter; below 1 for coarser grids.
-pub const FACTORS: [f64; 4] = [0.25, 0.5, 0.75, 2.0];
+/// Factors by which the cells of grids are shorter; below 1 for coarser grids. On a small grid, two
+/// factors may give the same grid, which then counts as that of the first.
+pub const FACTORS: [f64; 4] = [0.5, 0.25, 0.75, 2.0];
 
 /// Comparison of models of a scene with the whole scene.
 pub struct Models<'a> {
@@ -166,16 +170,40 @@ impl<'a> Models<'a> {
                 Err(reason) => why = why.or(Some(reason)),
             }
         }
+        all.sort_by(|a, b| {
+            let order = |model: &Model| (model.places.is_some(), model.factor);
+            order(a).partial_cmp(&order(b)).unwrap_or(Ordering::Equal)
+        });
         let has_grids = all.iter().any(|model| model.places.is_some());
         (all, why.filter(|_| !has_grids))
     }
 
-    /// Measures a model. Returns `false` if the command was interrupted.
-    pub fn measure(&self, model: &mut Model) -> Result<bool, Failure> {
+    /// Measures a model, unless it is known. Returns `false` if the command was interrupted.
+    pub fn measure(&self, model: &mut Model, known: &mut Rows<Known>) -> Result<bool, Failure> {
+        let like = Known {
+            model: model.name.clone(),
+            ..Known::new(self.request, &self.scene, self.compared, self.accurate)
+        };
+        if let Some(&Known {
+            change, time, work, ..
+        }) = known.find(&like)
+        {
+            model.effect = Ok(Effect { change, time, work });
+            return Ok(true);
+        }
         let Some(found) = self.follow(&model.description, model.places.as_deref())? else {
             return Ok(false);
         };
         model.effect = found.map(|track| self.effect(&track));
+        if let Ok(Effect { change, time, work }) = model.effect {
+            known.add(Known {
+                change,
+                time,
+                work,
+                ..like
+            });
+            known.save()?;
+        }
         Ok(true)
     }
 
@@ -217,15 +245,20 @@ impl<'a> Models<'a> {
     }
 }
 
-/// Measures all models that can be measured. Returns `false` if the command was interrupted.
-pub fn measure_all(models: &Models, all: &mut [Model], bar: &Bar) -> Result<bool, Failure> {
+/// Measures all models that can be measured and are not known. Returns `false` if the command was interrupted.
+pub fn measure_all(
+    models: &Models,
+    all: &mut [Model],
+    known: &mut Rows<Known>,
+    bar: &Bar,
+) -> Result<bool, Failure> {
     // A model on a finer grid has more particles and, by an explicit method, shorter steps.
     let weight = |model: &Model| model.factor.powi(4);
     bar.expect(all.iter().map(weight).sum());
     bar.start();
     for model in all {
         bar.say(format!("{}  ", model.name));
-        if !models.measure(model)? {
+        if !models.measure(model, known)? {
             return Ok(false);
         }
         bar.advance(weight(model));
