@@ -144,7 +144,6 @@ mod tests {
             runs,
         };
         let problem = Problem {
-            title: String::new(),
             // The fourth run of the first is below the resolution, and its last blew up.
             curves: vec![
                 curve(vec![
@@ -162,7 +161,7 @@ mod tests {
                 ]),
             ],
             resolved: Some(1e-8),
-            still: None,
+            ..Problem::default()
         };
         assert_eq!(problem.front(), [[1, 2], [1, 1], [0, 0]]);
         let still = Some(5e-3);

@@ -10,6 +10,9 @@ use crate::description::Fluid;
 /// Largest number of particles of a fluid, with its tank, on another lattice.
 const MAX_PARTICLES: f64 = 1e6;
 
+/// Positions of particles (m), by their numbers.
+type Points = Vec<Vector3<f64>>;
+
 /// Puts fluids on lattices whose spacing is about `factor` times shorter, and which fill the same
 /// boxes. Returns the particles of each fluid and of each tank, by their positions (m), with the
 /// other lattice of each.
@@ -20,7 +23,7 @@ pub fn regrid_fluids(
     own: &[Fluid],
     other: &mut [Fluid],
     factor: f64,
-) -> Result<Vec<(Vec<Vector3<f64>>, Lattice)>, String> {
+) -> Result<Vec<(Points, Lattice)>, String> {
     // All fluids of a scene have the same spacing, so that all edges are multiples of the other.
     let edges = own.iter().flat_map(|fluid| {
         let tank = fluid.tank.iter().flat_map(|tank| tank.size);
