@@ -35,8 +35,8 @@ impl Quantity {
 pub struct Simplify {
     #[command(flatten)]
     pub what: What,
-    /// Largest allowed error, in m (J for energy), such as 1e-2; it covers omitted parts, a coarser grid and the
-    /// time steps together
+    /// Largest allowed error, in m (J for energy), such as 1e-2; it covers omitted parts, a coarser
+    /// grid and the time steps together
     #[arg(long, value_name = "E", value_parser = error, allow_negative_numbers = true)]
     pub error: f64,
     #[command(flatten)]

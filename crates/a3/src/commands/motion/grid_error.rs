@@ -62,9 +62,9 @@ impl GridError {
     }
 }
 
-/// Measures the error of a scene's grids at frames, in a scope, unless it is known. `None` if the scene has no grid
-/// that can be made finer or has too many particles, if a run fails, or if the command was
-/// interrupted.
+/// Measures the error of a scene's grids at frames, in a scope, unless it is known. `None` if the
+/// scene has no grid that can be made finer or has too many particles, if a run fails, or if the
+/// command was interrupted.
 pub fn grid_error(
     request: &Request,
     scene: &Scene,

@@ -87,7 +87,9 @@ impl Compared {
         let time = begun.elapsed().saturating_sub(spent);
         if self.quantity == Quantity::Energy {
             let start = values[0][0];
-            values.iter_mut().for_each(|value| value[0] -= start);
+            for value in &mut values {
+                value[0] -= start;
+            }
         }
         Ok(end.map(|blow_up| match blow_up {
             Some(_) => Motion::Failed,

@@ -245,7 +245,8 @@ impl<'a> Models<'a> {
     }
 }
 
-/// Measures all models that can be measured and are not known. Returns `false` if the command was interrupted.
+/// Measures all models that can be measured and are not known. Returns `false` if the command was
+/// interrupted.
 pub fn measure_all(
     models: &Models,
     all: &mut [Model],
