@@ -63,6 +63,7 @@ mod fused;
 mod geometry;
 mod grid;
 pub mod integrators;
+mod lanes;
 mod linear;
 mod measure;
 mod network;

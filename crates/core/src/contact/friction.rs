@@ -49,7 +49,8 @@ pub(super) struct ContactPair {
     pub inverse_mass: f64,
     /// Displacement (m) by which the primitives should separate in the step.
     pub wanted: f64,
-    rigid: Option<RigidContact>,
+    /// In a box, so that the contacts of cloth, which have none, are small.
+    rigid: Option<Box<RigidContact>>,
 }
 
 /// Contact with a rigid body on at least one side, whose mobility depends on the direction.
@@ -111,11 +112,11 @@ impl ContactPair {
         self.inverse_mass = self.normal.dot(&(mobility * self.normal));
         // Sides that cannot move along the normal get no impulse.
         let inverse = mobility.try_inverse().unwrap_or_default();
-        self.rigid = Some(RigidContact {
+        self.rigid = Some(Box::new(RigidContact {
             arms,
             mobility,
             inverse,
-        });
+        }));
     }
 
     /// The relative vector of the closest points.

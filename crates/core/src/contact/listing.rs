@@ -4,6 +4,7 @@
 use nalgebra::Vector3;
 use rayon::prelude::*;
 
+use super::bounds::{Block, LANES};
 use super::boxes::{Courses, Tree};
 use super::items::Items;
 use super::surface::Surface;
@@ -125,7 +126,9 @@ impl Listing {
         for &floor in &surface.floors {
             for &i in &bodies.vertices {
                 let points = [i, floor, floor, floor];
-                pairs.extend(query.pair(PairKind::VertexFloor, [i, floor], points));
+                if is_new(&points) {
+                    pairs.extend(query.pair(PairKind::VertexFloor, [i, floor], points));
+                }
             }
         }
         if renewed.is_some() {
@@ -138,6 +141,16 @@ impl Listing {
             pairs.sort_unstable_by_key(|pair| pair.key);
         }
     }
+}
+
+/// Ranks of two primitives, and their points.
+type Primitives = ([u32; 2], [u32; 4]);
+
+/// Pairs of primitives whose boxes come within reach.
+#[derive(Default)]
+struct Near {
+    vertex_triangle: Vec<Primitives>,
+    edge_edge: Vec<Primitives>,
 }
 
 /// Items with their tree.
@@ -169,20 +182,54 @@ impl Query<'_> {
         if parallel {
             pairs.par_extend(overlaps.par_chunks(CHUNK).flat_map_iter(|overlaps| {
                 let mut found = vec![];
-                for items in overlaps {
-                    self.find(sides, items.map(|k| k as usize), &mut found);
-                }
+                self.list_some(sides, overlaps, &mut Near::default(), &mut found);
                 found
             }));
         } else {
-            for items in overlaps {
-                self.find(sides, items.map(|k| k as usize), pairs);
+            let mut near = Near::default();
+            for overlaps in overlaps.chunks(CHUNK) {
+                self.list_some(sides, overlaps, &mut near, pairs);
             }
         }
     }
 
-    /// Adds the pairs of primitives of two items that come within reach.
-    fn find(&self, sides: [Side; 2], [s, t]: [usize; 2], pairs: &mut Vec<Listed>) {
+    /// Adds the pairs of some items whose boxes overlap. `near` is scratch.
+    fn list_some(
+        &self,
+        sides: [Side; 2],
+        overlaps: &[[u32; 2]],
+        near: &mut Near,
+        pairs: &mut Vec<Listed>,
+    ) {
+        for items in overlaps {
+            self.find(sides, items.map(|k| k as usize), near);
+        }
+        self.bound(PairKind::VertexTriangle, &mut near.vertex_triangle, pairs);
+        self.bound(PairKind::EdgeEdge, &mut near.edge_edge, pairs);
+    }
+
+    /// Adds those of these pairs of one kind that come within reach, and clears them.
+    fn bound(&self, kind: PairKind, near: &mut Vec<Primitives>, pairs: &mut Vec<Listed>) {
+        let mut block = Block::new();
+        for near in near.chunks(LANES) {
+            for (lane, (_, points)) in near.iter().enumerate() {
+                block.set(lane, *points, self.course.base, self.course.speeds);
+            }
+            block.bound(kind);
+            let bounds = block.distance.iter().zip(&block.closing);
+            for (&(ranks, points), (distance, closing)) in near.iter().zip(bounds) {
+                if distance.is_finite() {
+                    pairs.extend(self.listed(kind, ranks, points, [*distance, *closing]));
+                } else {
+                    pairs.extend(self.pair(kind, ranks, points));
+                }
+            }
+        }
+        near.clear();
+    }
+
+    /// Finds the pairs of primitives of two items whose boxes come within reach.
+    fn find(&self, sides: [Side; 2], [s, t]: [usize; 2], near: &mut Near) {
         let reach = self.course.reach + self.surface.thickest();
         let squared = reach * reach;
         let [(first, first_tree), (second, second_tree)] = sides;
@@ -202,7 +249,10 @@ impl Query<'_> {
                 if !corners.contains(&v) && at.vertices[i].apart(&bt.items[l]) < squared {
                     let [p, q, r] = corners;
                     let ranks = [v, b.ranks[l]];
-                    pairs.extend(self.pair(PairKind::VertexTriangle, ranks, [v, p, q, r]));
+                    let points = [v, p, q, r];
+                    if self.is_new(&points) {
+                        near.vertex_triangle.push((ranks, points));
+                    }
                 }
             }
         }
@@ -227,16 +277,16 @@ impl Query<'_> {
                     std::mem::swap(&mut e, &mut f);
                 }
                 let ((m, [a, b]), (n, [c, d])) = (e, f);
-                pairs.extend(self.pair(PairKind::EdgeEdge, [m, n], [a, b, c, d]));
+                let points = [a, b, c, d];
+                if self.is_new(&points) {
+                    near.edge_edge.push(([m, n], points));
+                }
             }
         }
     }
 
     /// The pair of these primitives, by their ranks and points, if it comes within reach.
     fn pair(&self, kind: PairKind, ranks: [u32; 2], points: [u32; 4]) -> Option<Listed> {
-        if !self.is_new(&points) {
-            return None;
-        }
         let course = self.course;
         let origin = course.base[points[0] as usize];
         let x = points.map(|i| course.base[i as usize] - origin);
@@ -256,15 +306,28 @@ impl Query<'_> {
                 PairKind::VertexFloor => a - b,
             }
         };
-        let thickness = self.surface.thickness(kind, &points);
-        let rounding = ROUNDING * self.surface.thickest();
-        let between = if normal == Vector3::zeros() {
+        let distance = if normal == Vector3::zeros() {
             f64::NEG_INFINITY
         } else {
             apart(x)
         };
-        let gap = between - self.surface.radii(kind, &points) - thickness - rounding;
         let closing = -apart(points.map(|i| course.speeds[i as usize]));
+        self.listed(kind, ranks, points, [distance, closing])
+    }
+
+    /// The pair of these primitives, whose distance (m) and the speed at which it shrinks (m/s) are
+    /// bounded, if it comes within reach.
+    fn listed(
+        &self,
+        kind: PairKind,
+        ranks: [u32; 2],
+        points: [u32; 4],
+        [distance, closing]: [f64; 2],
+    ) -> Option<Listed> {
+        let course = self.course;
+        let thickness = self.surface.thickness(kind, &points);
+        let rounding = ROUNDING * self.surface.thickest();
+        let gap = distance - self.surface.radii(kind, &points) - thickness - rounding;
         let listed = gap - closing.max(0.0) * course.horizon < course.reach;
         listed.then(|| Listed {
             key: (kind as u64) << 62 | u64::from(ranks[0]) << 31 | u64::from(ranks[1]),

@@ -13,6 +13,7 @@
 
 mod advance;
 mod approach;
+mod bounds;
 mod boxes;
 mod bulge;
 mod candidates;

@@ -11,12 +11,13 @@ use pulp::{Arch, Simd, WithSimd};
 use super::body::Solid;
 use super::material::Material;
 use super::matrix::{Matrix, dot, scaled, three};
-use super::number::{Dual, Number, Vector};
+use super::number::{Dual, Number};
 use super::tetrahedra::{Block, Corners, Deformed, LANES, deformation};
 use crate::coupling::Coupling;
 use crate::elements::force::{At, Cost, Force, Matter, check_particle};
 use crate::energy::Energy;
 use crate::error::Error;
+use crate::lanes::Lanes;
 
 /// Prices of a tetrahedron's forces, without viscosity and with it, and of the assembly of its
 /// couplings, in evaluations of one single spring.
@@ -148,21 +149,21 @@ impl WithSimd for Forces<'_> {
 
 /// Returns SIMD vectors number `part` of the numbers of a block.
 #[inline(always)]
-fn corners<S: Simd>(simd: S, a: &Corners<[f64; LANES]>, part: usize) -> Corners<Vector<S>> {
+fn corners<S: Simd>(simd: S, a: &Corners<[f64; LANES]>, part: usize) -> Corners<Lanes<S>> {
     let [first, ends @ ..] = a;
     let [a, b, c] = matrix(simd, ends, part);
     [three!(axis => vector(simd, &first[axis], part)), a, b, c]
 }
 
 #[inline(always)]
-fn matrix<S: Simd>(simd: S, a: &Matrix<[f64; LANES]>, part: usize) -> Matrix<Vector<S>> {
+fn matrix<S: Simd>(simd: S, a: &Matrix<[f64; LANES]>, part: usize) -> Matrix<Lanes<S>> {
     three!(i => three!(j => vector(simd, &a[i][j], part)))
 }
 
 #[inline(always)]
-fn vector<S: Simd>(simd: S, numbers: &[f64; LANES], part: usize) -> Vector<S> {
+fn vector<S: Simd>(simd: S, numbers: &[f64; LANES], part: usize) -> Lanes<S> {
     let value = S::as_simd_f64s(numbers).0[part];
-    Vector { simd, value }
+    Lanes { simd, value }
 }
 
 #[inline(always)]
@@ -188,7 +189,7 @@ struct Rest<N> {
     volume: N,
 }
 
-impl<S: Simd> Rest<Vector<S>> {
+impl<S: Simd> Rest<Lanes<S>> {
     #[inline(always)]
     fn new(simd: S, block: &Block, part: usize) -> Self {
         Self {

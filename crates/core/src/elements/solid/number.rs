@@ -1,6 +1,6 @@
-//! Types of numbers for which the law of a material is evaluated: SIMD vectors, which hold the
-//! numbers of several tetrahedra, and dual numbers, which are numbers with their differentials. The
-//! law is written once for all of them.
+//! Numbers for which the law of a material is evaluated: SIMD vectors, which hold the numbers of
+//! several tetrahedra, and dual numbers, which are numbers with their differentials. The law is
+//! written once for all of them.
 
 #![expect(
     clippy::inline_always,
@@ -12,6 +12,7 @@ use std::ops::{Add, Div, Mul, Sub};
 use pulp::Simd;
 
 use crate::fused::mul_adds;
+use crate::lanes::Lanes;
 
 /// Number with the four operations.
 pub(super) trait Number:
@@ -36,22 +37,7 @@ impl Number for f64 {
     }
 }
 
-/// Numbers of several tetrahedra in a SIMD vector. Products are fused with additions, so that the
-/// bits are the same for any length of the vector.
-#[derive(Clone, Copy)]
-pub(super) struct Vector<S: Simd> {
-    pub simd: S,
-    pub value: S::f64s,
-}
-
-impl<S: Simd> Vector<S> {
-    #[inline(always)]
-    fn with(self, value: S::f64s) -> Self {
-        Self { value, ..self }
-    }
-}
-
-impl<S: Simd> Number for Vector<S> {
+impl<S: Simd> Number for Lanes<S> {
     #[inline(always)]
     fn constant(self, x: f64) -> Self {
         self.with(self.simd.splat_f64s(x))
@@ -60,42 +46,6 @@ impl<S: Simd> Number for Vector<S> {
     #[inline(always)]
     fn plus_product(self, a: Self, b: Self) -> Self {
         self.with(mul_adds(self.simd, a.value, b.value, self.value))
-    }
-}
-
-impl<S: Simd> Add for Vector<S> {
-    type Output = Self;
-
-    #[inline(always)]
-    fn add(self, other: Self) -> Self {
-        self.with(self.simd.add_f64s(self.value, other.value))
-    }
-}
-
-impl<S: Simd> Sub for Vector<S> {
-    type Output = Self;
-
-    #[inline(always)]
-    fn sub(self, other: Self) -> Self {
-        self.with(self.simd.sub_f64s(self.value, other.value))
-    }
-}
-
-impl<S: Simd> Mul for Vector<S> {
-    type Output = Self;
-
-    #[inline(always)]
-    fn mul(self, other: Self) -> Self {
-        self.with(self.simd.mul_f64s(self.value, other.value))
-    }
-}
-
-impl<S: Simd> Div for Vector<S> {
-    type Output = Self;
-
-    #[inline(always)]
-    fn div(self, other: Self) -> Self {
-        self.with(self.simd.div_f64s(self.value, other.value))
     }
 }
 
