@@ -4,6 +4,7 @@
 mod assemble;
 mod budget;
 mod builtin;
+mod change;
 mod check;
 mod description;
 mod fault;
@@ -21,6 +22,7 @@ mod wording;
 
 pub use assemble::LAYERS as TANK_LAYERS;
 pub use builtin::{SCENES, SceneEntry, find};
+pub use change::Change as PartChange;
 pub use description::*;
 pub use fault::Fault;
 pub use likeness::nearest;

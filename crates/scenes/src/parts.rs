@@ -1,6 +1,7 @@
 //! Parts of a scene that can be left out or replaced by simpler ones.
 
 use crate::assemble::damping_time;
+use crate::change::Change;
 use crate::description::{
     Chain, Cloth, Description, Floor, FloorSpec, Jelly, MeshCloth, Solid, WindSpec,
 };
@@ -10,34 +11,8 @@ use crate::description::{
 pub struct Part {
     /// Name of the part, in words.
     pub name: String,
-    change: Change,
-}
-
-/// Change of a description that leaves a part out, or replaces it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum Change {
-    Gravity,
-    Drag,
-    Damping,
-    /// Springs of a kind, by its index in [`SPRINGS`].
-    Springs(usize),
-    Buckling,
-    StrainLimit,
-    Tear,
-    Viscosity,
-    Wind,
-    /// Wind that blows on triangles, replaced by forces on particles.
-    WindByParticles,
-    Friction,
-    Restitution,
-    SelfCollision,
-    Floor,
-    /// Obstacle: the index of its kind in [`OBSTACLES`], and its index among those of its kind.
-    Obstacle(usize, usize),
-    /// Springs of chains, replaced by rods.
-    Rods,
-    /// Boxes of elastic solids, replaced by jellies.
-    Jelly,
+    /// How the part is left out.
+    pub change: Change,
 }
 
 /// Keys of the kinds of obstacles.

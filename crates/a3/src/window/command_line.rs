@@ -195,7 +195,8 @@ mod tests {
         panel::tune(
             &mut session,
             &[("gravity".into(), 5.0), ("stiffness".into(), 1.5)],
-        );
+        )
+        .unwrap();
         let line = of(&session, 0).ok().unwrap();
         assert!(line.contains("/a3-flag-1.toml --colour speed"), "{line}");
         let made = reopen(&line);
@@ -212,17 +213,24 @@ mod tests {
         // The file and its options then express the whole state, without another file.
         let same = of(&made, 0).ok().unwrap();
         assert_eq!(same, line);
+        // So are parts that are left out.
+        let names = [("without gravity".to_owned(), 1.0)];
+        let mut reduced = crate::window::session::session(&["rk4", "0.001", "--scene", file]);
+        panel::tune(&mut reduced, &names).unwrap();
+        let made = reopen(&of(&reduced, 0).ok().unwrap());
+        let network = made.runs.first().model().network();
+        assert_eq!(network.and_then(a3_core::Network::gravity), None);
         // The panes of a comparison have different states, so its initial state is written.
         let words = ["e:0.001", "r:0.001", "--scene", file];
         let mut several = compared(&words, 0.2);
-        panel::tune(&mut several, &[("gravity".into(), 5.0)]);
+        panel::tune(&mut several, &[("gravity".into(), 5.0)]).unwrap();
         let line = of(&several, 0).ok().unwrap();
         let made = reopen(&line);
         assert_eq!(made.runs.panes.len(), 2);
         let begun = initial_run(several.runs.first()).unwrap();
         assert_eq!(made.runs.first().state(), begun.state());
         several.act(RunAction::Reset, 0);
-        assert!(of(&several, 0).ok().unwrap().contains("a3-flag-3"));
+        assert!(of(&several, 0).ok().unwrap().contains("a3-flag-4"));
     }
 
     #[test]

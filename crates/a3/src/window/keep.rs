@@ -33,7 +33,8 @@ pub fn load(session: &mut Session, path: &Path) -> Result<(), Failure> {
     let kept = Kept::read(path)?;
     let origin = &session.scenes.shown;
     kept.check(path, &origin.source, origin.grid, session.runs.first())?;
-    panel::tune(session, &kept.tuned);
+    let tuned = panel::tune(session, &kept.tuned);
+    tuned.map_err(|why| Failure::usage(format!("{}: {why}", path.display())))?;
     let taken = session.restore(&kept.checkpoint);
     taken.map_err(|why| Failure::usage(format!("{}: {why}", path.display())))?;
     session.scenes.checkpoint = Some(path.into());
@@ -84,7 +85,25 @@ mod tests {
             )
         };
         assert!(seen(&first) == seen(&second));
+        // Parts that are left out are saved too, also obstacles.
+        let parts = ["without gravity".to_owned(), "without sphere".to_owned()];
+        let ball = folder.path().join("ball.toml");
+        std::fs::write(&ball, a3_scenes::find("mit-sphere").unwrap().text).unwrap();
+        let words = ["r", "0.005", "--scene", ball.to_str().unwrap()];
+        let [mut third, mut fourth] = [&words; 2].map(|words| session(words));
+        panel::tune(&mut third, &parts.clone().map(|part| (part, 1.0))).unwrap();
+        frames(&mut third, 0.3);
+        let reduced = save(&mut third, 0).ok().unwrap();
+        load(&mut fourth, &reduced)
+            .map_err(|failure| failure.to_string())
+            .unwrap();
+        assert_eq!(fourth.readings.left_out, ["gravity", "sphere"]);
+        for session in [&mut third, &mut fourth] {
+            frames(session, 0.3);
+        }
+        assert!(seen(&third) == seen(&fourth));
         // Loading an untuned run resets the tuning.
+        let words = ["r", "0.002", "--scene", scene.to_str().unwrap()];
         let plain = save(&mut session(&words), 0).ok().unwrap();
         load(&mut second, &plain)
             .map_err(|failure| failure.to_string())

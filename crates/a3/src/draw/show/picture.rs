@@ -27,7 +27,7 @@ const MAX_COILS: usize = 60;
 #[derive(Clone)]
 pub struct Show {
     /// Presentation of the scene: its surface, camera and trail.
-    presentation: Arc<Presentation>,
+    pub presentation: Arc<Presentation>,
     /// Surface, wires or springs.
     pub style: Style,
     /// The particle whose springs are highlighted.

@@ -11,6 +11,8 @@ use crate::window::hud::panel::{self, Request};
 
 /// Delay after which a skipped frame is drawn again.
 const RETRY_DELAY: Duration = Duration::from_millis(50);
+/// Delay after which a frame shows what was measured meanwhile, if nothing else moves.
+const MEASURING_DELAY: Duration = Duration::from_millis(100);
 
 impl App {
     /// Advances the session by the time since the last frame, draws it, and schedules the next
@@ -28,6 +30,7 @@ impl App {
         session.tick(self.platform.films.time_to_advance(session, real));
         session.view.track_followed(&session.runs.panes);
         session.read_state();
+        panel::update(session);
         self.mouse
             .update_hover(self.modifiers.shift_key(), session, &self.screen);
         let message_ends = session.readings.message_ends();
@@ -55,11 +58,13 @@ impl App {
                     status.frames += 1;
                 }
                 let frame_time = self.screen.frame_time(self.session.panel.frame_limit);
+                let measuring = self.session.effects.progress();
+                let measured = measuring.map(|_| now + MEASURING_DELAY);
                 let next = if self.session.animated() {
                     Some(now + frame_time)
                 } else {
                     let again = again.map(|delay| now + delay.max(frame_time));
-                    [again, message_ends, self.platform.next_check()]
+                    [again, message_ends, measured, self.platform.next_check()]
                         .into_iter()
                         .flatten()
                         .min()

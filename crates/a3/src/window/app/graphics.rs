@@ -36,8 +36,8 @@ pub struct Graphics {
     transfer: Option<Transfer>,
     /// Layer of the text, if it is not drawn in every frame.
     layer: Option<Layer>,
-    /// Number of torn springs in each pane's topology.
-    tears: Vec<usize>,
+    /// Version of each pane's topology.
+    drawn: Vec<[usize; 2]>,
     overlay: Overlay,
     egui_winit: egui_winit::State,
     /// Scale factor of text and panel, on top of the screen's own.
@@ -80,7 +80,7 @@ impl Graphics {
             targets: Targets::new(&gpu, size, format, samples),
             transfer: transfer(&gpu, &config),
             layer: Layer::new(&gpu, &config),
-            tears: vec![],
+            drawn: vec![],
             overlay,
             egui_winit,
             surface,
@@ -149,16 +149,16 @@ impl Graphics {
     pub fn set_scene(&mut self, session: &Session) {
         self.renderer
             .set_topology(&self.gpu, &session.runs.panes[0].topology());
-        self.tears.clear();
+        self.drawn.clear();
     }
 
     /// Uploads the topology of panes with newly torn springs.
     fn update_topology(&mut self, session: &Session) {
-        self.tears.resize(session.runs.panes.len(), 0);
-        for (k, (pane, tears)) in session.runs.panes.iter().zip(&mut self.tears).enumerate() {
-            let now = pane.simulation.tears();
-            if *tears != now {
-                *tears = now;
+        self.drawn.resize(session.runs.panes.len(), [0; 2]);
+        for (k, (pane, drawn)) in session.runs.panes.iter().zip(&mut self.drawn).enumerate() {
+            let now = pane.topology_version();
+            if *drawn != now {
+                *drawn = now;
                 let topology = pane.topology();
                 self.renderer.set_topology_of(&self.gpu, k, &topology);
             }

@@ -106,6 +106,9 @@ fn bar(ui: &mut Ui, panes: &[Pane], readings: &Readings) {
                 if width > 600.0 {
                     say(states(run, readings));
                 }
+                if let Some(without) = words::without(readings) {
+                    say(text(without));
+                }
                 if readings.in_window {
                     say(faint("h  help"));
                 }

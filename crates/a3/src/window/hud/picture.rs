@@ -12,8 +12,8 @@ use crate::window::session::{Pane, Readings};
 pub struct Studio {
     offscreen: Offscreen,
     renderer: Renderer,
-    /// Number of torn springs in each pane's topology; `None` if it must be uploaded.
-    tears: Vec<Option<usize>>,
+    /// Version of each pane's topology; `None` if it must be uploaded.
+    drawn: Vec<Option<[usize; 2]>>,
 }
 
 impl Studio {
@@ -25,7 +25,7 @@ impl Studio {
         let whole = panes.iter().all(|pane| pane.simulation.tears() == 0);
         Self {
             renderer: Renderer::new(gpu, OFFSCREEN_FORMAT, samples, &topology),
-            tears: vec![whole.then_some(0); panes.len()],
+            drawn: vec![whole.then(|| panes[0].topology_version()); panes.len()],
             offscreen,
         }
     }
@@ -46,10 +46,10 @@ impl Studio {
         readings: &Readings,
     ) -> Result<Vec<u8>, Failure> {
         let size = self.size();
-        for (k, (pane, tears)) in panes.iter_mut().zip(&mut self.tears).enumerate() {
-            let now = Some(pane.simulation.tears());
-            if *tears != now {
-                *tears = now;
+        for (k, (pane, drawn)) in panes.iter_mut().zip(&mut self.drawn).enumerate() {
+            let now = Some(pane.topology_version());
+            if *drawn != now {
+                *drawn = now;
                 self.renderer.set_topology_of(gpu, k, &pane.topology());
             }
             // A picture has no highlight under the pointer.

@@ -93,6 +93,9 @@ fn run(ui: &mut Ui, pane: &Pane, readings: &Readings) {
             }
         });
     ui.label(words::states(simulation, readings));
+    if let Some(without) = words::without(readings) {
+        ui.label(text(without));
+    }
     legend(ui, &pane.show);
 }
 

@@ -117,6 +117,15 @@ pub fn contact(simulation: &Simulation) -> Option<String> {
     }
 }
 
+/// Returns the parts that are left out: their names, or, if they are many, how many.
+pub fn without(readings: &Readings) -> Option<String> {
+    match &readings.left_out[..] {
+        [] => None,
+        few if few.len() <= 3 => Some(format!("without {}", few.join(", "))),
+        many => Some(format!("without {} parts", many.len())),
+    }
+}
+
 /// Returns the simulated time, with enough digits to tell consecutive steps apart.
 pub fn time(simulation: &Simulation) -> String {
     let step = simulation.control().step().unwrap_or(1e-3);

@@ -111,6 +111,7 @@ impl Session {
     fn reset(&mut self) {
         let touching = self.runs.first().touching();
         self.runs.reset();
+        self.effects.forget();
         if touching && !self.runs.first().touching() {
             self.readings
                 .say("Surfaces cross in the initial state, so self-collision is off again.");
@@ -308,7 +309,9 @@ impl Session {
     fn set_scene(&mut self, setup: &Setup) {
         let said = match self.runs.set_scene(setup) {
             Ok(said) => {
-                self.tuning = Tuning::of(setup);
+                self.tuning = Tuning::of(&self.scenes.shown, setup);
+                self.effects.forget();
+                self.readings.left_out.clear();
                 self.view.stop_following();
                 self.history.clear();
                 self.readings.read_reference(self.runs.reference.as_ref());

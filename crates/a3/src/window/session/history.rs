@@ -26,6 +26,8 @@ pub enum Change {
         from: f64,
         to: f64,
     },
+    /// A part of the scene was left out, or brought back: its index, and whether it is in since.
+    Part { part: usize, is_in: bool },
 }
 
 /// Changes that were made, and those that were undone, the latest last.

@@ -3,6 +3,8 @@
 
 mod actions;
 mod acts;
+mod effects;
+pub mod exchange;
 mod hands;
 mod history;
 mod keys;
@@ -26,6 +28,7 @@ mod tuning;
 mod view;
 
 pub use actions::{Action, RunAction, WindowAction};
+pub use effects::{Deviation, Effect, Job, Situation};
 pub use history::Change;
 pub use keys::{KEYS, MOUSE, action};
 pub use list::{Entry, TextKey, Topic};

@@ -1,7 +1,7 @@
 //! The origin of a scene: its source and the options that change it.
 
-use a3_core::{Grid, StepLimits};
-use a3_scenes::Setup;
+use a3_core::{Grid, Scene, StepLimits};
+use a3_scenes::{Description, Part, PartChange, Setup, parts, without};
 
 use crate::base::input_error::InputError;
 use crate::files::scene_file::Source;
@@ -32,5 +32,52 @@ impl Origin {
         let mut setup = self.source.build(self.grid)?;
         setup.scene.limits = self.limits.or(setup.scene.limits);
         Ok(setup)
+    }
+
+    /// Lists the parts of the scene, built as `scene`, that can be left out: also wind and
+    /// self-collision that are off at first.
+    pub fn parts(&self, scene: &Scene) -> Vec<Part> {
+        let mut all = parts(&self.described());
+        all.retain(|part| part.change != PartChange::SelfCollision || scene.touch.is_some());
+        all
+    }
+
+    /// Builds the scene without some of its [`parts`](Self::parts). Fails if there is no such
+    /// scene.
+    pub fn build_without(&self, parts: &[&Part]) -> Result<Setup, InputError> {
+        if parts.is_empty() {
+            return self.build();
+        }
+        let reduced = Self {
+            source: self.source.described(self.described_without(parts)),
+            grid: None,
+            limits: self.limits,
+        };
+        reduced.build()
+    }
+
+    /// Describes the scene with its grid, without some of its [`parts`](Self::parts).
+    pub fn described_without(&self, parts: &[&Part]) -> Description {
+        let own = &*self.source.description;
+        let mut reduced = without(&self.described(), parts.iter().copied());
+        // Runs turn these on and off.
+        if let (Some(wind), Some(own)) = (&mut reduced.wind, &own.wind) {
+            wind.on = own.on;
+        }
+        reduced.self_collision = own.self_collision;
+        reduced
+    }
+
+    /// Describes the scene with its grid, with wind if it has any, and with self-collision.
+    fn described(&self) -> Description {
+        let mut description = Description::clone(&self.source.description);
+        if let (Some(grid), Some(cloth)) = (self.grid, description.cloth.first_mut()) {
+            cloth.grid = [grid.rows(), grid.cols()];
+        }
+        if let Some(wind) = &mut description.wind {
+            wind.on = true;
+        }
+        description.self_collision = true;
+        description
     }
 }

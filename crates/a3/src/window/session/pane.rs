@@ -38,6 +38,8 @@ pub struct Pane {
     pub cost: Option<Cost>,
     /// Samples for the plots.
     pub samples: Samples,
+    /// Number of times that the scene of the run was changed while it went on.
+    exchanges: usize,
     /// Computing time of steps.
     computing: Duration,
     /// Simulated time (s), evaluations and computing time when the cost was last measured.
@@ -66,6 +68,7 @@ impl Pane {
             error: None,
             cost: None,
             samples: Samples::default(),
+            exchanges: 0,
             computing: Duration::ZERO,
             counted: (simulation.time(), simulation.work().total(), Duration::ZERO),
             simulation,
@@ -75,6 +78,12 @@ impl Pane {
     /// Returns the triangles and wires of the surface.
     pub fn topology(&self) -> Topology {
         self.show.topology(&self.simulation)
+    }
+
+    /// Returns numbers that change with the topology in one scene: that of torn springs, and that
+    /// of exchanges of the run.
+    pub fn topology_version(&self) -> [usize; 2] {
+        [self.simulation.tears(), self.exchanges]
     }
 
     /// Returns whether the run has not diverged.
@@ -241,6 +250,25 @@ impl Pane {
         self.show.clear_trail();
         self.set_errors(vec![]);
         self.restart_cost();
+    }
+
+    /// Replaces the run by one of a changed scene with the same particles, which goes on from the
+    /// same state, and returns the former run. The camera stays.
+    pub fn exchange(
+        &mut self,
+        simulation: Simulation,
+        presentation: &Arc<Presentation>,
+    ) -> Simulation {
+        let before = std::mem::replace(&mut self.simulation, simulation);
+        let viewpoint = self.show.presentation.viewpoint;
+        self.show.presentation = Arc::new(Presentation {
+            viewpoint,
+            ..Presentation::clone(presentation)
+        });
+        self.show.hovered = None;
+        self.exchanges += 1;
+        self.forces_changed();
+        before
     }
 
     /// Replaces the run by one of another scene.

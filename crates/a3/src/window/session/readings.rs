@@ -59,6 +59,8 @@ pub struct Readings {
     pub predictable: Option<f64>,
     /// Slow motion: simulated time advances at 1 / 2^slowness of real time.
     pub slowness: i32,
+    /// Names of the parts that are left out of the scene.
+    pub left_out: Vec<String>,
     /// Position on the timeline; `None` at the newest moment.
     pub rewound: Option<TimelinePosition>,
 }

@@ -84,6 +84,14 @@ impl ReferenceRun {
         &mut self.simulation
     }
 
+    /// Replaces the run by one of a changed scene with the same particles, which goes on from the
+    /// same state, and returns the former run. The search for the time until which errors are
+    /// meaningful starts again.
+    pub fn exchange(&mut self, simulation: Simulation) -> Simulation {
+        self.predictability = Predictability::new(simulation.scene().clone());
+        std::mem::replace(&mut self.simulation, simulation)
+    }
+
     /// Returns the reason why the reference was stopped, if it was.
     pub fn stopped(&self) -> Option<&'static str> {
         self.stopped

@@ -6,7 +6,6 @@ use std::path::{Path, PathBuf};
 use a3_core::Simulation;
 use a3_scenes::{Camera, Description, snapshot};
 
-use super::origin::Origin;
 use super::state::Session;
 use crate::base::failure::Failure;
 use crate::files::output;
@@ -66,11 +65,9 @@ fn scene_text(session: &Session, run: &Simulation) -> Result<String, a3_core::Er
 
 /// Returns the description of the tuned scene with the present state.
 fn description(session: &Session, run: &Simulation) -> Description {
-    let Origin { source, grid, .. } = &session.scenes.shown;
-    let mut description = Description::clone(&source.description);
-    if let (Some(grid), Some(cloth)) = (grid, description.cloth.first_mut()) {
-        cloth.grid = [grid.rows(), grid.cols()];
-    }
+    let tuning = &session.tuning;
+    let parts: Vec<_> = tuning.left_out.iter().map(|k| &tuning.parts[*k]).collect();
+    let mut description = session.scenes.shown.described_without(&parts);
     snapshot::scale_springs(
         &mut description,
         session.tuning.stiffness,
@@ -99,6 +96,7 @@ fn write_rows(text: &mut String, key: &str, rows: &[impl Debug]) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::window::hud::panel;
     use crate::window::session::RunAction;
     use crate::window::session::session;
     use a3_core::contact::Shape;
@@ -207,6 +205,30 @@ mod tests {
             assert!(network.is_none_or(|network| !network.is_pinned(last)));
             session.release();
             session.act(RunAction::NextScene, 0);
+        }
+    }
+
+    /// A written scene lacks the parts that are left out.
+    #[test]
+    fn parts_that_are_left_out_are_not_written() {
+        let folder = tempfile::tempdir().unwrap();
+        let mut session = session(&["r", "0.005", "--scene", "mit-sphere"]);
+        run_on(&mut session);
+        for parts in [
+            &["gravity", "bend springs", "sphere"][..],
+            &["drag", "shear springs"],
+        ] {
+            let named = parts.iter().map(|name| (format!("without {name}"), 1.0));
+            panel::tune(&mut session, &named.collect::<Vec<_>>()).unwrap();
+            assert_eq!(session.readings.left_out.len(), parts.len());
+            run_on(&mut session);
+            let path = written(&session, folder.path());
+            check(&session, &path);
+            let source = Source::find(path.to_str().unwrap()).unwrap();
+            let left = a3_scenes::parts(&source.description);
+            for name in parts {
+                assert!(left.iter().all(|part| part.name != *name), "{name}");
+            }
         }
     }
 

@@ -5,6 +5,7 @@ use web_time::{Duration, Instant};
 use a3_core::{Checkpoint, Error, Simulation};
 use a3_scenes::Setup;
 
+use super::effects::Effects;
 use super::history::History;
 use super::list::List;
 use super::meter::Meter;
@@ -57,6 +58,8 @@ pub struct Session {
     pub history: History,
     /// Changes that the panel made to the scene.
     pub tuning: Tuning,
+    /// What the parts of the scene cost and change.
+    pub effects: Effects,
     /// State of the panel.
     pub panel: PanelState,
     /// The open list, if there is one.
@@ -87,10 +90,11 @@ impl Session {
         Ok(Self {
             view: View::new(panes[0].show.camera()),
             runs: Runs::new(panes)?,
-            scenes: Scenes::new(origin),
             timeline: Timeline::default(),
             history: History::default(),
-            tuning: Tuning::of(setup),
+            tuning: Tuning::of(&origin, setup),
+            scenes: Scenes::new(origin),
+            effects: Effects::default(),
             panel: PanelState::default(),
             list: None,
             readings: Readings {

@@ -1,14 +1,15 @@
 //! The panel's part of a session: the tuning of the scene, and the state of the panel.
 
 use a3_core::Scene;
-use a3_scenes::{Defaults, Setup};
+use a3_scenes::{Defaults, Part, PartChange, Setup};
 
+use super::origin::Origin;
 use crate::files::ending::Ending;
 
-/// The original scene, and the factors that the panel applies to it.
+/// The original scene, and what the panel changes of it: factors, and parts that are left out.
 #[derive(Clone)]
 pub struct Tuning {
-    /// The untuned scene.
+    /// The untuned scene, without the parts that are left out.
     pub own: Scene,
     /// Default solver and step of the scene.
     pub defaults: Defaults,
@@ -18,18 +19,34 @@ pub struct Tuning {
     pub damping: f64,
     /// Factor on the force or velocity of the scene's wind.
     pub gusts: f64,
+    /// The parts of the scene that can be left out.
+    pub parts: Vec<Part>,
+    /// Indices of the parts that are left out, in order. Wind, self-collision and the floor are
+    /// never among them: the runs turn them on and off.
+    pub left_out: Vec<usize>,
+    /// Names and values of knobs that tune parts that are left out, for when these come back.
+    pub parked: Vec<(String, f64)>,
 }
 
 impl Tuning {
-    /// Creates the tuning of an untuned scene.
-    pub fn of(setup: &Setup) -> Self {
+    /// Creates the tuning of an untuned scene from `origin`, which was built as `setup`.
+    pub fn of(origin: &Origin, setup: &Setup) -> Self {
         Self {
+            parts: origin.parts(&setup.scene),
+            left_out: vec![],
+            parked: vec![],
             own: setup.scene.clone(),
             defaults: setup.defaults,
             stiffness: 1.0,
             damping: 1.0,
             gusts: 1.0,
         }
+    }
+
+    /// Returns how each part is left out that is.
+    pub fn changes(&self) -> Vec<PartChange> {
+        let changes = self.left_out.iter().map(|k| self.parts[*k].change);
+        changes.collect()
     }
 }
 

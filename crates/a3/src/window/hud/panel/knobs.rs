@@ -2,6 +2,7 @@
 
 use a3_core::contact::Shape;
 use a3_core::{Network, Vector3};
+use a3_scenes::PartChange;
 
 use super::dial::{Dial, DialScale, Turn};
 use super::seen::{arrows, colour, film, film_seconds, frame_limit, full_colour, style};
@@ -319,29 +320,23 @@ pub static KNOBS: &[Knob] = &[
     ),
 ];
 
-/// Returns the names and values of all knobs that tune the scene and differ from its own values.
-pub fn tuned(session: &Session) -> Vec<(String, f64)> {
-    let tuning = KNOBS.iter().filter(|knob| knob.tunes_scene);
-    let dials = tuning.filter_map(|knob| Some((knob.name, (knob.read)(session, 0)?)));
-    let other = dials.filter(|(_, dial)| dial.value != dial.own);
-    other
-        .map(|(name, dial)| (name.into(), dial.value))
-        .collect()
+/// Returns the row of a knob of the table.
+pub fn row_of(name: &str) -> usize {
+    let row = KNOBS.iter().position(|knob| knob.name == name);
+    row.unwrap_or(0)
 }
 
-/// Tunes the scene of a session to `tuned`, by names and values, and resets all other knobs that
-/// tune it.
-pub fn tune(session: &mut Session, tuned: &[(String, f64)]) {
-    for knob in KNOBS.iter().filter(|knob| knob.tunes_scene) {
-        let Some(dial) = (knob.read)(session, 0) else {
-            continue;
-        };
-        let value = tuned.iter().find(|(name, _)| name == knob.name);
-        let value = value.map_or(dial.own, |(_, value)| dial.scale.within(*value));
-        if value != dial.value {
-            (knob.set)(session, 0, value);
-        }
-    }
+/// Returns whether a knob tunes a part that is left out.
+pub fn is_left_out(session: &Session, knob: &str) -> bool {
+    let changes = session.tuning.changes().into_iter();
+    let mut tuned = changes.filter_map(|change| match change {
+        PartChange::Gravity => Some("gravity"),
+        PartChange::Drag => Some("drag"),
+        PartChange::Damping => Some("damping"),
+        PartChange::StrainLimit => Some("strain limit"),
+        _ => None,
+    });
+    tuned.any(|name| name == knob)
 }
 
 impl Knob {
@@ -350,6 +345,10 @@ impl Knob {
         let Some(dial) = (self.read)(session, at) else {
             return;
         };
+        if is_left_out(session, self.name) {
+            let words = format!("{} is left out: bring it back among the parts.", self.name);
+            return session.readings.say(words);
+        }
         let to = match turn {
             Turn::To(value) => dial.scale.nearest(value),
             Turn::By { up, other } => dial.scale.next(dial.value, up, other),
@@ -359,9 +358,8 @@ impl Knob {
         };
         if to != dial.value {
             (self.set)(session, at, to);
-            let row = KNOBS.iter().position(|knob| knob.name == self.name);
             session.history.record(Change::Knob {
-                row: row.unwrap_or(0),
+                row: row_of(self.name),
                 pane: at,
                 from: dial.value,
                 to,

@@ -2,17 +2,22 @@
 
 mod dial;
 mod knobs;
+mod measure;
+mod part_rows;
+mod parts;
 mod plots;
 mod request;
 mod row;
 mod seen;
+mod tune;
 mod undo;
 mod values;
 mod view;
 
-pub use knobs::{tune, tuned};
+pub use measure::update;
 pub use plots::csv;
 pub use request::{PanelKey, PanelRequest, Request, apply, press, press_text};
+pub use tune::{tune, tuned};
 pub use undo::undo;
 pub use view::{inset, picture_size, show};
 

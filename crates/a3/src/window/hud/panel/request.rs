@@ -1,7 +1,9 @@
 //! Requests of keys and mouse to the panel and to the open list.
 
 use super::dial::{Dial, Turn};
-use super::knobs::{KNOBS, Knob};
+use super::knobs::{KNOBS, Knob, is_left_out};
+use super::values::pane;
+use super::{measure, parts};
 use crate::window::session::{Action, Session, TextKey};
 
 /// A request of the mouse.
@@ -52,13 +54,43 @@ pub fn is_shown(session: &Session) -> bool {
 pub fn rows(session: &Session) -> Vec<(usize, &'static Knob, Dial)> {
     let at = pane(session);
     let rows = KNOBS.iter().enumerate();
-    rows.filter_map(|(k, knob)| Some((k, knob, (knob.read)(session, at)?)))
-        .collect()
+    rows.filter_map(|(k, knob)| {
+        let mut dial = (knob.read)(session, at)?;
+        if is_left_out(session, knob.name) {
+            dial.words = "left out".into();
+        }
+        Some((k, knob, dial))
+    })
+    .collect()
 }
 
-/// Returns the index of the panel's pane.
-pub fn pane(session: &Session) -> usize {
-    session.panel.pane.min(session.runs.panes.len() - 1)
+/// Returns whether the parts of a scene can be measured: that needs threads.
+pub fn can_measure() -> bool {
+    !cfg!(target_arch = "wasm32")
+}
+
+/// Returns the number of the row that measures the parts, after those of the knobs.
+pub fn measuring_row() -> usize {
+    KNOBS.len()
+}
+
+/// Returns the number of the row of a part.
+pub fn part_row(part: usize) -> usize {
+    measuring_row() + 1 + part
+}
+
+/// Returns whether the panel shows the parts of the scene: the chosen row is among them.
+pub fn shows_parts(session: &Session) -> bool {
+    session.panel.row >= measuring_row() && !session.tuning.parts.is_empty()
+}
+
+/// Returns the numbers of all rows: of the knobs that apply, then of the parts.
+pub fn numbers(session: &Session) -> Vec<usize> {
+    let knobs = rows(session).into_iter().map(|(k, ..)| k);
+    let count = session.tuning.parts.len();
+    let measuring = (count > 0 && can_measure()).then(measuring_row);
+    let parts = (0..count).map(part_row);
+    knobs.chain(measuring).chain(parts).collect()
 }
 
 /// Handles a key, and returns whether the panel is visible. With `other`, a knob turns by the other
@@ -67,7 +99,7 @@ pub fn press(session: &mut Session, key: PanelKey, other: bool) -> bool {
     if !is_shown(session) {
         return false;
     }
-    let rows: Vec<_> = rows(session).iter().map(|(k, ..)| *k).collect();
+    let rows = numbers(session);
     // If the present scene lacks the chosen row, use the nearest one above it.
     let chosen = session.panel.row;
     let at = rows.iter().rposition(|k| *k <= chosen).unwrap_or(0);
@@ -101,12 +133,28 @@ pub fn apply(session: &mut Session, request: PanelRequest) -> bool {
         PanelRequest::ChooseRow(row) => session.panel.row = row,
         PanelRequest::Turn(row, turn) => {
             session.panel.row = row;
-            KNOBS[row].turn(session, at, turn);
+            turn_row(session, at, row, turn);
         }
         PanelRequest::TakeEntry(number) => return session.take_entry(number),
         PanelRequest::CloseList => session.list = None,
     }
     false
+}
+
+/// Turns the knob or the switch of a row.
+fn turn_row(session: &mut Session, at: usize, row: usize, turn: Turn) {
+    if let Some(knob) = KNOBS.get(row) {
+        return knob.turn(session, at, turn);
+    }
+    let Some(part) = row.checked_sub(part_row(0)) else {
+        return measure::toggle(session);
+    };
+    let was_measured = session.effects.time().is_some();
+    let before = parts::is_in(session, part);
+    parts::turn(session, part, turn);
+    if was_measured && parts::is_in(session, part) != before {
+        measure::begin(session);
+    }
 }
 
 /// Handles a key while a value is typed for the chosen row, and returns whether one is.

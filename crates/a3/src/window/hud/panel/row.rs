@@ -17,13 +17,13 @@ pub const SHEET: Color32 = Color32::from_rgb(226, 226, 224);
 /// Colour of the panel's edge.
 pub const EDGE: Color32 = Color32::from_rgb(188, 189, 192);
 /// Colour of values that differ from the scene's own, and of controls.
-const INK: Color32 = Color32::from_rgb(38, 84, 132);
+pub(super) const INK: Color32 = Color32::from_rgb(38, 84, 132);
 /// Colour of the empty part of a track, and of a switch that is off.
 const TRACK: Color32 = Color32::from_rgb(186, 188, 194);
 /// Colour of the chosen row.
-const CHOSEN: Color32 = Color32::from_rgb(207, 211, 218);
+pub(super) const CHOSEN: Color32 = Color32::from_rgb(207, 211, 218);
 /// Colour of the row under the pointer.
-const HOVERED: Color32 = Color32::from_rgb(217, 218, 220);
+pub(super) const HOVERED: Color32 = Color32::from_rgb(217, 218, 220);
 
 /// Width of the name (points).
 const NAME_WIDTH: f32 = 76.0;
@@ -69,7 +69,7 @@ impl Row<'_> {
             let left = rect.left() + NAME_WIDTH;
             let room = Rect::from_x_y_ranges(left..=value.left() - 4.0, rect.y_range());
             let set = if dial.scale == DialScale::Switch {
-                switch(ui, room, id("dial"), dial)
+                switch(ui, room, id("dial"), dial.value != 0.0)
             } else {
                 slider(ui, room, id("dial"), dial)
             };
@@ -155,15 +155,14 @@ fn slider(ui: &Ui, room: Rect, id: Id, dial: &Dial) -> Option<Turn> {
     Some(Turn::To(dial.scale.at(share.into())))
 }
 
-/// Draws a switch. Returns the turn by the mouse.
-fn switch(ui: &Ui, room: Rect, id: Id, dial: &Dial) -> Option<Turn> {
+/// Draws a switch at the left of a room. Returns the turn by the mouse.
+pub(super) fn switch(ui: &Ui, room: Rect, id: Id, on: bool) -> Option<Turn> {
     let size = vec2(28.0, 15.0);
     let rect = Rect::from_min_size(
         pos2(room.left() + 6.0, room.center().y - 0.5 * size.y),
         size,
     );
     let response = ui.interact(rect.expand(4.0), id, Sense::click());
-    let on = dial.value != 0.0;
     let painter = ui.painter();
     painter.rect_filled(rect, 7.5, if on { INK } else { TRACK });
     let x = if on {

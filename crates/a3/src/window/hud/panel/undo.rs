@@ -1,6 +1,7 @@
 //! Undo and redo of the user's changes.
 
 use super::knobs::KNOBS;
+use super::parts;
 use crate::window::session::{Change, Session};
 
 /// Undoes the last change, or with `redo` redoes the one undone last, and shows a message.
@@ -28,6 +29,12 @@ pub fn undo(session: &mut Session, redo: bool) {
                 return session.readings.say(why);
             }
             "push".into()
+        }
+        Change::Part { part, is_in } => {
+            if let Err(why) = parts::set(session, part, is_in == redo) {
+                return session.readings.say(why);
+            }
+            parts::name(session, part)
         }
         Change::Knob {
             row,

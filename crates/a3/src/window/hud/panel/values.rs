@@ -10,6 +10,11 @@ use crate::base::bounds;
 use crate::base::rounding::{FEW, round_up, short};
 use crate::window::session::Session;
 
+/// Returns the index of the panel's pane.
+pub fn pane(session: &Session) -> usize {
+    session.panel.pane.min(session.runs.panes.len() - 1)
+}
+
 /// Returns the network of the first run, if its scene has one.
 pub fn network(session: &Session) -> Option<&Network> {
     session.runs.first().model().network()

@@ -3,9 +3,10 @@
 use egui::{Align2, Area, Context, FontId, Id, Rect, Sense, Stroke, pos2, vec2};
 
 use super::super::style::{FAINT, TEXT};
-use super::plots;
-use super::request::{self, Request, is_shown, rows};
+use super::request::{self, PanelRequest, Request, is_shown, rows};
 use super::row::{self, Row};
+use super::values::pane;
+use super::{part_rows, plots};
 use crate::window::session::{Action, RunAction, Session, WindowAction};
 
 /// Smallest and largest width of the panel (points), and its share of the window's width between
@@ -18,6 +19,8 @@ const MIN_WIDTH_BESIDE: f32 = 480.0;
 pub(super) const MARGIN: f32 = 14.0;
 /// Height of the title (points).
 const TITLE_HEIGHT: f32 = 36.0;
+/// Distance between the titles (points).
+const TITLE_GAP: f32 = 18.0;
 /// Height of the buttons and their margins (points).
 const BUTTONS_HEIGHT: f32 = 46.0;
 /// Distance between groups of rows (points).
@@ -73,63 +76,94 @@ pub fn show(ctx: &Context, session: &Session) -> Option<Request> {
             ui.painter()
                 .vline(rect.left(), rect.y_range(), Stroke::new(1.0, row::EDGE));
             let inner = rect.shrink2(vec2(MARGIN, 0.0));
-            title(ui, inner, session);
-            let rows = rows(session);
-            let chosen = rows.iter().rposition(|(k, ..)| *k <= session.panel.row);
-            let chosen = chosen.unwrap_or(0);
-            // In a low window, draw as many rows as fit, including the chosen one.
-            let room = inner.bottom() - BUTTONS_HEIGHT - (inner.top() + TITLE_HEIGHT);
-            let fit = ((room / row::HEIGHT) as usize).max(1);
-            let gap = if fit > rows.len() { GROUP_GAP } else { 0.0 };
-            let first = (chosen + 1).saturating_sub(fit);
-            let mut top = inner.top() + TITLE_HEIGHT;
-            for (n, (k, knob, dial)) in rows.iter().enumerate().skip(first).take(fit) {
-                if knob.starts_group && n > first {
-                    top += gap;
-                }
-                let place =
-                    Rect::from_min_size(pos2(inner.left(), top), vec2(inner.width(), row::HEIGHT));
-                let row = Row {
-                    number: *k,
-                    knob,
-                    dial,
-                    chosen: n == chosen,
-                    typed: session.panel.typed.as_deref().filter(|_| n == chosen),
-                };
-                request = row.show(ui, place).map(Request::Change).or(request);
-                top += row::HEIGHT;
-            }
+            request = title(ui, inner, session).map(Request::Change);
+            let room = Rect::from_min_max(
+                pos2(inner.left(), inner.top() + TITLE_HEIGHT),
+                pos2(inner.right(), inner.bottom() - BUTTONS_HEIGHT),
+            );
+            let (top, turned) = if request::shows_parts(session) {
+                part_rows::show(ui, room, session)
+            } else {
+                knobs(ui, room, session)
+            };
+            request = turned.map(Request::Change).or(request);
             request = buttons(ui, inner, session).or(request);
             let room = Rect::from_min_max(
                 pos2(inner.left(), top + 12.0),
                 pos2(inner.right(), inner.bottom() - BUTTONS_HEIGHT),
             );
-            let pane = &session.runs.panes[request::pane(session)];
+            let pane = &session.runs.panes[pane(session)];
             let pointer = ui.ctx().pointer_latest_pos();
             plots::draw(ui.painter(), room, &pane.samples, pointer);
         });
     request
 }
 
-/// Draws the title.
-fn title(ui: &egui::Ui, inner: Rect, session: &Session) {
+/// Draws the rows of the knobs from the top of a room. Returns the bottom of the last row, and the
+/// request of the mouse.
+fn knobs(ui: &egui::Ui, room: Rect, session: &Session) -> (f32, Option<PanelRequest>) {
+    let mut request = None;
+    let rows = rows(session);
+    let chosen = rows.iter().rposition(|(k, ..)| *k <= session.panel.row);
+    let chosen = chosen.unwrap_or(0);
+    // In a low window, draw as many rows as fit, including the chosen one.
+    let fit = ((room.height() / row::HEIGHT) as usize).max(1);
+    let gap = if fit > rows.len() { GROUP_GAP } else { 0.0 };
+    let first = (chosen + 1).saturating_sub(fit);
+    let mut top = room.top();
+    for (n, (k, knob, dial)) in rows.iter().enumerate().skip(first).take(fit) {
+        if knob.starts_group && n > first {
+            top += gap;
+        }
+        let place = Rect::from_min_size(pos2(room.left(), top), vec2(room.width(), row::HEIGHT));
+        let row = Row {
+            number: *k,
+            knob,
+            dial,
+            chosen: n == chosen,
+            typed: session.panel.typed.as_deref().filter(|_| n == chosen),
+        };
+        request = row.show(ui, place).or(request);
+        top += row::HEIGHT;
+    }
+    (top, request)
+}
+
+/// Draws the titles of the knobs and of the parts, between which a click changes. Returns the
+/// request of the mouse.
+fn title(ui: &egui::Ui, inner: Rect, session: &Session) -> Option<PanelRequest> {
     let painter = ui.painter();
     let line = inner.top() + 19.0;
-    let words = match session.runs.panes.len() {
-        1 => "Tuning".into(),
-        count => format!(
-            "Tuning  pane {} of {count}",
-            session.panel.pane.min(count - 1) + 1
-        ),
+    let named = match session.runs.panes.len() {
+        1 => String::new(),
+        count => format!("  pane {} of {count}", pane(session) + 1),
     };
-    let at = pos2(inner.left(), line);
-    painter.text(
-        at,
-        Align2::LEFT_CENTER,
-        words,
-        FontId::proportional(17.0),
-        TEXT,
-    );
+    let on_parts = request::shows_parts(session);
+    let mut titles = vec![("Tuning", !on_parts, 0)];
+    if !session.tuning.parts.is_empty() {
+        let first = request::numbers(session).into_iter();
+        let first = first.filter(|row| *row >= request::measuring_row()).min();
+        titles.push(("Parts", on_parts, first.unwrap_or(0)));
+    }
+    let (mut left, mut request) = (inner.left(), None);
+    for (name, shown, first) in titles {
+        let words = format!("{name}{}", if shown { &named } else { "" });
+        let font = FontId::proportional(17.0);
+        let galley = painter.layout_no_wrap(words, font, if shown { TEXT } else { FAINT });
+        let rect = Align2::LEFT_CENTER.anchor_size(pos2(left, line), galley.size());
+        let response = ui.interact(rect, Id::unique(("title", name)), Sense::click());
+        painter.galley(rect.min, galley, TEXT);
+        if shown {
+            let line = rect.bottom() + 1.0;
+            painter.hline(rect.x_range(), line, Stroke::new(1.6, row::INK));
+        } else if response
+            .on_hover_cursor(egui::CursorIcon::PointingHand)
+            .clicked()
+        {
+            request = Some(PanelRequest::ChooseRow(first));
+        }
+        left = rect.right() + TITLE_GAP;
+    }
     let at = pos2(inner.right(), line);
     painter.text(
         at,
@@ -138,6 +172,7 @@ fn title(ui: &egui::Ui, inner: Rect, session: &Session) {
         FontId::proportional(12.5),
         FAINT,
     );
+    request
 }
 
 /// Draws the buttons: write a scene file, write the plots, start or stop a live film, and film the

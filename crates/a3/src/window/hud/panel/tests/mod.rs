@@ -1,6 +1,8 @@
 //! Tests of the panel by keys and mouse, without a display.
 
 mod drawing;
+mod leaving_out;
+mod measuring;
 mod opened;
 mod screen;
 mod turning;

@@ -1,6 +1,7 @@
 //! Sessions with an open panel, and the values of its rows.
 
-use crate::window::hud::panel::request::{PanelKey, press, rows};
+use crate::window::hud::panel::dial::Turn;
+use crate::window::hud::panel::request::{PanelKey, PanelRequest, apply, part_row, press, rows};
 use crate::window::session::{RunAction, Session, session};
 
 pub fn opened(words: &[&str]) -> Session {
@@ -35,4 +36,16 @@ pub fn changed(before: &[(&'static str, f64)], session: &Session) -> Vec<&'stati
     assert_eq!(before.clone().count(), after.clone().count());
     let pairs = before.zip(after);
     pairs.filter(|(a, b)| *a != *b).map(|(a, _)| a.0).collect()
+}
+
+/// Returns the index of a part by its name.
+pub fn part(session: &Session, name: &str) -> usize {
+    let mut parts = session.tuning.parts.iter();
+    parts.position(|part| part.name == name).unwrap()
+}
+
+/// Toggles a part by its name.
+pub fn toggle(session: &mut Session, name: &str) {
+    let row = part_row(part(session, name));
+    apply(session, PanelRequest::Turn(row, Turn::Toggle));
 }
