@@ -4,8 +4,9 @@ use nalgebra::{Matrix3, Vector3};
 
 use super::frames::GoOn;
 use crate::control::Control;
-use crate::error::{Error, succeeded};
+use crate::error::Error;
 use crate::integrators::{Method, find};
+use crate::own::succeeded;
 use crate::random::SplitMix;
 use crate::scene::Scene;
 use crate::simulation::Simulation;

@@ -5,5 +5,6 @@ mod first_order;
 mod second_order;
 
 pub use failure::Outcome;
+pub(crate) use failure::succeeded;
 pub use first_order::Ode;
 pub use second_order::SecondOrder;

@@ -2,8 +2,9 @@
 
 use super::mode::Mode;
 use super::tied::Tied;
-use crate::error::{Error, succeeded};
+use crate::error::Error;
 use crate::integrators::{Integrator, Method};
+use crate::own::succeeded;
 
 /// Growth of a mode in one step of a method.
 ///
