@@ -48,6 +48,8 @@ pub enum Error {
     },
     /// Run that blew up.
     BlowUp(BlowUp),
+    /// Failure of a function of an own system or an own method, in its words.
+    Callback(String),
 }
 
 /// Reason why a method does not support a system.
@@ -143,8 +145,7 @@ pub enum Cause {
     },
 }
 
-/// Error of a constraint, as a share of its length, from which on it is visible and worth a
-/// warning.
+/// Error of a constraint, as a share of its length, from which on it is visible.
 const VISIBLE_SHARE: f64 = 0.01;
 
 /// Constraint that is not met.
@@ -323,7 +324,7 @@ impl fmt::Display for BlowUp {
 impl fmt::Display for Error {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Invalid(what) => f.write_str(what),
+            Self::Invalid(what) | Self::Callback(what) => f.write_str(what),
             Self::Unsupported { method, why } => write!(f, "{method} {why}"),
             Self::Dimension { expected, found } => {
                 write!(

@@ -69,8 +69,8 @@ pub struct Candidate<T = Outcome> {
     pub set_by: SetBy,
 }
 
-/// Cheapest step or tolerance of each method that meets the error `error`, in the unit of the
-/// metric; the cheapest method comes first.
+/// Cheapest step or tolerance of each method of the table that meets the error `error`, in the unit
+/// of the metric; the cheapest method comes first.
 ///
 /// The search gives up a method that would cost more than twice as much as the second cheapest so
 /// far, or five times as much in small scenes. `begin` is called with each method before its runs.
@@ -111,6 +111,23 @@ pub fn choose(
     go_on: GoOn,
     begin: impl FnMut(&'static Method),
 ) -> Result<Option<Vec<Candidate>>, Error> {
+    let methods: Vec<_> = METHODS.iter().collect();
+    choose_among(&methods, scene, reference, metric, error, go_on, begin)
+}
+
+/// As [`choose`], among these methods. Those that do not support the scene are left out.
+///
+/// # Errors
+/// The scene cannot be run, or the metric needs particles that it does not have.
+pub fn choose_among(
+    methods: &[&'static Method],
+    scene: &Scene,
+    reference: &Reference,
+    metric: Metric,
+    error: f64,
+    go_on: GoOn,
+    begin: impl FnMut(&'static Method),
+) -> Result<Option<Vec<Candidate>>, Error> {
     metric.check(&scene.model)?;
     // The reference's own uncertainty is part of the error that is allowed.
     let error = error - metric.of(&reference.floor);
@@ -133,7 +150,7 @@ pub fn choose(
     };
     let max_cost = |found: &[Candidate]| found.get(1).map(|second| max_ratio * second.work);
     // Methods of high order come first: their cost limits the runs of methods of low order.
-    let mut methods: Vec<_> = METHODS.iter().collect();
+    let mut methods = methods.to_vec();
     methods.sort_by_key(|method| std::cmp::Reverse(method.order));
     let frames = &reference.frames;
     choose_by(&methods, scene, frames, error, max_cost, measure, begin)
@@ -141,9 +158,9 @@ pub fn choose(
 
 /// As [`choose`], for errors that the caller measures: `measure` runs the scene, or a variant of
 /// it, by one of the methods with a step or a tolerance, and returns `None` to end the search. The
-/// methods are tried in their order. A method is
-/// given up if it would cost more than `max_cost` evaluations, which may depend on what is found so
-/// far. Methods that do not support the scene are left out.
+/// methods are tried in their order. A method is given up if it would cost more than `max_cost`
+/// evaluations, which may depend on what is found so far. Methods that do not support the scene are
+/// left out.
 ///
 /// # Errors
 /// Those of `measure`, or the scene cannot be run.

@@ -6,6 +6,7 @@ use super::frames::GoOn;
 use crate::control::Control;
 use crate::error::Error;
 use crate::integrators::{Method, find};
+use crate::own::succeeded;
 use crate::random::SplitMix;
 use crate::scene::Scene;
 use crate::simulation::Simulation;
@@ -131,7 +132,7 @@ impl TwoRuns {
                     return Ok(None);
                 }
                 time = begin + (round - begin) * f64::from(part) / f64::from(CHECKS_PER_ROUND);
-                if run.advance_to(time).is_err() || beside.advance_to(time).is_err() {
+                if !succeeded(run.advance_to(time))? || !succeeded(beside.advance_to(time))? {
                     parted_at = Some(time);
                     break 'rounds;
                 }

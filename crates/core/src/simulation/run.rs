@@ -208,18 +208,17 @@ impl Simulation {
         Ok(())
     }
 
-    /// Ends a run that has blown up, and goes back to the last sound state.
+    /// Goes back to the last sound state. A run that has blown up ends there; after another error,
+    /// such as that of a callback, it may go on.
     fn fail(&mut self, failure: Failure) -> Error {
+        let own = self.model.system().take_failure();
+        let failure = own.map_or(failure, Failure::Error);
         let (cause, time) = match failure {
             Failure::BlowUp { cause, time } => (cause, time),
-            Failure::Error(error) => return error,
+            Failure::Error(error) => return self.go_back().err().unwrap_or(error),
         };
         let mut blow_up = self.state.blow_up(cause, time);
-        let (model, state) = (&mut self.model, &mut self.state);
-        let back = self
-            .good
-            .put_back(&self.scene, model, state, &mut self.driver);
-        if let Err(error) = back {
+        if let Err(error) = self.go_back() {
             return error;
         }
         // Constraints that contradict one another cause blow-ups of many kinds.
@@ -229,6 +228,13 @@ impl Simulation {
         }
         self.blow_up = Some(blow_up);
         blow_up.into()
+    }
+
+    /// Goes back to the last sound state.
+    fn go_back(&mut self) -> Result<(), Error> {
+        let (model, state) = (&mut self.model, &mut self.state);
+        self.good
+            .put_back(&self.scene, model, state, &mut self.driver)
     }
 
     /// The run as it is now, with the last step of an adaptive method: some 20 arrays of the size

@@ -1,13 +1,14 @@
 //! Scenes at rest: the state of rest, and the largest step with which a small disturbance of it
 //! does not grow.
 
+use super::checks::take_checked;
 use super::limit::{GROWTH, Limit, largest_step};
 use super::linearised::AtRest;
 use super::mode::Mode;
 use super::normalised::Mixing;
 use super::observation::Observation;
 use super::pencil::Pencil;
-use super::search::{Budget, bisect, cost, steps, take_checked};
+use super::search::{Budget, bisect, cost, steps};
 use super::spectrum::{Undamped, of_drag, shapes};
 use crate::control::Control;
 use crate::error::Error;
@@ -307,14 +308,15 @@ pub fn observe_at_rest(
     let holds = |h: f64| {
         let mut run = Simulation::new(nudged.clone(), method, Control::Step(h))?;
         let mut beside = Simulation::new(still.clone(), method, Control::Step(h))?;
-        Ok(take_checked(steps(h, guess), |count| {
+        let held = take_checked(steps(h, guess), |count| {
             let held = budget.take(&mut run, count).filter(|_| go_on())?;
             let held = held && budget.take(&mut beside, count)?;
             let both = run.state().iter().zip(beside.state());
             let apart: Vec<_> = both.map(|(a, b)| a - b).collect();
             let (dx, dv) = apart.split_at(half);
             Some(held && size.of(dx, dv) < GROWTH * nudge)
-        }))
+        });
+        budget.check().map(|()| held)
     };
     let mut seen = bisect(guess, still.model.work(), PRECISION, true, holds)?;
     // If the limit of the modes is not sharp, shorter steps grow too, but more slowly.

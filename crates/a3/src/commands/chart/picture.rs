@@ -9,9 +9,8 @@ use a3_plot::{Curve, Measurement, Problem, WorkPrecision};
 use super::data::Data;
 use super::measure::Study;
 use super::record::Record;
-use super::words::{describe, unit};
+use super::words::unit;
 use super::{style, table};
-use crate::cli::What;
 
 /// Largest error of a run that is drawn, over the error of a run in which nothing moves.
 const MAX_ERROR_RATIO: f64 = 10.0;
@@ -26,7 +25,7 @@ pub fn chart(
     methods: &[&'static Method],
     metric: Metric,
     timed: bool,
-    what: &What,
+    title: &str,
 ) -> WorkPrecision {
     let (until, scope) = (studies[0].frames.until, studies[0].scope());
     let problems = studies
@@ -42,10 +41,7 @@ pub fn chart(
         })
         .collect();
     WorkPrecision {
-        title: format!(
-            "Speed against accuracy: {}",
-            describe(what, &studies[0].scene)
-        ),
+        title: format!("Speed against accuracy: {title}"),
         subtitle: format!(
             "{until} s of motion; each point is a run with another step or tolerance{}",
             if studies
@@ -73,12 +69,12 @@ pub fn chart(
 /// Letters of the solvers whose steps turn rigid bodies by a composition of order 6.
 const TURNING: [char; 3] = ['s', 'v', 'p'];
 
-/// Keeps the curves of the methods that are cheapest for some error in some panel, and of those
-/// that the course teaches.
+/// Keeps the curves of the methods that are cheapest for some error in some panel, of those that
+/// the course teaches, and of own methods.
 pub fn keep_best(chart: &mut WorkPrecision, methods: &[&'static Method], scene: &Scene) {
     let mut kept: Vec<_> = methods
         .iter()
-        .map(|m| style::COURSE.contains(&m.letter))
+        .map(|m| m.is_own() || style::is_of_course(m))
         .collect();
     for problem in &chart.problems {
         for [curve, _] in problem.front() {
@@ -132,9 +128,11 @@ fn turning(scene: &Scene, methods: &[&'static Method]) -> &'static str {
         .network()
         .is_some_and(|network| !network.bodies().is_empty());
     if has_bodies
-        && methods
-            .iter()
-            .any(|method| TURNING.contains(&method.letter))
+        && methods.iter().any(|method| {
+            method
+                .letter
+                .is_some_and(|letter| TURNING.contains(&letter))
+        })
     {
         " Symplectic Euler, Verlet and PEFRL turn bodies by a composition of order 6, whatever \
          their own order: in free flight their errors fall with it."

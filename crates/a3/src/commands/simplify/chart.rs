@@ -130,7 +130,7 @@ pub fn chart(
     };
     let solvers = methods
         .iter()
-        .map(|it| format!("{} {}", it.letter, it.title));
+        .map(|it| format!("{} {}", short(it), it.title));
     let solvers: Vec<_> = solvers.collect();
     let until = models.compared.frames.until;
     Ok(Some(WorkPrecision {
@@ -158,6 +158,12 @@ pub fn chart(
         foot: format!("{foot} Errors are differences from {truth}."),
         held: "the time steps err more than the grid".into(),
     }))
+}
+
+/// Returns the letter of a method, or its name if it has none.
+fn short(method: &Method) -> String {
+    let name = || method.name.to_owned();
+    method.letter.map_or_else(name, String::from)
 }
 
 /// Returns the runs that no other beats in both error and work, from the most accurate on.
@@ -260,7 +266,7 @@ fn measured(
             error,
             work: time.as_secs_f64() / compared.frames.until,
             held: error > BALANCE * least,
-            label: Some(format!("{} {}", method.letter, words(control))),
+            label: Some(format!("{} {}", short(method), words(control))),
             ..Measurement::default()
         });
         if error < 1.01 * least && found.len() > 2 {
