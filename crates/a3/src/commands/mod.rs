@@ -2,6 +2,7 @@
 
 pub mod chart;
 pub mod choose;
+pub mod judge;
 pub mod list;
 pub mod manual;
 mod motion;
