@@ -9,6 +9,7 @@ use super::judgement::{Course, Judgement, judge};
 use super::picture;
 use super::plain::Plain;
 use super::summary::Record;
+use super::trial::Way;
 use super::truth::Truth;
 use super::words::{is_resolved, is_within, orders, text, too_large};
 use crate::base::failure::Failure;
@@ -196,18 +197,30 @@ fn print(
         let gap = if k == 0 { "" } else { "\n" };
         terminal::say(&format!("{gap}{}", text(name, judgement, options.within)))?;
     }
-    let runs: Vec<_> = judged
-        .iter()
-        .filter(|(_, judgement)| is_resolved(judgement))
-        .filter_map(|(name, judgement)| {
-            Some((name.clone(), judgement.step?, judgement.worst.error))
-        })
-        .collect();
-    let orders = orders(&runs);
+    let orders = program_orders(judged);
     if orders.is_empty() {
         return Ok(());
     }
     terminal::say(&format!("\n{orders}"))
+}
+
+/// The orders of the programs: files are of one if they agree with the same method, or with none.
+fn program_orders(judged: &[(String, Judgement)]) -> String {
+    let way = |judgement: &Judgement| judgement.found.found.map(|found| found.trial.way);
+    let mut ways: Vec<_> = judged.iter().map(|(_, judgement)| way(judgement)).collect();
+    ways.dedup();
+    let of = |chosen: &Option<Way>| {
+        let own = judged
+            .iter()
+            .filter(|(_, judgement)| way(judgement) == *chosen);
+        let runs = own.filter(|(_, judgement)| is_resolved(judgement));
+        let runs = runs.filter_map(|(name, judgement)| {
+            Some((&**name, judgement.step?, judgement.worst.error))
+        });
+        orders(&runs.collect::<Vec<_>>())
+    };
+    let once = |k: &usize| !ways[..*k].contains(&ways[*k]);
+    (0..ways.len()).filter(once).map(|k| of(&ways[k])).collect()
 }
 
 /// Fails if a file was refused, or errs by more than was asked for.

@@ -43,6 +43,8 @@ pub struct Judgement {
     pub worst: Worst,
     /// Uncertainty of the reference (m).
     pub floor: f64,
+    /// Largest distance that the reference moves, root mean square over the particles (m).
+    pub motion: f64,
     /// Error of the energy (J), if the scene has energy and the file velocities.
     pub energy: Option<Drift>,
     /// Largest kinetic energy of the reference (J).
@@ -114,6 +116,7 @@ pub fn judge(
         scene,
         plain: course.plain,
         rows: &rows,
+        motion: judgement.motion,
     };
     let at_start = matches!(judgement.start, None | Some(Difference::Later(_)));
     let Some(found) = search(&judged, at_start, course.step.is_some()) else {
@@ -137,12 +140,14 @@ fn measured(scene: &Scene, states: &States, rows: &Rows, reference: &Reference) 
         particle: 0,
         distance: 0.0,
     };
+    let (mut motion, n) = (0.0, 3 * model.particles());
     let network = conserving(model).filter(|_| rows.velocities(0).is_some());
     let (mut energy, mut momentum, mut kinetic) = (Drift::default(), Drift::default(), 0.0);
     for (k, &time) in rows.times.iter().enumerate() {
         let at = frame_at(reference, time).unwrap_or(time);
         let [x, v] = reference.motion(model, at);
         let error = distance(&x, rows.positions(k));
+        motion = f64::max(motion, distance(&x, &scene.state[..n]));
         errors.push((time, error));
         if error > worst.error {
             let (particle, distance) = farthest(&x, rows.positions(k));
@@ -170,6 +175,7 @@ fn measured(scene: &Scene, states: &States, rows: &Rows, reference: &Reference) 
         errors,
         worst,
         floor: reference.floor.position,
+        motion,
         energy: network.map(|_| energy),
         kinetic,
         momentum: network.map(|_| momentum),

@@ -2,6 +2,7 @@
 //! order, the method that they agree with, and the usual mistakes.
 
 mod command;
+mod finding;
 mod grid;
 mod judgement;
 mod mistake;

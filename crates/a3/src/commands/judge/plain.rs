@@ -69,9 +69,9 @@ impl Plain {
         self.drag > 0.0 || self.springs.iter().any(|spring| spring.damping > 0.0)
     }
 
-    /// Whether there is drag, and no damping of springs.
-    pub fn has_drag_alone(&self) -> bool {
-        self.drag > 0.0 && self.springs.iter().all(|spring| spring.damping == 0.0)
+    /// Whether there is drag.
+    pub fn has_drag(&self) -> bool {
+        self.drag > 0.0
     }
 
     /// Whether a mistake changes anything in this network.

@@ -67,7 +67,7 @@ impl Scheme {
             Self::Trapezoid | Self::TrapezoidOldVelocity => "explicit trapezoid (Heun)",
             Self::Midpoint | Self::MidpointOldVelocity => "explicit midpoint",
             Self::Rk4 | Self::Rk4FirstTwice | Self::Rk4HalfLast | Self::Rk4EqualWeights => {
-                "the classical Runge-Kutta method"
+                "classical Runge-Kutta"
             }
             Self::Verlet | Self::VerletOldVelocity => "velocity Verlet",
             Self::VerletPredicted => "velocity Verlet with a predicted velocity in the forces",
@@ -123,7 +123,7 @@ impl Scheme {
             | Self::VerletOldVelocity
             | Self::TrapezoidOldVelocity
             | Self::MidpointOldVelocity => plain.is_damped(),
-            Self::ImplicitDrag => plain.has_drag_alone(),
+            Self::ImplicitDrag => plain.has_drag(),
             _ => true,
         }
     }

@@ -13,10 +13,14 @@ const PARTS: [u64; 34] = [
     1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 12, 15, 16, 18, 20, 24, 25, 30, 32, 40, 48, 50, 60, 64, 75, 80,
     96, 100, 120, 125, 128, 200, 250, 500,
 ];
+/// Number of steps that are tried after one that agrees.
+const MORE_PARTS: usize = 4;
+/// Ratio of distances of which the smaller one tells a method from another.
+const CLEARLY: f64 = 10.0;
 /// Numbers of steps that are tried at any cost, and for the nearest method.
 const FEW_PARTS: [u64; 5] = [1, 2, 4, 5, 10];
 /// Largest work of all trials of a kind, in springs and particles that are visited.
-const MAX_WORK: f64 = 3e8;
+const MAX_WORK: f64 = 5e7;
 /// Least number of rows that agree before others differ, and least ratio of the distance moved
 /// until then to that at which rows agree.
 const MIN_PART: (usize, f64) = (10, 1e5);
@@ -110,6 +114,7 @@ pub fn search(judged: &Judged, at_start: bool, one_step: bool) -> Option<Match> 
         .collect();
     let nearest = search.nearest(&correct, &few, f64::INFINITY)?;
     let bound = nearest.map_or(f64::INFINITY, |nearest| nearest.compared.distance);
+    let nearest = nearest.filter(|nearest| nearest.compared.distance < judged.motion);
     let suspect = search.nearest(&slips, &few[..1], MUCH_NEARER * bound)?;
     Some(Match {
         nearest,
@@ -169,16 +174,21 @@ impl Search<'_> {
         })
     }
 
-    /// The ways that agree with all rows, at the largest step at which one does. `None` if the
-    /// command was interrupted.
+    /// The ways that agree with all rows, at the largest step at which one does, or at a slightly
+    /// smaller one at which it agrees much better. `None` if the command was interrupted.
     fn agreements(
         &mut self,
         ways: &[Way],
         starts: &[Start],
         parts: &[u64],
     ) -> Option<Vec<Agreement>> {
-        let mut work = 0.0;
+        let (mut work, mut best, mut more) = (0.0, vec![], MORE_PARTS);
         for &parts in parts {
+            let is_found = !best.is_empty();
+            if is_found && more == 0 {
+                break;
+            }
+            more -= usize::from(is_found);
             if work > MAX_WORK && !FEW_PARTS.contains(&parts) {
                 continue;
             }
@@ -193,11 +203,24 @@ impl Search<'_> {
                     found.extend(self.agreement(trial, &mut work));
                 }
             }
-            if !found.is_empty() {
-                return Some(found);
+            if !found.is_empty() && (best.is_empty() || self.are_better(&found, &best)) {
+                best = found;
             }
         }
-        Some(vec![])
+        let least = least(&best);
+        let rounding = self.judged.rounding();
+        let first = best
+            .iter()
+            .position(|a| a.compared.distance <= CLEARLY * least + rounding);
+        if let Some(first) = first {
+            best[..=first].rotate_right(1);
+        }
+        Some(best)
+    }
+
+    /// Whether one of several ways agrees much better than all others.
+    fn are_better(&self, ways: &[Agreement], others: &[Agreement]) -> bool {
+        CLEARLY * least(ways) + self.judged.rounding() < least(others)
     }
 
     /// Agreement of a trial with all rows. One with many of them is remembered.
@@ -211,15 +234,16 @@ impl Search<'_> {
             compared,
             until: None,
         };
-        let clear = compared.moved / self.judged.tolerance(compared.moved);
+        let moved = compared.moved.max(self.judged.motion);
+        let clear = moved / self.judged.tolerance(compared.moved);
         let since = match trial.start {
             Start::Row(row) => row + 1,
             _ => 0,
         };
         if compared.rows == rows.len() {
-            // Nothing is told by rows in which nothing moves, or by a single step.
-            return (compared.rows > since + 1 && clear > 1.0 || since == 0 && clear > 1.0)
-                .then_some(agreement);
+            // A single step from a row of the file tells nothing, nor does a file of few digits in
+            // which nothing moves.
+            return (clear > 1.0 && compared.rows != since + 1).then_some(agreement);
         }
         let longest = self.part.map_or(0, |part| part.compared.rows);
         if compared.rows > longest.max(since + MIN_PART.0) && clear > MIN_PART.1 {
@@ -262,4 +286,12 @@ impl Search<'_> {
         }
         Some(nearest)
     }
+}
+
+/// Least distance of several agreements (m); infinite without any.
+fn least(agreements: &[Agreement]) -> f64 {
+    let distances = agreements
+        .iter()
+        .map(|agreement| agreement.compared.distance);
+    distances.fold(f64::INFINITY, f64::min)
 }

@@ -33,6 +33,8 @@ pub struct Record<'a> {
     step: Option<f64>,
     /// Method that the file agrees with.
     method: Option<Agreed>,
+    /// Others that it agrees with as well.
+    also: Vec<Agreed>,
     /// Nearest method, if it agrees with none.
     nearest: Option<Agreed>,
     /// Method with a mistake that is much nearer.
@@ -99,6 +101,7 @@ impl<'a> Record<'a> {
             start: judgement.start.as_ref().map(difference),
             step: judgement.step,
             method: agreed(&found.found),
+            also: found.also.iter().map(Agreed::of).collect(),
             nearest: agreed(&found.nearest),
             suspect: agreed(&found.suspect),
             seconds: judgement.seconds,

@@ -91,8 +91,9 @@ pub struct Compared {
     pub distance: f64,
     /// Largest distance moved until then (m).
     pub moved: f64,
-    /// Largest distance of the velocities of these rows (m/s), if the file has them.
-    pub velocities: Option<f64>,
+    /// Largest distance of the velocities of these rows, and their largest size, root mean square
+    /// over the particles (m/s), if the file has them.
+    pub velocities: Option<[f64; 2]>,
 }
 
 /// Scene and rows against which trials run.
@@ -101,6 +102,8 @@ pub struct Judged<'a> {
     /// The scene as masses and springs, if it is that.
     pub plain: Option<&'a Plain>,
     pub rows: &'a Rows<'a>,
+    /// Largest distance that the scene moves until the last row (m).
+    pub motion: f64,
 }
 
 /// A run of a trial.
@@ -136,7 +139,12 @@ impl Run<'_> {
 impl Judged<'_> {
     /// Largest distance of a row that agrees (m), after a distance moved (m).
     pub fn tolerance(&self, moved: f64) -> f64 {
-        AGREEMENT * moved + ROUNDING * self.scene.extent().1 + DIGITS * self.rows.rounding()
+        AGREEMENT * moved + self.rounding()
+    }
+
+    /// Distance of rows by rounding alone (m).
+    pub fn rounding(&self) -> f64 {
+        ROUNDING * self.scene.extent().1 + DIGITS * self.rows.rounding()
     }
 
     /// Work of a step of a way: springs and particles that are visited.
@@ -167,7 +175,7 @@ impl Judged<'_> {
             rows: first,
             distance: 0.0,
             moved: 0.0,
-            velocities: self.rows.velocities(0).map(|_| 0.0),
+            velocities: self.rows.velocities(0).map(|_| [0.0; 2]),
         };
         for k in first..self.rows.len() {
             let steps = match (grid.numbers[k] * trial.parts, trial.start) {
@@ -190,8 +198,11 @@ impl Judged<'_> {
             compared.rows = k + 1;
             compared.moved = moved;
             compared.distance = compared.distance.max(apart);
-            if let (Some(most), Some(own)) = (&mut compared.velocities, self.rows.velocities(k)) {
-                *most = most.max(distance(&v, own));
+            if let (Some([apart, speed]), Some(own)) =
+                (&mut compared.velocities, self.rows.velocities(k))
+            {
+                *apart = apart.max(distance(&v, own));
+                *speed = speed.max(distance(&v, &vec![0.0; v.len()]));
             }
         }
         Some(compared)

@@ -1,16 +1,16 @@
-//! Judgements in words.
+//! Errors of files in words.
 
+use super::finding::lines_of;
 use super::judgement::{Drift, Judgement};
-use super::search::Agreement;
 use super::start::Difference;
-use super::trial::Start;
+use crate::base::rounding::short;
 
 /// Number of times whose errors are printed.
 const TIMES: usize = 5;
-/// Largest number of methods that are named beside the one that a file agrees with.
-const MAX_OTHERS: usize = 3;
 /// Least error that a reference can tell from 0, over its own.
 const RESOLVED: f64 = 10.0;
+/// Order below which errors do not fall with the step.
+const MIN_ORDER: f64 = 0.5;
 
 /// The judgement of a file in lines, under its name.
 pub fn text(name: &str, judgement: &Judgement, within: Option<f64>) -> String {
@@ -27,20 +27,23 @@ pub fn text(name: &str, judgement: &Judgement, within: Option<f64>) -> String {
         line("energy", energy_words(energy, judgement.kinetic));
     }
     if let Some(Drift { worst, time, .. }) = judgement.momentum {
+        let (worst, time) = (amount(worst), seconds(time));
         line(
             "momentum",
-            format!("off by {worst:.1e} kg m/s at worst, at {} s", short(time)),
+            format!("off by {worst} kg m/s at worst, at {time}"),
         );
     }
-    for (key, text) in method(judgement) {
+    for (key, text) in lines_of(judgement) {
         line(key, text);
     }
     if let Some(within) = within {
+        let error = amount(judgement.worst.error);
         line(
             "within",
-            match is_within(judgement, within) {
-                true => format!("yes: {:.1e} m of {within:e} m", judgement.worst.error),
-                false => format!("no: {}", too_large(judgement, within)),
+            if is_within(judgement, within) {
+                format!("yes: {error} m of {within} m")
+            } else {
+                format!("no: {}", too_large(judgement, within))
             },
         );
     }
@@ -54,34 +57,36 @@ pub fn is_within(judgement: &Judgement, within: f64) -> bool {
 
 /// Says by how much a file misses `within` (m).
 pub fn too_large(judgement: &Judgement, within: f64) -> String {
+    let error = judgement.worst.error;
     match judgement.not_finite_at {
-        Some(t) if judgement.worst.error <= within => {
-            format!("its numbers are not finite from {} s on", short(t))
+        Some(t) if error <= within => {
+            format!("its numbers are not finite from {} on", seconds(t))
         }
         _ => format!(
-            "it errs by {:.1e} m at worst, more than {within:e} m",
-            judgement.worst.error
+            "it errs by {} m at worst, more than {within} m",
+            amount(error)
         ),
     }
 }
 
 /// The order of a program between runs with other steps: name, step (s) and error (m) of each.
-pub fn orders(runs: &[(String, f64, f64)]) -> String {
+pub fn orders(runs: &[(&str, f64, f64)]) -> String {
     let mut runs = runs.to_vec();
     runs.sort_by(|a, b| b.1.total_cmp(&a.1));
-    let pairs = runs.windows(2).filter(|pair| pair[0].1 > pair[1].1 * 1.001);
-    let line = |pair: &[(String, f64, f64)]| {
-        let [(a, long, coarse), (b, short_step, fine)] = pair else {
-            return String::new();
+    let line = |pair: &[(&str, f64, f64)]| {
+        let &[(a, long, coarse), (b, brief, fine)] = pair else {
+            return None;
         };
-        let order = (coarse / fine).ln() / (long / short_step).ln();
-        format!(
-            "order {order:.2} from {a} ({} s) to {b} ({} s)\n",
-            short(*long),
-            short(*short_step)
-        )
+        let order = (coarse / fine).ln() / (long / brief).ln();
+        let why = if order < MIN_ORDER {
+            ": the error does not fall with the step, so it is not that of the method"
+        } else {
+            ""
+        };
+        let steps = format!("{a} ({}) to {b} ({})", seconds(long), seconds(brief));
+        (long > 1.001 * brief).then(|| format!("order {order:.2} from {steps}{why}\n"))
     };
-    pairs.map(line).collect()
+    runs.windows(2).filter_map(line).collect()
 }
 
 /// Whether an error is large enough to tell an order by.
@@ -96,13 +101,12 @@ fn states(judgement: &Judgement) -> String {
     } else {
         "positions only"
     };
-    let until = short(judgement.until);
-    let mut text = format!("{judged} states to {until} s, {kind}");
+    let mut text = format!("{judged} states to {}, {kind}", seconds(judgement.until));
     if judged < states {
         text += &format!("; {} later ones are not judged", states - judged);
     }
     if let Some(t) = judgement.not_finite_at {
-        text += &format!("; its numbers are not finite from {} s on", short(t));
+        text += &format!("; its numbers are not finite from {} on", seconds(t));
     }
     text
 }
@@ -111,34 +115,40 @@ fn states(judgement: &Judgement) -> String {
 pub fn difference(start: &Difference) -> String {
     match start {
         Difference::Later(t) => {
-            format!("its first state is at {} s, so that of the scene is not compared", short(*t))
+            format!("its first state is at {}: that of the scene is at 0 s", seconds(*t))
         }
         Difference::Order => {
-            "its particles are those of the scene in another order: a3 scenes --print NAME --list tells theirs".into()
+            "its particles are those of the scene in another order: see a3 scenes --print NAME --list".into()
         }
         Difference::Unit(unit) => format!("its positions are in {unit}: they must be in m"),
         Difference::Axes => "y and z are exchanged: in a3, y is up".into(),
         Difference::Positions(count, (i, far)) => format!(
-            "{count} particles do not start where the scene does: particle {i} is {far:.1e} m away"
+            "{count} {} not where the scene starts: particle {i} is {} m away",
+            if *count == 1 { "particle is" } else { "particles are" },
+            amount(*far)
         ),
         Difference::Velocities(i, far) => format!(
-            "the velocities are not those of the scene: that of particle {i} differs by {far:.1e} m/s"
+            "the velocities are not those of the scene: that of particle {i} differs by {} m/s",
+            amount(*far)
         ),
     }
 }
 
 fn error(judgement: &Judgement) -> String {
     let worst = judgement.worst;
-    let mut text = format!("{:.1e} m at worst, at {} s", worst.error, short(worst.time));
+    let mut text = format!(
+        "{} m at worst, at {}",
+        amount(worst.error),
+        seconds(worst.time)
+    );
     if !is_resolved(judgement) {
-        text += &format!(
-            ": no more than the reference can tell, which is known to {:.0e} m",
-            judgement.floor
-        );
+        let floor = judgement.floor;
+        text += &format!(": as good as exact, for the reference itself is known to {floor:.0e} m");
     } else if worst.distance > worst.error * 1.001 {
         text += &format!(
-            "; particle {} is farthest, {:.1e} m from its place",
-            worst.particle, worst.distance
+            "; particle {} is farthest, {} m from its place",
+            worst.particle,
+            amount(worst.distance)
         );
     }
     text
@@ -148,137 +158,37 @@ fn in_time(judgement: &Judgement) -> String {
     let last = judgement.errors.len() - 1;
     let at = |k: usize| {
         let (time, error) = judgement.errors[k * last / TIMES];
-        format!("{error:.1e} m at {} s", short(time))
+        format!("{} m at {}", amount(error), seconds(time))
     };
     (1..=TIMES).map(at).collect::<Vec<_>>().join(", ")
 }
 
 fn energy_words(Drift { worst, time, end }: Drift, kinetic: f64) -> String {
-    let mut text = format!(
-        "off by {worst:.1e} J at worst, at {} s; {end:+.1e} J at the end",
-        short(time)
-    );
-    if kinetic > 0.0 {
-        text += &format!(
-            ", {:.1e} of the largest kinetic energy",
-            end.abs() / kinetic
-        );
-    }
-    text
-}
-
-/// Says which method a file agrees with, in lines with their keys.
-fn method(judgement: &Judgement) -> Vec<(&'static str, String)> {
-    let found = &judgement.found;
-    let [longest, shortest] = found.steps.map(short);
-    let Some(agreement) = &found.found else {
-        if !judgement.was_searched {
-            let why = "its times are no multiples of a step: --step H compares it with all solvers";
-            return vec![("method", why.into())];
-        }
-        let steps = if longest == shortest {
-            format!("a step of {longest} s")
-        } else {
-            format!("steps of {longest} to {shortest} s")
-        };
-        let mut lines = vec![("method", format!("agrees with none at {steps}"))];
-        if let Some(nearest) = &found.nearest {
-            let Agreement { compared, .. } = nearest;
-            lines.push((
-                "nearest",
-                format!(
-                    "{}, {:.1e} m away at worst",
-                    way(nearest),
-                    compared.distance
-                ),
-            ));
-        }
-        if let Some(suspect) = &found.suspect {
-            let away = suspect.compared.distance;
-            lines.push((
-                "suspect",
-                format!("{}, only {away:.1e} m away", way(suspect)),
-            ));
-            lines.extend(question(suspect).map(|question| ("question", question)));
-        }
-        return lines;
+    let sign = if end < 0.0 { "too little" } else { "too much" };
+    let share = if kinetic > 0.0 {
+        let percent = amount(100.0 * end.abs() / kinetic);
+        format!(", {percent} % of the largest kinetic energy")
+    } else {
+        String::new()
     };
-    let mut text = format!(
-        "agrees with {} to {:.0e} m",
-        way(agreement),
-        agreement.compared.distance
-    );
-    if let Some(until) = agreement.until {
-        text += &format!(" until {} s, and then with none", short(until));
-    }
-    let mut lines = vec![("method", text)];
-    if let [first, ..] = &found.also[..] {
-        let others: Vec<_> = found
-            .also
-            .iter()
-            .take(MAX_OTHERS)
-            .map(|other| other.trial.way.title())
-            .collect();
-        let more = found.also.len() - others.len();
-        let more = if more > 0 {
-            format!(" and {more} more")
-        } else {
-            String::new()
-        };
-        let same = if first.step == agreement.step {
-            ""
-        } else {
-            " at other steps"
-        };
-        lines.push(("also", format!("with {}{more}{same}", others.join(", "))));
-    }
-    lines.extend(question(agreement).map(|question| ("question", question)));
-    if let Some(apart) = agreement.compared.velocities {
-        let speed = agreement.compared.moved / judgement.until;
-        if apart > 1e-6 * speed
-            && agreement.until.is_none()
-            && agreement.compared.distance < 1e-3 * apart * agreement.step
-        {
-            lines.push((
-                "velocity",
-                format!("differs from that method's by up to {apart:.1e} m/s"),
-            ));
-        }
-    }
-    lines
+    format!(
+        "off by {} J at worst, at {}; {} J {sign} at the end{share}",
+        amount(worst),
+        seconds(time),
+        amount(end.abs())
+    )
 }
 
-/// A method with its step and its mistake.
-fn way(agreement: &Agreement) -> String {
-    let trial = agreement.trial;
-    let mut text = format!("{} at {} s", trial.way.title(), short(agreement.step));
-    if let Some(mistake) = trial.way.mistake() {
-        text += &format!(", but with {},", mistake.words());
+/// A quantity with two digits, in plain decimals where these are few.
+pub fn amount(value: f64) -> String {
+    if value == 0.0 || (0.01..1000.0).contains(&value.abs()) {
+        short(value, 2).to_string()
+    } else {
+        format!("{value:.1e}")
     }
-    match trial.start {
-        Start::Scene => {}
-        Start::Row(0) => text += ", from its own first state on,",
-        Start::Row(_) => text += ", but for the first step,",
-        Start::Ahead => text += ", but a step later in each row,",
-        Start::Behind => text += ", but a step earlier in each row,",
-    }
-    text
 }
 
-/// Question to the author of a program that agrees so.
-fn question(agreement: &Agreement) -> Option<String> {
-    let of_start = match agreement.trial.start {
-        Start::Scene | Start::Row(0) => None,
-        Start::Row(_) => Some(
-            "does the first step take a force, a position or a velocity from before the start?",
-        ),
-        Start::Ahead => Some("is the first row written after the first step?"),
-        Start::Behind => Some("is the start written twice?"),
-    };
-    agreement.trial.way.question().or(of_start).map(Into::into)
-}
-
-/// A number with few digits.
-fn short(value: f64) -> f64 {
-    crate::base::rounding::short(value, 6)
+/// A time in seconds, with few digits.
+pub fn seconds(time: f64) -> String {
+    format!("{} s", short(time, 6))
 }
