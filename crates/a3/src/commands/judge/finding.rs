@@ -1,14 +1,12 @@
 //! The method that a file agrees with, in words.
 
 use super::judgement::Judgement;
-use super::search::Agreement;
+use super::search::{Agreement, MIN_APART};
 use super::trial::Start;
 use super::words::{amount, seconds};
 
 /// Largest number of methods or mistakes that are named beside the one that a file agrees with.
 const MAX_OTHERS: usize = 3;
-/// Least difference of velocities, over the speed, of a file whose positions agree.
-const MIN_APART: f64 = 1e-3;
 
 /// Says which method a file agrees with, in lines with their keys.
 pub fn lines_of(judgement: &Judgement) -> Vec<(&'static str, String)> {
@@ -39,13 +37,16 @@ fn found(judgement: &Judgement, agreement: &Agreement) -> Vec<(&'static str, Str
     );
     let mut lines = vec![("method", text)];
     lines.extend(others(agreement, &judgement.found.also));
-    let also = judgement.found.also.iter().take(MAX_OTHERS);
-    let mut questions: Vec<_> = [agreement]
+    let mut questions: Vec<_> = vec![];
+    for asked in [agreement]
         .into_iter()
-        .chain(also)
+        .chain(&judgement.found.also)
         .filter_map(question)
-        .collect();
-    questions.dedup();
+    {
+        if !questions.contains(&asked) && questions.len() < MAX_OTHERS {
+            questions.push(asked);
+        }
+    }
     lines.extend(
         questions
             .into_iter()
@@ -66,16 +67,21 @@ fn found(judgement: &Judgement, agreement: &Agreement) -> Vec<(&'static str, Str
 
 /// Names others with which a file agrees as well: other mistakes, or other methods.
 fn others(agreement: &Agreement, also: &[Agreement]) -> Option<(&'static str, String)> {
-    let own = agreement.trial.way;
-    let mut names: Vec<_> = also
-        .iter()
-        .map(|other| other.trial.way)
-        .filter_map(|way| match (own.mistake(), way.mistake()) {
-            (Some(own), Some(mistake)) => (own != mistake).then_some(mistake.words()),
-            _ => (own.title() != way.title()).then_some(way.title()),
-        })
-        .collect();
-    names.dedup();
+    let own = agreement.trial;
+    let mut names: Vec<_> = vec![];
+    for other in also.iter().map(|other| other.trial) {
+        let name = match (own.way.mistake(), other.way.mistake()) {
+            (Some(mistake), Some(other)) if mistake == other => continue,
+            (Some(_), Some(other)) => format!("with {}", other.words()),
+            _ if other.way.title() != own.way.title() => other.way.title().to_owned(),
+            _ => format!("the same{}", since(other.start)),
+        };
+        if !names.contains(&name)
+            && (other.way.title(), other.start) != (own.way.title(), own.start)
+        {
+            names.push(name);
+        }
+    }
     let more = names.len().saturating_sub(MAX_OTHERS);
     names.truncate(MAX_OTHERS);
     let more = if more > 0 {
@@ -83,13 +89,8 @@ fn others(agreement: &Agreement, also: &[Agreement]) -> Option<(&'static str, St
     } else {
         String::new()
     };
-    let with = if own.mistake().is_some() { "with " } else { "" };
-    (!names.is_empty()).then(|| {
-        (
-            "or",
-            format!("{with}{}{more}, which make the same here", names.join(", ")),
-        )
-    })
+    let same = "which cannot be told apart here";
+    (!names.is_empty()).then(|| ("or", format!("{}{more}: {same}", names.join("; "))))
 }
 
 fn not_found(judgement: &Judgement) -> Vec<(&'static str, String)> {
@@ -127,7 +128,6 @@ fn way(agreement: &Agreement) -> String {
         "explicit trapezoid",
         "explicit midpoint",
         "implicit midpoint",
-        "classical",
     ];
     let article = if has_article.iter().any(|begin| title.starts_with(begin)) {
         "the "
@@ -138,14 +138,22 @@ fn way(agreement: &Agreement) -> String {
     if let Some(mistake) = trial.way.mistake() {
         text += &format!(", but with {},", mistake.words());
     }
-    text += match trial.start {
-        Start::Scene => "",
-        Start::Row(0) => ", from its own first state on,",
-        Start::Row(_) => ", but for the first step,",
-        Start::Ahead => ", but a step later in each row,",
-        Start::Behind => ", but a step earlier in each row,",
-    };
+    let since = since(trial.start);
+    if !since.is_empty() {
+        text += &format!("{since},");
+    }
     text
+}
+
+/// Where the agreement begins.
+fn since(start: Start) -> &'static str {
+    match start {
+        Start::Scene => "",
+        Start::Row(0) => ", from its own first state on",
+        Start::Row(_) => ", but for the first step",
+        Start::Ahead => ", but a step later in each row",
+        Start::Behind => ", but a step earlier in each row",
+    }
 }
 
 /// Question to the author of a program that agrees so.

@@ -27,11 +27,24 @@ impl Grid {
         let gaps = times.windows(2).map(|pair| pair[1] - pair[0]);
         let gaps = gaps.chain(times.first().copied());
         let shortest = gaps.filter(|gap| *gap > 0.0).reduce(f64::min)?;
-        (1..=MAX_PARTS).find_map(|parts| Self::near(times, rounding, shortest / f64::from(parts)))
+        // Times with few digits may be exact.
+        [0.0, rounding].into_iter().find_map(|rounding| {
+            let guesses = (1..=MAX_PARTS).map(|parts| shortest / f64::from(parts));
+            guesses
+                .into_iter()
+                .find_map(|guess| Self::near(times, rounding, guess))
+        })
     }
 
     /// Times as multiples of a known step (s).
     pub fn of_step(times: &[f64], rounding: f64, step: f64) -> Option<Self> {
+        let known = [0.0, rounding].into_iter();
+        known
+            .into_iter()
+            .find_map(|rounding| Self::of_known(times, rounding, step))
+    }
+
+    fn of_known(times: &[f64], rounding: f64, step: f64) -> Option<Self> {
         let within = |(t, n): (&f64, &u64)| (t - *n as f64 * step).abs() <= tolerance(*t, rounding);
         let numbers: Vec<_> = times.iter().map(|t| (t / step).round() as u64).collect();
         let fits =
@@ -106,6 +119,8 @@ mod tests {
             let grid = Grid::of(times, rounding).unwrap();
             assert_eq!((grid.step, grid.numbers[499]), (1.0 / 60.0, 499));
         }
+        // Times of two digits, which would be rounded by up to half a step.
+        assert_eq!(Grid::of(&[0.01, 0.02, 0.03], 0.005).unwrap().step, 0.01);
         let uneven = Grid::of(&[0.0, 0.1, 0.25, 0.6], 0.0).unwrap();
         assert_eq!((uneven.step, uneven.numbers), (0.05, vec![0, 2, 5, 12]));
         assert_eq!(Grid::of(&[0.0, 0.1, 0.1 + 0.1 * 2f64.sqrt()], 0.0), None);

@@ -6,11 +6,14 @@ use a3_core::{Model, Network, Scene};
 use super::plain::Plain;
 use super::rows::{Rows, distance, farthest};
 use super::search::{Match, search};
-use super::start::{Difference, difference};
+use super::start::{Difference, difference, with_y_up};
 use super::trial::Judged;
 use super::truth::{Truth, frame_at};
 use crate::base::failure::Failure;
 use crate::files::states::States;
+
+/// Ratio of the error with the axes y and z exchanged to that without, below which they are.
+const MUCH_LESS: f64 = 0.1;
 
 /// Scene with all that judgements of its files share.
 pub struct Course<'a> {
@@ -117,15 +120,16 @@ pub fn judge(
         plain: course.plain,
         rows: &rows,
         motion: judgement.motion,
+        step: course.step,
     };
     let at_start = matches!(judgement.start, None | Some(Difference::Later(_)));
-    let Some(found) = search(&judged, at_start, course.step.is_some()) else {
+    let Some(found) = search(&judged, at_start) else {
         return Ok(None);
     };
     let grid = rows.grid.as_ref();
     let agreed = found.found.map(|agreement| agreement.step);
     judgement.step = agreed.or(course.step).or(grid.map(|grid| grid.step));
-    judgement.was_searched = grid.is_some();
+    judgement.was_searched = grid.is_some() || course.step.is_some();
     judgement.found = found;
     Ok(Some(judgement))
 }
@@ -141,6 +145,7 @@ fn measured(scene: &Scene, states: &States, rows: &Rows, reference: &Reference) 
         distance: 0.0,
     };
     let (mut motion, n) = (0.0, 3 * model.particles());
+    let mut turned = [0.0f64; 2];
     let network = conserving(model).filter(|_| rows.velocities(0).is_some());
     let (mut energy, mut momentum, mut kinetic) = (Drift::default(), Drift::default(), 0.0);
     for (k, &time) in rows.times.iter().enumerate() {
@@ -148,6 +153,9 @@ fn measured(scene: &Scene, states: &States, rows: &Rows, reference: &Reference) 
         let [x, v] = reference.motion(model, at);
         let error = distance(&x, rows.positions(k));
         motion = f64::max(motion, distance(&x, &scene.state[..n]));
+        for (sign, turned) in [-1.0, 1.0].into_iter().zip(&mut turned) {
+            *turned = turned.max(distance(&x, &with_y_up(rows.positions(k), sign)));
+        }
         errors.push((time, error));
         if error > worst.error {
             let (particle, distance) = farthest(&x, rows.positions(k));
@@ -166,12 +174,17 @@ fn measured(scene: &Scene, states: &States, rows: &Rows, reference: &Reference) 
             kinetic = f64::max(kinetic, right.kinetic);
         }
     }
+    let turned = turned[0].min(turned[1]);
     Judgement {
         states: states.times.len(),
         judged: rows.count,
         until: rows.until(),
         has_velocities: states.velocities.is_some(),
-        start: difference(scene, rows),
+        start: if turned < MUCH_LESS * worst.error {
+            Some(Difference::Axes)
+        } else {
+            difference(scene, rows)
+        },
         errors,
         worst,
         floor: reference.floor.position,

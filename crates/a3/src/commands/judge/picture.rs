@@ -40,6 +40,10 @@ pub fn draw(
     let studies = [study];
     let mut chart = picture::chart(&studies, &data, &all, metric, timed, &options.what);
     picture::keep_best(&mut chart, &all, scene);
+    let marks = if timed { "stars" } else { "lines" };
+    chart.subtitle = format!(
+        "{until} s of motion; each point is a run of a solver with another step or tolerance, and {marks} are the files"
+    );
     for problem in &mut chart.problems {
         problem.marks = files
             .iter()

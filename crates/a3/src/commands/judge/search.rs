@@ -26,6 +26,8 @@ const MAX_WORK: f64 = 5e7;
 const MIN_PART: (usize, f64) = (10, 1e5);
 /// Largest number of particles of networks that are swept particle by particle.
 const MAX_SWEPT: usize = 500;
+/// Least difference of velocities, over the speed, of a file whose positions alone agree.
+pub const MIN_APART: f64 = 1e-3;
 /// Ratio of the distance of a way with a mistake to that of the nearest method, below which it is
 /// named.
 const MUCH_NEARER: f64 = 0.1;
@@ -63,23 +65,27 @@ struct Search<'a> {
     spacing: f64,
     /// Longest agreement up to some row.
     part: Option<Agreement>,
+    /// Agreements of positions alone, in a file whose velocities are others.
+    positions: Vec<Agreement>,
     /// Largest number of steps between grid points that was tried.
     finest: u64,
 }
 
 /// Finds the method that the rows agree with. `None` if the command was interrupted. `at_start`
 /// tells whether the first row is the start of the scene.
-pub fn search(judged: &Judged, at_start: bool, one_step: bool) -> Option<Match> {
-    let Some(grid) = &judged.rows.grid else {
+pub fn search(judged: &Judged, at_start: bool) -> Option<Match> {
+    let grid = judged.rows.grid.as_ref().map(|grid| grid.step);
+    let Some(spacing) = grid.or(judged.step) else {
         return Some(Match::default());
     };
     let mut search = Search {
         judged,
-        spacing: grid.step,
+        spacing,
         part: None,
+        positions: vec![],
         finest: 1,
     };
-    let parts: &[u64] = if one_step { &[1] } else { &PARTS };
+    let parts: &[u64] = if judged.step.is_some() { &[1] } else { &PARTS };
     let correct = search.correct();
     let slips = search.slips();
     let starts = [
@@ -102,9 +108,10 @@ pub fn search(judged: &Judged, at_start: bool, one_step: bool) -> Option<Match> 
             });
         }
     }
-    if search.part.is_some() {
+    let positions = search.positions.first().copied();
+    if let Some(found) = positions.or(search.part) {
         return Some(Match {
-            found: search.part,
+            found: Some(found),
             ..search.blank()
         });
     }
@@ -215,6 +222,7 @@ impl Search<'_> {
         if let Some(first) = first {
             best[..=first].rotate_right(1);
         }
+        best.retain(|agreement| agreement.compared.distance <= CLEARLY * least + rounding);
         Some(best)
     }
 
@@ -230,7 +238,7 @@ impl Search<'_> {
         let rows = self.judged.rows;
         let mut agreement = Agreement {
             trial,
-            step: self.spacing / trial.parts as f64,
+            step: self.judged.step_of(trial)?,
             compared,
             until: None,
         };
@@ -243,7 +251,17 @@ impl Search<'_> {
         if compared.rows == rows.len() {
             // A single step from a row of the file tells nothing, nor does a file of few digits in
             // which nothing moves.
-            return (clear > 1.0 && compared.rows != since + 1).then_some(agreement);
+            if clear <= 1.0 || matches!(trial.start, Start::Row(row) if compared.rows <= row + 2) {
+                return None;
+            }
+            if compared
+                .velocities
+                .is_some_and(|[apart, speed]| apart > MIN_APART * speed)
+            {
+                self.positions.push(agreement);
+                return None;
+            }
+            return Some(agreement);
         }
         let longest = self.part.map_or(0, |part| part.compared.rows);
         if compared.rows > longest.max(since + MIN_PART.0) && clear > MIN_PART.1 {

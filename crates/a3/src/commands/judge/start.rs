@@ -20,7 +20,7 @@ pub enum Difference {
     Order,
     /// The positions are those of the scene in another unit.
     Unit(&'static str),
-    /// The axes y and z are exchanged.
+    /// The axes y and z are exchanged, at all times.
     Axes,
     /// Number of particles that are elsewhere, and the farthest of them with its distance (m).
     Positions(usize, (usize, f64)),
@@ -42,8 +42,6 @@ pub fn difference(scene: &Scene, rows: &Rows) -> Option<Difference> {
             Difference::Order
         } else if let Some(unit) = unit(start, own, near) {
             Difference::Unit(unit)
-        } else if are_turned(start, own, near) {
-            Difference::Axes
         } else {
             let away = |i: &usize| {
                 let squares = (0..3).map(|axis| (start[axis * n + i] - own[axis * n + i]).powi(2));
@@ -101,16 +99,14 @@ fn unit(start: &[f64], own: &[f64], near: f64) -> Option<&'static str> {
     found.map(|(name, _)| name)
 }
 
-/// Whether z is up, to the front or to the back, in place of y.
-fn are_turned(start: &[f64], own: &[f64], near: f64) -> bool {
-    let n = start.len() / 3;
-    [1.0, -1.0].into_iter().any(|sign| {
-        let turned: Vec<_> = own[..n]
-            .iter()
-            .chain(&own[2 * n..])
-            .copied()
-            .chain(own[n..2 * n].iter().map(|y| sign * y))
-            .collect();
-        distance(start, &turned) <= near
-    })
+/// Positions whose axis z, which is up, becomes y; `sign` tells where y points.
+pub fn with_y_up(x: &[f64], sign: f64) -> Vec<f64> {
+    let n = x.len() / 3;
+    let depth = x[n..2 * n].iter().map(|y| sign * y);
+    x[..n]
+        .iter()
+        .chain(&x[2 * n..])
+        .copied()
+        .chain(depth)
+        .collect()
 }

@@ -104,6 +104,8 @@ pub struct Judged<'a> {
     pub rows: &'a Rows<'a>,
     /// Largest distance that the scene moves until the last row (m).
     pub motion: f64,
+    /// Step of the program (s), if it is known.
+    pub step: Option<f64>,
 }
 
 /// A run of a trial.
@@ -167,9 +169,7 @@ impl Judged<'_> {
         bound: &dyn Fn(f64) -> f64,
         work: &mut f64,
     ) -> Option<Compared> {
-        let grid = self.rows.grid.as_ref()?;
-        let step = grid.step / trial.parts as f64;
-        let (mut run, first, mut taken) = self.begin(trial, step)?;
+        let (mut run, first, mut taken) = self.begin(trial)?;
         let [start, _] = run.motion();
         let mut compared = Compared {
             rows: first,
@@ -178,16 +178,24 @@ impl Judged<'_> {
             velocities: self.rows.velocities(0).map(|_| [0.0; 2]),
         };
         for k in first..self.rows.len() {
-            let steps = match (grid.numbers[k] * trial.parts, trial.start) {
-                (steps, Start::Ahead) => steps + 1,
-                (steps, Start::Behind) => steps.saturating_sub(1),
-                (steps, _) => steps,
+            let is_there = match (&self.rows.grid, &mut run) {
+                (Some(grid), run) => {
+                    let steps = match (grid.numbers[k] * trial.parts, trial.start) {
+                        (steps, Start::Ahead) => steps + 1,
+                        (steps, Start::Behind) => steps.saturating_sub(1),
+                        (steps, _) => steps,
+                    };
+                    let more = steps - taken;
+                    taken = steps;
+                    *work += self.price(trial.way) * more as f64;
+                    run.advance(more)
+                }
+                (None, Run::Method(run)) => run.advance_to(self.rows.times[k]).is_ok(),
+                (None, Run::Plain(_)) => return None,
             };
-            *work += self.price(trial.way) * (steps - taken) as f64;
-            if !run.advance(steps - taken) {
+            if !is_there {
                 break;
             }
-            taken = steps;
             let [x, v] = run.motion();
             let apart = distance(&x, self.rows.positions(k));
             let moved = compared.moved.max(distance(&x, &start));
@@ -208,10 +216,19 @@ impl Judged<'_> {
         Some(compared)
     }
 
-    /// Run of a trial with steps of this length (s), the first row that it shows, and the number of
-    /// steps from the start of the grid to its beginning.
-    fn begin(&self, trial: Trial, step: f64) -> Option<(Run<'_>, usize, u64)> {
+    /// Step of a trial (s): a part of that between grid points or, without a grid, the known one.
+    pub fn step_of(&self, trial: Trial) -> Option<f64> {
+        match &self.rows.grid {
+            Some(grid) => Some(grid.step / trial.parts as f64),
+            None => self.step,
+        }
+    }
+
+    /// Run of a trial, the first row that it shows, and the number of steps from the start of the
+    /// grid to its beginning.
+    fn begin(&self, trial: Trial) -> Option<(Run<'_>, usize, u64)> {
         let n = self.scene.model.particles();
+        let step = self.step_of(trial)?;
         let (row, taken) = match trial.start {
             Start::Row(row) if row < self.rows.len() => {
                 let grid = self.rows.grid.as_ref()?;

@@ -121,7 +121,7 @@ pub fn difference(start: &Difference) -> String {
             "its particles are those of the scene in another order: see a3 scenes --print NAME --list".into()
         }
         Difference::Unit(unit) => format!("its positions are in {unit}: they must be in m"),
-        Difference::Axes => "y and z are exchanged: in a3, y is up".into(),
+        Difference::Axes => "y and z are exchanged: in a3, y is up, and z points to the viewer".into(),
         Difference::Positions(count, (i, far)) => format!(
             "{count} {} not where the scene starts: particle {i} is {} m away",
             if *count == 1 { "particle is" } else { "particles are" },
@@ -190,5 +190,10 @@ pub fn amount(value: f64) -> String {
 
 /// A time in seconds, with few digits.
 pub fn seconds(time: f64) -> String {
-    format!("{} s", short(time, 6))
+    let time = short(time, 6);
+    if (1e-3..1e6).contains(&time) || time == 0.0 {
+        format!("{time} s")
+    } else {
+        format!("{time:e} s")
+    }
 }

@@ -34,8 +34,8 @@ pub fn read(text: &str, particles: usize) -> Result<Raw, String> {
         let cells: Vec<_> = split(row, separator).collect();
         if cells.len() != columns.len() {
             return Err(wrong(format!(
-                "it has {} columns, and the first line names {}",
-                cells.len(),
+                "it has {}, and the first line names {}",
+                counted(cells.len(), "column"),
                 columns.len()
             )));
         }
@@ -108,6 +108,11 @@ fn number(cell: &str) -> Result<f64, String> {
             format!("`{cell}` is no number")
         }
     })
+}
+
+/// Returns a number of things in words.
+fn counted(count: usize, thing: &str) -> String {
+    format!("{count} {thing}{}", if count == 1 { "" } else { "s" })
 }
 
 /// A row with the columns of its cells.
@@ -199,7 +204,8 @@ impl Layout {
             let count = last.map_or(0, |last| last.saturating_add(1) - first.min(last));
             if count != particles {
                 return Err(format!(
-                    "its first line names the {what} of {count} particles, and the scene has {particles}"
+                    "its first line names the {what} of {}, and the scene has {particles}",
+                    counted(count, "particle")
                 ));
             }
             for i in first..first + particles {
@@ -233,8 +239,9 @@ impl Layout {
         let i = number.checked_sub(self.first);
         match i.and_then(|i| seen.get_mut(i)) {
             None => Err(format!(
-                "there is no particle {number}: the scene has {} particles, and the first has the number {}",
-                self.particles, self.first
+                "there is no particle {number}: the scene has {}, and the first has the number {}",
+                counted(self.particles, "particle"),
+                self.first
             )),
             Some(true) => Err(format!("particle {number} is there twice at this time")),
             Some(seen) => {
@@ -249,7 +256,8 @@ impl Layout {
         let there = seen.iter().filter(|seen| **seen).count();
         match raw.times.last() {
             Some(t) if there != self.particles => Err(format!(
-                "t = {t} s has {there} particles, and the scene has {}",
+                "t = {t} s has {}, and the scene has {}",
+                counted(there, "particle"),
                 self.particles
             )),
             _ => Ok(()),

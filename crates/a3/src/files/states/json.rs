@@ -9,6 +9,7 @@ use super::build::Raw;
 
 /// States, or one state, as a file has them.
 #[derive(Deserialize)]
+#[serde(expecting = "a table with the keys t and x")]
 struct Record<'a> {
     #[serde(borrow, alias = "time", alias = "times")]
     t: &'a RawValue,
@@ -37,7 +38,7 @@ pub fn read(text: &str) -> Result<Raw, String> {
     }
     let mut raw = Raw::default();
     if text.trim_start().starts_with('[') {
-        let records: Vec<Record> = parsed(&text, "a list of states")?;
+        let records: Vec<Record> = parsed(&text, "list of states")?;
         for (k, record) in records.iter().enumerate() {
             add_state(&mut raw, record).map_err(|why| format!("state {k}: {why}"))?;
         }

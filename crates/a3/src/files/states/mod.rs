@@ -7,9 +7,10 @@ mod digits;
 mod json;
 mod npy;
 mod npz;
+mod parse;
 mod read;
 
 pub use build::States;
 #[cfg(test)]
-pub use read::parse;
+pub use parse::parse;
 pub use read::read;
