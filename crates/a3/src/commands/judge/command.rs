@@ -21,6 +21,9 @@ use crate::files::output;
 use crate::files::setup::Request;
 use crate::files::states::{States, read};
 
+/// Largest time that is judged (s).
+const MAX_TIME: f64 = 1000.0;
+
 /// Judges the files that the command line names.
 pub fn run(options: &Judge) -> Result<(), Failure> {
     interrupt::listen();
@@ -114,7 +117,9 @@ fn look_ahead(
 ) -> Result<Horizon, Failure> {
     bar.say("looking ahead  ".into());
     let ends = files.iter().filter_map(|(_, states)| states.times.last());
-    let last = ends.fold(0.0, |last: f64, end| last.max(*end));
+    let last = ends
+        .fold(0.0, |last: f64, end| last.max(*end))
+        .min(MAX_TIME);
     let last = options.until.map_or(last, |until| last.min(until));
     let found = horizon(scene, last, &interrupt::go_on).map_err(Failure::run)?;
     let found = found.ok_or_else(stopped)?;

@@ -7,7 +7,7 @@ use super::plain::Plain;
 use super::rows::{Rows, distance, farthest};
 use super::search::{Match, search};
 use super::start::{Difference, difference, with_y_up};
-use super::trial::Judged;
+use super::trial::{Judged, size};
 use super::truth::{Truth, frame_at};
 use crate::base::failure::Failure;
 use crate::files::states::States;
@@ -121,6 +121,7 @@ pub fn judge(
         rows: &rows,
         motion: judgement.motion,
         step: course.step,
+        size: size(scene),
     };
     let at_start = matches!(judgement.start, None | Some(Difference::Later(_)));
     let Some(found) = search(&judged, at_start) else {

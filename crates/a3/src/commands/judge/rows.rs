@@ -30,6 +30,11 @@ impl<'a> Rows<'a> {
         let count = states.times.iter().take_while(|t| **t <= end).count();
         let times = &states.times[..count];
         if times.last().is_none_or(|last| *last <= 0.0) {
+            if let Some(t) = states.not_finite_at {
+                return Err(format!(
+                    "its numbers are not finite from {t} s on, the first after the start"
+                ));
+            }
             return Err(format!(
                 "it has no state between 0 and {until} s: there is nothing to judge"
             ));

@@ -6,6 +6,7 @@ use super::mistake::Mistake;
 use super::plain::{Forces, Plain};
 use super::rows::{Rows, columns, distance};
 use super::scheme::{PlainRun, Scheme};
+use crate::base::interrupt;
 
 /// Largest distance of rows that agree, over the distance moved until then.
 const AGREEMENT: f64 = 1e-9;
@@ -13,6 +14,8 @@ const AGREEMENT: f64 = 1e-9;
 const ROUNDING: f64 = 1e-13;
 /// Largest distance of rows that agree, over the error of a coordinate by its digits.
 const DIGITS: f64 = 2.0;
+/// Largest work of a trial, in springs and particles that are visited.
+const MAX_WORK: f64 = 5e8;
 /// Work of a step of an implicit method, over an evaluation.
 const IMPLICIT_WORK: f64 = 25.0;
 
@@ -106,6 +109,15 @@ pub struct Judged<'a> {
     pub motion: f64,
     /// Step of the program (s), if it is known.
     pub step: Option<f64>,
+    /// Number of particles and springs, which an evaluation visits.
+    pub size: f64,
+}
+
+/// Number of particles and springs of a scene.
+pub fn size(scene: &Scene) -> f64 {
+    let network = scene.model.network();
+    let springs = network.map_or(0, |network| network.all_springs().count());
+    (scene.model.particles() + springs) as f64
 }
 
 /// A run of a trial.
@@ -151,14 +163,12 @@ impl Judged<'_> {
 
     /// Work of a step of a way: springs and particles that are visited.
     pub fn price(&self, way: Way) -> f64 {
-        let network = self.scene.model.network();
-        let springs = network.map_or(0, |network| network.all_springs().count());
-        let size = (self.scene.model.particles() + springs) as f64;
-        size * match way {
-            Way::Method(method) if method.is_implicit() => IMPLICIT_WORK,
-            Way::Method(method) => f64::from(method.evaluations.max(method.damped_evaluations)),
-            Way::Scheme(scheme, _) => scheme.evaluations(self.scene.model.particles()) as f64,
-        }
+        self.size
+            * match way {
+                Way::Method(method) if method.is_implicit() => IMPLICIT_WORK,
+                Way::Method(method) => f64::from(method.evaluations.max(method.damped_evaluations)),
+                Way::Scheme(scheme, _) => scheme.evaluations(self.scene.model.particles()) as f64,
+            }
     }
 
     /// Compares a trial with the rows until a row differs by more than `bound`, a function of the
@@ -169,6 +179,10 @@ impl Judged<'_> {
         bound: &dyn Fn(f64) -> f64,
         work: &mut f64,
     ) -> Option<Compared> {
+        let steps = self.rows.until() / self.step_of(trial)?;
+        if steps * self.price(trial.way) > MAX_WORK {
+            return None;
+        }
         let (mut run, first, mut taken) = self.begin(trial)?;
         let [start, _] = run.motion();
         let mut compared = Compared {
@@ -193,7 +207,7 @@ impl Judged<'_> {
                 (None, Run::Method(run)) => run.advance_to(self.rows.times[k]).is_ok(),
                 (None, Run::Plain(_)) => return None,
             };
-            if !is_there {
+            if !is_there || !interrupt::go_on() {
                 break;
             }
             let [x, v] = run.motion();

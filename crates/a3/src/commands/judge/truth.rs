@@ -8,8 +8,8 @@ use super::rows::Rows;
 use crate::base::failure::Failure;
 use crate::commands::chart::single::{precision, reference};
 
-/// Largest number of frames between two rows.
-const MAX_PARTS: u64 = 50;
+/// Largest number of coordinates in all frames of a reference.
+const MAX_NUMBERS: f64 = 2e6;
 /// Number of frames in a radian of the fastest mode, between which states are interpolated: eight
 /// data in four frames then err by 1e-12 of its amplitude.
 const FRAMES_PER_RADIAN: f64 = 10.0;
@@ -41,7 +41,7 @@ impl<'a> Truth<'a> {
         if let Some(known) = known {
             return Ok(Some(&self.references[known]));
         }
-        let frames = self.frames(rows);
+        let frames = self.frames(rows).map_err(Failure::usage)?;
         let precision = precision(self.scene, self.motion);
         let Some(made) = reference(self.scene, frames, Scope::default(), precision)? else {
             return Ok(None);
@@ -52,23 +52,31 @@ impl<'a> Truth<'a> {
 
     /// Frames at the times of rows or, if there is no such grid, so close together that states
     /// between them are interpolated accurately.
-    fn frames(&self, rows: &Rows) -> Frames {
+    fn frames(&self, rows: &Rows) -> Result<Frames, String> {
         let until = rows.until();
+        let most = MAX_NUMBERS / (3.0 * self.scene.model.particles().max(1) as f64);
         if let Some(grid) = &rows.grid {
             let part = grid.numbers.iter().copied().fold(0, gcd);
             let last = grid.numbers[grid.numbers.len() - 1];
             let count = last / part.max(1);
-            if count <= MAX_PARTS * rows.len() as u64 {
-                return Frames { until, count };
+            if count as f64 <= most {
+                return Ok(Frames { until, count });
             }
         }
         let modes = spectrum(self.scene.model.system(), 0.0, &self.scene.state);
         let fastest = modes.first().map_or(0.0, Mode::frequency);
         let rate = (FRAMES_PER_RADIAN * fastest).max(MIN_RATE);
-        Frames {
-            until,
-            count: (rate * until).ceil().max(4.0) as u64,
+        let count = (rate * until).ceil().max(4.0);
+        if count > most {
+            return Err(format!(
+                "its times are not equally spaced, and {until} s are too long to interpolate between them: write states \
+                 at equal distances, or judge less with --until"
+            ));
         }
+        Ok(Frames {
+            until,
+            count: count as u64,
+        })
     }
 }
 
