@@ -1,9 +1,9 @@
 //! The method that a file agrees with, in words.
 
 use super::judgement::Judgement;
+use super::quantity::{amount, seconds};
 use super::search::{Agreement, MIN_APART};
 use super::trial::Start;
-use super::words::{amount, seconds};
 
 /// Largest number of methods or mistakes that are named beside the one that a file agrees with.
 const MAX_OTHERS: usize = 3;

@@ -8,6 +8,7 @@ mod judgement;
 mod mistake;
 mod picture;
 mod plain;
+mod quantity;
 mod rows;
 mod scheme;
 mod search;

@@ -1,5 +1,5 @@
-//! Masses and springs alone, stepped by short programs of the kind that courses ask for. They share
-//! no code with the solvers, and make the usual mistakes on request.
+//! Masses and springs alone, with the forces of a course's program. They share no code with the
+//! solvers, and make the usual mistakes on request.
 
 use a3_core::{Scene, SpringKind};
 use a3_scenes::List;

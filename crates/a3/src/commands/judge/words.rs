@@ -2,8 +2,8 @@
 
 use super::finding::lines_of;
 use super::judgement::{Drift, Judgement};
+use super::quantity::{amount, seconds};
 use super::start::Difference;
-use crate::base::rounding::short;
 
 /// Number of times whose errors are printed.
 const TIMES: usize = 5;
@@ -177,23 +177,4 @@ fn energy_words(Drift { worst, time, end }: Drift, kinetic: f64) -> String {
         seconds(time),
         amount(end.abs())
     )
-}
-
-/// A quantity with two digits, in plain decimals where these are few.
-pub fn amount(value: f64) -> String {
-    if value == 0.0 || (0.01..1000.0).contains(&value.abs()) {
-        short(value, 2).to_string()
-    } else {
-        format!("{value:.1e}")
-    }
-}
-
-/// A time in seconds, with few digits.
-pub fn seconds(time: f64) -> String {
-    let time = short(time, 6);
-    if (1e-3..1e6).contains(&time) || time == 0.0 {
-        format!("{time} s")
-    } else {
-        format!("{time:e} s")
-    }
 }
