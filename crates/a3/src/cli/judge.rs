@@ -30,12 +30,12 @@ pub struct Judge {
     /// Fail, with exit code 1, if the positions of a file err by more than this at any time, in m
     #[arg(long, value_name = "E", value_parser = error, allow_negative_numbers = true)]
     pub within: Option<f64>,
-    /// Step of the program in seconds, if its rows are not one step, or a whole number of steps
-    /// that divides a row, apart
+    /// Step of the program in seconds; by default, the distance of the states and whole parts of it
+    /// are tried
     #[arg(long, value_name = "H", value_parser = step, allow_negative_numbers = true)]
     pub step: Option<f64>,
-    /// Judge the states up to this time, in seconds; by default, as long as errors are meaningful on
-    /// this scene
+    /// Judge the states up to this time, in seconds; by default, as long as errors are meaningful
+    /// on this scene
     #[arg(long, value_name = "T", value_parser = horizon, allow_negative_numbers = true)]
     pub until: Option<f64>,
     /// Computing time of each file's run in seconds, in the order of the files, such as 0.8,1.6

@@ -122,6 +122,7 @@ pub fn judge(
         motion: judgement.motion,
         step: course.step,
         size: size(scene),
+        radius: scene.extent().1,
     };
     let at_start = matches!(judgement.start, None | Some(Difference::Later(_)));
     let Some(found) = search(&judged, at_start) else {

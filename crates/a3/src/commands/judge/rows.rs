@@ -39,7 +39,7 @@ impl<'a> Rows<'a> {
                 "it has no state between 0 and {until} s: there is nothing to judge"
             ));
         }
-        let rounding = states.rounding[0];
+        let rounding = states.digits[0].rounding(until);
         let grid = match step {
             Some(step) => Grid::of_step(times, rounding, step),
             None => Grid::of(times, rounding),
@@ -82,9 +82,11 @@ impl<'a> Rows<'a> {
         Some(&rows[self.kept[k]])
     }
 
-    /// Largest error of the positions by the digits of the file (m).
-    pub fn rounding(&self) -> f64 {
-        self.states.rounding[1]
+    /// Largest error of the positions of row k (m) by the digits of the file.
+    pub fn rounding(&self, k: usize) -> f64 {
+        let row = self.positions(k).iter();
+        let largest = row.fold(0.0, |most: f64, x| most.max(x.abs()));
+        self.states.digits[1].rounding(largest)
     }
 
     /// The last time (s).

@@ -107,6 +107,10 @@ pub fn search(judged: &Judged, at_start: bool) -> Option<Match> {
                 ..search.blank()
             });
         }
+        // So many rows do not agree by chance: the rest differs by rounding errors that grow.
+        if search.part.is_some() {
+            break;
+        }
     }
     let positions = search.positions.first().copied();
     if let Some(found) = positions.or(search.part) {
@@ -191,7 +195,7 @@ impl Search<'_> {
     ) -> Option<Vec<Agreement>> {
         let (mut work, mut best, mut more) = (0.0, vec![], MORE_PARTS);
         for &parts in parts {
-            let is_found = !best.is_empty();
+            let is_found = !best.is_empty() || self.part.is_some();
             if is_found && more == 0 {
                 break;
             }
@@ -215,7 +219,7 @@ impl Search<'_> {
             }
         }
         let least = least(&best);
-        let rounding = self.judged.rounding();
+        let rounding = self.judged.rounding(0);
         let first = best
             .iter()
             .position(|a| a.compared.distance <= CLEARLY * least + rounding);
@@ -228,12 +232,12 @@ impl Search<'_> {
 
     /// Whether one of several ways agrees much better than all others.
     fn are_better(&self, ways: &[Agreement], others: &[Agreement]) -> bool {
-        CLEARLY * least(ways) + self.judged.rounding() < least(others)
+        CLEARLY * least(ways) + self.judged.rounding(0) < least(others)
     }
 
     /// Agreement of a trial with all rows. One with many of them is remembered.
     fn agreement(&mut self, trial: Trial, work: &mut f64) -> Option<Agreement> {
-        let bound = |moved: f64| self.judged.tolerance(moved);
+        let bound = |k: usize, moved: f64| self.judged.tolerance(k, moved);
         let compared = self.judged.compare(trial, &bound, work)?;
         let rows = self.judged.rows;
         let mut agreement = Agreement {
@@ -243,7 +247,10 @@ impl Search<'_> {
             until: None,
         };
         let moved = compared.moved.max(self.judged.motion);
-        let clear = moved / self.judged.tolerance(compared.moved);
+        let clear = moved
+            / self
+                .judged
+                .tolerance(compared.rows.saturating_sub(1), compared.moved);
         let since = match trial.start {
             Start::Row(row) => row + 1,
             _ => 0,
@@ -289,7 +296,7 @@ impl Search<'_> {
                     parts,
                     start: Start::Scene,
                 };
-                let compared = self.judged.compare(trial, &|_| least, &mut work);
+                let compared = self.judged.compare(trial, &|_, _| least, &mut work);
                 let whole = compared.filter(|compared| compared.rows == self.judged.rows.len());
                 if let Some(compared) = whole.filter(|compared| compared.distance < least) {
                     least = compared.distance;

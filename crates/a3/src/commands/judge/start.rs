@@ -35,7 +35,7 @@ pub fn difference(scene: &Scene, rows: &Rows) -> Option<Difference> {
     }
     let n = scene.model.particles();
     let (start, own) = (&scene.state[..3 * n], rows.positions(0));
-    let near = TOLERANCE * scene.extent().1 + 2.0 * rows.rounding();
+    let near = TOLERANCE * scene.extent().1 + 2.0 * rows.rounding(0);
     let far = farthest(start, own);
     if far.1 > near {
         return Some(if is_order(start, own, near) {
@@ -58,7 +58,7 @@ pub fn difference(scene: &Scene, rows: &Rows) -> Option<Difference> {
         .iter()
         .chain(velocities)
         .fold(1.0, |most: f64, v| most.max(v.abs()));
-    (far > 1e-6 * largest + 2.0 * rows.rounding()).then_some(Difference::Velocities(i, far))
+    (far > 1e-6 * largest + 2.0 * rows.rounding(0)).then_some(Difference::Velocities(i, far))
 }
 
 /// Whether the positions are those of the scene in another order.

@@ -111,6 +111,8 @@ pub struct Judged<'a> {
     pub step: Option<f64>,
     /// Number of particles and springs, which an evaluation visits.
     pub size: f64,
+    /// Radius of the scene (m).
+    pub radius: f64,
 }
 
 /// Number of particles and springs of a scene.
@@ -151,14 +153,14 @@ impl Run<'_> {
 }
 
 impl Judged<'_> {
-    /// Largest distance of a row that agrees (m), after a distance moved (m).
-    pub fn tolerance(&self, moved: f64) -> f64 {
-        AGREEMENT * moved + self.rounding()
+    /// Largest distance of row k (m) that agrees, after a distance moved (m).
+    pub fn tolerance(&self, k: usize, moved: f64) -> f64 {
+        AGREEMENT * moved + self.rounding(k)
     }
 
-    /// Distance of rows by rounding alone (m).
-    pub fn rounding(&self) -> f64 {
-        ROUNDING * self.scene.extent().1 + DIGITS * self.rows.rounding()
+    /// Distance of row k by rounding alone (m).
+    pub fn rounding(&self, k: usize) -> f64 {
+        ROUNDING * self.radius + DIGITS * self.rows.rounding(k)
     }
 
     /// Work of a step of a way: springs and particles that are visited.
@@ -171,12 +173,12 @@ impl Judged<'_> {
             }
     }
 
-    /// Compares a trial with the rows until a row differs by more than `bound`, a function of the
-    /// distance moved (m). `None` if the trial is not possible. `work` receives its price.
+    /// Compares a trial with the rows until a row differs by more than `bound`, a function of its
+    /// number and of the distance moved (m). `None` if the trial is not possible. `work` receives its price.
     pub fn compare(
         &self,
         trial: Trial,
-        bound: &dyn Fn(f64) -> f64,
+        bound: &dyn Fn(usize, f64) -> f64,
         work: &mut f64,
     ) -> Option<Compared> {
         let steps = self.rows.until() / self.step_of(trial)?;
@@ -214,7 +216,7 @@ impl Judged<'_> {
             let apart = distance(&x, self.rows.positions(k));
             let moved = compared.moved.max(distance(&x, &start));
             // A distance that is no number agrees with nothing.
-            if !(apart <= bound(moved)) {
+            if !(apart <= bound(k, moved)) {
                 break;
             }
             compared.rows = k + 1;

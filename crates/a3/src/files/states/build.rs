@@ -16,8 +16,8 @@ pub struct States {
     pub seconds: Option<f64>,
     /// First time (s) at which a number is not finite. States from then on are left out.
     pub not_finite_at: Option<f64>,
-    /// Largest error of a time (s) and of a position (m) by the digits of the file.
-    pub rounding: [f64; 2],
+    /// Digits of the times and of the positions.
+    pub digits: [Digits; 2],
 }
 
 /// States as a file has them.
@@ -69,15 +69,8 @@ impl States {
         if seconds.is_some_and(|seconds| !(seconds > 0.0 && seconds.is_finite())) {
             return Err("its computing time is no number of seconds above 0".into());
         }
-        let largest = |rows: &[Vec<f64>]| {
-            let all = rows.iter().flatten();
-            all.fold(0.0, |most: f64, x| most.max(x.abs()))
-        };
         Ok(Self {
-            rounding: [
-                digits[0].rounding(times[times.len() - 1]),
-                digits[1].rounding(largest(&positions)),
-            ],
+            digits,
             times,
             positions,
             velocities: Some(velocities).filter(|rows| !rows.is_empty()),

@@ -340,3 +340,22 @@ fn files_are_on_the_chart() {
         assert_eq!(picture.contains("computing time"), !more.is_empty());
     }
 }
+
+/// Explicit Euler is unstable at this step: the rows grow beyond all that double precision tells
+/// apart from the start.
+#[test]
+fn a_run_that_explodes_is_named_by_its_first_rows() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let course = Course::of(&said(folder, &["scenes", "--print", "chain", "--list"]));
+    let states = course.run(euler, 0.1, 300);
+    assert!(states[300][0][3][1].abs() > 1e20);
+    write(&folder.join("lost.csv"), 0.1, &states, true);
+    let found = judged(folder, "chain", &["lost.csv"]).remove(0);
+    assert_eq!(
+        found["method"]["title"], "explicit Euler",
+        "{:#}",
+        found["method"]
+    );
+    assert_eq!(found["method"]["step"], 0.1);
+}
