@@ -8,6 +8,9 @@ use super::trial::Start;
 /// Largest number of methods or mistakes that are named beside the one that a file agrees with.
 const MAX_OTHERS: usize = 3;
 
+/// Ratio of the distance that a file moves to that of the reference, above which it explodes.
+const FAR: f64 = 10.0;
+
 /// Says which method a file agrees with, in lines with their keys.
 pub fn lines_of(judgement: &Judgement) -> Vec<(&'static str, String)> {
     match &judgement.found.found {
@@ -24,6 +27,9 @@ fn found(judgement: &Judgement, agreement: &Agreement) -> Vec<(&'static str, Str
     let compared = agreement.compared;
     let how = if compared.distance == 0.0 {
         "exactly".into()
+    } else if compared.moved > FAR * judgement.motion {
+        let share = compared.distance / compared.moved;
+        format!("to {share:.0e} of the distance that it moves")
     } else {
         format!("to {:.0e} m", compared.distance)
     };
