@@ -142,11 +142,11 @@ fn way(agreement: &Agreement) -> String {
     };
     let mut text = format!("{article}{title} at {}", seconds(agreement.step));
     if let Some(mistake) = trial.way.mistake() {
-        text += &format!(", but with {},", mistake.words());
+        text.extend([", but with ", mistake.words(), ","]);
     }
     let since = since(trial.start);
     if !since.is_empty() {
-        text += &format!("{since},");
+        text.extend([since, ","]);
     }
     text
 }

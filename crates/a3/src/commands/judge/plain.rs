@@ -85,13 +85,17 @@ impl Plain {
             self.springs.iter().any(|spring| spring.rest_length > 0.0),
         );
         match mistake {
-            Mistake::HalfGravity | Mistake::DoubleGravity => pulls,
-            Mistake::NoGravity | Mistake::GravityUpwards => pulls,
+            Mistake::HalfGravity
+            | Mistake::DoubleGravity
+            | Mistake::NoGravity
+            | Mistake::GravityUpwards => pulls,
             Mistake::GravityAsForce => pulls && !has_unit_masses,
-            Mistake::RestLengthZero => stretches,
-            Mistake::NotNormalised | Mistake::SpringsPush | Mistake::SpringsTwice => elastic,
-            Mistake::StretchAsRatio => stretches,
-            Mistake::FirstEndOnly | Mistake::SecondEndOnly => elastic,
+            Mistake::RestLengthZero | Mistake::StretchAsRatio => stretches,
+            Mistake::NotNormalised
+            | Mistake::SpringsPush
+            | Mistake::SpringsTwice
+            | Mistake::FirstEndOnly
+            | Mistake::SecondEndOnly => elastic,
             Mistake::NoSpringDamping | Mistake::DampingAcross => damps,
             Mistake::NoDrag => self.drag > 0.0,
             Mistake::DragPerMass => self.drag > 0.0 && !has_unit_masses,
@@ -145,9 +149,12 @@ impl<'a> Forces<'a> {
             Some(Mistake::UnitMasses) => 1.0,
             _ => self.plain.mass[i],
         };
-        let of = |(i, force): (usize, &Triple)| match self.holds(i) {
-            true => [0.0; 3],
-            false => force.map(|f| f / mass(i)),
+        let of = |(i, force): (usize, &Triple)| {
+            if self.holds(i) {
+                [0.0; 3]
+            } else {
+                force.map(|f| f / mass(i))
+            }
         };
         let all = forces.iter().enumerate().map(of).collect();
         self.kept = forces;

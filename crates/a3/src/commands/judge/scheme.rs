@@ -107,8 +107,13 @@ impl Scheme {
     /// Number of evaluations in a step of that many particles.
     pub fn evaluations(self, particles: usize) -> usize {
         match self {
-            Self::Trapezoid | Self::Midpoint | Self::Verlet | Self::VerletPredicted => 2,
-            Self::TrapezoidOldVelocity | Self::MidpointOldVelocity | Self::VerletOldVelocity => 2,
+            Self::Trapezoid
+            | Self::Midpoint
+            | Self::Verlet
+            | Self::VerletPredicted
+            | Self::TrapezoidOldVelocity
+            | Self::MidpointOldVelocity
+            | Self::VerletOldVelocity => 2,
             Self::Rk4 | Self::Rk4FirstTwice | Self::Rk4HalfLast | Self::Rk4EqualWeights => 4,
             Self::SweepVelocityFirst | Self::SweepPositionFirst => particles,
             _ => 1,
@@ -253,20 +258,8 @@ impl<'a> PlainRun<'a> {
                 let v1 = moved(&v0, h, &a);
                 [moved(&middle, 0.5 * h, &v1), v1]
             }
-            Scheme::SweepVelocityFirst | Scheme::SweepPositionFirst => {
-                let (mut x, mut v) = (x0, v0);
-                for i in 0..x.len() {
-                    let before = v[i];
-                    if self.scheme == Scheme::SweepPositionFirst {
-                        x[i] = ahead(x[i], h, before);
-                    }
-                    v[i] = ahead(v[i], h, forces.accelerations(&x, &v)[i]);
-                    if self.scheme == Scheme::SweepVelocityFirst {
-                        x[i] = ahead(x[i], h, v[i]);
-                    }
-                }
-                [x, v]
-            }
+            Scheme::SweepVelocityFirst => sweep(forces, h, x0, v0, false),
+            Scheme::SweepPositionFirst => sweep(forces, h, x0, v0, true),
         };
         self.is_new = false;
     }
@@ -298,6 +291,26 @@ fn runge_kutta(
         (x1, v1) = (moved(&x1, weight * h, v), moved(&v1, weight * h, a));
     }
     [x1, v1]
+}
+
+/// Moves particles one by one, each by forces of those that have moved already.
+fn sweep(
+    forces: &mut Forces,
+    h: f64,
+    mut x: Vec<Triple>,
+    mut v: Vec<Triple>,
+    positions_first: bool,
+) -> [Vec<Triple>; 2] {
+    for i in 0..x.len() {
+        if positions_first {
+            x[i] = ahead(x[i], h, v[i]);
+        }
+        v[i] = ahead(v[i], h, forces.accelerations(&x, &v)[i]);
+        if !positions_first {
+            x[i] = ahead(x[i], h, v[i]);
+        }
+    }
+    [x, v]
 }
 
 /// y + h f of one particle.

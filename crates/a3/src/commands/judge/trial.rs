@@ -174,7 +174,8 @@ impl Judged<'_> {
     }
 
     /// Compares a trial with the rows until a row differs by more than `bound`, a function of its
-    /// number and of the distance moved (m). `None` if the trial is not possible. `work` receives its price.
+    /// number and of the distance moved (m). `None` if the trial is not possible. `work` receives
+    /// its price.
     pub fn compare(
         &self,
         trial: Trial,
@@ -216,7 +217,7 @@ impl Judged<'_> {
             let apart = distance(&x, self.rows.positions(k));
             let moved = compared.moved.max(distance(&x, &start));
             // A distance that is no number agrees with nothing.
-            if !(apart <= bound(k, moved)) {
+            if apart.is_nan() || apart > bound(k, moved) {
                 break;
             }
             compared.rows = k + 1;

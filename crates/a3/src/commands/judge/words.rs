@@ -1,5 +1,7 @@
 //! Errors of files in words.
 
+use std::fmt::Write;
+
 use super::finding::lines_of;
 use super::judgement::{Drift, Judgement};
 use super::quantity::{amount, seconds};
@@ -103,10 +105,10 @@ fn states(judgement: &Judgement) -> String {
     };
     let mut text = format!("{judged} states to {}, {kind}", seconds(judgement.until));
     if judged < states {
-        text += &format!("; {} later ones are not judged", states - judged);
+        _ = write!(text, "; {} later ones are not judged", states - judged);
     }
     if let Some(t) = judgement.not_finite_at {
-        text += &format!("; its numbers are not finite from {} on", seconds(t));
+        _ = write!(text, "; its numbers are not finite from {} on", seconds(t));
     }
     text
 }
@@ -143,9 +145,13 @@ fn error(judgement: &Judgement) -> String {
     );
     if !is_resolved(judgement) {
         let floor = judgement.floor;
-        text += &format!(": as good as exact, for the reference itself is known to {floor:.0e} m");
+        _ = write!(
+            text,
+            ": as good as exact, for the reference itself is known to {floor:.0e} m"
+        );
     } else if worst.distance > worst.error * 1.001 {
-        text += &format!(
+        _ = write!(
+            text,
             "; particle {} is farthest, {} m from its place",
             worst.particle,
             amount(worst.distance)
