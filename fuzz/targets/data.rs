@@ -4,10 +4,23 @@
 #[allow(dead_code, missing_docs)]
 #[path = "../../crates/a3/src/commands/chart/record.rs"]
 mod record;
-#[allow(dead_code, missing_docs)]
-#[path = "../../crates/a3/src/commands/chart/text.rs"]
-mod text;
+/// The modules that this record uses, by the same names.
+#[path = "."]
+mod files {
+    #[allow(dead_code, missing_docs)]
+    #[path = "."]
+    pub mod rows {
+        #[path = "../../crates/a3/src/files/rows/row.rs"]
+        mod row;
+        #[path = "../../crates/a3/src/files/rows/text.rs"]
+        pub mod text;
+        pub use row::Row;
+    }
+}
+
+use files::rows::text;
+use record::Record;
 
 libfuzzer_sys::fuzz_target!(|text: &str| {
-    let _ = text::read(text, text.starts_with(['[', '{']));
+    let _ = text::read::<Record>(text, text.starts_with(['[', '{']));
 });

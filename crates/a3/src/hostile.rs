@@ -8,7 +8,8 @@ use clap::Parser;
 use clap::error::ErrorKind;
 
 use crate::cli::{Cli, explain};
-use crate::commands::chart::text::read;
+use crate::commands::chart::record::Record;
+use crate::files::rows::{Row, text::read};
 use crate::files::states::parse;
 use mutation::{Random, seeds};
 
@@ -50,13 +51,13 @@ fn data_of_charts_are_taken_or_refused() {
     };
     for (seed, is_json) in [(csv, false), (json, true)] {
         let taken = feed(std::slice::from_ref(seed), |text| {
-            let Ok(records) = read(text, is_json) else {
+            let Ok(records) = read::<Record>(text, is_json) else {
                 return false;
             };
             // These comparisons of runs must not panic either.
             let same = records
                 .iter()
-                .filter(|r| r.same_run(&records[0]) && !r.is_held());
+                .filter(|r| r.is_same(&records[0]) && !r.is_held());
             assert!(same.count() <= records.len());
             true
         });

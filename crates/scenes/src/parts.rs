@@ -79,7 +79,7 @@ pub fn parts(scene: &Description) -> Vec<Part> {
         named(Change::WindByParticles, "wind on triangles: on particles"),
         named(Change::Friction, "friction"),
         named(Change::Restitution, "restitution"),
-        named(Change::SelfCollision, "scene-collision"),
+        named(Change::SelfCollision, "self-collision"),
         named(Change::Floor, "floor"),
     ]);
     for (kind, name) in OBSTACLES.iter().enumerate() {

@@ -35,7 +35,7 @@ pub use judge::Judge;
 pub use measures::{ErrorScope, WorkMeasure};
 pub use run::{RunOptions, What};
 pub use scenes::Scenes;
-pub use simplify::Simplify;
+pub use simplify::{Quantity, Simplify};
 pub use simulate::Simulate;
 pub use stability::Stability;
 #[cfg(not(target_arch = "wasm32"))]

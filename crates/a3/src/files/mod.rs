@@ -12,6 +12,8 @@ pub mod frames;
 pub mod lessons;
 #[cfg_attr(target_arch = "wasm32", path = "download.rs")]
 pub mod output;
+#[cfg(not(target_arch = "wasm32"))]
+pub mod rows;
 pub mod scene_file;
 pub mod setup;
 #[cfg(not(target_arch = "wasm32"))]

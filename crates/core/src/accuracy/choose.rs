@@ -1,7 +1,7 @@
 //! Choice of the cheapest method, with its step or tolerance, for a given error.
 
 use super::errors::Metric;
-use super::frames::GoOn;
+use super::frames::{Frames, GoOn};
 use super::ladder::{MIN_STEPS, coarser, ladder};
 use super::measure::{Outcome, measure};
 use super::reference::Reference;
@@ -43,15 +43,28 @@ pub enum SetBy {
     Nothing,
 }
 
+/// Run of a search, measured in any way.
+#[derive(Clone, Copy, Debug)]
+pub struct Trial<T> {
+    /// Error of the run; infinite if it blew up.
+    pub error: f64,
+    /// Work of the whole run, in evaluations.
+    pub work: f64,
+    /// More of the run, which the search passes on.
+    pub outcome: T,
+}
+
 /// Method with its step or tolerance, and the outcome of its run.
 #[derive(Clone, Copy, Debug)]
-pub struct Candidate {
+pub struct Candidate<T = Outcome> {
     /// Method of the run.
     pub method: &'static Method,
     /// Step or tolerance of the run.
     pub control: Control,
+    /// Work of the run, in evaluations.
+    pub work: f64,
     /// Errors and cost of the run.
-    pub outcome: Outcome,
+    pub outcome: T,
     /// Reason why the step or the tolerance is not larger.
     pub set_by: SetBy,
 }
@@ -96,57 +109,82 @@ pub fn choose(
     metric: Metric,
     error: f64,
     go_on: GoOn,
-    mut begin: impl FnMut(&'static Method),
+    begin: impl FnMut(&'static Method),
 ) -> Result<Option<Vec<Candidate>>, Error> {
     metric.check(&scene.model)?;
-    let mut found: Vec<Candidate> = vec![];
-    let modes = spectrum(scene.model.system(), 0.0, &scene.state);
     // The reference's own uncertainty is part of the error that is allowed.
     let error = error - metric.of(&reference.floor);
+    let measure = |method, control| {
+        let outcome = measure(scene, method, control, reference, go_on)?;
+        Ok(outcome.map(|outcome| Trial {
+            error: match outcome.lost {
+                Some(_) => f64::INFINITY,
+                None => metric.of(&outcome.errors),
+            },
+            work: outcome.work.total(),
+            outcome,
+        }))
+    };
     let is_small = scene.model.work() < SMALL_WORK;
     let max_ratio = if is_small {
         SMALL_MAX_COST_RATIO
     } else {
         MAX_COST_RATIO
     };
+    let max_cost = |found: &[Candidate]| found.get(1).map(|second| max_ratio * second.work);
     // Methods of high order come first: their cost limits the runs of methods of low order.
     let mut methods: Vec<_> = METHODS.iter().collect();
     methods.sort_by_key(|method| std::cmp::Reverse(method.order));
-    for method in methods {
+    let frames = &reference.frames;
+    choose_by(&methods, scene, frames, error, max_cost, measure, begin)
+}
+
+/// As [`choose`], for errors that the caller measures: `measure` runs the scene, or a variant of
+/// it, by one of the methods with a step or a tolerance, and returns `None` to end the search. The
+/// methods are tried in their order. A method is
+/// given up if it would cost more than `max_cost` evaluations, which may depend on what is found so
+/// far. Methods that do not support the scene are left out.
+///
+/// # Errors
+/// Those of `measure`, or the scene cannot be run.
+pub fn choose_by<T: Copy, E: From<Error>>(
+    methods: &[&'static Method],
+    scene: &Scene,
+    frames: &Frames,
+    error: f64,
+    max_cost: impl Fn(&[Candidate<T>]) -> Option<f64>,
+    mut measure: impl FnMut(&'static Method, Control) -> Result<Option<Trial<T>>, E>,
+    mut begin: impl FnMut(&'static Method),
+) -> Result<Option<Vec<Candidate<T>>>, E> {
+    let mut found: Vec<Candidate<T>> = vec![];
+    let modes = spectrum(scene.model.system(), 0.0, &scene.state);
+    for &method in methods {
         if method.check(scene.model.system()).is_err() {
             continue;
         }
         begin(method);
-        let max_cost = found
-            .get(1)
-            .map_or(f64::INFINITY, |c| max_ratio * c.outcome.work.total());
         let mut search = Search {
-            scene,
             modes: &modes,
-            reference,
-            metric,
+            frames,
             error,
             method,
-            max_cost,
-            go_on,
+            max_cost: max_cost(&found).unwrap_or(f64::INFINITY),
+            measure: &mut measure,
         };
         match search.run()? {
             Found::Stopped => return Ok(None),
             Found::Nothing => {}
-            Found::Best(candidate) => found.push(*candidate),
+            Found::Best(candidate) => found.push(candidate),
         }
-        found.sort_by(|a, b| {
-            let work = |c: &Candidate| c.outcome.work.total();
-            work(a).total_cmp(&work(b))
-        });
+        found.sort_by(|a, b| a.work.total_cmp(&b.work));
     }
     Ok(Some(found))
 }
 
 /// Result of the search for one method.
-enum Found {
+enum Found<T> {
     /// Cheapest run that meets the error.
-    Best(Box<Candidate>),
+    Best(Candidate<T>),
     /// No run meets the error, or it would cost too much.
     Nothing,
     /// The search was told to stop.
@@ -154,57 +192,47 @@ enum Found {
 }
 
 /// Search for the cheapest step or tolerance of one method.
-struct Search<'a> {
-    scene: &'a Scene,
+struct Search<'a, M> {
     modes: &'a [Mode],
-    reference: &'a Reference,
-    metric: Metric,
+    frames: &'a Frames,
+    /// Largest error that is allowed.
     error: f64,
     method: &'static Method,
     /// Largest cost of a run, in evaluations.
     max_cost: f64,
-    go_on: GoOn<'a>,
+    /// Measures a run of the method.
+    measure: &'a mut M,
 }
 
-impl Search<'_> {
-    fn measure(&self, control: Control) -> Result<Option<Outcome>, Error> {
-        measure(self.scene, self.method, control, self.reference, self.go_on)
-    }
-
-    /// Error of the run over the allowed one; infinite if the run blew up.
-    fn ratio(&self, outcome: &Outcome) -> f64 {
-        if outcome.lost.is_some() {
-            f64::INFINITY
-        } else {
-            self.metric.of(&outcome.errors) / self.error
-        }
-    }
-
-    fn run(&mut self) -> Result<Found, Error> {
-        let frames = self.reference.frames;
-        let rungs = ladder(self.modes, self.method, &frames, MAX_STEPS)?;
+impl<M> Search<'_, M> {
+    fn run<T: Copy, E: From<Error>>(&mut self) -> Result<Found<T>, E>
+    where
+        M: FnMut(&'static Method, Control) -> Result<Option<Trial<T>>, E>,
+    {
+        let (method, frames) = (self.method, self.frames);
+        let rungs = ladder(self.modes, method, frames, MAX_STEPS)?;
         // The last run that failed: its step or tolerance, and its ratio.
         let mut fails: Option<(f64, f64)> = None;
         let mut i = 0;
-        let (mut good, mut outcome) = loop {
+        let (mut good, mut best) = loop {
             let Some(&control) = rungs.get(i) else {
                 return Ok(Found::Nothing);
             };
             // The least cost of a run with fixed steps is known beforehand.
             let least = control
                 .step()
-                .map(|step| frames.until / step * f64::from(self.method.evaluations));
+                .map(|step| frames.until / step * f64::from(method.evaluations));
             if least.is_some_and(|least| least > self.max_cost) {
                 return Ok(Found::Nothing);
             }
-            let Some(outcome) = self.measure(control)? else {
+            let Some(trial) = (self.measure)(method, control)? else {
                 return Ok(Found::Stopped);
             };
-            let ratio = self.ratio(&outcome);
+            let ratio = trial.error / self.error;
             if ratio <= 1.0 {
-                break (control, outcome);
+                break (control, trial);
             }
-            if outcome.work.total() > self.max_cost && outcome.lost.is_none() {
+            if trial.work > self.max_cost && trial.error.is_finite() {
                 return Ok(Found::Nothing);
             }
             let bound = self.predicted_bound(fails, (control.value(), ratio));
@@ -215,35 +243,36 @@ impl Search<'_> {
         let mut bad = fails;
         // The limit of stability is that of the start state, and may be larger in motion.
         while bad.is_none()
-            && let Some(longer) = coarser(good, &frames)
+            && let Some(longer) = coarser(good, frames)
         {
-            let Some(next) = self.measure(longer)? else {
+            let Some(next) = (self.measure)(method, longer)? else {
                 return Ok(Found::Stopped);
             };
-            let ratio = self.ratio(&next);
+            let ratio = next.error / self.error;
             if ratio <= 1.0 {
-                (good, outcome) = (longer, next);
+                (good, best) = (longer, next);
             } else {
                 bad = Some((longer.value(), ratio));
             }
         }
         while let Some(middle) = bad.and_then(|(bad, _)| between(good, bad, frames.until)) {
-            let Some(next) = self.measure(middle)? else {
+            let Some(next) = (self.measure)(method, middle)? else {
                 return Ok(Found::Stopped);
             };
-            let ratio = self.ratio(&next);
+            let ratio = next.error / self.error;
             if ratio <= 1.0 {
-                (good, outcome) = (middle, next);
+                (good, best) = (middle, next);
             } else {
                 bad = Some((middle.value(), ratio));
             }
         }
-        Ok(Found::Best(Box::new(Candidate {
-            method: self.method,
+        Ok(Found::Best(Candidate {
+            method,
             control: good,
-            outcome,
-            set_by: self.set_by((good, self.ratio(&outcome)), bad),
-        })))
+            work: best.work,
+            outcome: best.outcome,
+            set_by: self.set_by((good, best.error / self.error), bad),
+        }))
     }
 
     /// Reason why no step as long as `bad` was chosen instead of `good`, whose error over the

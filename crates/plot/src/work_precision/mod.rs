@@ -5,7 +5,7 @@
 mod panel;
 mod problem;
 
-pub use problem::{Curve, Mark, Measurement, Problem};
+pub use problem::{Curve, Guide, Mark, Measurement, Problem};
 
 use crate::axis::{self, Axis};
 use crate::error::Error;
@@ -14,7 +14,7 @@ use crate::geometry::Rect;
 use crate::label::Label;
 use crate::layout::{self, Level, Sign};
 use crate::style::{CurveStyle, Filling};
-use panel::{Drawing, front_pen, shade_paint};
+use panel::{Drawing, front_pen, guide_pen, shade_paint};
 
 /// A work-precision diagram. Accurate runs are on the left of it, and fast ones below.
 #[derive(Clone, Debug, Default)]
@@ -202,6 +202,15 @@ impl WorkPrecision {
                 style.draw_marker(figure, at, 0.4 * size, Filling::Half);
             });
             entries.push((self.held.clone(), half));
+        }
+        for guide in self.problems.iter().filter_map(|it| it.guide.as_ref()) {
+            if entries.iter().all(|(name, _)| *name != guide.name) {
+                let sign: Sign = Box::new(move |figure, [x, y]| {
+                    let line = [[x - 1.7 * size, y], [x + 1.7 * size, y]];
+                    figure.line(&line, guide_pen(0.13 * size));
+                });
+                entries.push((guide.name.clone(), sign));
+            }
         }
         let front: Sign = Box::new(move |figure, [x, y]| {
             let line = [[x - 1.3 * size, y], [x + 1.3 * size, y]];

@@ -23,6 +23,11 @@ pub fn front_pen(width: f64) -> Pen {
     Pen::new("#f8dd86", width).round()
 }
 
+/// The pen of a guide.
+pub fn guide_pen(width: f64) -> Pen {
+    Pen::new("#222222", width).dashed(vec![5.0, 3.0])
+}
+
 /// A panel in progress.
 pub struct Drawing<'a> {
     problem: &'a Problem,
@@ -98,6 +103,7 @@ impl<'a> Drawing<'a> {
             .extend(line.windows(2).map(|pair| [pair[0], pair[1]]));
         self.curves(figure);
         self.marks(figure);
+        self.guide(figure);
         self.blown_up(figure, strip);
         if limit > 0.0 {
             self.explain_shade(figure, shade);
@@ -154,6 +160,17 @@ impl<'a> Drawing<'a> {
                 self.taken.push(Rect::around(point, 1.2 * radius));
             }
         }
+    }
+
+    /// Draws the guide, if there is one.
+    fn guide(&mut self, figure: &mut Figure) {
+        let points = self.problem.guide.iter().flat_map(|it| &it.points);
+        let line: Vec<_> = points
+            .map(|[error, work]| [self.axes[0].at(*error), self.axes[1].at(*work)])
+            .collect();
+        figure.line(&line, guide_pen(0.14 * self.fine));
+        let pieces = line.windows(2).map(|pair| [pair[0], pair[1]]);
+        self.lines.extend(pieces);
     }
 
     /// Draws runs that blew up as open markers beside the chart, next to each other if one would

@@ -31,6 +31,15 @@ pub struct Curve {
     pub runs: Vec<Measurement>,
 }
 
+/// A line through the diagram that no method draws, dashed and named in the legend.
+#[derive(Clone, Debug)]
+pub struct Guide {
+    /// The meaning of the line.
+    pub name: String,
+    /// Its points: errors, and the work there.
+    pub points: Vec<[f64; 2]>,
+}
+
 /// A problem that methods were run on: one panel of the diagram.
 #[derive(Clone, Debug, Default)]
 pub struct Problem {
@@ -44,6 +53,8 @@ pub struct Problem {
     /// The error of a run in which nothing moves, beyond which errors are meaningless: the front
     /// ends there.
     pub still: Option<f64>,
+    /// A line through the panel.
+    pub guide: Option<Guide>,
     /// Runs of other programs.
     pub marks: Vec<Mark>,
 }
@@ -154,7 +165,6 @@ mod tests {
             runs,
         };
         let problem = Problem {
-            title: String::new(),
             // The fourth run of the first is below the resolution, and its last blew up.
             curves: vec![
                 curve(vec![

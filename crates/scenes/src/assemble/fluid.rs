@@ -167,6 +167,28 @@ impl Fluid {
     }
 }
 
+/// Returns the initial positions (m) of a fluid's particles, and of the particles in the walls of
+/// its tank, in the order of their numbers.
+///
+/// # Errors
+/// A number makes no sense.
+pub fn fluid_points(fluid: &Fluid) -> Result<[Vec<Vector3<f64>>; 2], Fault> {
+    let (places, tank) = fluid.places()?;
+    let half = 0.5 * Vector3::from(fluid.size);
+    let is_in_shape = |place: &Vector3<f64>| {
+        let from_center = place - Vector3::from(fluid.at);
+        let share = |axis: usize| match half[axis] {
+            0.0 => 0.0,
+            half => (from_center[axis] / half).powi(2),
+        };
+        fluid.shape == FluidShape::Box || (0..3).map(share).sum::<f64>() <= 1.0
+    };
+    let all = places.all(0).map(|(place, _)| place);
+    let walls = tank.iter().flat_map(|tank| tank.all(LAYERS.into()));
+    let walls = walls.filter(|(_, inside)| !inside).map(|(place, _)| place);
+    Ok([all.filter(is_in_shape).collect(), walls.collect()])
+}
+
 impl Body for Fluid {
     fn counts(&self) -> Result<Counts, Fault> {
         let (fluid, tank) = self.places()?;
@@ -183,31 +205,21 @@ impl Body for Fluid {
 
     fn add_to(&self, assembly: &mut Assembly) -> Result<(), Fault> {
         self.check_inside()?;
-        let (fluid, tank) = self.places()?;
+        let [fluid, walls] = fluid_points(self)?;
         let first = assembly.masses.len();
         let velocity = Vector3::from(self.velocity.unwrap_or_default());
         let strain = Vector3::from(self.strain.unwrap_or_default());
-        let half = 0.5 * Vector3::from(self.size);
-        for (place, _) in fluid.all(0) {
-            let from_center = place - Vector3::from(self.at);
-            let share = |axis: usize| match half[axis] {
-                0.0 => 0.0,
-                half => (from_center[axis] / half).powi(2),
-            };
-            if self.shape == FluidShape::Box || (0..3).map(share).sum::<f64>() <= 1.0 {
-                assembly.positions.push(place);
-                let strained = strain.component_mul(&from_center);
-                assembly.velocities.push(velocity + strained);
-            }
+        for place in fluid {
+            let strained = strain.component_mul(&(place - Vector3::from(self.at)));
+            assembly.positions.push(place);
+            assembly.velocities.push(velocity + strained);
         }
         let free = assembly.positions.len();
-        for (place, inside) in tank.iter().flat_map(|tank| tank.all(LAYERS.into())) {
-            if !inside {
-                let i = assembly.positions.len();
-                assembly.pins.push((i, Path::Still(place)));
-                assembly.positions.push(place);
-                assembly.velocities.push(Vector3::zeros());
-            }
+        for place in walls {
+            let i = assembly.positions.len();
+            assembly.pins.push((i, Path::Still(place)));
+            assembly.positions.push(place);
+            assembly.velocities.push(Vector3::zeros());
         }
         let all = assembly.positions.len();
         assembly.masses.resize(all, self.law().mass());

@@ -33,7 +33,7 @@ use crate::setup::{Defaults, Presentation, Setup, Viewpoint};
 use crate::surface::Surface;
 use crate::wording::unknown_choice;
 use circle::Circling;
-pub use fluid::LAYERS;
+pub use fluid::{LAYERS, fluid_points};
 pub use laws::damping_time;
 use network::NetworkParts;
 pub use skins::max_thickness;

@@ -16,7 +16,7 @@ use crate::base::failure::Failure;
 use crate::base::progress::Bar;
 use crate::base::{interrupt, terminal};
 use crate::cli::{Chart, WorkMeasure};
-use crate::commands::motion::grid_error;
+use crate::commands::motion;
 use crate::files::output;
 use crate::files::setup::Request;
 
@@ -132,7 +132,8 @@ impl<'a> Asked<'a> {
             return Ok(());
         }
         let frames = studies[0].frames;
-        match grid_error(&self.request, &self.scene, frames, self.scope)? {
+        let mut known = motion::open(self.options.data.as_deref().map(motion::beside).as_deref())?;
+        match motion::grid_error(&self.request, &self.scene, frames, self.scope, &mut known)? {
             Some(own) => terminal::say(&own.sentence()),
             None => Ok(()),
         }
@@ -176,7 +177,7 @@ fn measure(studies: &mut [Study], data: &mut Data, bar: &Bar) -> Result<bool, Fa
     }
     bar.clear();
     interrupt::write_on();
-    data.save()?;
+    data.runs.save()?;
     if let Some(each) = data.each.take() {
         each.finish()?;
     }

@@ -13,6 +13,7 @@ use super::single::{compared, precision, reference, time};
 use crate::base::failure::Failure;
 use crate::base::progress::Bar;
 use crate::cli::What;
+use crate::commands::motion::words;
 
 /// Largest work of a run, in evaluations. A run that blows up may take more.
 const MAX_EVALUATIONS: f64 = 20_000.0;
@@ -113,7 +114,7 @@ impl<'a> Study<'a> {
 
     /// Returns all runs of this study's scene.
     fn all<'d>(&'d self, data: &'d Data) -> impl Iterator<Item = &'d Record> {
-        data.records.iter().filter(|r| r.same_scene(&self.blank))
+        data.runs.all().iter().filter(|r| r.same_scene(&self.blank))
     }
 
     /// Returns the steps or tolerances at which a method is run, the coarsest first.
@@ -199,7 +200,7 @@ impl<'a> Study<'a> {
                     break;
                 }
             }
-            data.save()?;
+            data.runs.save()?;
         }
         Ok(true)
     }
@@ -267,7 +268,7 @@ impl<'a> Study<'a> {
         if let Some(record) = &record {
             check_contact(self.metric, record.still(self.metric), record.until)?;
             if is_new {
-                data.add(record.clone());
+                data.runs.add(record.clone());
             }
         }
         Ok(record)
@@ -345,13 +346,4 @@ pub fn stiffened(scene: &Scene, factor: f64) -> Result<Scene, Failure> {
         }
     }
     Ok(scene)
-}
-
-/// Describes a scope in words.
-pub fn words(scope: Scope) -> String {
-    let when = if scope.at_end { " at the end" } else { "" };
-    match scope.particle {
-        Some(i) => format!("particle {i}{when}"),
-        None => format!("all particles{when}"),
-    }
 }

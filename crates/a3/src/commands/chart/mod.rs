@@ -12,7 +12,6 @@ pub mod record;
 pub mod single;
 pub mod style;
 pub mod table;
-pub mod text;
 mod vision;
 mod words;
 

@@ -4,6 +4,8 @@
 use a3_core::accuracy::{Errors, Metric};
 use serde::{Deserialize, Serialize};
 
+use crate::files::rows::Row;
+
 /// Run of a method on a scene, with its errors and its work.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -108,6 +110,16 @@ pub struct Record {
     pub check: String,
 }
 
+impl Row for Record {
+    fn is_same(&self, other: &Self) -> bool {
+        self.same_scene(other) && self.solver == other.solver && self.setting == other.setting
+    }
+
+    fn check(&mut self) -> &mut String {
+        &mut self.check
+    }
+}
+
 impl Record {
     /// Whether both runs are of the same scene, by the same version.
     pub fn same_scene(&self, other: &Self) -> bool {
@@ -117,11 +129,6 @@ impl Record {
                 == (other.wind, other.swing, other.self_collision)
             && (self.stiffness, self.until, &self.scope)
                 == (other.stiffness, other.until, &other.scope)
-    }
-
-    /// Whether both runs are of the same scene, method and setting.
-    pub fn same_run(&self, other: &Self) -> bool {
-        self.same_scene(other) && self.solver == other.solver && self.setting == other.setting
     }
 
     /// Returns the observed order between a coarser run of the same method and this one.

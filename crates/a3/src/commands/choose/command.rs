@@ -9,12 +9,11 @@ use crate::base::failure::Failure;
 use crate::base::progress::Bar;
 use crate::base::{interrupt, terminal};
 use crate::cli::Choose;
-use crate::commands::chart::measure::words;
 use crate::commands::chart::single::{precision, reference};
 use crate::commands::chart::{
     check_contact, check_metric, check_motion, look_ahead, methods, scope, unit,
 };
-use crate::commands::motion::grid_error;
+use crate::commands::motion::{grid_error, open, words};
 use crate::files::setup::Request;
 
 /// Finds and prints the solvers that the command line asks for.
@@ -151,7 +150,8 @@ impl Asked<'_> {
         if self.options.no_model || self.metric != Metric::Position {
             return Ok(());
         }
-        match grid_error(&self.request, &self.scene, frames, self.scope)? {
+        let mut known = open(None)?;
+        match grid_error(&self.request, &self.scene, frames, self.scope, &mut known)? {
             Some(own) if own.error > best.outcome.errors.position => terminal::say(&own.sentence()),
             _ => Ok(()),
         }

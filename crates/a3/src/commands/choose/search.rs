@@ -122,6 +122,7 @@ pub fn within(
             let candidate = Candidate {
                 method,
                 control,
+                work: outcome.work.total(),
                 outcome,
                 set_by: SetBy::Accuracy,
             };

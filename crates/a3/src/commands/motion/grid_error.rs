@@ -5,8 +5,11 @@ use a3_core::integrators::find;
 use a3_core::{Control, Scene};
 use a3_scenes::{Description, Regridded, regridded};
 
-use super::track::{Motion, Points};
+use super::known::Known;
+use super::track::{Compared, Motion};
 use crate::base::failure::Failure;
+use crate::cli::Quantity;
+use crate::files::rows::Rows;
 use crate::files::setup::Request;
 
 /// Relative tolerance of the runs, whose errors are far below those of grids.
@@ -59,14 +62,15 @@ impl GridError {
     }
 }
 
-/// Measures the error of a scene's grids at frames, in a scope. `None` if the scene has no grid
-/// that can be made finer or has too many particles, if a run fails, or if the command was
-/// interrupted.
+/// Measures the error of a scene's grids at frames, in a scope, unless it is known. `None` if the
+/// scene has no grid that can be made finer or has too many particles, if a run fails, or if the
+/// command was interrupted.
 pub fn grid_error(
     request: &Request,
     scene: &Scene,
     frames: Frames,
     scope: Scope,
+    known: &mut Rows<Known>,
 ) -> Result<Option<GridError>, Failure> {
     let request = &request.described();
     let own = &*request.source.description;
@@ -77,13 +81,15 @@ pub fn grid_error(
     if particles > MAX_PARTICLES {
         return Ok(None);
     }
-    let points = Points {
+    let compared = Compared {
+        quantity: Quantity::Position,
         frames,
         scope,
-        centre: false,
     };
     let accurate = (method, Control::Tolerance(TOLERANCE));
-    let follow = |factor: f64| {
+    let like = Known::new(request, scene, compared, accurate);
+    let mut whole = None;
+    let mut change = |factor: f64| {
         let Ok(Regridded {
             description,
             places,
@@ -91,29 +97,59 @@ pub fn grid_error(
         else {
             return Ok(None);
         };
-        let scene = request.with(description).scene()?;
-        points.follow(&scene, accurate, Some(&places))
+        let like = Known {
+            model: format!("grid of {}", grid(&description)),
+            ..like.clone()
+        };
+        if let Some(known) = known.find(&like) {
+            return Ok(Some(known.change));
+        }
+        let other = request.with(description).scene()?;
+        let other = compared.follow(&other, accurate, Some(&places));
+        let Some(Motion::Known(other)) = other.map_err(Failure::run)? else {
+            return Ok(None);
+        };
+        if whole.is_none() {
+            whole = compared
+                .follow(scene, accurate, None)
+                .map_err(Failure::run)?;
+        }
+        let Some(Motion::Known(whole)) = &whole else {
+            return Ok(None);
+        };
+        let change = compared.distance(whole, &other);
+        known.add(Known {
+            change,
+            time: other.time.as_secs_f64() / whole.time.as_secs_f64(),
+            work: other.work / whole.work,
+            ..like
+        });
+        known.save()?;
+        Ok::<_, Failure>(Some(change))
     };
-    let Some(Motion::Known(finer)) = follow(2.0)? else {
+    let Some(finer) = change(2.0)? else {
         return Ok(None);
     };
-    let Some(Motion::Known(whole)) = points.follow(scene, accurate, None)? else {
-        return Ok(None);
-    };
-    let coarser = match follow(0.5)? {
-        Some(Motion::Known(coarser)) => Some(points.distance(&whole, &coarser)),
-        _ => None,
-    };
-    let finer = points.distance(&whole, &finer);
-    Ok(Some(GridError::new(grid(own), coarser, finer)))
+    Ok(Some(GridError::new(grid(own), change(0.5)?, finer)))
 }
 
-/// Describes the grid of a scene's first body that has one, as in `9 x 9`.
+/// Describes the grid of a scene's first body that has one, as in `9 x 9`; of a fluid, the numbers
+/// of particles along the edges of its box.
 pub fn grid(description: &Description) -> String {
     let cloth = description.cloth.first().map(|it| it.grid.to_vec());
     let jelly = || description.jelly.first().map(|it| it.grid.to_vec());
     let solid = || description.solid.first()?.grid.map(|grid| grid.to_vec());
-    let grid = cloth.or_else(jelly).or_else(solid).unwrap_or_default();
+    let fluid = || {
+        let fluid = description.fluid.first()?;
+        let edges = fluid.size[..fluid.dimensions.into()].iter();
+        Some(
+            edges
+                .map(|edge| (edge / fluid.spacing).round() as usize)
+                .collect(),
+        )
+    };
+    let grid = cloth.or_else(jelly).or_else(solid).or_else(fluid);
+    let grid = grid.unwrap_or_default();
     let grid = grid.iter().map(ToString::to_string).collect::<Vec<_>>();
     grid.join(" x ")
 }

@@ -1,7 +1,9 @@
-//! Motion of particles in different models of a scene, and the error that the scene's grids cause.
+//! Motion in different models of a scene, and the error that the scene's grids cause.
 
 mod grid_error;
+mod known;
 mod track;
 
 pub use grid_error::{GridError, grid, grid_error};
-pub use track::{Motion, Places, Points, Track};
+pub use known::{Known, beside, open, words};
+pub use track::{Compared, Motion, Places, Track};

@@ -3,29 +3,30 @@
 use std::time::{Duration, Instant};
 
 use a3_core::accuracy::{FrameState, Frames, Scope, run};
-use a3_core::{Control, Method, Scene, Simulation};
+use a3_core::{Control, Error, Method, Network, Scene, Simulation};
 
-use crate::base::failure::Failure;
 use crate::base::interrupt;
+use crate::cli::Quantity;
 
 /// Particles of one grid, each as a weighted mean of particles of another grid.
 pub type Places = [Vec<(usize, f64)>];
 
-/// Points whose motion is compared.
+/// Quantity that is compared, at times of a run.
 #[derive(Clone, Copy)]
-pub struct Points {
-    /// Times at which positions are taken.
+pub struct Compared {
+    /// Quantity that is compared.
+    pub quantity: Quantity,
+    /// Times at which it is taken.
     pub frames: Frames,
     /// Particles and times that count.
     pub scope: Scope,
-    /// Whether the centre of mass is compared, instead of the particles.
-    pub centre: bool,
 }
 
-/// Motion of the points in a run.
+/// The quantity that is compared, in a run.
 pub struct Track {
-    /// Positions of the points (m) at the start and at each frame: all x, all y, all z.
-    positions: Vec<Vec<f64>>,
+    /// Values at the start and at each frame: positions (m), all x, all y, all z; or the energy (J)
+    /// less that at the start.
+    values: Vec<Vec<f64>>,
     /// Computing time of the run.
     pub time: Duration,
     /// Work of the run, in evaluations.
@@ -35,13 +36,13 @@ pub struct Track {
 impl Track {
     /// Extrapolates the motion past a finer model, by a share of its difference from a coarser one.
     pub fn extrapolated(coarse: &Self, fine: &Self, share: f64) -> Self {
-        let frames = coarse.positions.iter().zip(&fine.positions);
-        let positions = frames.map(|(coarse, fine)| {
+        let frames = coarse.values.iter().zip(&fine.values);
+        let values = frames.map(|(coarse, fine)| {
             let pairs = coarse.iter().zip(fine);
             pairs.map(|(c, f)| f + share * (f - c)).collect()
         });
         Self {
-            positions: positions.collect(),
+            values: values.collect(),
             time: Duration::ZERO,
             work: 0.0,
         }
@@ -55,59 +56,59 @@ impl Track {
 
 /// Motion of a model.
 pub enum Motion {
-    /// Motion of the points in the whole run.
+    /// The quantity that is compared, in the whole run.
     Known(Track),
     /// The run blew up.
     Failed,
 }
 
-impl Points {
-    /// Runs a scene by a method, and records the positions of the points. On other grids than those
-    /// of the points, `places` gives the points there. `None` if the command was interrupted.
+impl Compared {
+    /// Runs a scene by a method, and records the quantity. On other grids than those of the scene
+    /// that it is compared with, `places` gives the particles of that scene. `None` if the command
+    /// was interrupted.
     pub fn follow(
         self,
         scene: &Scene,
         (method, control): (&'static Method, Control),
         places: Option<&Places>,
-    ) -> Result<Option<Motion>, Failure> {
-        let mut simulation =
-            Simulation::new(scene.clone(), method, control).map_err(Failure::run)?;
-        let start = self.of(&simulation, &scene.state, places);
-        let mut positions = vec![start];
+    ) -> Result<Option<Motion>, Error> {
+        let mut simulation = Simulation::new(scene.clone(), method, control)?;
+        let mut values = vec![self.of(&simulation, 0.0, &scene.state, places)];
         let begun = Instant::now();
         let mut spent = Duration::ZERO;
         let mut visit = |look: &FrameState| {
             let begun = Instant::now();
-            positions.push(self.of(look.run, look.state, places));
+            let t = self.frames.time(look.frame);
+            values.push(self.of(look.run, t, look.state, places));
             spent += begun.elapsed();
         };
-        let end = run(
-            &mut simulation,
-            &self.frames,
-            &interrupt::go_on,
-            Some(&mut visit),
-        );
+        let go_on = &interrupt::go_on;
+        let end = run(&mut simulation, &self.frames, go_on, Some(&mut visit))?;
         let time = begun.elapsed().saturating_sub(spent);
-        Ok(match end.map_err(Failure::run)? {
-            None => None,
-            Some(Some(_)) => Some(Motion::Failed),
-            Some(None) => Some(Motion::Known(Track {
-                positions,
+        if self.quantity == Quantity::Energy {
+            let start = values[0][0];
+            for value in &mut values {
+                value[0] -= start;
+            }
+        }
+        Ok(end.map(|blow_up| match blow_up {
+            Some(_) => Motion::Failed,
+            None => Motion::Known(Track {
+                values,
                 time,
                 work: simulation.work().total(),
-            })),
-        })
+            }),
+        }))
     }
 
-    /// Returns the positions of the points in a state of a run.
-    fn of(self, run: &Simulation, state: &[f64], places: Option<&Places>) -> Vec<f64> {
+    /// Returns the quantity in a state of a run at time t (s).
+    fn of(self, run: &Simulation, t: f64, state: &[f64], places: Option<&Places>) -> Vec<f64> {
         let n = run.particles();
         let columns = (0..3).map(|axis| &state[axis * n..(axis + 1) * n]);
-        if let (true, Some(network)) = (self.centre, run.model().network()) {
-            let masses = network.masses();
-            let sum: f64 = masses.iter().sum();
-            let mean = |x: &[f64]| x.iter().zip(masses).map(|(x, m)| x * m).sum::<f64>() / sum;
-            return columns.map(mean).collect();
+        match (self.quantity, run.model().network()) {
+            (Quantity::Centre, Some(network)) => return centre(network, columns),
+            (Quantity::Energy, Some(network)) => return vec![network.energy_of(t, state).total()],
+            _ => {}
         }
         let mut points = vec![];
         for x in columns {
@@ -127,12 +128,13 @@ impl Points {
         }
     }
 
-    /// Returns the root mean square distance (m) between the points of two motions: the largest
-    /// over the frames, or that at the end if the scope says so.
+    /// Returns the distance between two runs: the root mean square over the particles (m), or the
+    /// difference of the energies (J). It is the largest over the frames, or that at the end if the
+    /// scope says so.
     pub fn distance(self, a: &Track, b: &Track) -> f64 {
-        let pairs = a.positions.iter().zip(&b.positions);
+        let pairs = a.values.iter().zip(&b.values);
         let from = if self.scope.at_end {
-            a.positions.len() - 1
+            a.values.len() - 1
         } else {
             0
         };
@@ -143,14 +145,30 @@ impl Points {
         distances.fold(0.0, f64::max)
     }
 
-    /// Returns the distance (m) of the points from where they start, as
+    /// Returns the distance from a run in which nothing moves, as
     /// [`distance`](Self::distance) does.
     pub fn way(self, track: &Track) -> f64 {
         let still = Track {
-            positions: vec![track.positions[0].clone(); track.positions.len()],
+            values: vec![track.values[0].clone(); track.values.len()],
             time: Duration::ZERO,
             work: 0.0,
         };
         self.distance(track, &still)
     }
+
+    /// Returns the unit of the quantity.
+    pub fn unit(self) -> &'static str {
+        match self.quantity {
+            Quantity::Position | Quantity::Centre => "m",
+            Quantity::Energy => "J",
+        }
+    }
+}
+
+/// Returns the centre of mass (m) of particles, whose positions are given along each axis.
+fn centre<'a>(network: &Network, columns: impl Iterator<Item = &'a [f64]>) -> Vec<f64> {
+    let masses = network.masses();
+    let sum: f64 = masses.iter().sum();
+    let mean = |x: &[f64]| x.iter().zip(masses).map(|(x, m)| x * m).sum::<f64>() / sum;
+    columns.map(mean).collect()
 }

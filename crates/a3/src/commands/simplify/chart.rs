@@ -2,16 +2,19 @@
 //! varied. Errors are taken from the motion that the two finest grids extrapolate to.
 
 use a3_core::accuracy::{coarser, ladder};
+use a3_core::integrators::find;
 use a3_core::stability::spectrum;
-use a3_core::{Control, Method, Scene};
-use a3_plot::{Curve, CurveStyle, Marker, Measurement, Problem, WorkPrecision};
+use a3_core::{Method, Scene};
+use a3_plot::{Curve, CurveStyle, Guide, Marker, Measurement, Problem, WorkPrecision};
 use a3_scenes::{Regridded, regridded};
 
 use super::lean::Solved;
 use super::models::{FACTORS, Models};
 use crate::base::failure::Failure;
 use crate::base::progress::Bar;
+use crate::cli::Quantity;
 use crate::commands::chart::single::time;
+use crate::commands::chart::table::words;
 use crate::commands::motion::{GridError, Motion, Places, Track, grid};
 
 /// Styles of the grids, from the coarsest to the finest.
@@ -30,6 +33,9 @@ const BALANCE: f64 = std::f64::consts::SQRT_2;
 /// Largest number of particles of a grid in the chart, and largest work of a run (evaluations).
 const MAX_WORK: u64 = 200_000;
 
+/// Least error of a run in the chart, over that of an accurate run on its grid.
+const LEAST_SHARE: f64 = 0.95;
+
 /// Grid of the chart.
 struct Grid {
     name: String,
@@ -39,21 +45,25 @@ struct Grid {
     motion: Track,
 }
 
-/// Measures the runs of the chart, by the solver that is cheapest for the whole scene. `None` if
-/// the scene has one grid only, or the command was interrupted.
+/// Solvers of the chart, besides the cheapest of the whole scene: implicit ones, whose steps are
+/// not limited by the grid.
+const LONG_STEPS: [&str; 2] = ["implicit", "tr-bdf2"];
+
+/// Measures the runs of the chart. `None` if the scene has one grid only, or the command was
+/// interrupted.
 pub fn chart(
     models: &Models,
     whole: &Solved,
     title: String,
     bar: &Bar,
 ) -> Result<Option<WorkPrecision>, Failure> {
-    let Some(grids) = grids(models)? else {
+    let Some(mut grids) = grids(models)? else {
         return Ok(None);
     };
     let [.., own, finest] = &grids[..] else {
         return Ok(None);
     };
-    let difference = |grid: &Grid| models.points.distance(&own.motion, &grid.motion);
+    let difference = |grid: &Grid| models.compared.distance(&own.motion, &grid.motion);
     let half = grids
         .iter()
         .find(|grid| 2 * grid.scene.model.particles() < own.scene.model.particles());
@@ -63,15 +73,36 @@ pub fn chart(
         .order
         .map_or(0.0, |order| 1.0 / (order.exp2() - 1.0));
     let truth = Track::extrapolated(&own.motion, &finest.motion, share);
-    bar.expect((grids.len() * MAX_RUNS) as f64);
-    let mut curves = vec![];
+    if estimate.order.is_none() {
+        // The finest grid cannot be compared with itself.
+        grids.pop();
+    }
+    let long = LONG_STEPS.iter().filter_map(|name| find(name));
+    let long = long.filter(|method| *method != whole.method);
+    let supports = |method: &&Method| method.check(models.scene.model.system()).is_ok();
+    let methods: Vec<_> = [whole.method]
+        .into_iter()
+        .chain(long.filter(supports))
+        .collect();
+    bar.expect((grids.len() * methods.len() * MAX_RUNS) as f64);
+    let motion = models.compared.way(&models.whole);
+    let (mut curves, mut balance) = (vec![], vec![]);
     let styles = STYLES.iter().skip(STYLES.len() - grids.len());
     for (grid, (colour, marker)) in grids.iter().zip(styles) {
         bar.say(format!("{}  ", grid.name));
-        let least = models.points.distance(&truth, &grid.motion);
-        let Some(runs) = runs(models, grid, whole.method, &truth, least, bar)? else {
-            return Ok(None);
-        };
+        let least = models.compared.distance(&truth, &grid.motion);
+        let mut runs = vec![];
+        for method in &methods {
+            let Some(own) = measured(models, grid, method, (&truth, least), bar)? else {
+                return Ok(None);
+            };
+            runs.extend(own);
+        }
+        // Long steps that err less than short ones do so because their errors and those of the grid
+        // cancel by chance.
+        runs.retain(|run| run.error > LEAST_SHARE * least && run.error < motion);
+        let runs = best(runs);
+        balance.extend(balanced(&runs, BALANCE * least));
         curves.push(Curve {
             style: CurveStyle {
                 colour,
@@ -82,27 +113,74 @@ pub fn chart(
             runs,
         });
     }
-    let until = models.points.frames.until;
+    let guide = (balance.len() > 1).then(|| Guide {
+        name: "grid and time steps err alike".into(),
+        points: balance,
+    });
+    let foot = if guide.is_some() {
+        "On the dashed line, the time steps err as much as the grid. Left of it, where markers are filled, a shorter \
+         step is wasted, and a finer grid helps. Right of it, a shorter step helps."
+    } else {
+        "Where a marker is filled, the grid errs more than the time steps: a shorter step is wasted, and a finer grid \
+         helps."
+    };
+    let truth = match estimate.order {
+        Some(_) => "the motion that the two finest grids extrapolate to",
+        None => "the motion on a grid twice as fine: grids do not converge yet",
+    };
+    let solvers = methods
+        .iter()
+        .map(|it| format!("{} {}", it.letter, it.title));
+    let solvers: Vec<_> = solvers.collect();
+    let until = models.compared.frames.until;
     Ok(Some(WorkPrecision {
         title,
         subtitle: format!(
-            "{until} s of motion by {}; each point is a run on a grid with another {}",
-            whole.method.title,
-            if whole.control.step().is_some() { "step" } else { "tolerance" }
+            "{until} s of motion on different grids; {}",
+            solvers.join("; ")
         ),
-        x_label: "largest RMS error of positions, of grid and time steps together (m)".into(),
+        x_label: format!(
+            "error {}, of grid and time steps together ({})",
+            match models.compared.quantity {
+                Quantity::Position => "of positions, largest RMS",
+                Quantity::Centre => "of the centre of mass",
+                Quantity::Energy => "of the energy",
+            },
+            models.compared.unit()
+        ),
         y_label: "computing time per simulated second (s)".into(),
         problems: vec![Problem {
             curves,
-            still: Some(models.points.way(&models.whole)),
+            still: Some(motion),
+            guide,
             ..Problem::default()
         }],
-        foot: "Half-filled: the time steps err more than the grid, so a shorter step helps. Filled: the grid errs more, \
-               and a shorter step is wasted. Errors are differences from the motion that the two finest grids \
-               extrapolate to."
-            .into(),
+        foot: format!("{foot} Errors are differences from {truth}."),
         held: "the time steps err more than the grid".into(),
     }))
+}
+
+/// Returns the runs that no other beats in both error and work, from the most accurate on.
+fn best(mut runs: Vec<Measurement>) -> Vec<Measurement> {
+    runs.sort_by(|a, b| a.error.total_cmp(&b.error).then(a.work.total_cmp(&b.work)));
+    let mut least = f64::INFINITY;
+    runs.retain(|run| {
+        let is_better = run.work < least;
+        least = least.min(run.work);
+        is_better
+    });
+    runs
+}
+
+/// Returns the point of a curve, an error and its work, at which the error is this: between the
+/// runs that enclose it, on logarithmic scales. `None` if none do.
+fn balanced(runs: &[Measurement], error: f64) -> Option<[f64; 2]> {
+    runs.windows(2).find_map(|pair| {
+        let [a, b] = [&pair[0], &pair[1]];
+        let share = (error / a.error).ln() / (b.error / a.error).ln();
+        let work = a.work * (b.work / a.work).powf(share);
+        (0.0..=1.0).contains(&share).then_some([error, work])
+    })
 }
 
 /// The grids from the coarsest to one twice as fine, with their accurate motions.
@@ -142,35 +220,36 @@ fn grids(models: &Models) -> Result<Option<Vec<Grid>>, Failure> {
     Ok((all.len() > 1 && has_finer).then_some(all))
 }
 
-/// Runs on a grid at several steps or tolerances, from the coarsest on, until the grid makes nearly
-/// all of the error. `least` is the error of its accurate run (m). `None` if it was interrupted.
-fn runs(
+/// Measures runs on a grid by a method at several steps or tolerances, from the coarsest on, until
+/// the grid makes nearly all of the error. `least` is the error of its accurate run. `None` if the
+/// command was interrupted.
+fn measured(
     models: &Models,
     grid: &Grid,
     method: &'static Method,
-    truth: &Track,
-    least: f64,
+    (truth, least): (&Track, f64),
     bar: &Bar,
 ) -> Result<Option<Vec<Measurement>>, Failure> {
-    let (scene, points) = (&grid.scene, models.points);
+    let (scene, compared) = (&grid.scene, models.compared);
     let modes = spectrum(scene.model.system(), 0.0, &scene.state);
-    let rungs = ladder(&modes, method, &points.frames, MAX_WORK).map_err(Failure::run)?;
+    let rungs = ladder(&modes, method, &compared.frames, MAX_WORK).map_err(Failure::run)?;
     // The limit of stability is that of the start, and may be longer in motion.
     let first = rungs
         .first()
-        .and_then(|control| coarser(*control, &points.frames));
+        .and_then(|control| coarser(*control, &compared.frames));
     let mut found = vec![];
     let places: Option<&Places> = grid.places.as_deref();
     for control in first.into_iter().chain(rungs).take(MAX_RUNS) {
-        let measured = match points.follow(scene, (method, control), places)? {
+        let run = compared.follow(scene, (method, control), places);
+        let measured = match run.map_err(Failure::run)? {
             None => return Ok(None),
             Some(Motion::Failed) => None,
             Some(Motion::Known(track)) => {
-                let frames = &points.frames;
+                let frames = &compared.frames;
                 let Some(time) = time(scene, method, control, frames, Some(track.time))? else {
                     return Ok(None);
                 };
-                Some((points.distance(truth, &track), time))
+                Some((compared.distance(truth, &track), time))
             }
         };
         bar.advance(1.0);
@@ -179,9 +258,9 @@ fn runs(
         };
         found.push(Measurement {
             error,
-            work: time.as_secs_f64() / points.frames.until,
+            work: time.as_secs_f64() / compared.frames.until,
             held: error > BALANCE * least,
-            label: Some(label(control)),
+            label: Some(format!("{} {}", method.letter, words(control))),
             ..Measurement::default()
         });
         if error < 1.01 * least && found.len() > 2 {
@@ -189,9 +268,4 @@ fn runs(
         }
     }
     Ok(Some(found))
-}
-
-/// A step or a tolerance as the label of a point.
-fn label(control: Control) -> String {
-    crate::commands::chart::table::words(control)
 }

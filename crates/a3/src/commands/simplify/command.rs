@@ -2,39 +2,36 @@
 
 use std::path::Path;
 
-use a3_core::accuracy::{Frames, Metric, Precision, Reference};
+use a3_core::accuracy::Frames;
 
 use super::chart::chart;
-use super::lean::{
-    Answer, LeanModel, MAX_TIME_RATIO, Solved, assemble, solve, solve_whole, time_in_turns,
-};
+use super::lean::{Answer, LeanModel, MAX_TIME_RATIO, Solved, assemble, solve, time_in_turns};
 use super::models::{Model, Models, measure_all};
 use super::table;
 use crate::base::failure::Failure;
 use crate::base::progress::Bar;
 use crate::base::{interrupt, terminal};
-use crate::cli::Simplify;
-use crate::commands::chart::single::reference;
+use crate::cli::{Quantity, Simplify};
+use crate::commands::chart::table::words;
 use crate::commands::chart::{PICTURES, check_motion, describe, look_ahead, scope, write_picture};
-use crate::commands::motion::Points;
+use crate::commands::motion::{Compared, open};
 use crate::files::output;
 use crate::files::setup::Request;
 
-/// Uncertainty of the reference that is sought, over the error that is asked for.
-const GOAL_UNCERTAINTY: f64 = 0.01;
-/// Largest uncertainty of the reference that is accepted, over the error that is asked for.
-const MAX_UNCERTAINTY: f64 = 0.3;
+/// Method that is often the cheapest, and is tried first.
+const OFTEN_CHEAPEST: &str = "verlet";
 
 /// Measures models of a scene, prints them, and writes the leanest.
 pub fn run(options: &Simplify) -> Result<(), Failure> {
     interrupt::listen();
     let request = request(options)?;
+    let mut known = open(options.data.as_deref())?;
     let bar = Bar::new(1.0);
-    let (models, reference) = whole(options, &request, &bar)?;
+    let models = whole(options, &request, &bar)?;
     let (mut all, why) = models.all();
-    let complete = measure_all(&models, &mut all, &bar)?;
+    let complete = measure_all(&models, &mut all, &mut known, &bar)?;
     let answer = if complete {
-        leanest(&models, &all, &reference, options.error, &bar)?
+        leanest(&models, &all, options.error, &bar)?
     } else {
         None
     };
@@ -125,12 +122,8 @@ fn check_folder(path: &Path, request: &Request) -> Result<(), Failure> {
 }
 
 /// Integrates the whole scene accurately, up to the end of the runs. Returns its models, which are
-/// not measured yet, and the reference.
-fn whole<'a>(
-    options: &Simplify,
-    request: &'a Request,
-    bar: &Bar,
-) -> Result<(Models<'a>, Reference), Failure> {
+/// not measured yet.
+fn whole<'a>(options: &Simplify, request: &'a Request, bar: &Bar) -> Result<Models<'a>, Failure> {
     let scene = request.scene()?;
     if scene.model.network().is_none() {
         return Err(Failure::usage(format!(
@@ -138,42 +131,42 @@ fn whole<'a>(
             scene.name
         )));
     }
-    let error = options.error;
+    let (error, quantity) = (options.error, options.of);
     let scope = scope(&options.scope, &scene)?;
+    if scope.particle.is_some() && quantity != Quantity::Position {
+        return Err(Failure::usage(
+            "--particle: only positions are those of a particle",
+        ));
+    }
     bar.say("looking ahead  ".into());
     let horizon = look_ahead(&scene, options.until, 1.0, bar)?.ok_or_else(stopped)?;
     check_motion(&scene, &horizon)?;
-    let frames = Frames::new(horizon.until);
-    bar.say("reference  ".into());
-    let precision = Precision {
-        metric: Metric::Position,
-        uncertainty: GOAL_UNCERTAINTY * error,
-        max_work: f64::INFINITY,
-    };
-    let reference = reference(&scene, frames, scope, precision)?.ok_or_else(stopped)?;
-    let floor = reference.floor.position;
-    if floor > MAX_UNCERTAINTY * error {
-        return Err(Failure::usage(format!(
-            "the motion of this scene over {} s is itself known to {floor:.0e} m only: ask for an error of at least \
-             {:.0e}, or for a shorter --until",
-            frames.until,
-            floor / MAX_UNCERTAINTY
-        )));
-    }
-    let points = Points {
-        frames,
+    bar.say("whole scene  ".into());
+    let compared = Compared {
+        quantity,
+        frames: Frames::new(horizon.until),
         scope,
-        centre: options.centre,
     };
-    let models = Models::new(request, scene, points, &reference, error)?.ok_or_else(stopped)?;
-    let motion = points.way(&models.whole);
+    let models = Models::new(request, scene, compared, error)?.ok_or_else(stopped)?;
+    let motion = compared.way(&models.whole);
     if error > motion {
         bar.warn(&format!(
-            "warning: nothing moves further than {motion:.0e} m in {} s: an error of {error:e} m says nothing",
-            frames.until
+            "warning: {} by no more than {motion:.0e} {unit} in {} s: an error of {error:e} {unit} says nothing",
+            changing(quantity),
+            compared.frames.until,
+            unit = compared.unit(),
         ));
     }
-    Ok((models, reference))
+    Ok(models)
+}
+
+/// Returns the quantity and its verb, as the subject of a sentence.
+fn changing(quantity: Quantity) -> &'static str {
+    match quantity {
+        Quantity::Position => "the particles move",
+        Quantity::Centre => "the centre of mass moves",
+        Quantity::Energy => "the energy changes",
+    }
 }
 
 /// Assembles the leanest scene, and finds the cheapest solvers for it and for the whole scene.
@@ -181,14 +174,14 @@ fn whole<'a>(
 fn leanest(
     models: &Models,
     all: &[Model],
-    reference: &Reference,
     error: f64,
     bar: &Bar,
 ) -> Result<Option<Answer>, Failure> {
     bar.say("cheapest solver  ".into());
-    let Some(mut whole) = solve_whole(models, reference, error)? else {
+    let Some(mut whole) = solve(models, &LeanModel::whole(models), error, OFTEN_CHEAPEST)? else {
         return stop_or(format!(
-            "no solver meets an error of {error:e} m on the whole scene"
+            "no solver meets an error of {error:e} {} on the whole scene",
+            models.compared.unit()
         ));
     };
     bar.say("leanest scene  ".into());
@@ -198,7 +191,7 @@ fn leanest(
     let mut solved = if model.is_whole() {
         None
     } else {
-        solve(models, &model, error)?
+        solve(models, &model, error, whole.method.name)?
     };
     if let Some(solved) = &mut solved {
         time_in_turns(models, &model, solved, &mut whole)?;
@@ -237,32 +230,37 @@ fn print(
     why: Option<&str>,
     answer: Option<&Answer>,
 ) -> Result<(), Failure> {
-    let (scene, points) = (&models.scene, models.points);
-    let motion = points.way(&models.whole);
-    let of = if points.centre {
-        "the centre of mass"
-    } else {
-        "the particles"
-    };
+    let (scene, compared) = (&models.scene, models.compared);
+    let motion = compared.way(&models.whole);
+    let unit = compared.unit();
     terminal::say(&format!(
-        "{} for {} s, an error of {:e} m; {of} move by {motion:.1e} m:\n",
+        "{} for {} s, an error of {:e} {unit}; {} by {motion:.1e} {unit}:\n",
         describe(&options.what, scene),
-        points.frames.until,
-        options.error
+        compared.frames.until,
+        options.error,
+        changing(compared.quantity),
+    ))?;
+    let (method, control) = models.accurate;
+    terminal::say(&format!(
+        "each model is run by {} at {}, which is accurate to {:.0e} {unit} on the whole scene\n",
+        method.title,
+        words(control),
+        models.uncertainty
     ))?;
     let lean = answer.map(|answer| &answer.model);
     if !all.is_empty() {
-        terminal::say(&table::text(all, motion, options.error, lean))?;
+        terminal::say(&table::text(all, (motion, unit), options.error, lean))?;
     }
     let description = &models.request.source.description;
-    if let Some(of_grid) = table::of_grid(all, description) {
+    let of_grid = table::of_grid(all, description);
+    if let Some(of_grid) = of_grid.filter(|_| compared.quantity == Quantity::Position) {
         terminal::say(&of_grid)?;
     }
     if let Some(why) = why {
         terminal::say(&format!("the grid is not varied: {why}\n"))?;
     }
     match answer {
-        Some(answer) => terminal::say(&table::of_lean(answer)),
+        Some(answer) => terminal::say(&table::of_lean(answer, unit)),
         None => Ok(()),
     }
 }
@@ -274,12 +272,13 @@ fn write(path: &Path, models: &Models, answer: &Answer) -> Result<(), Failure> {
     description.step = Some(answer.solved.control.value());
     description
         .duration
-        .get_or_insert(models.points.frames.until);
+        .get_or_insert(models.compared.frames.until);
     let text = description.to_toml().map_err(Failure::run)?;
     let head = format!(
-        "# The scene {} without parts that change its motion by less than {:.1e} m, by a3 {}.\n\n",
+        "# The scene {} without parts that change its motion by less than {:.1e} {}, by a3 {}.\n\n",
         models.scene.name.replace(char::is_control, " "),
         answer.solved.error,
+        models.compared.unit(),
         env!("CARGO_PKG_VERSION")
     );
     output::write(path, (head + &text).as_bytes())?;

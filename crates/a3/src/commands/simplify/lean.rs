@@ -1,15 +1,16 @@
 //! The leanest scene for an error: parts left out together, a coarser grid, and the cheapest solver
 //! for the rest of the error. All of it is measured in one run.
 
+use std::cmp::Reverse;
 use std::time::Duration;
 
-use a3_core::accuracy::{Candidate, Frames, Metric, Precision, Reference, Scope, choose};
-use a3_core::{Control, Method, Scene};
+use a3_core::accuracy::{Candidate, Trial, choose_by};
+use a3_core::integrators::METHODS;
+use a3_core::{Control, Error, Method};
 use a3_scenes::{Description, Part, regridded, without};
 
 use super::models::{Model, Models};
 use crate::base::failure::Failure;
-use crate::base::interrupt;
 use crate::commands::chart::single::time;
 use crate::commands::motion::Motion;
 
@@ -21,18 +22,12 @@ const MAX_WORK_RATIO: f64 = 1.05;
 /// Largest computing time, over that of the whole scene, of a leanest scene that takes more work or
 /// has other grids. Computing times vary by a few percent.
 pub const MAX_TIME_RATIO: f64 = 0.95;
-/// Shares of the rest of the error that the solver may cause, tried in turn until the error of the
-/// whole is small enough.
-const SOLVER_SHARES: [f64; 4] = [1.0, 0.8, 0.4, 0.2];
-/// Uncertainty of the reference over the error of the solver.
-const UNCERTAINTY: f64 = 0.01;
-
 /// Cheapest solver of a scene.
 #[derive(Clone, Copy)]
 pub struct Solved {
     pub method: &'static Method,
     pub control: Control,
-    /// Error (m) of the run: that of the model and that of the time steps.
+    /// Error of the run: that of the model and that of the time steps.
     pub error: f64,
     /// Computing time of a simulated second (s).
     pub time: f64,
@@ -50,7 +45,7 @@ pub struct LeanModel {
     pub parts: Vec<Part>,
     /// Factor by which the cells of its grids are shorter; below 1 for coarser grids.
     pub factor: f64,
-    /// Error of the model alone (m).
+    /// Error of the model alone.
     pub error: f64,
 }
 
@@ -78,8 +73,8 @@ pub struct Answer {
     pub whole: Solved,
 }
 
-/// Assembles the leanest model that changes the motion by at most the model's share of the error
-/// (m). `None` if the command was interrupted.
+/// Assembles the leanest model that changes the motion by at most the model's share of the error.
+/// `None` if the command was interrupted.
 pub fn assemble(models: &Models, all: &[Model], error: f64) -> Result<Option<LeanModel>, Failure> {
     let max_change = MODEL_SHARE * error;
     let own = &*models.request.source.description;
@@ -129,30 +124,17 @@ pub fn assemble(models: &Models, all: &[Model], error: f64) -> Result<Option<Lea
     }
 }
 
-/// Finds the cheapest solver for the whole scene, at the error (m) that is asked for. `None` if no
-/// solver meets it, or the command was interrupted.
-pub fn solve_whole(
+/// Finds the cheapest solver for a model whose run differs from the motion of the whole scene by
+/// at most the error: that of the model and of the time steps together. `None` if no solver was
+/// found, or the command was interrupted.
+/// `first` is the method that is tried first: the cheaper it is, the fewer runs of others are
+/// necessary.
+pub fn solve(
     models: &Models,
-    reference: &Reference,
+    model: &LeanModel,
     error: f64,
+    first: &str,
 ) -> Result<Option<Solved>, Failure> {
-    let scene = &models.scene;
-    let Some(best) = cheapest(scene, reference, error)? else {
-        return Ok(None);
-    };
-    let time = seconds(scene, &best, reference.frames)?;
-    Ok(time.map(|time| Solved {
-        method: best.method,
-        control: best.control,
-        error: best.outcome.errors.position,
-        time,
-        work: best.outcome.work.total(),
-    }))
-}
-
-/// Finds the cheapest solver for a lean model whose run differs from the motion of the whole scene
-/// by at most the error (m). `None` if no solver was found, or the command was interrupted.
-pub fn solve(models: &Models, model: &LeanModel, error: f64) -> Result<Option<Solved>, Failure> {
     let scene = models.build(&model.description)?;
     let own = &*models.request.source.description;
     let places = if model.factor < 1.0 {
@@ -161,46 +143,48 @@ pub fn solve(models: &Models, model: &LeanModel, error: f64) -> Result<Option<So
     } else {
         None
     };
-    let frames = models.points.frames;
-    let left = error - model.error;
-    let precision = Precision {
-        metric: Metric::Position,
-        uncertainty: UNCERTAINTY * left,
-        max_work: f64::INFINITY,
+    let frames = models.compared.frames;
+    let measure = |method, control| {
+        let run = models
+            .compared
+            .follow(&scene, (method, control), places.as_deref())?;
+        Ok::<_, Error>(run.map(|motion| match motion {
+            Motion::Failed => Trial {
+                error: f64::INFINITY,
+                work: 0.0,
+                outcome: f64::INFINITY,
+            },
+            Motion::Known(track) => {
+                let error = models.effect(&track).change;
+                Trial {
+                    error,
+                    work: track.work,
+                    outcome: error,
+                }
+            }
+        }))
     };
-    // On another grid, a particle of the scene cannot be followed by its number.
-    let scope = Scope {
-        particle: models.points.scope.particle.filter(|_| places.is_none()),
-        ..models.points.scope
+    let most = error - models.uncertainty;
+    // The accurate run of the whole scene is a candidate, too.
+    let max_cost = |found: &[Candidate<f64>]| {
+        let least = found.first().map_or(f64::INFINITY, |best| best.work);
+        Some(least.min(models.whole.work))
     };
-    let reference = Reference::new(&scene, frames, scope, precision, &interrupt::go_on);
-    let Some(reference) = reference.map_err(Failure::run)? else {
+    let mut methods: Vec<_> = METHODS.iter().collect();
+    methods.sort_by_key(|method| (method.name != first, Reverse(method.order)));
+    let found = choose_by(&methods, &scene, &frames, most, max_cost, measure, |_| {});
+    let found = found.map_err(Failure::run)?;
+    let Some(best) = found.and_then(|found| found.into_iter().next()) else {
         return Ok(None);
     };
-    for share in SOLVER_SHARES {
-        let Some(best) = cheapest(&scene, &reference, share * left)? else {
-            return Ok(None);
-        };
-        let (method, control) = (best.method, best.control);
-        let places = places.as_deref();
-        let track = match models.points.follow(&scene, (method, control), places)? {
-            None => return Ok(None),
-            Some(Motion::Failed) => continue,
-            Some(Motion::Known(track)) => track,
-        };
-        let found = models.effect(&track).change;
-        if found <= error {
-            let time = seconds(&scene, &best, frames)?;
-            return Ok(time.map(|time| Solved {
-                method,
-                control,
-                error: found,
-                time,
-                work: track.work,
-            }));
-        }
-    }
-    Ok(None)
+    let time = time(&scene, best.method, best.control, &frames, None)?;
+    Ok(time.map(|time| Solved {
+        method: best.method,
+        control: best.control,
+        error: best.outcome,
+        time: time.as_secs_f64() / frames.until,
+        work: best.work,
+    }))
 }
 
 /// Times the runs of both scenes again in turns, so that other work of the machine slows both
@@ -211,7 +195,7 @@ pub fn time_in_turns(
     lean: &mut Solved,
     whole: &mut Solved,
 ) -> Result<(), Failure> {
-    let (scene, frames) = (models.build(&model.description)?, models.points.frames);
+    let (scene, frames) = (models.build(&model.description)?, models.compared.frames);
     for _ in 0..TURNS {
         for (scene, solved) in [(&scene, &mut *lean), (&models.scene, &mut *whole)] {
             let before = Duration::from_secs_f64(solved.time * frames.until);
@@ -223,29 +207,4 @@ pub fn time_in_turns(
         }
     }
     Ok(())
-}
-
-/// Finds the cheapest solver of a scene for an error (m). `None` if no solver meets it, or the
-/// command was interrupted.
-fn cheapest(
-    scene: &Scene,
-    reference: &Reference,
-    error: f64,
-) -> Result<Option<Candidate>, Failure> {
-    let found = choose(
-        scene,
-        reference,
-        Metric::Position,
-        error,
-        &interrupt::go_on,
-        |_| {},
-    );
-    let found = found.map_err(Failure::run)?;
-    Ok(found.and_then(|found| found.into_iter().next()))
-}
-
-/// Measures the computing time of a simulated second (s). `None` if the command was interrupted.
-fn seconds(scene: &Scene, best: &Candidate, frames: Frames) -> Result<Option<f64>, Failure> {
-    let time = time(scene, best.method, best.control, &frames, None)?;
-    Ok(time.map(|time| time.as_secs_f64() / frames.until))
 }

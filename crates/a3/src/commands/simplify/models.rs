@@ -1,15 +1,16 @@
 //! Models of a scene: without one of its parts, and on other grids.
 
-use a3_core::accuracy::{Metric, Reference, measure};
+use std::cmp::Ordering;
+
 use a3_core::integrators::find;
 use a3_core::{Control, Method, Scene};
 use a3_scenes::{Description, Part, Regridded, parts, regridded, without};
 
 use crate::base::failure::Failure;
-use crate::base::interrupt;
 use crate::base::progress::Bar;
 use crate::commands::chart::single::time;
-use crate::commands::motion::{Motion, Places, Points, Track, grid};
+use crate::commands::motion::{Compared, Known, Motion, Places, Track, grid};
+use crate::files::rows::Rows;
 use crate::files::setup::Request;
 
 /// Relative tolerances at which the whole scene is tried, the largest first. The first that is
@@ -17,28 +18,37 @@ use crate::files::setup::Request;
 const TOLERANCES: [f64; 10] = [
     1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11, 1e-12,
 ];
-/// Largest error of the time steps in a model, over the error that is asked for.
-const TIME_ERROR: f64 = 0.02;
-/// Factors by which the cells of grids are shorter; below 1 for coarser grids.
-pub const FACTORS: [f64; 4] = [0.25, 0.5, 0.75, 2.0];
+/// Tolerance of the run that checks another, over that one's.
+const CHECK_RATIO: f64 = 0.1;
+/// Error of the time steps in a model that is sought, over the error that is asked for.
+const GOAL_UNCERTAINTY: f64 = 0.02;
+/// Error of the time steps in a model that is accepted, over the error that is asked for.
+const MAX_UNCERTAINTY: f64 = 0.3;
+/// Number of tolerances that bring no better agreement, after which none does.
+const MAX_STUCK: usize = 3;
+/// Factors by which the cells of grids are shorter; below 1 for coarser grids. On a small grid, two
+/// factors may give the same grid, which then counts as that of the first.
+pub const FACTORS: [f64; 4] = [0.5, 0.25, 0.75, 2.0];
 
 /// Comparison of models of a scene with the whole scene.
 pub struct Models<'a> {
     pub request: &'a Request,
     /// Whole scene.
     pub scene: Scene,
-    /// Points whose motion is compared.
-    pub points: Points,
+    /// Quantity that is compared.
+    pub compared: Compared,
     /// Motion of the whole scene.
     pub whole: Track,
     /// Method and tolerance by which all models are integrated.
-    accurate: (&'static Method, Control),
+    pub accurate: (&'static Method, Control),
+    /// Error of that run, by its distance from a run of another method.
+    pub uncertainty: f64,
 }
 
 /// Effect of a model, compared with the whole scene.
 #[derive(Clone, Copy, Debug)]
 pub struct Effect {
-    /// Change of the motion (m).
+    /// Change of the quantity that is compared, in its unit.
     pub change: f64,
     /// Computing time of the model over that of the whole scene.
     pub time: f64,
@@ -62,60 +72,68 @@ pub struct Model {
 }
 
 impl<'a> Models<'a> {
-    /// Integrates the whole scene much more accurately than to the error (m) that is asked for.
-    /// `None` if the command was interrupted.
+    /// Integrates the whole scene much more accurately than to the error that is asked for, which
+    /// two methods of different orders have to agree about. `None` if the command was interrupted.
     ///
     /// # Errors
-    /// No adaptive solver supports the scene, or none is accurate enough.
+    /// No run is accurate enough.
     pub fn new(
         request: &'a Request,
         scene: Scene,
-        points: Points,
-        reference: &Reference,
+        compared: Compared,
         error: f64,
     ) -> Result<Option<Self>, Failure> {
-        let names = ["verner65", "dopri5"];
-        let supports = |method: &&'static Method| method.check(scene.model.system()).is_ok();
-        let method = names.into_iter().filter_map(find).find(supports);
-        let method = method.ok_or_else(|| {
-            Failure::usage(format!(
-                "no adaptive solver can run the scene {}, so its models cannot be compared",
-                scene.name
-            ))
-        })?;
-        let enough = (TIME_ERROR * error).max(2.0 * Metric::Position.of(&reference.floor));
+        let [method, other] = ["verner65", "dop853"].map(|name| find(name).expect(name));
+        let mut best: Option<(Track, f64, f64)> = None;
+        let mut stuck = 0;
         for tolerance in TOLERANCES {
-            let control = Control::Tolerance(tolerance);
-            let run = measure(&scene, method, control, reference, &interrupt::go_on);
-            let Some(outcome) = run.map_err(Failure::run)? else {
-                return Ok(None);
-            };
-            if outcome.lost.is_some() || outcome.errors.position > enough {
-                continue;
+            let mut runs = vec![];
+            for (method, tolerance) in [(method, tolerance), (other, CHECK_RATIO * tolerance)] {
+                let by = (method, Control::Tolerance(tolerance));
+                let Some(run) = compared.follow(&scene, by, None).map_err(Failure::run)? else {
+                    return Ok(None);
+                };
+                runs.push(run);
             }
-            let accurate = (method, control);
-            let whole = match points.follow(&scene, accurate, None)? {
-                None => return Ok(None),
-                Some(Motion::Failed) => continue,
-                Some(Motion::Known(track)) => track,
+            let Ok([Motion::Known(track), Motion::Known(check)]) = <[Motion; 2]>::try_from(runs)
+            else {
+                continue;
             };
-            let frames = &points.frames;
-            let Some(time) = time(&scene, method, control, frames, Some(whole.time))? else {
-                return Ok(None);
-            };
-            let whole = whole.timed(time);
-            return Ok(Some(Self {
-                request,
-                scene,
-                points,
-                whole,
-                accurate,
-            }));
+            let uncertainty = compared.distance(&track, &check);
+            let is_better = best.as_ref().is_none_or(|best| uncertainty < 0.5 * best.1);
+            stuck = if is_better { 0 } else { stuck + 1 };
+            if best.as_ref().is_none_or(|best| uncertainty < best.1) {
+                best = Some((track, uncertainty, tolerance));
+            }
+            if uncertainty <= GOAL_UNCERTAINTY * error || stuck == MAX_STUCK {
+                break;
+            }
         }
-        Err(Failure::run(format!(
-            "no run of the scene {} was accurate enough to compare models to {error:e} m: ask for a larger error",
-            scene.name
-        )))
+        let Some((whole, uncertainty, tolerance)) = best else {
+            return Err(Failure::run(format!(
+                "the scene {} blows up at every tolerance, so its models cannot be compared",
+                scene.name
+            )));
+        };
+        if uncertainty > MAX_UNCERTAINTY * error {
+            let unit = compared.unit();
+            return Err(Failure::usage(format!(
+                "the motion of this scene over {} s is itself known to {uncertainty:.0e} {unit} only: ask for an error \
+                 of at least {:.0e} {unit}, or for a shorter --until",
+                compared.frames.until,
+                uncertainty / MAX_UNCERTAINTY
+            )));
+        }
+        let control = Control::Tolerance(tolerance);
+        let found = time(&scene, method, control, &compared.frames, Some(whole.time))?;
+        Ok(found.map(|time| Self {
+            request,
+            scene,
+            compared,
+            whole: whole.timed(time),
+            accurate: (method, control),
+            uncertainty,
+        }))
     }
 
     /// Lists the models to be measured: without each part, and on each other grid. The second value
@@ -152,23 +170,47 @@ impl<'a> Models<'a> {
                 Err(reason) => why = why.or(Some(reason)),
             }
         }
+        all.sort_by(|a, b| {
+            let order = |model: &Model| (model.places.is_some(), model.factor);
+            order(a).partial_cmp(&order(b)).unwrap_or(Ordering::Equal)
+        });
         let has_grids = all.iter().any(|model| model.places.is_some());
         (all, why.filter(|_| !has_grids))
     }
 
-    /// Measures a model. Returns `false` if the command was interrupted.
-    pub fn measure(&self, model: &mut Model) -> Result<bool, Failure> {
+    /// Measures a model, unless it is known. Returns `false` if the command was interrupted.
+    pub fn measure(&self, model: &mut Model, known: &mut Rows<Known>) -> Result<bool, Failure> {
+        let like = Known {
+            model: model.name.clone(),
+            ..Known::new(self.request, &self.scene, self.compared, self.accurate)
+        };
+        if let Some(&Known {
+            change, time, work, ..
+        }) = known.find(&like)
+        {
+            model.effect = Ok(Effect { change, time, work });
+            return Ok(true);
+        }
         let Some(found) = self.follow(&model.description, model.places.as_deref())? else {
             return Ok(false);
         };
         model.effect = found.map(|track| self.effect(&track));
+        if let Ok(Effect { change, time, work }) = model.effect {
+            known.add(Known {
+                change,
+                time,
+                work,
+                ..like
+            });
+            known.save()?;
+        }
         Ok(true)
     }
 
     /// Returns the effect of a model whose motion is known.
     pub fn effect(&self, track: &Track) -> Effect {
         Effect {
-            change: self.points.distance(&self.whole, track),
+            change: self.compared.distance(&self.whole, track),
             time: track.time.as_secs_f64() / self.whole.time.as_secs_f64(),
             work: track.work / self.whole.work,
         }
@@ -184,17 +226,13 @@ impl<'a> Models<'a> {
         let Ok(scene) = self.build(description) else {
             return Ok(Some(Err("a scene without it cannot be built".into())));
         };
-        if self.accurate.0.check(scene.model.system()).is_err() {
-            return Ok(Some(Err(
-                "the solver of this comparison does not support it".into(),
-            )));
-        }
-        Ok(match self.points.follow(&scene, self.accurate, places)? {
+        let found = self.compared.follow(&scene, self.accurate, places);
+        Ok(match found.map_err(Failure::run)? {
             None => None,
             Some(Motion::Failed) => Some(Err("it blows up".into())),
             Some(Motion::Known(track)) => {
                 let (method, control) = self.accurate;
-                let frames = &self.points.frames;
+                let frames = &self.compared.frames;
                 let time = time(&scene, method, control, frames, Some(track.time))?;
                 time.map(|time| Ok(track.timed(time)))
             }
@@ -207,15 +245,21 @@ impl<'a> Models<'a> {
     }
 }
 
-/// Measures all models that can be measured. Returns `false` if the command was interrupted.
-pub fn measure_all(models: &Models, all: &mut [Model], bar: &Bar) -> Result<bool, Failure> {
+/// Measures all models that can be measured and are not known. Returns `false` if the command was
+/// interrupted.
+pub fn measure_all(
+    models: &Models,
+    all: &mut [Model],
+    known: &mut Rows<Known>,
+    bar: &Bar,
+) -> Result<bool, Failure> {
     // A model on a finer grid has more particles and, by an explicit method, shorter steps.
     let weight = |model: &Model| model.factor.powi(4);
     bar.expect(all.iter().map(weight).sum());
     bar.start();
     for model in all {
         bar.say(format!("{}  ", model.name));
-        if !models.measure(model)? {
+        if !models.measure(model, known)? {
             return Ok(false);
         }
         bar.advance(weight(model));

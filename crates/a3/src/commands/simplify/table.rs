@@ -10,12 +10,18 @@ use a3_scenes::Description;
 /// Change of the motion, over the error that is asked for, above which a part is barely needed.
 const BARELY_NEEDED: f64 = 0.1;
 
-/// Writes the table of all models, with a verdict on each. `motion` is the distance (m) by which
-/// the points move, and `error` the error (m) that is asked for.
-pub fn text(models: &[Model], motion: f64, error: f64, lean: Option<&LeanModel>) -> String {
+/// Writes the table of all models, with a verdict on each. `motion` is the change in the run of the
+/// whole scene, with its unit, and `error` the error that is asked for.
+pub fn text(
+    models: &[Model],
+    (motion, unit): (f64, &str),
+    error: f64,
+    lean: Option<&LeanModel>,
+) -> String {
+    let changes = format!(" changes ({unit})");
     let heading = [
         "left out or changed",
-        " changes (m)",
+        &changes,
         " of the motion",
         " saves",
         "verdict",
@@ -75,31 +81,35 @@ pub fn of_grid(models: &[Model], description: &Description) -> Option<String> {
 }
 
 /// Describes the leanest scene in words, beside the whole scene.
-pub fn of_lean(answer: &Answer) -> String {
+pub fn of_lean(answer: &Answer, unit: &str) -> String {
     let Answer {
         model: lean,
         solved,
         whole,
     } = answer;
     let times = whole.time / solved.time;
-    let mut parts: Vec<_> = lean.parts.iter().map(|part| part.name.clone()).collect();
+    let mut changes = vec![];
+    if !lean.parts.is_empty() {
+        let names: Vec<_> = lean.parts.iter().map(|part| &*part.name).collect();
+        changes.push(format!("without {}", names.join(", ")));
+    }
     if lean.factor < 1.0 {
-        parts.push(format!("a grid of {}", grid(&lean.description)));
+        changes.push(format!("on a grid of {}", grid(&lean.description)));
     }
     let of_whole = format!(
-        "  whole  {}, {}: error {} m, {} a simulated second\n",
+        "  whole  {}, {}: error {} {unit}, {} a simulated second\n",
         whole.method.title,
         words(whole.control),
         number(whole.error),
         milliseconds(whole.time),
     );
-    if parts.is_empty() {
+    if changes.is_empty() {
         return format!("nothing can be left out that would save time\n{of_whole}");
     }
     format!(
-        "leanest scene, {times:.1} times cheaper, without: {}\n{of_whole}  lean   {}, {}: error {} m in all, {} m of it \
+        "leanest scene, {times:.1} times cheaper: {}\n{of_whole}  lean   {}, {}: error {} {unit} in all, {} {unit} of it \
          the model's, {} a simulated second\n",
-        parts.join(", "),
+        changes.join("; "),
         solved.method.title,
         words(solved.control),
         number(solved.error),
@@ -108,7 +118,7 @@ pub fn of_lean(answer: &Answer) -> String {
     )
 }
 
-/// Writes a length (m) with two digits.
+/// Writes a number with two digits.
 fn number(x: f64) -> String {
     if x == 0.0 {
         "0".into()

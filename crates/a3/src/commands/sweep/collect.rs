@@ -9,9 +9,10 @@ use super::folder::Folder;
 use super::plan::{Plan, Variant};
 use crate::base::failure::Failure;
 use crate::base::terminal;
+use crate::commands::chart::picture;
 use crate::commands::chart::record::Record;
-use crate::commands::chart::{picture, text};
 use crate::files::output;
+use crate::files::rows::text;
 
 /// Largest number of panels of a chart.
 const MAX_PANELS: usize = 25;

@@ -10,8 +10,8 @@ use crate::base::terminal;
 use crate::cli::share::Id;
 use crate::commands::chart::data::VERSION;
 use crate::commands::chart::record::Record;
-use crate::commands::chart::text;
 use crate::files::output;
+use crate::files::rows::text;
 
 /// Largest size of the file of a run (bytes).
 const MAX_SIZE: u64 = 1 << 16;
@@ -117,6 +117,6 @@ impl Folder {
 /// Reads the run in the text of a file, whose checksum must be there and correct.
 fn record_of(text: &str) -> Option<Record> {
     let names_checks = text.lines().next()?.ends_with(",check");
-    let mut records = text::read(text, false).ok().filter(|_| names_checks)?;
+    let mut records: Vec<Record> = text::read(text, false).ok().filter(|_| names_checks)?;
     (records.len() == 1).then(|| records.remove(0))
 }

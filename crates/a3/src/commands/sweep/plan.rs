@@ -11,8 +11,9 @@ use super::values::exact;
 use crate::base::failure::Failure;
 use crate::cli::share::Id;
 use crate::commands::chart::data::VERSION;
-use crate::commands::chart::measure::{stiffened, words};
+use crate::commands::chart::measure::stiffened;
 use crate::commands::chart::{check_metric, scope};
+use crate::commands::motion::words;
 use crate::files::scene_file::{Hash, Source};
 
 /// Largest number of runs.

@@ -1,8 +1,10 @@
-//! Data of a chart as text: CSV, or a JSON array, with a line for each run. The last value of a
+//! Rows of data as text: CSV, or a JSON array, with a line for each row. The last value of a
 //! line, `check`, is the CRC-32 of all bytes before it in the file. So that of the last line shows
 //! whether any byte has changed.
 
-use super::record::Record;
+use serde::Serialize;
+
+use super::row::Row;
 
 /// Key of the checksums.
 const CHECK: &str = "check";
@@ -19,18 +21,18 @@ fn digits(sum: u32) -> String {
     format!("{sum:0DIGITS$x}")
 }
 
-/// Writes runs as text.
-pub fn write(records: &[Record], json: bool) -> Result<String, String> {
+/// Writes rows as text.
+pub fn write<T: Serialize>(rows: &[T], json: bool) -> Result<String, String> {
     let mut text = String::new();
     let (mut sum, mut summed) = (crc32fast::Hasher::new(), 0);
-    for (k, record) in records.iter().enumerate() {
+    for (k, row) in rows.iter().enumerate() {
         if json {
-            let line = serde_json::to_string(record).map_err(|e| e.to_string())?;
+            let line = serde_json::to_string(row).map_err(|e| e.to_string())?;
             let open = line.strip_suffix('}').unwrap_or(&line);
             text += if k == 0 { "[\n" } else { "\"},\n" };
             text.extend([open, ",\"", CHECK, "\":\""]);
         } else {
-            let lines = csv_lines(record, k == 0)?;
+            let lines = csv_lines(row, k == 0)?;
             if let Some((head, line)) = lines.split_once('\n').filter(|_| k == 0) {
                 text.extend([head, ",", CHECK, "\n", line, ","]);
             } else {
@@ -44,12 +46,12 @@ pub fn write(records: &[Record], json: bool) -> Result<String, String> {
     Ok(text + end(json))
 }
 
-/// Writes the line of a run in CSV, below a line of keys if `names`.
-pub fn csv_lines(record: &Record, names: bool) -> Result<String, String> {
+/// Writes the line of a row in CSV, below a line of keys if `names`.
+pub fn csv_lines(row: &impl Serialize, names: bool) -> Result<String, String> {
     let mut writer = csv::WriterBuilder::new()
         .has_headers(names)
         .from_writer(vec![]);
-    writer.serialize(record).map_err(|e| e.to_string())?;
+    writer.serialize(row).map_err(|e| e.to_string())?;
     let bytes = writer.into_inner().map_err(|e| e.to_string())?;
     let mut lines = String::from_utf8(bytes).map_err(|e| e.to_string())?;
     lines.truncate(lines.trim_end_matches('\n').len());
@@ -61,20 +63,21 @@ fn see_line(line: u64) -> String {
     format!("see line {line}")
 }
 
-/// Reads the runs in a text. A text without checksums is accepted: an older version wrote it, or
+/// Reads the rows in a text. A text without checksums is accepted: an older version wrote it, or
 /// somebody took them out.
 ///
 /// # Errors
-/// The text does not hold runs, or its last checksum is wrong.
-pub fn read(text: &str, json: bool) -> Result<Vec<Record>, String> {
-    let mut records: Vec<Record> = if json && !text.is_empty() {
+/// The text does not hold such rows, or its last checksum is wrong.
+pub fn read<T: Row>(text: &str, json: bool) -> Result<Vec<T>, String> {
+    let mut rows: Vec<T> = if json && !text.is_empty() {
         serde_json::from_str(text).map_err(|e| see_line(e.line() as u64))?
     } else {
-        let rows = csv::Reader::from_reader(text.as_bytes()).into_deserialize();
-        rows.collect::<Result<_, _>>()
+        let lines = csv::Reader::from_reader(text.as_bytes()).into_deserialize();
+        lines
+            .collect::<Result<_, _>>()
             .map_err(|e| see_line(e.position().map_or(1, csv::Position::line)))?
     };
-    if records.is_empty() && !text.is_empty() {
+    if rows.is_empty() && !text.is_empty() {
         return Err("it has no runs".into());
     }
     let names_checks = !json
@@ -82,7 +85,7 @@ pub fn read(text: &str, json: bool) -> Result<Vec<Record>, String> {
             .lines()
             .next()
             .is_some_and(|line| line.ends_with(CHECK));
-    if names_checks || records.iter().any(|record| !record.check.is_empty()) {
+    if names_checks || rows.iter_mut().any(|row| !row.check().is_empty()) {
         let open = text.strip_suffix(end(json)).unwrap_or_default();
         let begin = open.len().saturating_sub(DIGITS);
         if !open.is_char_boundary(begin)
@@ -94,15 +97,41 @@ pub fn read(text: &str, json: bool) -> Result<Vec<Record>, String> {
             ));
         }
     }
-    for record in &mut records {
-        record.check.clear();
+    for row in &mut rows {
+        row.check().clear();
     }
-    Ok(records)
+    Ok(rows)
 }
 
 #[cfg(test)]
 mod tests {
+    use serde::Deserialize;
+
     use super::*;
+
+    /// Row with a text, numbers and values that may be missing.
+    #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+    #[serde(deny_unknown_fields)]
+    struct Record {
+        version: String,
+        scene: String,
+        solver: String,
+        setting: f64,
+        error_position: Option<f64>,
+        lost_at: Option<f64>,
+        #[serde(default, skip_serializing)]
+        check: String,
+    }
+
+    impl Row for Record {
+        fn is_same(&self, other: &Self) -> bool {
+            self == other
+        }
+
+        fn check(&mut self) -> &mut String {
+            &mut self.check
+        }
+    }
 
     fn records() -> Vec<Record> {
         let record = |scene: &str, setting| Record {
@@ -132,7 +161,7 @@ mod tests {
                 let kept = text.strip_suffix(end(json)).unwrap();
                 assert!(longer.starts_with(kept), "lines are only added");
             }
-            assert_eq!(read("", json), Ok(vec![]));
+            assert_eq!(read::<Record>("", json), Ok(vec![]));
         }
     }
 
@@ -147,7 +176,10 @@ mod tests {
                     bytes[at] ^= other;
                     // Bytes that are no UTF-8 are refused where the file is read.
                     if let Ok(changed) = String::from_utf8(bytes) {
-                        assert!(read(&changed, json).is_err(), "byte {at}: {changed}");
+                        assert!(
+                            read::<Record>(&changed, json).is_err(),
+                            "byte {at}: {changed}"
+                        );
                     }
                 }
             }
@@ -156,7 +188,7 @@ mod tests {
                 let Some(short) = text.get(..length) else {
                     continue;
                 };
-                if let Ok(runs) = read(short, json) {
+                if let Ok(runs) = read::<Record>(short, json) {
                     assert_eq!(write(&runs, json).as_deref(), Ok(short));
                 }
             }
@@ -173,9 +205,9 @@ mod tests {
         assert_eq!(read(&old.join("\n"), false), Ok(records()[..1].to_vec()));
         let (head, _) = text.split_once('\n').unwrap();
         for other in ["buy milk", "buy,milk\n", head, "a,b\n1,2\n", "\n"] {
-            assert!(read(other, false).is_err(), "{other}");
-            assert!(read(other, true).is_err(), "{other}");
+            assert!(read::<Record>(other, false).is_err(), "{other}");
+            assert!(read::<Record>(other, true).is_err(), "{other}");
         }
-        assert!(read("[]", true).is_err());
+        assert!(read::<Record>("[]", true).is_err());
     }
 }

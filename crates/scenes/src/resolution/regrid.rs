@@ -1,6 +1,9 @@
 //! The same scene on finer or coarser grids, with the same mass, stiffness and damping of its
 //! materials.
 
+use super::cells::finer;
+use super::fluid::regrid_fluids;
+use super::places::Places;
 use crate::assemble::{damping_time, max_thickness};
 use crate::description::{Cloth, Description, Jelly, Pin};
 
@@ -10,7 +13,8 @@ pub struct Regridded {
     /// Description of the scene on the other grid.
     pub description: Description,
     /// Particles of the first grid, each as a weighted mean of particles of the other grid, by
-    /// multilinear interpolation in its cells: their numbers and weights.
+    /// multilinear interpolation in its cells: their numbers and weights. At the edges of a fluid,
+    /// weights may be negative.
     pub places: Vec<Vec<(usize, f64)>>,
 }
 
@@ -18,8 +22,8 @@ pub struct Regridded {
 /// a factor below 1, and have the same shape. `particles` is the number of the scene's own
 /// particles.
 ///
-/// A cloth keeps its mass per area, a jelly and a solid their mass per volume, and all keep
-/// their elastic moduli and their damping times. Drag and wind keep their force per mass.
+/// A cloth keeps its mass per area, the other bodies their mass per volume, and all keep their
+/// elastic moduli and their damping times. Drag and wind keep their force per mass.
 ///
 /// # Errors
 /// The scene has no grid, or names particles by their numbers: the reason in words.
@@ -47,7 +51,12 @@ pub fn regridded(scene: &Description, factor: f64, particles: usize) -> Result<R
         other.grid = Some(finer);
         places.add_lattice(grid, finer);
     }
-    places.add_others(particles);
+    let lattices = regrid_fluids(&scene.fluid, &mut other.fluid, factor)?;
+    let in_fluids: usize = lattices.iter().map(|(own, _)| own.len()).sum();
+    places.add_others(particles.saturating_sub(in_fluids));
+    for (own, lattice) in &lattices {
+        places.add_points(own, lattice)?;
+    }
     keep_forces_per_mass(&mut other, scene, &places)?;
     other.trail = None;
     if places.count == particles {
@@ -61,7 +70,12 @@ pub fn regridded(scene: &Description, factor: f64, particles: usize) -> Result<R
 
 /// Checks that a body has a grid, and that nothing in the scene refers to single particles.
 fn check_grids(scene: &Description) -> Result<(), String> {
-    let is_gridded = !(scene.cloth.is_empty() && scene.jelly.is_empty() && scene.solid.is_empty());
+    let is_gridded = [
+        scene.cloth.len(),
+        scene.jelly.len(),
+        scene.solid.len(),
+        scene.fluid.len(),
+    ] != [0; 4];
     if !is_gridded {
         return Err("no body has a grid that could be finer".into());
     }
@@ -104,7 +118,13 @@ fn keep_forces_per_mass(
     let by_particle = own.drag.is_some() || own.drag_per_mass.is_some();
     let wind = scene.wind.as_mut();
     let pushed = wind.filter(|wind| wind.force.is_some() || wind.force_per_mass.is_some());
-    let uneven = places.kept > 0 || scene.cloth.len() + scene.jelly.len() + scene.solid.len() > 1;
+    let bodies = [
+        scene.cloth.len(),
+        scene.jelly.len(),
+        scene.solid.len(),
+        scene.fluid.len(),
+    ];
+    let uneven = places.kept > 0 || bodies.iter().sum::<usize>() > 1;
     if uneven && (by_particle || pushed.is_some()) {
         return Err("drag or wind is the same for each particle of several bodies".into());
     }
@@ -116,19 +136,6 @@ fn keep_forces_per_mass(
         *force = force.map(|f| f * was / is);
     }
     Ok(())
-}
-
-/// Returns a grid with cells of the same shape, about `factor` times shorter.
-fn finer<const N: usize>(grid: [usize; N], factor: f64) -> [usize; N] {
-    let cells = grid.map(|n| n.max(2) - 1);
-    let parts = cells.into_iter().fold(0, gcd);
-    let finer = ((parts as f64 * factor).round() as usize).max(1);
-    cells.map(|n| n / parts * finer + 1)
-}
-
-/// Returns the greatest common divisor.
-fn gcd(a: usize, b: usize) -> usize {
-    if b == 0 { a } else { gcd(b, a % b) }
 }
 
 /// Puts a cloth on a grid with cells about `factor` times shorter.
@@ -166,74 +173,10 @@ fn regrid_jelly(own: &Jelly, other: &mut Jelly, factor: f64) {
     other.thickness = Some(thickness.min(max_thickness(nearest(other))));
 }
 
-/// Places of the particles of one grid on another, body by body.
-#[derive(Default)]
-struct Places {
-    /// Place of each particle, as in [`Regridded`].
-    of: Vec<Vec<(usize, f64)>>,
-    /// Number of particles of the scene on the other grid.
-    count: usize,
-    /// Number of particles that belong to no grid.
-    kept: usize,
-}
-
-impl Places {
-    /// Adds a body with its numbers of particles along each axis, on its own grid and on the other.
-    /// The index along the last axis varies fastest.
-    fn add(&mut self, own: &[usize], other: &[usize]) {
-        let first = self.count;
-        let total: usize = own.iter().product();
-        for number in 0..total {
-            // The place along each axis: the index of the particle before it, and the distance from
-            // there in cells.
-            let mut rest = number;
-            let mut along: Vec<(usize, f64)> = own
-                .iter()
-                .zip(other)
-                .rev()
-                .map(|(&n, &m)| {
-                    let i = rest % n;
-                    rest /= n;
-                    let at = i as f64 * (m - 1) as f64 / (n.max(2) - 1) as f64;
-                    let before = (at.floor() as usize).min(m - 2);
-                    (before, at - before as f64)
-                })
-                .collect();
-            along.reverse();
-            let mut corners = vec![(0, 1.0)];
-            for ((before, share), &m) in along.iter().zip(other) {
-                corners = corners
-                    .iter()
-                    .flat_map(|&(at, weight)| {
-                        let at = at * m + before;
-                        [(at, weight * (1.0 - share)), (at + 1, weight * share)]
-                    })
-                    .filter(|(_, weight)| *weight > 1e-12)
-                    .collect();
-            }
-            let corners = corners.into_iter().map(|(at, w)| (first + at, w));
-            self.of.push(corners.collect());
-        }
-        self.count += other.iter().product::<usize>();
-    }
-
-    /// Adds a lattice, in which the index along x varies fastest.
-    fn add_lattice(&mut self, [x, y, z]: [usize; 3], [i, j, k]: [usize; 3]) {
-        self.add(&[z, y, x], &[k, j, i]);
-    }
-
-    /// Adds the other particles of the scene, up to this number in all, which belong to no grid.
-    fn add_others(&mut self, particles: usize) {
-        self.kept = particles.saturating_sub(self.of.len());
-        for _ in 0..self.kept {
-            self.of.push(vec![(self.count, 1.0)]);
-            self.count += 1;
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
+    use a3_core::Mechanics;
+
     use super::*;
 
     const CLOTH: &str = "[[cloth]]\ngrid = [11, 16]\nwidth = 1.5\ndensity = 0.2\nstiffness = [100, 50, 10]\ndamping_ratio = 0.05\n";
@@ -269,6 +212,47 @@ mod tests {
                         .sum();
                     let here = a.state[axis * 176 + i];
                     assert!((here - there).abs() < 1e-12, "{i} {axis}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_finer_fluid_fills_the_same_box_and_tank() {
+        let fluid = "[[fluid]]\nsize = [0.4, 0.6, 0]\nspacing = 0.05\nat = [0.1, 0.1, 0]\ndimensions = 2\n\
+                     density = 1000\nsound = 20\n";
+        let tank = "tank = { size = [0.8, 0.8, 0], at = [0.2, 0.2, 0] }\n";
+        let ball = fluid.replace("0.6, 0]", "0.4, 0]\nshape = \"ball\"");
+        let cube = "[[fluid]]\nsize = [0.4, 0.3, 0.2]\nspacing = 0.05\nat = [0, 0, 0]\ndensity = 900\nsound = 9\n\
+                    tank = { size = [0.6, 0.4, 0.2], at = [0.1, 0.05, 0] }\n";
+        for text in [fluid, &format!("{fluid}{tank}"), &ball, cube] {
+            let own = Description::parse(text).unwrap();
+            let build = |description: &Description| {
+                let setup = description.build(None, &mut |_| Err(String::new()));
+                setup.unwrap().scene
+            };
+            let a = build(&own);
+            let n = a.model.particles();
+            for factor in [2.0, 0.5] {
+                let other = regridded(&own, factor, n).unwrap();
+                let b = build(&other.description);
+                let m = b.model.particles();
+                assert!((factor > 1.0) == (m > n), "{n} {m}");
+                let free = |scene: &a3_core::Scene| -> f64 {
+                    let network = scene.model.network().unwrap();
+                    let masses = network.masses().iter().zip(network.inverse_masses());
+                    masses.filter(|(_, w)| **w > 0.0).map(|(m, _)| m).sum()
+                };
+                if own.fluid[0].shape == crate::description::FluidShape::Box {
+                    assert!((free(&a) / free(&b) - 1.0).abs() < 1e-12);
+                }
+                for (i, corners) in other.places.iter().enumerate() {
+                    for axis in 0..3 {
+                        let there = corners.iter().map(|(k, w)| w * b.state[axis * m + k]);
+                        let there: f64 = there.sum();
+                        let here = a.state[axis * n + i];
+                        assert!((here - there).abs() < 1e-12, "{text} {factor} {i} {axis}");
+                    }
                 }
             }
         }

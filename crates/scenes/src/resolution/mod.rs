@@ -1,0 +1,8 @@
+//! The same scene on finer or coarser grids.
+
+mod cells;
+mod fluid;
+mod places;
+mod regrid;
+
+pub use regrid::{Regridded, regridded};
