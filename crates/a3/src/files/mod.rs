@@ -1,4 +1,5 @@
-//! Files that are read and written: scenes, checkpoints, exports and films.
+//! Files that are read and written: scenes, checkpoints, exports, films, and states of other
+//! programs.
 
 pub mod checkpoint;
 pub mod ending;
@@ -15,3 +16,5 @@ pub mod output;
 pub mod rows;
 pub mod scene_file;
 pub mod setup;
+#[cfg(not(target_arch = "wasm32"))]
+pub mod states;
