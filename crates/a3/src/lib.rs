@@ -19,6 +19,8 @@ mod cli;
 #[cfg(not(target_arch = "wasm32"))]
 mod commands;
 mod draw;
+#[cfg(not(target_arch = "wasm32"))]
+pub mod embedded;
 mod files;
 #[cfg(test)]
 mod hostile;
@@ -29,5 +31,6 @@ mod program;
 #[cfg(feature = "window")]
 mod window;
 
+pub use base::{failure::Failure, input_error::InputError};
 #[cfg(not(target_arch = "wasm32"))]
-pub use program::main;
+pub use program::{main, run};

@@ -10,9 +10,19 @@ pub enum InputError {
     /// No scene has the name. The reason says which there are.
     Unknown(String),
     /// A file cannot be used as a whole, or not be read.
-    File { file: String, why: String },
+    File {
+        /// Path of the file.
+        file: String,
+        /// Reason, and what would be right.
+        why: String,
+    },
     /// A text has a fault. That of a built-in scene is in no file.
-    Text { file: Option<String>, fault: Fault },
+    Text {
+        /// Path of the file.
+        file: Option<String>,
+        /// Fault of the text.
+        fault: Fault,
+    },
 }
 
 /// `FILE:LINE: error` if the line is known, as compilers write it.

@@ -1,0 +1,467 @@
+//! Runs of scenes.
+
+use std::sync::{Arc, Mutex, MutexGuard};
+use std::time::{Duration, Instant};
+
+use a3::embedded::{self, Look, OpenScene, SceneOptions};
+use a3_core::{Error, Grid, Network, Simulation, SpringKind, StepLimits, Vector3};
+use a3_scenes::Presentation;
+use numpy::{PyArray1, PyArray2};
+use pyo3::prelude::*;
+use pyo3::types::PyBytes;
+
+use super::arrays::{indices, numbers, rows};
+use super::errors::{of_error, of_failure, wrong};
+use super::tables::{method, origin};
+
+/// Time between two looks for Ctrl-C and two reports of progress.
+const REPORT_PERIOD: Duration = Duration::from_millis(50);
+
+/// Data of all springs: ends, kinds, stiffness (N/m), rest length (m), damping (N s/m).
+type Springs<'py> = (
+    Bound<'py, PyArray2<i64>>,
+    Vec<&'static str>,
+    Bound<'py, PyArray1<f64>>,
+    Bound<'py, PyArray1<f64>>,
+    Bound<'py, PyArray1<f64>>,
+);
+
+/// The run of a scene by a method.
+#[pyclass(frozen, subclass, module = "a3_simulator._a3")]
+pub struct Run {
+    simulation: Mutex<Simulation>,
+    presentation: Arc<Presentation>,
+    /// Length of a run of the scene (s), if it has one of its own.
+    duration: Option<f64>,
+}
+
+impl Run {
+    /// The simulation, unless it is being advanced.
+    fn simulation(&self, py: Python<'_>) -> PyResult<MutexGuard<'_, Simulation>> {
+        self.simulation.try_lock().map_err(|_| {
+            wrong(
+                py,
+                "this run is being advanced, by another thread or by the caller of this function: wait until it has \
+                 advanced",
+            )
+        })
+    }
+
+    /// Runs `work` on the simulation without the global lock, and `look` now and then with it.
+    fn work(
+        &self,
+        py: Python<'_>,
+        work: impl Send
+        + FnOnce(
+            &mut Simulation,
+            &mut (dyn FnMut(&Simulation) -> bool + Send),
+        ) -> Result<(), (Error, String)>,
+        progress: Option<&Bound<PyAny>>,
+    ) -> PyResult<()> {
+        let mut simulation = self.simulation(py)?;
+        let simulation = &mut *simulation;
+        let progress = progress.map(|progress| progress.clone().unbind());
+        let mut raised = None;
+        let mut last = Instant::now();
+        let done = py.detach(|| {
+            let mut go_on = |run: &Simulation| {
+                if last.elapsed() < REPORT_PERIOD {
+                    return true;
+                }
+                last = Instant::now();
+                let looked = Python::attach(|py| {
+                    if let Some(progress) = &progress {
+                        progress.call1(py, (run.time(),))?;
+                    }
+                    py.check_signals()
+                });
+                raised = looked.err();
+                raised.is_none()
+            };
+            work(simulation, &mut go_on)
+        });
+        match (raised, done) {
+            (Some(raised), _) => Err(raised),
+            (None, Err((error, message))) => Err(of_error(py, &error, message)),
+            (None, Ok(())) => Ok(()),
+        }
+    }
+
+    /// Applies `read` to the network, if the scene is one.
+    fn network<T>(&self, py: Python<'_>, read: impl FnOnce(&Network) -> T) -> PyResult<Option<T>> {
+        Ok(self.simulation(py)?.model().network().map(read))
+    }
+
+    /// Changes the simulation by `change`, which may refuse.
+    fn change(
+        &self,
+        py: Python<'_>,
+        change: impl FnOnce(&mut Simulation) -> Result<(), Error>,
+    ) -> PyResult<()> {
+        let mut simulation = self.simulation(py)?;
+        change(&mut simulation).map_err(|error| of_error(py, &error, error.to_string()))
+    }
+}
+
+#[pymethods]
+impl Run {
+    #[new]
+    #[pyo3(signature = (kind, text, method=None, step=None, tolerance=None, *, grid=None, wind=false, swing=false,
+        self_collision=false, absolute=None, max_step=None))]
+    #[expect(
+        clippy::too_many_arguments,
+        clippy::fn_params_excessive_bools,
+        reason = "each is an option"
+    )]
+    fn new(
+        py: Python<'_>,
+        kind: &str,
+        text: &str,
+        method: Option<&str>,
+        step: Option<f64>,
+        tolerance: Option<f64>,
+        grid: Option<(usize, usize)>,
+        wind: bool,
+        swing: bool,
+        self_collision: bool,
+        absolute: Option<f64>,
+        max_step: Option<f64>,
+    ) -> PyResult<Self> {
+        let grid = grid.map(|(rows, cols)| Grid::new(rows, cols)).transpose();
+        let grid = grid.map_err(|why| wrong(py, why.to_string()))?;
+        let options = SceneOptions {
+            grid,
+            wind,
+            swing,
+            self_collision,
+        };
+        let limits = StepLimits { absolute, max_step };
+        let failed = |failure| of_failure(py, &failure);
+        let open = OpenScene::read(origin(py, kind, text)?, options).map_err(failed)?;
+        let method = method.map(|name| self::method(py, name)).transpose()?;
+        let method = open.method_or(method);
+        let value = match (method.is_adaptive(), step, tolerance) {
+            (true, Some(_), _) => {
+                return Err(wrong(
+                    py,
+                    format!(
+                        "{} chooses its steps to a tolerance: give tolerance, such as 1e-4, not step",
+                        method.name
+                    ),
+                ));
+            }
+            (false, _, Some(_)) => {
+                return Err(wrong(
+                    py,
+                    format!(
+                        "{} takes a step: give step in seconds, such as 0.01, not tolerance",
+                        method.name
+                    ),
+                ));
+            }
+            (_, step, tolerance) => step.or(tolerance),
+        };
+        if let (false, Some(_)) = (method.is_adaptive(), absolute.or(max_step)) {
+            return Err(wrong(
+                py,
+                format!(
+                    "{} takes a step, not a tolerance: leave out absolute and max_step",
+                    method.name
+                ),
+            ));
+        }
+        let made = py.detach(|| {
+            let mut setup = open.build()?;
+            let run = open.run(&mut setup, method, value, limits)?;
+            Ok((run, setup))
+        });
+        let (simulation, setup) = made.map_err(failed)?;
+        Ok(Self {
+            simulation: Mutex::new(simulation),
+            presentation: setup.presentation,
+            duration: setup.defaults.duration,
+        })
+    }
+
+    /// Takes steps.
+    #[pyo3(signature = (count=1))]
+    fn step(&self, py: Python<'_>, count: u64) -> PyResult<()> {
+        let work = move |run: &mut Simulation,
+                         go_on: &mut (dyn FnMut(&Simulation) -> bool + Send)| {
+            let (mut left, mut chunk) = (count, 1);
+            while left > 0 {
+                let taken = run.take_steps(chunk.min(left));
+                taken.map_err(|error| (error.clone(), error.to_string()))?;
+                left -= chunk.min(left);
+                let begun = Instant::now();
+                if left > 0 && !go_on(run) {
+                    break;
+                }
+                if begun.elapsed() < REPORT_PERIOD && chunk < 1024 {
+                    chunk *= 2;
+                }
+            }
+            Ok(())
+        };
+        self.work(py, work, None)
+    }
+
+    /// Advances to a time (s).
+    #[pyo3(signature = (time, progress=None))]
+    fn advance(&self, py: Python<'_>, time: f64, progress: Option<&Bound<PyAny>>) -> PyResult<()> {
+        let now = self.simulation(py)?.time();
+        if !(0.0..=1e9).contains(&time) {
+            return Err(wrong(
+                py,
+                format!("a time is a number of seconds from 0 to 1e9, such as 10, not {time}"),
+            ));
+        }
+        if time < now {
+            return Err(wrong(
+                py,
+                format!(
+                    "the run is at t = {now} s already, past {time} s: reset() goes back to its beginning"
+                ),
+            ));
+        }
+        let work = move |run: &mut Simulation,
+                         go_on: &mut (dyn FnMut(&Simulation) -> bool + Send)| {
+            let gone = embedded::advance(run, time, go_on);
+            match gone.and_then(|arrived| if arrived { run.conclude() } else { Ok(()) }) {
+                Err(error) => {
+                    let message = embedded::message(run, &error, time);
+                    Err((error, message))
+                }
+                Ok(()) => Ok(()),
+            }
+        };
+        self.work(py, work, progress)
+    }
+
+    /// Goes back to the beginning.
+    fn reset(&self, py: Python<'_>) -> PyResult<()> {
+        self.simulation(py)?.reset();
+        Ok(())
+    }
+
+    /// Pins a particle where it is, or releases it, and returns whether it is pinned then.
+    fn toggle_pin(&self, py: Python<'_>, particle: usize) -> PyResult<()> {
+        self.change(py, |run| run.toggle_pin(particle).map(|_| ()))
+    }
+
+    /// Grabs a particle with the hand.
+    fn grab(&self, py: Python<'_>, particle: usize) -> PyResult<()> {
+        self.change(py, |run| run.grab(particle))
+    }
+
+    /// Pulls the grabbed particle towards a point (m).
+    fn pull(&self, py: Python<'_>, point: [f64; 3]) -> PyResult<()> {
+        if point.iter().any(|x| !x.is_finite()) {
+            return Err(wrong(
+                py,
+                format!("a point is three finite numbers in metres, not {point:?}"),
+            ));
+        }
+        self.change(py, |run| {
+            run.pull(Vector3::from(point));
+            Ok(())
+        })
+    }
+
+    /// Lets go of the grabbed particle.
+    fn release(&self, py: Python<'_>) -> PyResult<()> {
+        self.change(py, |run| {
+            run.release();
+            Ok(())
+        })
+    }
+
+    /// Name of the scene.
+    #[getter]
+    fn scene(&self, py: Python<'_>) -> PyResult<String> {
+        Ok(self.simulation(py)?.scene().name.clone())
+    }
+
+    /// Name of the method.
+    #[getter]
+    fn method(&self, py: Python<'_>) -> PyResult<&'static str> {
+        Ok(self.simulation(py)?.method().name)
+    }
+
+    /// Step (s) or relative tolerance.
+    #[getter]
+    fn setting(&self, py: Python<'_>) -> PyResult<f64> {
+        Ok(self.simulation(py)?.control().value())
+    }
+
+    /// Whether the method chooses its steps.
+    #[getter]
+    fn adaptive(&self, py: Python<'_>) -> PyResult<bool> {
+        Ok(self.simulation(py)?.control().step().is_none())
+    }
+
+    /// Length of the next step or, of an adaptive method, of the last (s).
+    #[getter]
+    fn step_size(&self, py: Python<'_>) -> PyResult<Option<f64>> {
+        Ok(self.simulation(py)?.step_size())
+    }
+
+    /// Length of a run of the scene (s), if it has one of its own.
+    #[getter]
+    fn duration(&self) -> Option<f64> {
+        self.duration
+    }
+
+    /// Simulated time (s).
+    #[getter]
+    fn time(&self, py: Python<'_>) -> PyResult<f64> {
+        Ok(self.simulation(py)?.time())
+    }
+
+    /// Number of steps.
+    #[getter]
+    fn steps(&self, py: Python<'_>) -> PyResult<u64> {
+        Ok(self.simulation(py)?.steps())
+    }
+
+    /// Cost of the steps: evaluations, solves, factorisations, rejections, and the total in
+    /// evaluations.
+    fn work_done(&self, py: Python<'_>) -> PyResult<(u64, u64, u64, u64, f64)> {
+        let work = self.simulation(py)?.work();
+        Ok((
+            work.evaluations,
+            work.solves,
+            work.factorizations,
+            work.rejections,
+            work.total(),
+        ))
+    }
+
+    /// State, as a flat array.
+    #[getter]
+    fn state<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        Ok(numbers(py, self.simulation(py)?.state()))
+    }
+
+    /// Positions (m), n x 3.
+    #[getter]
+    fn positions<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let simulation = self.simulation(py)?;
+        rows(py, &simulation.state()[..3 * simulation.particles()])
+    }
+
+    /// Velocities (m/s), n x 3.
+    #[getter]
+    fn velocities<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let simulation = self.simulation(py)?;
+        let velocities = simulation.velocities();
+        rows(
+            py,
+            if simulation.particles() > 0 {
+                &velocities
+            } else {
+                &[]
+            },
+        )
+    }
+
+    /// Contact forces (N), n x 3, if anything can touch.
+    #[getter]
+    fn contact_forces<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyArray2<f64>>>> {
+        let forces = self.simulation(py)?.contact_forces();
+        forces.map(|forces| rows(py, &forces)).transpose()
+    }
+
+    /// Masses (kg), if the scene has some.
+    #[getter]
+    fn masses<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyArray1<f64>>>> {
+        self.network(py, |network| numbers(py, network.masses()))
+    }
+
+    /// Numbers of the pinned particles.
+    #[getter]
+    fn pinned<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<i64>>> {
+        let pins = self.network(py, |network| {
+            network.pins().map(|(i, _)| i as i64).collect()
+        });
+        Ok(PyArray1::from_vec(py, pins?.unwrap_or_default()))
+    }
+
+    /// Triangles of the surfaces.
+    #[getter]
+    fn triangles<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<i64>>> {
+        let corners = &self.presentation.surface.triangles;
+        let corners: Vec<_> = corners
+            .iter()
+            .map(|corners| corners.map(i64::from))
+            .collect();
+        indices(py, &corners)
+    }
+
+    /// All springs.
+    fn spring_data<'py>(&self, py: Python<'py>) -> PyResult<Springs<'py>> {
+        let simulation = self.simulation(py)?;
+        let network = simulation.model().network();
+        let springs: Vec<_> = network.into_iter().flat_map(Network::all_springs).collect();
+        let ends: Vec<_> = springs.iter().map(|s| [s.i as i64, s.j as i64]).collect();
+        let kind = |kind| match kind {
+            SpringKind::Structural => "structural",
+            SpringKind::Shear => "shear",
+            SpringKind::Bend => "bend",
+        };
+        let column = |number: fn(&a3_core::Spring) -> f64| {
+            PyArray1::from_iter(py, springs.iter().map(number))
+        };
+        Ok((
+            indices(py, &ends)?,
+            springs.iter().map(|s| kind(s.kind)).collect(),
+            column(|s| s.law.stiffness),
+            column(|s| s.law.rest_length),
+            column(|s| s.law.damping),
+        ))
+    }
+
+    /// Energy (J): kinetic, elastic, of contact, gravitational.
+    fn energies(&self, py: Python<'_>) -> PyResult<Option<[f64; 4]>> {
+        let energy = self.simulation(py)?.energy();
+        Ok(energy.map(|e| [e.kinetic, e.elastic, e.contact, e.gravitational]))
+    }
+
+    /// A picture, as a PNG file.
+    #[pyo3(signature = (width, height, *, colour=None, arrows=None, wireframe=false, springs=false,
+        orthographic=false, dark=false, transparent=false))]
+    #[expect(
+        clippy::too_many_arguments,
+        clippy::fn_params_excessive_bools,
+        reason = "each is an option"
+    )]
+    fn picture<'py>(
+        &self,
+        py: Python<'py>,
+        width: u32,
+        height: u32,
+        colour: Option<&str>,
+        arrows: Option<&str>,
+        wireframe: bool,
+        springs: bool,
+        orthographic: bool,
+        dark: bool,
+        transparent: bool,
+    ) -> PyResult<Bound<'py, PyBytes>> {
+        let look = Look {
+            colour,
+            arrows,
+            wireframe,
+            springs,
+            orthographic,
+            dark,
+            transparent,
+        };
+        let mut simulation = self.simulation(py)?;
+        let run = &mut *simulation;
+        let presentation = &self.presentation;
+        let drawn = py.detach(move || embedded::picture(run, presentation, look, (width, height)));
+        let png = drawn.map_err(|failure| of_failure(py, &failure))?;
+        Ok(PyBytes::new(py, &png))
+    }
+}
