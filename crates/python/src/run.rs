@@ -4,7 +4,7 @@ use std::sync::{Arc, Mutex, MutexGuard};
 use std::time::{Duration, Instant};
 
 use a3::embedded::{self, Look, OpenScene, SceneOptions};
-use a3_core::{Error, Grid, Network, Simulation, SpringKind, StepLimits, Vector3};
+use a3_core::{Checkpoint, Error, Grid, Network, Simulation, SpringKind, StepLimits, Vector3};
 use a3_scenes::Presentation;
 use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
@@ -244,9 +244,29 @@ impl Run {
         Ok(())
     }
 
+    /// The run as it is now, to continue from with the same bits.
+    fn checkpoint<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
+        let checkpoint = self.simulation(py)?.checkpoint();
+        let bytes = postcard::to_stdvec(&checkpoint);
+        let bytes = bytes.map_err(|error| wrong(py, error.to_string()))?;
+        Ok(PyBytes::new(py, &bytes))
+    }
+
+    /// Continues from a checkpoint of the same scene.
+    fn restore(&self, py: Python<'_>, checkpoint: &[u8]) -> PyResult<()> {
+        let checkpoint: Checkpoint = postcard::from_bytes(checkpoint)
+            .map_err(|_| wrong(py, "these bytes are not the checkpoint of a run"))?;
+        self.change(py, |run| run.restore(&checkpoint))
+    }
+
     /// Pins a particle where it is, or releases it, and returns whether it is pinned then.
-    fn toggle_pin(&self, py: Python<'_>, particle: usize) -> PyResult<()> {
-        self.change(py, |run| run.toggle_pin(particle).map(|_| ()))
+    fn toggle_pin(&self, py: Python<'_>, particle: usize) -> PyResult<bool> {
+        let mut is_pinned = false;
+        self.change(py, |run| {
+            is_pinned = run.toggle_pin(particle)?;
+            Ok(())
+        })?;
+        Ok(is_pinned)
     }
 
     /// Grabs a particle with the hand.

@@ -249,3 +249,23 @@ def test_progress_is_reported():
     with pytest.raises(RuntimeError, match="enough"):
         run.advance(100.0, stop)
     assert run.time < 100.0
+
+
+@pytest.mark.parametrize("method", ["rk4", "dopri5"])
+def test_a_run_that_was_pickled_goes_on_with_the_same_bits(method):
+    run = a3.Simulation("mit-sphere", method, grid=(10, 10))
+    run.advance_to(0.7)
+    again = pickle.loads(pickle.dumps(run))
+    assert again.time == run.time and np.array_equal(again.state, run.state)
+    for each in (run, again):
+        each.advance_to(1.2)
+    assert np.array_equal(again.state, run.state) and again.steps == run.steps
+
+
+def test_a_checkpoint_of_another_scene_is_refused():
+    run = a3.Simulation("chain")
+    before = run.state
+    for bytes in (b"", b"nonsense", a3.Simulation("mit").checkpoint()):
+        with pytest.raises(a3.InputError):
+            run.restore(bytes)
+    assert np.array_equal(run.state, before)

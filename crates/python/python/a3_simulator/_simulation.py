@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
-from typing import Any, Callable, NamedTuple, Optional, Tuple
+from typing import TYPE_CHECKING, Any, Dict, NamedTuple, Optional, Tuple
 
 import numpy as np
 
 from . import _a3
 from ._progress import progress_bar
 from ._scenes import SceneLike, origin
+
+if TYPE_CHECKING:
+    from ._picture import Picture
 
 
 class Energy(NamedTuple):
@@ -107,19 +110,23 @@ class Simulation(_a3.Run):
         absolute: Optional[float] = None,
         max_step: Optional[float] = None,
     ) -> "Simulation":
-        return super().__new__(
-            cls,
-            *origin(scene),
-            method,
-            step,
-            tolerance,
-            grid=grid,
-            wind=wind,
-            swing=swing,
-            self_collision=self_collision,
-            absolute=absolute,
-            max_step=max_step,
-        )
+        options = {
+            "grid": grid,
+            "wind": wind,
+            "swing": swing,
+            "self_collision": self_collision,
+            "absolute": absolute,
+            "max_step": max_step,
+        }
+        run = super().__new__(cls, *origin(scene), method, step, tolerance, **options)
+        run._given = (scene, method, step, tolerance), options
+        return run
+
+    def __reduce__(self) -> Any:
+        return _restored, (*self._given, self.checkpoint())
+
+    def __copy__(self) -> "Simulation":
+        return _restored(*self._given, self.checkpoint())
 
     def advance_to(self, time: float, progress: bool = False) -> None:
         """Advances to a time (s).
@@ -171,3 +178,10 @@ class Simulation(_a3.Run):
     def __repr__(self) -> str:
         setting = "tolerance" if self.adaptive else "step"
         return f"<Simulation {self.scene} by {self.method}, {setting} {self.setting:g}: t = {self.time:g} s>"
+
+
+def _restored(given: tuple, options: Dict[str, Any], checkpoint: bytes) -> Simulation:
+    """Makes a pickled run again, which continues with the same bits."""
+    run = Simulation(*given, **options)
+    run.restore(checkpoint)
+    return run
