@@ -2,8 +2,8 @@
 
 use std::sync::Arc;
 
-use a3_core::{Grid, Method, Simulation, StepLimits};
-use a3_scenes::{Presentation, Setup};
+use a3_core::{Grid, Method, Scene, Simulation, StepLimits, integrators};
+use a3_scenes::{Defaults, Presentation, Setup};
 
 use crate::base::failure::Failure;
 use crate::base::{progress, verdict};
@@ -18,7 +18,7 @@ use crate::draw::{
 #[cfg(feature = "window")]
 use crate::files::output;
 use crate::files::scene_file::Source;
-use crate::files::setup::{self, Request};
+use crate::files::setup;
 
 /// Origin of a scene.
 #[derive(Clone, Copy, Debug)]
@@ -45,9 +45,29 @@ pub struct SceneOptions {
     pub self_collision: bool,
 }
 
-/// Scene that was read.
+impl SceneOptions {
+    /// Returns the options of the command line for a scene of this name.
+    fn of(self, scene: &str) -> What {
+        What {
+            scene: scene.into(),
+            grid: self.grid,
+            wind: self.wind,
+            swing: self.swing,
+            self_collision: self.self_collision,
+            threads: None,
+        }
+    }
+}
+
+/// Scene that was read, or that a program has built.
 pub struct OpenScene {
-    request: Request,
+    made: Made,
+    options: What,
+}
+
+enum Made {
+    Read(Source),
+    Built(Box<Scene>),
 }
 
 impl OpenScene {
@@ -61,24 +81,29 @@ impl OpenScene {
             Origin::Toml(text) => Source::written(text)?,
             Origin::Table(json) => Source::tabulated(json)?,
         };
-        let options = What {
-            scene: source.typed.clone(),
-            grid: options.grid,
-            wind: options.wind,
-            swing: options.swing,
-            self_collision: options.self_collision,
-            threads: None,
-        };
-        let request = Request { source, options };
-        Ok(Self { request })
+        let options = options.of(&source.typed);
+        let made = Made::Read(source);
+        Ok(Self { made, options })
+    }
+
+    /// Takes a scene that was built.
+    #[must_use]
+    pub fn of(scene: Scene, options: SceneOptions) -> Self {
+        Self {
+            options: options.of(&scene.name),
+            made: Made::Built(Box::new(scene)),
+        }
     }
 
     /// Returns the table of the scene's keys, as JSON.
     ///
     /// # Errors
-    /// The scene is a list of particles in JSON, which has no such keys.
+    /// The scene is not one with such keys.
     pub fn table(&self) -> Result<String, Failure> {
-        self.request.source.table().map_err(Failure::Input)
+        match &self.made {
+            Made::Read(source) => source.table().map_err(Failure::Input),
+            Made::Built(_) => Err(Failure::usage("this scene was not read, so it has no keys")),
+        }
     }
 
     /// Builds the scene.
@@ -86,13 +111,30 @@ impl OpenScene {
     /// # Errors
     /// The scene has a fault, or a file that it names cannot be read.
     pub fn build(&self) -> Result<Setup, Failure> {
-        self.request.build()
+        match &self.made {
+            Made::Read(source) => Ok(source.build(self.options.grid)?),
+            Made::Built(_) if self.options.grid.is_some() => {
+                Err(Failure::usage("this scene has no grid: leave out grid"))
+            }
+            Made::Built(scene) => Ok(Setup {
+                scene: (**scene).clone(),
+                presentation: Arc::default(),
+                defaults: Defaults::default(),
+            }),
+        }
     }
 
-    /// Returns the method that is given, or else that of the scene, or else the explicit trapezoid.
+    /// Returns the method that is given, or else that of the scene. Otherwise this is the explicit
+    /// trapezoid for a scene that was read, and for one that was built, an accurate one: Dormand
+    /// and Prince's of order 8.
     #[must_use]
     pub fn method_or(&self, method: Option<&'static Method>) -> &'static Method {
-        self.request.source.solver_or(method)
+        match &self.made {
+            Made::Read(source) => source.solver_or(method),
+            Made::Built(_) => method
+                .or_else(|| integrators::find("dop853"))
+                .unwrap_or(&integrators::METHODS[0]),
+        }
     }
 
     /// Creates a run of the scene with this step (s) or relative tolerance, or else with that of
@@ -109,7 +151,7 @@ impl OpenScene {
         limits: StepLimits,
     ) -> Result<Simulation, Failure> {
         setup.scene.limits = limits.or(setup.scene.limits);
-        self.request.simulate(setup, method, value)
+        setup::simulate(&self.options, setup, method, value)
     }
 }
 

@@ -78,7 +78,9 @@ impl Function {
     /// As [`of_state`](Self::of_state).
     pub fn of_motion(&self, t: f64, x: &[f64], v: &[f64], out: &mut [f64]) -> Result<(), String> {
         Python::attach(|py| {
-            let arrays = self.array(py, x).and_then(|x| Ok((t, x, self.array(py, v)?)));
+            let arrays = self
+                .array(py, x)
+                .and_then(|x| Ok((t, x, self.array(py, v)?)));
             self.call(py, arrays, out)
         })
     }
@@ -115,12 +117,16 @@ fn read(result: &Bound<PyAny>, name: &str, shape: Shape, out: &mut [f64]) -> PyR
     };
     let refuse = |found: &str| {
         let expected = tuple(expected);
-        let why = format!("{name} returned {found}, where an array of shape {expected} is expected");
+        let why =
+            format!("{name} returned {found}, where an array of shape {expected} is expected");
         wrong(result.py(), why)
     };
     let array = array(result).ok_or_else(|| refuse(&kind(result)))?;
     if array.shape() != expected {
-        return Err(refuse(&format!("an array of shape {}", tuple(array.shape()))));
+        return Err(refuse(&format!(
+            "an array of shape {}",
+            tuple(array.shape())
+        )));
     }
     let readable = array.readonly();
     match (shape, readable.as_slice()) {

@@ -6,6 +6,9 @@
 
 mod arrays;
 mod errors;
+mod function;
+mod own_method;
+mod own_system;
 mod program;
 mod run;
 mod tables;
@@ -13,6 +16,8 @@ mod tables;
 /// The compiled part of `a3_simulator`.
 #[pyo3::pymodule]
 mod _a3 {
+    #[pymodule_export]
+    use super::own_method::{Derivative, add_method};
     #[pymodule_export]
     use super::program::main;
     #[pymodule_export]

@@ -3,7 +3,8 @@
 use std::collections::BTreeMap;
 use std::sync::{Mutex, PoisonError};
 
-use a3_core::{Derivative as CoreDerivative, Error, Method};
+use a3_core::integrators::Derivative as CoreDerivative;
+use a3_core::{Error, Method};
 use numpy::{PyArray1, PyArrayMethods};
 use pyo3::prelude::*;
 use scoped_tls_hkt::scoped_thread_local;
@@ -39,12 +40,19 @@ impl Derivative {
         y: &Bound<'py, PyAny>,
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
         if !STEPPED.is_set() {
-            return Err(wrong(py, "f can be called only while its step is being taken, in the same thread"));
+            return Err(wrong(
+                py,
+                "f can be called only while its step is being taken, in the same thread",
+            ));
         }
-        let array = array(y).ok_or_else(|| wrong(py, "f(t, y) takes a time and an array of numbers"))?;
-        let y = array.to_vec().map_err(|_| wrong(py, "f(t, y) takes a contiguous array"))?;
+        let array =
+            array(y).ok_or_else(|| wrong(py, "f(t, y) takes a time and an array of numbers"))?;
+        let y = array
+            .to_vec()
+            .map_err(|_| wrong(py, "f(t, y) takes a contiguous array"))?;
         let evaluated = py.detach(|| STEPPED.with(|f| f.evaluate(t, &y)));
-        let dydt = evaluated.map_err(|error| super::errors::of_error(py, &error, error.to_string()))?;
+        let dydt =
+            evaluated.map_err(|error| super::errors::of_error(py, &error, error.to_string()))?;
         Ok(numbers(py, &dydt))
     }
 }

@@ -1,7 +1,7 @@
 //! Own systems and own forces: functions of Python.
 
-use a3_core::{Error, Model, Ode, Scene, SecondOrder};
 use a3_core::elements::OwnForce;
+use a3_core::{Error, Model, Ode, Scene, SecondOrder};
 use pyo3::prelude::*;
 
 use super::errors::{of_error, wrong};
@@ -28,7 +28,9 @@ pub fn scene(system: &Bound<PyAny>, raised: &Raised) -> PyResult<Scene> {
         }
     } else {
         let f = Function::new(&call, Shape::Flat, raised)?;
-        let made = Ode::new(state.len(), move |t, y, dydt: &mut [f64]| f.of_state(t, y, dydt));
+        let made = Ode::new(state.len(), move |t, y, dydt: &mut [f64]| {
+            f.of_state(t, y, dydt)
+        });
         made.map_err(failed)?.into()
     };
     Ok(Scene::new(name, model, state))
@@ -39,7 +41,10 @@ pub fn add_forces(scene: &mut Scene, forces: &[Bound<PyAny>], raised: &Raised) -
     for force in forces {
         let function = Function::new(force, Shape::Rows, raised)?;
         let Model::Network(network) = &mut scene.model else {
-            let why = format!("the scene {} has no masses that forces could act on", scene.name);
+            let why = format!(
+                "the scene {} has no masses that forces could act on",
+                scene.name
+            );
             return Err(wrong(force.py(), why));
         };
         let own = OwnForce::new(move |t, x: &[f64], v: &[f64], f: &mut [f64]| {

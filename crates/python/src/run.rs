@@ -4,7 +4,9 @@ use std::sync::{Arc, Mutex, MutexGuard};
 use std::time::{Duration, Instant};
 
 use a3::embedded::{self, Look, OpenScene, SceneOptions};
-use a3_core::{Checkpoint, Error, Grid, Network, Simulation, SpringKind, StepLimits, Vector3};
+use a3_core::{
+    Checkpoint, Error, Grid, Method, Network, Simulation, SpringKind, StepLimits, Vector3,
+};
 use a3_scenes::Presentation;
 use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
@@ -12,6 +14,9 @@ use pyo3::types::PyBytes;
 
 use super::arrays::{indices, numbers, rows};
 use super::errors::{of_error, of_failure, wrong};
+use super::function::Raised;
+use super::own_method::raised_by;
+use super::own_system::{self, add_forces};
 use super::tables::{method, origin};
 
 /// Time between two looks for Ctrl-C and two reports of progress.
@@ -33,6 +38,8 @@ pub struct Run {
     presentation: Arc<Presentation>,
     /// Length of a run of the scene (s), if it has one of its own.
     duration: Option<f64>,
+    /// Exceptions of the functions of the scene.
+    raised: Raised,
 }
 
 impl Run {
@@ -60,6 +67,10 @@ impl Run {
     ) -> PyResult<()> {
         let mut simulation = self.simulation(py)?;
         let simulation = &mut *simulation;
+        let kept = [Some(self.raised.clone()), raised_by(simulation.method())];
+        for kept in kept.iter().flatten() {
+            kept.take();
+        }
         let progress = progress.map(|progress| progress.clone().unbind());
         let mut raised = None;
         let mut last = Instant::now();
@@ -82,6 +93,11 @@ impl Run {
         });
         match (raised, done) {
             (Some(raised), _) => Err(raised),
+            (None, Err((Error::Callback(_), _)))
+                if let Some(raised) = kept.iter().flatten().find_map(Raised::take) =>
+            {
+                Err(raised)
+            }
             (None, Err((error, message))) => Err(of_error(py, &error, message)),
             (None, Ok(())) => Ok(()),
         }
@@ -106,8 +122,8 @@ impl Run {
 #[pymethods]
 impl Run {
     #[new]
-    #[pyo3(signature = (kind, text, method=None, step=None, tolerance=None, *, grid=None, wind=false, swing=false,
-        self_collision=false, absolute=None, max_step=None))]
+    #[pyo3(signature = (source, method=None, step=None, tolerance=None, *, grid=None, wind=false, swing=false,
+        self_collision=false, absolute=None, max_step=None, forces=vec![]))]
     #[expect(
         clippy::too_many_arguments,
         clippy::fn_params_excessive_bools,
@@ -115,8 +131,7 @@ impl Run {
     )]
     fn new(
         py: Python<'_>,
-        kind: &str,
-        text: &str,
+        source: &Bound<PyAny>,
         method: Option<&str>,
         step: Option<f64>,
         tolerance: Option<f64>,
@@ -126,60 +141,36 @@ impl Run {
         self_collision: bool,
         absolute: Option<f64>,
         max_step: Option<f64>,
+        forces: Vec<Bound<PyAny>>,
     ) -> PyResult<Self> {
-        let grid = grid.map(|(rows, cols)| Grid::new(rows, cols)).transpose();
-        let grid = grid.map_err(|why| wrong(py, why.to_string()))?;
         let options = SceneOptions {
-            grid,
+            grid: grid_of(py, grid)?,
             wind,
             swing,
             self_collision,
         };
-        let limits = StepLimits { absolute, max_step };
         let failed = |failure| of_failure(py, &failure);
-        let open = OpenScene::read(origin(py, kind, text)?, options).map_err(failed)?;
+        let raised = Raised::default();
+        let open = open(source, options, &raised)?;
         let method = method.map(|name| self::method(py, name)).transpose()?;
         let method = open.method_or(method);
-        let value = match (method.is_adaptive(), step, tolerance) {
-            (true, Some(_), _) => {
-                return Err(wrong(
-                    py,
-                    format!(
-                        "{} chooses its steps to a tolerance: give tolerance, such as 1e-4, not step",
-                        method.name
-                    ),
-                ));
-            }
-            (false, _, Some(_)) => {
-                return Err(wrong(
-                    py,
-                    format!(
-                        "{} takes a step: give step in seconds, such as 0.01, not tolerance",
-                        method.name
-                    ),
-                ));
-            }
-            (_, step, tolerance) => step.or(tolerance),
-        };
-        if let (false, Some(_)) = (method.is_adaptive(), absolute.or(max_step)) {
-            return Err(wrong(
-                py,
-                format!(
-                    "{} takes a step, not a tolerance: leave out absolute and max_step",
-                    method.name
-                ),
-            ));
+        let value = setting(py, method, step, tolerance)?;
+        let limits = StepLimits { absolute, max_step };
+        if !method.is_adaptive() && limits != StepLimits::default() {
+            let why = format!(
+                "{} takes a step, not a tolerance: leave out absolute and max_step",
+                method.name
+            );
+            return Err(wrong(py, why));
         }
-        let made = py.detach(|| {
-            let mut setup = open.build()?;
-            let run = open.run(&mut setup, method, value, limits)?;
-            Ok((run, setup))
-        });
-        let (simulation, setup) = made.map_err(failed)?;
+        let mut setup = py.detach(|| open.build()).map_err(failed)?;
+        add_forces(&mut setup.scene, &forces, &raised)?;
+        let run = py.detach(|| open.run(&mut setup, method, value, limits));
         Ok(Self {
-            simulation: Mutex::new(simulation),
+            simulation: Mutex::new(run.map_err(failed)?),
             presentation: setup.presentation,
             duration: setup.defaults.duration,
+            raised,
         })
     }
 
@@ -484,4 +475,37 @@ impl Run {
         let png = drawn.map_err(|failure| of_failure(py, &failure))?;
         Ok(PyBytes::new(py, &png))
     }
+}
+
+/// Returns the grid of so many rows and columns.
+fn grid_of(py: Python<'_>, grid: Option<(usize, usize)>) -> PyResult<Option<Grid>> {
+    let grid = grid.map(|(rows, cols)| Grid::new(rows, cols)).transpose();
+    grid.map_err(|why| wrong(py, why.to_string()))
+}
+
+/// Opens a scene: the kind and the text of one, or a `System`.
+fn open(source: &Bound<PyAny>, options: SceneOptions, raised: &Raised) -> PyResult<OpenScene> {
+    let py = source.py();
+    if let Ok((kind, text)) = source.extract::<(String, String)>() {
+        let opened = OpenScene::read(origin(py, &kind, &text)?, options);
+        return opened.map_err(|failure| of_failure(py, &failure));
+    }
+    Ok(OpenScene::of(own_system::scene(source, raised)?, options))
+}
+
+/// Returns the step (s) or the tolerance of a method, if one is given.
+fn setting(
+    py: Python<'_>,
+    method: &Method,
+    step: Option<f64>,
+    tolerance: Option<f64>,
+) -> PyResult<Option<f64>> {
+    let why = match (method.is_adaptive(), step, tolerance) {
+        (true, Some(_), _) => {
+            "chooses its steps to a tolerance: give tolerance, such as 1e-4, not step"
+        }
+        (false, _, Some(_)) => "takes a step: give step in seconds, such as 0.01, not tolerance",
+        (_, step, tolerance) => return Ok(step.or(tolerance)),
+    };
+    Err(wrong(py, format!("{} {why}", method.name)))
 }

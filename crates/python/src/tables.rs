@@ -16,7 +16,7 @@ pub fn scenes() -> Vec<&'static str> {
 /// Rows of the table of methods: name, letter, title, order, whether the method is adaptive, and
 /// its default step (s) or tolerance.
 #[pyfunction]
-pub fn methods() -> Vec<(&'static str, char, &'static str, u32, bool, f64)> {
+pub fn methods() -> Vec<(&'static str, Option<char>, &'static str, u32, bool, f64)> {
     let row = |method: &Method| {
         (
             method.name,

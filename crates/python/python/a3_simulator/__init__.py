@@ -18,6 +18,8 @@ if TYPE_CHECKING:
     from ._errors import BlowUp as BlowUp
     from ._errors import Error as Error
     from ._errors import InputError as InputError
+    from ._own import Method as Method
+    from ._own import System as System
     from ._picture import Picture as Picture
     from ._picture import render as render
     from ._scenes import MethodInfo as MethodInfo
@@ -35,6 +37,8 @@ _MODULES = {
     "BlowUp": "_errors",
     "Error": "_errors",
     "InputError": "_errors",
+    "Method": "_own",
+    "System": "_own",
     "Picture": "_picture",
     "render": "_picture",
     "MethodInfo": "_scenes",

@@ -9,9 +9,10 @@ from typing import Any, Dict, List, Mapping, NamedTuple, Tuple, Union
 
 from . import _a3
 from ._errors import InputError
+from ._own import System
 
-#: A scene: the name of a built-in one, the path of a file, a text in TOML, or the table of its keys.
-SceneLike = Union[str, "os.PathLike[str]", Mapping[str, Any]]
+#: A scene: the name of a built-in one, the path of a file, a text in TOML, the table of its keys, or a system.
+SceneLike = Union[str, "os.PathLike[str]", Mapping[str, Any], System]
 
 
 class MethodInfo(NamedTuple):
@@ -41,18 +42,23 @@ def scene(scene: SceneLike) -> Dict[str, Any]:
 
     docs/scenes.md explains the keys. `scene("chain")["chain"]`, for example, lists the chains of that scene.
     """
-    return json.loads(_a3.table(*origin(scene)))
+    given = origin(scene)
+    if isinstance(given, System):
+        raise InputError("a system has no keys: change what it is made of")
+    return json.loads(_a3.table(*given))
 
 
-def origin(scene: SceneLike) -> Tuple[str, str]:
-    """Returns the kind of a scene, which is "named", "toml" or "table", and its name or text."""
+def origin(scene: SceneLike) -> Union[Tuple[str, str], System]:
+    """Returns the kind of a scene, which is "named", "toml" or "table", and its name or text; a system as it is."""
+    if isinstance(scene, System):
+        return scene
     if isinstance(scene, Mapping):
         return "table", json.dumps(plain(scene, ""))
     if isinstance(scene, os.PathLike):
         return "named", os.fspath(scene)
     if not isinstance(scene, str):
         raise InputError(
-            "a scene is a name, a file, a text in TOML, or a dict of its keys, not " + type(scene).__name__
+            "a scene is a name, a file, a text in TOML, a dict of its keys, or an a3.System, not " + type(scene).__name__
         )
     # A name or a path has no equals sign with a line of its own around it; a text in TOML has.
     is_text = "\n" in scene or "=" in scene and not os.path.exists(scene)

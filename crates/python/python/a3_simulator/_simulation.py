@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Dict, NamedTuple, Optional, Tuple
+from typing import TYPE_CHECKING, Any, Dict, NamedTuple, Optional, Sequence, Tuple, Union
 
 import numpy as np
 
 from . import _a3
+from ._own import Forces, Method, method_name
 from ._progress import progress_bar
 from ._scenes import SceneLike, origin
 
@@ -76,9 +77,9 @@ class Simulation(_a3.Run):
 
     Args:
         scene: name of a built-in scene (`a3.scenes()` lists them), path of a file (TOML, JSON or a mesh), text in
-            TOML, or dict of the keys of a scene file (`a3.scene(name)` returns one).
-        method: name or letter of a method (`a3.methods()` lists them); by default that of the scene, or else the
-            explicit trapezoid.
+            TOML, dict of the keys of a scene file (`a3.scene(name)` returns one), or `a3.System`.
+        method: name or letter of a method (`a3.methods()` lists them), or an `a3.Method`; by default that of the
+            scene, or else the explicit trapezoid. For a system, it is "dop853".
         step: length of the steps (s); by default that of the scene or of the method.
         tolerance: relative tolerance of an adaptive method, in place of a step.
         grid: rows and columns of the first cloth, in place of its own.
@@ -87,6 +88,9 @@ class Simulation(_a3.Run):
         absolute: error of positions (m) that a step of an adaptive method may make; by default the tolerance times
             the radius of the scene.
         max_step: longest step of an adaptive method (s).
+        forces: functions of one's own, each of the time t (s), the positions x (m), (n, 3), and the velocities v
+            (m/s), (n, 3), that return forces (N), (n, 3), to be added to those of the scene. They depend on t, x and
+            v alone. Implicit methods hold them constant within an iteration.
 
     Raises:
         InputError: there is no such scene or method, a key of the scene has a fault, or the method does not support
@@ -99,7 +103,7 @@ class Simulation(_a3.Run):
     def __new__(
         cls,
         scene: SceneLike,
-        method: Optional[str] = None,
+        method: Union[str, Method, None] = None,
         step: Optional[float] = None,
         tolerance: Optional[float] = None,
         *,
@@ -109,6 +113,7 @@ class Simulation(_a3.Run):
         self_collision: bool = False,
         absolute: Optional[float] = None,
         max_step: Optional[float] = None,
+        forces: Sequence[Forces] = (),
     ) -> "Simulation":
         options = {
             "grid": grid,
@@ -117,8 +122,11 @@ class Simulation(_a3.Run):
             "self_collision": self_collision,
             "absolute": absolute,
             "max_step": max_step,
+            "forces": list(forces),
         }
-        run = super().__new__(cls, *origin(scene), method, step, tolerance, **options)
+        run = super().__new__(
+            cls, origin(scene), method_name(method), step, tolerance, **options
+        )
         run._given = (scene, method, step, tolerance), options
         return run
 
