@@ -47,7 +47,7 @@ fn main() {
     for entry in a3_scenes::SCENES {
         let scene = entry.build(None).expect("a built-in scene").scene;
         for method in METHODS.iter().filter(|method| !method.is_adaptive()) {
-            let name = format!("{} - {}", entry.name, method.letter);
+            let name = format!("{} - {}", entry.name, method.letter.unwrap());
             let found = hash(&scene, method);
             assert_eq!(expected.get(name.as_str()), Some(&found.as_str()), "{name}");
             compared += 1;

@@ -144,7 +144,7 @@ fn runs() -> Vec<Run> {
             methods.map(move |method| Run {
                 scene: scene.clone(),
                 grid,
-                method: method.letter,
+                method: method.letter.unwrap(),
                 setting: if method.is_adaptive() {
                     TOLERANCE.into()
                 } else {

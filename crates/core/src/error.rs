@@ -48,6 +48,8 @@ pub enum Error {
     },
     /// Run that blew up.
     BlowUp(BlowUp),
+    /// Failure of a function that an own system or an own method calls, in its own words.
+    Callback(String),
 }
 
 /// Reason why a method does not support a system.
@@ -323,7 +325,7 @@ impl fmt::Display for BlowUp {
 impl fmt::Display for Error {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Invalid(what) => f.write_str(what),
+            Self::Invalid(what) | Self::Callback(what) => f.write_str(what),
             Self::Unsupported { method, why } => write!(f, "{method} {why}"),
             Self::Dimension { expected, found } => {
                 write!(
@@ -350,6 +352,15 @@ impl std::error::Error for Error {}
 impl From<BlowUp> for Error {
     fn from(blow_up: BlowUp) -> Self {
         Self::BlowUp(blow_up)
+    }
+}
+
+/// Whether a run or a step succeeded. A failure of a [callback](Error::Callback) stays an error: it
+/// says nothing about the method or its step.
+pub(crate) fn succeeded<T>(done: Result<T, Error>) -> Result<bool, Error> {
+    match done {
+        Err(error @ Error::Callback(_)) => Err(error),
+        done => Ok(done.is_ok()),
     }
 }
 

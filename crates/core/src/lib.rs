@@ -6,6 +6,8 @@
 //!   masses.
 //! * [`Integrator`]: a method that steps any [`ParticleSystem`]; [`integrators::METHODS`] lists
 //!   the methods.
+//! * [`Ode`], [`SecondOrder`]: own systems from functions; [`Method::from_step`], [`Method::new`]: own
+//!   methods.
 //! * [`Network`]: particles with pins, constraints, obstacles and force elements, such as springs.
 //! * [`Scene`]: a model, the state it starts from, and what a run of it can be disturbed by.
 //! * [`Simulation`]: the run of a scene by a method, which can be disturbed as it goes on.
@@ -66,6 +68,7 @@ pub mod integrators;
 mod linear;
 mod measure;
 mod network;
+mod own;
 mod path;
 mod products;
 mod random;
@@ -97,6 +100,7 @@ pub use integrators::{Integrator, Method, Work};
 pub use measure::Measure;
 pub use nalgebra::Vector3;
 pub use network::{Element, Network, Touch};
+pub use own::{Ode, Outcome, SecondOrder};
 pub use path::{Orientation, Path, Place, Pose, Turn, rotation};
 pub use products::{Products, SolverHints};
 pub use scene::{FirstOrder, Model, Scene, StepLimits, Swing};

@@ -198,7 +198,8 @@ impl Scene {
     /// with the velocities of their paths: any others would act on the springs in the first step
     /// alone.
     #[must_use]
-    pub fn new(name: impl Into<String>, model: Model, mut state: Vec<f64>) -> Self {
+    pub fn new(name: impl Into<String>, model: impl Into<Model>, mut state: Vec<f64>) -> Self {
+        let model = model.into();
         if state.len() == model.system().dim() {
             model.system().hold(0.0, &mut state);
         }

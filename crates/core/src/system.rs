@@ -5,6 +5,7 @@
 use std::ops::Range;
 
 use crate::coupling::Coupling;
+use crate::error::Error;
 use crate::measure::Measure;
 use crate::path::Place;
 use crate::products::{Products, SolverHints};
@@ -46,6 +47,21 @@ pub trait ParticleSystem {
     /// Both slices have length [`dim`](Self::dim).
     #[doc(alias = "evalF")]
     fn eval_f(&self, t: f64, y: &[f64], dydt: &mut [f64]);
+
+    /// Writes the Jacobian df/dy at (t, y) to `jacobian`, row by row, and returns true; returns false
+    /// if the system does not know it. Implicit methods and stability then take differences of f.
+    fn jacobian(&self, _t: f64, _y: &[f64], _jacobian: &mut [f64]) -> bool {
+        false
+    }
+
+    /// Returns the reason why an evaluation has failed since the last call, and forgets it.
+    ///
+    /// An evaluation that can fail writes NaN and keeps its error, an
+    /// [`Error::Callback`](crate::Error::Callback), for this function. A run then ends with that
+    /// error instead of a blow-up.
+    fn take_failure(&self) -> Option<Error> {
+        None
+    }
 
     /// Returns the view of a system whose particles stand in rows and act on near rows alone, if it
     /// is such a one.
@@ -124,6 +140,26 @@ pub trait Mechanics {
 
     /// Visits each pinned particle with its place at time t (s). By default there are none.
     fn pins(&self, _t: f64, _visit: &mut dyn FnMut(usize, Place)) {}
+
+    /// Whether forces depend on positions and time alone, except viscous drag. By default this is
+    /// known of systems that offer both other views, and whose kicks do not read v.
+    fn is_positional(&self) -> bool {
+        let splitting = self.splitting();
+        let reads_velocity = splitting.is_none_or(Splitting::kick_reads_velocity);
+        !reads_velocity && self.linearized().is_some()
+    }
+
+    /// Writes the Jacobian df/dy of y = [x | v], see [`ParticleSystem::jacobian`]. It serves systems
+    /// without the view of [`Linearized`].
+    fn jacobian(&self, _t: f64, _y: &[f64], _jacobian: &mut [f64]) -> bool {
+        false
+    }
+
+    /// Returns the reason why an evaluation has failed since the last call, and forgets it, see
+    /// [`ParticleSystem::take_failure`].
+    fn take_failure(&self) -> Option<Error> {
+        None
+    }
 
     /// Returns the view for methods that step row by row. Without it, they step by whole arrays.
     #[doc(hidden)]
@@ -326,6 +362,14 @@ impl<M: Mechanics> ParticleSystem for M {
         });
     }
 
+    fn jacobian(&self, t: f64, y: &[f64], jacobian: &mut [f64]) -> bool {
+        Mechanics::jacobian(self, t, y, jacobian)
+    }
+
+    fn take_failure(&self) -> Option<Error> {
+        Mechanics::take_failure(self)
+    }
+
     fn rows(&self) -> Option<RowsView<'_>> {
         Mechanics::rows(self)
     }
@@ -356,12 +400,4 @@ impl<M: Mechanics> ParticleSystem for M {
         visit(0..n, Measure::Position);
         visit(n..2 * n, Measure::Velocity);
     }
-}
-
-/// Whether forces depend on positions and time alone, except viscous drag.
-pub(crate) fn depends_on_positions(mechanics: &dyn Mechanics) -> bool {
-    let reads_velocity = mechanics
-        .splitting()
-        .is_none_or(Splitting::kick_reads_velocity);
-    !reads_velocity && mechanics.linearized().is_some()
 }

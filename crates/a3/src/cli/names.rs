@@ -141,7 +141,7 @@ fn solver_or_command(text: &str, cli: &Command) -> Result<&'static Method, Strin
 fn nearest_of(text: &str, commands: &[&str]) -> Option<String> {
     let letters: Vec<_> = integrators::METHODS
         .iter()
-        .map(|m| m.letter.to_string())
+        .filter_map(|m| Some(m.letter?.to_string()))
         .collect();
     let names = commands.iter().copied().chain(solvers());
     nearest(text, names.chain(letters.iter().map(String::as_str))).map(str::to_owned)
@@ -158,7 +158,7 @@ fn solver_and_step(text: &str) -> Result<(&'static Method, Option<f64>), String>
 fn letters_and_names() -> String {
     let names = integrators::METHODS.iter();
     let names: Vec<_> = names
-        .map(|m| format!("{} ({})", m.letter, m.name))
+        .filter_map(|m| Some(format!("{} ({})", m.letter?, m.name)))
         .collect();
     names.join(", ")
 }

@@ -93,7 +93,7 @@ pub fn solvers() -> Result<(), Failure> {
     let mut rows = vec![heading.map(String::from).to_vec()];
     for m in integrators::METHODS {
         rows.push(vec![
-            m.letter.into(),
+            m.letter.map(String::from).unwrap_or_default(),
             m.name.into(),
             m.order.to_string(),
             if m.is_implicit() && !m.needs_springs() {

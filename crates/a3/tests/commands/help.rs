@@ -57,7 +57,7 @@ fn lists() {
     assert!(row("simple").contains(" 3 "));
     let solvers = a3(folder.path(), &["solvers"]);
     for solver in a3_core::integrators::METHODS {
-        let start = format!("{}  {} ", solver.letter, solver.name);
+        let start = format!("{}  {} ", solver.letter.unwrap(), solver.name);
         assert!(
             text(&solvers.stdout)
                 .lines()

@@ -56,8 +56,8 @@ pub struct Candidate {
     pub set_by: SetBy,
 }
 
-/// Cheapest step or tolerance of each method that meets the error `error`, in the unit of the
-/// metric; the cheapest method comes first.
+/// Cheapest step or tolerance of each method of the table that meets the error `error`, in the unit
+/// of the metric; the cheapest method comes first.
 ///
 /// The search gives up a method that would cost more than twice as much as the second cheapest so
 /// far, or five times as much in small scenes. `begin` is called with each method before its runs.
@@ -96,6 +96,23 @@ pub fn choose(
     metric: Metric,
     error: f64,
     go_on: GoOn,
+    begin: impl FnMut(&'static Method),
+) -> Result<Option<Vec<Candidate>>, Error> {
+    let methods: Vec<_> = METHODS.iter().collect();
+    choose_among(&methods, scene, reference, metric, error, go_on, begin)
+}
+
+/// As [`choose`], among these methods. Those that do not support the scene are left out.
+///
+/// # Errors
+/// The scene cannot be run, or the metric needs particles that it does not have.
+pub fn choose_among(
+    methods: &[&'static Method],
+    scene: &Scene,
+    reference: &Reference,
+    metric: Metric,
+    error: f64,
+    go_on: GoOn,
     mut begin: impl FnMut(&'static Method),
 ) -> Result<Option<Vec<Candidate>>, Error> {
     metric.check(&scene.model)?;
@@ -110,7 +127,7 @@ pub fn choose(
         MAX_COST_RATIO
     };
     // Methods of high order come first: their cost limits the runs of methods of low order.
-    let mut methods: Vec<_> = METHODS.iter().collect();
+    let mut methods = methods.to_vec();
     methods.sort_by_key(|method| std::cmp::Reverse(method.order));
     for method in methods {
         if method.check(scene.model.system()).is_err() {

@@ -4,7 +4,7 @@ use nalgebra::{Matrix3, Vector3};
 
 use super::frames::GoOn;
 use crate::control::Control;
-use crate::error::Error;
+use crate::error::{Error, succeeded};
 use crate::integrators::{Method, find};
 use crate::random::SplitMix;
 use crate::scene::Scene;
@@ -131,7 +131,7 @@ impl TwoRuns {
                     return Ok(None);
                 }
                 time = begin + (round - begin) * f64::from(part) / f64::from(CHECKS_PER_ROUND);
-                if run.advance_to(time).is_err() || beside.advance_to(time).is_err() {
+                if !succeeded(run.advance_to(time))? || !succeeded(beside.advance_to(time))? {
                     parted_at = Some(time);
                     break 'rounds;
                 }

@@ -16,7 +16,7 @@ mod run;
 mod snapshot;
 mod trajectory;
 
-pub use choose::{Candidate, SetBy, choose};
+pub use choose::{Candidate, SetBy, choose, choose_among};
 pub use errors::{Errors, Metric, Scope};
 pub use frames::{Frames, GoOn};
 pub use horizon::{Horizon, horizon};

@@ -101,6 +101,9 @@ pub(super) fn run_observed(
         }
         Ok(ended)
     });
+    if let Some(failure) = simulation.model().system().take_failure() {
+        return Err(failure);
+    }
     match ended {
         Ok(true) => Ok(Some(None)),
         Ok(false) => Ok(None),

@@ -190,8 +190,8 @@ impl Adaptive {
     ///
     /// # Errors
     /// The state and the system differ in length; a force depends on the velocity, and the method
-    /// does not support that; f is not finite at y; or no step that advances the time meets the
-    /// tolerance. y then stays as it was.
+    /// does not support that; f is not finite at y, or the system reports a failure of its own; or
+    /// no step that advances the time meets the tolerance. y then stays as it was.
     pub fn advance(
         &mut self,
         system: &dyn ParticleSystem,
@@ -248,6 +248,10 @@ impl Adaptive {
                 return Ok(self.last);
             }
             work.rejections += 1;
+            if let Some(failure) = system.take_failure() {
+                self.next = 0.0;
+                return Err(failure);
+            }
             if h <= shortest.min(longest) || !error.is_finite() {
                 let f = &mut self.first[0];
                 self.trial.derivative(system, f);

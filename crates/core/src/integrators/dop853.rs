@@ -3,12 +3,12 @@
 //! 1993, II.5, II.6 and the appendix).
 
 use super::embedded::{EmbeddedPair, Tableau};
-use super::method::{Method, View};
+use super::method::{Create, Method, View};
 use crate::control::Control;
 
 pub(super) const METHOD: Method = Method {
     name: "dop853",
-    letter: 'x',
+    letter: Some('x'),
     aliases: &[],
     title: "Dormand-Prince 8(5,3), adaptive",
     order: 8,
@@ -16,7 +16,7 @@ pub(super) const METHOD: Method = Method {
     evaluations: 12,
     damped_evaluations: 12,
     view: View::Derivative,
-    create: |system| Box::new(EmbeddedPair::new(&TABLEAU, system.dim())),
+    create: Create::Table(|system| Box::new(EmbeddedPair::new(&TABLEAU, system.dim()))),
     trial: Some(|system| Box::new(EmbeddedPair::new(&TABLEAU, system.dim()))),
 };
 

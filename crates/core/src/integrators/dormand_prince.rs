@@ -4,12 +4,12 @@
 //! Wanner, *Solving Ordinary Differential Equations I*, 1993, II.6).
 
 use super::embedded::{EmbeddedPair, Tableau};
-use super::method::{Method, View};
+use super::method::{Create, Method, View};
 use crate::control::Control;
 
 pub(super) const METHOD: Method = Method {
     name: "dopri5",
-    letter: 'a',
+    letter: Some('a'),
     aliases: &["ode45", "dormand-prince"],
     title: "Dormand-Prince 5(4), adaptive",
     order: 5,
@@ -17,7 +17,7 @@ pub(super) const METHOD: Method = Method {
     evaluations: 6,
     damped_evaluations: 6,
     view: View::Derivative,
-    create: |system| Box::new(EmbeddedPair::new(&TABLEAU, system.dim())),
+    create: Create::Table(|system| Box::new(EmbeddedPair::new(&TABLEAU, system.dim()))),
     trial: Some(|system| Box::new(EmbeddedPair::new(&TABLEAU, system.dim()))),
 };
 

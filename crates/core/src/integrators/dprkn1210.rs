@@ -8,13 +8,13 @@
 //! step.
 
 use super::dprkn1210_dense::DENSE;
-use super::method::{Method, View};
+use super::method::{Create, Method, View};
 use super::nystrom::{NystromPair, NystromTableau};
 use crate::control::Control;
 
 pub(super) const METHOD: Method = Method {
     name: "dprkn1210",
-    letter: 'g',
+    letter: Some('g'),
     aliases: &["dprkn12"],
     title: "Nyström 12(10), adaptive",
     order: 12,
@@ -22,7 +22,9 @@ pub(super) const METHOD: Method = Method {
     evaluations: 17,
     damped_evaluations: 17,
     view: View::Accelerations,
-    create: |system| Box::new(NystromPair::new(METHOD.title, &TABLEAU, system.dim())),
+    create: Create::Table(|system| {
+        Box::new(NystromPair::new(METHOD.title, &TABLEAU, system.dim()))
+    }),
     trial: Some(|system| Box::new(NystromPair::new(METHOD.title, &TABLEAU, system.dim()))),
 };
 

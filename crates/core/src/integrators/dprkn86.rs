@@ -6,13 +6,13 @@
 //! order 6 and at both ends of the step exactly, and those of orders 7 and 8 in the least-squares
 //! sense: its error within a step is similar to that of the step.
 
-use super::method::{Method, View};
+use super::method::{Create, Method, View};
 use super::nystrom::{NystromPair, NystromTableau};
 use crate::control::Control;
 
 pub(super) const METHOD: Method = Method {
     name: "dprkn86",
-    letter: 'd',
+    letter: Some('d'),
     aliases: &["dprkn8"],
     title: "Nyström 8(6), adaptive",
     order: 8,
@@ -20,7 +20,9 @@ pub(super) const METHOD: Method = Method {
     evaluations: 8,
     damped_evaluations: 8,
     view: View::Accelerations,
-    create: |system| Box::new(NystromPair::new(METHOD.title, &TABLEAU, system.dim())),
+    create: Create::Table(|system| {
+        Box::new(NystromPair::new(METHOD.title, &TABLEAU, system.dim()))
+    }),
     trial: Some(|system| Box::new(NystromPair::new(METHOD.title, &TABLEAU, system.dim()))),
 };
 

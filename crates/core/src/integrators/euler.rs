@@ -1,12 +1,12 @@
 //! Explicit Euler: y1 = y + h f(t, y). Order 1.
 
-use super::method::{Method, View};
+use super::method::{Create, Method, View};
 use super::runge_kutta::{EULER, RungeKutta};
 use crate::control::Control;
 
 pub(super) const METHOD: Method = Method {
     name: "euler",
-    letter: 'e',
+    letter: Some('e'),
     aliases: &["explicit-euler", "forward-euler"],
     title: "explicit Euler",
     order: 1,
@@ -14,6 +14,6 @@ pub(super) const METHOD: Method = Method {
     evaluations: 1,
     damped_evaluations: 1,
     view: View::Derivative,
-    create: |system| Box::new(RungeKutta::new(EULER, system)),
+    create: Create::Table(|system| Box::new(RungeKutta::new(EULER, system))),
     trial: None,
 };

@@ -1,5 +1,7 @@
-//! A method of the table: its name, its order, the view of a system by which it takes its steps,
-//! and its constructor.
+//! A method: its name, its order, the view of a system by which it takes its steps, and the
+//! function that creates its integrator.
+
+use std::fmt;
 
 use super::adaptive::Adaptive;
 use super::error_norm::Tolerance;
@@ -7,13 +9,31 @@ use super::integrator::Integrator;
 use super::trial::Trial;
 use crate::control::Control;
 use crate::error::{Error, Refusal, positive};
-use crate::system::{Linearized, ParticleSystem, depends_on_positions};
+use crate::system::{Linearized, ParticleSystem};
 
 /// Largest state (numbers) for which implicit methods compute the Jacobian of f.
 pub(super) const MAX_DENSE: usize = 1024;
 
-/// Creates an integrator for a system.
-type Create<T> = fn(system: &dyn ParticleSystem) -> Box<T>;
+/// Function of an own method that creates an integrator for a system.
+pub(super) type CreateOwn = dyn Fn(&dyn ParticleSystem) -> Box<dyn Integrator> + Send + Sync;
+
+/// Function that creates an integrator for a system.
+#[derive(Clone, Copy)]
+pub(super) enum Create {
+    /// That of a row of the table.
+    Table(fn(system: &dyn ParticleSystem) -> Box<dyn Integrator>),
+    /// That of an own method.
+    Own(&'static CreateOwn),
+}
+
+impl fmt::Debug for Create {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Table(_) => "Table",
+            Self::Own(_) => "Own",
+        })
+    }
+}
 
 /// View of a system that a method steps with.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -31,13 +51,14 @@ pub enum View {
     Springs,
 }
 
-/// Row of the table of methods.
+/// Method of integration: a row of the table of methods, or an own method, made by
+/// [`new`](Self::new) or [`from_step`](Self::from_step).
 #[derive(Debug)]
 pub struct Method {
     /// Name, as typed on the command line.
     pub name: &'static str,
-    /// Short name, of one letter.
-    pub letter: char,
+    /// Short name, of one letter; `None` for an own method.
+    pub letter: Option<char>,
     /// Other names of the method.
     pub aliases: &'static [&'static str],
     /// Full title.
@@ -53,13 +74,19 @@ pub struct Method {
     /// View of a system that the method steps with.
     pub view: View,
     /// Creates the method's integrator.
-    pub(super) create: Create<dyn Integrator>,
+    pub(super) create: Create,
     /// Creates the trial steps of an adaptive method, which chooses its steps to a tolerance;
     /// `None` for other methods.
-    pub(super) trial: Option<Create<dyn Trial>>,
+    pub(super) trial: Option<fn(system: &dyn ParticleSystem) -> Box<dyn Trial>>,
 }
 
 impl Method {
+    /// Whether this is its letter, its name or one of its aliases.
+    pub(super) fn is_called(&self, name: &str) -> bool {
+        let is_letter = |letter: char| name.chars().eq([letter]);
+        self.letter.is_some_and(is_letter) || self.name == name || self.aliases.contains(&name)
+    }
+
     /// Whether a step solves equations, by linear algebra in addition to the evaluations.
     #[must_use]
     pub fn is_implicit(&self) -> bool {
@@ -117,7 +144,7 @@ impl Method {
             View::Tangent | View::Springs if holds_constraints => Some(Refusal::HoldsConstraints),
             View::Tangent | View::Springs if !lists_all_couplings => Some(Refusal::HidesCouplings),
             View::Springs if mechanics.compliant().is_none() => Some(Refusal::LacksSprings),
-            View::Accelerations if !depends_on_positions(mechanics) => Some(Refusal::ReadsVelocity),
+            View::Accelerations if !mechanics.is_positional() => Some(Refusal::ReadsVelocity),
             View::Tangent if linearized.is_none() => refusal_by_size(system),
             _ => None,
         }
@@ -129,13 +156,26 @@ impl Method {
     /// The method does not support the system, see [`check`](Self::check).
     pub fn integrator(&self, system: &dyn ParticleSystem) -> Result<Box<dyn Integrator>, Error> {
         self.check(system)?;
-        Ok((self.create)(system))
+        Ok(match self.create {
+            Create::Table(create) => create(system),
+            Create::Own(create) => create(system),
+        })
     }
 
-    /// Whether both methods use the same integrator for fixed steps.
+    /// Whether the method is not of the table, but made by the caller of this library.
+    #[must_use]
+    pub fn is_own(&self) -> bool {
+        matches!(self.create, Create::Own(_))
+    }
+
+    /// Whether both methods use the same integrator for fixed steps. Own methods share theirs with
+    /// no other.
     #[must_use]
     pub fn shares_integrator(&self, other: &Self) -> bool {
-        std::ptr::fn_addr_eq(self.create, other.create)
+        match (self.create, other.create) {
+            (Create::Table(own), Create::Table(other)) => std::ptr::fn_addr_eq(own, other),
+            _ => self == other,
+        }
     }
 
     /// Integrator that chooses its steps to this tolerance; `None` if the method estimates no

@@ -1,12 +1,12 @@
 //! Explicit midpoint: y1 = y + h f(t + h/2, y + h/2 f(t, y)). Order 2.
 
-use super::method::{Method, View};
+use super::method::{Create, Method, View};
 use super::runge_kutta::{MIDPOINT, RungeKutta};
 use crate::control::Control;
 
 pub(super) const METHOD: Method = Method {
     name: "midpoint",
-    letter: 'm',
+    letter: Some('m'),
     aliases: &["explicit-midpoint"],
     title: "explicit midpoint",
     order: 2,
@@ -14,6 +14,6 @@ pub(super) const METHOD: Method = Method {
     evaluations: 2,
     damped_evaluations: 2,
     view: View::Derivative,
-    create: |system| Box::new(RungeKutta::new(MIDPOINT, system)),
+    create: Create::Table(|system| Box::new(RungeKutta::new(MIDPOINT, system))),
     trial: None,
 };

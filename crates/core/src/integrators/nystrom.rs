@@ -16,7 +16,7 @@ use super::error_norm::ErrorNorm;
 use super::integrator::{Integrator, check_dim};
 use super::trial::{LastStep, Trial};
 use crate::error::{Error, Refusal};
-use crate::system::{Mechanics, ParticleSystem, depends_on_positions, place_pins};
+use crate::system::{Mechanics, ParticleSystem, place_pins};
 use crate::work::Work;
 
 /// Coefficients of a pair. Its stages are followed by the acceleration at the end of the step, the
@@ -63,7 +63,7 @@ fn drag(system: &dyn ParticleSystem) -> Option<(&dyn Mechanics, Drag<'_>)> {
         coefficient: mechanics.drag_coefficient(),
         inverse_masses: mechanics.inverse_masses(),
     };
-    depends_on_positions(mechanics).then_some((mechanics, drag))
+    mechanics.is_positional().then_some((mechanics, drag))
 }
 
 /// Error of a method if forces depend on the velocity.

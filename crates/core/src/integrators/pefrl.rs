@@ -6,7 +6,7 @@
 //! as those of damped springs do, each kick is one step of the classical Runge-Kutta method in v at
 //! fixed x. A kick of lower order would reduce the order of the whole.
 
-use super::method::{Method, View};
+use super::method::{Create, Method, View};
 use super::runge_kutta::{EULER, RK4, Table};
 use super::splitting::{Kicks, Plan};
 use crate::control::Control;
@@ -14,7 +14,7 @@ use crate::rows::Terms;
 
 pub(super) const METHOD: Method = Method {
     name: "pefrl",
-    letter: 'p',
+    letter: Some('p'),
     aliases: &["forest-ruth"],
     title: "PEFRL, symplectic",
     order: 4,
@@ -22,7 +22,7 @@ pub(super) const METHOD: Method = Method {
     evaluations: 4,
     damped_evaluations: 16,
     view: View::Kicks,
-    create: |system| PLAN.integrator(system),
+    create: Create::Table(|system| PLAN.integrator(system)),
     trial: None,
 };
 

@@ -7,12 +7,12 @@
 //! polynomial through both ends (Shampine, *Interpolation for Runge-Kutta methods*, 1985).
 
 use super::embedded::{EmbeddedPair, Tableau};
-use super::method::{Method, View};
+use super::method::{Create, Method, View};
 use crate::control::Control;
 
 pub(super) const METHOD: Method = Method {
     name: "rkf45",
-    letter: 'f',
+    letter: Some('f'),
     aliases: &["fehlberg"],
     title: "Runge-Kutta-Fehlberg 4(5), adaptive",
     order: 5,
@@ -20,7 +20,7 @@ pub(super) const METHOD: Method = Method {
     evaluations: 6,
     damped_evaluations: 6,
     view: View::Derivative,
-    create: |system| Box::new(EmbeddedPair::new(&TABLEAU, system.dim())),
+    create: Create::Table(|system| Box::new(EmbeddedPair::new(&TABLEAU, system.dim()))),
     trial: Some(|system| Box::new(EmbeddedPair::new(&TABLEAU, system.dim()))),
 };
 

@@ -6,7 +6,7 @@
 //! Each drift is the exact flow under drag and gravity. The order of the sequence rests on kicks
 //! that do not depend on the velocity.
 
-use super::method::{Method, View};
+use super::method::{Create, Method, View};
 use super::runge_kutta::EULER;
 use super::splitting::{Kicks, Plan};
 use crate::control::Control;
@@ -14,7 +14,7 @@ use crate::rows::Terms;
 
 pub(super) const METHOD: Method = Method {
     name: "srkn11",
-    letter: 'k',
+    letter: Some('k'),
     aliases: &["blanes-moan"],
     title: "SRKN11, symplectic",
     order: 6,
@@ -22,7 +22,7 @@ pub(super) const METHOD: Method = Method {
     evaluations: 12,
     damped_evaluations: 12,
     view: View::Accelerations,
-    create: |system| PLAN.integrator(system),
+    create: Create::Table(|system| PLAN.integrator(system)),
     trial: None,
 };
 

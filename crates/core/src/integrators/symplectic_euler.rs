@@ -1,6 +1,6 @@
 //! Symplectic (semi-implicit) Euler: v1 = v + h M^-1 F(t, x, v), x1 = x + h v1. Order 1.
 
-use super::method::{Method, View};
+use super::method::{Create, Method, View};
 use super::runge_kutta::EULER;
 use super::splitting::{Kicks, Plan};
 use crate::control::Control;
@@ -8,7 +8,7 @@ use crate::rows::Terms;
 
 pub(super) const METHOD: Method = Method {
     name: "symplectic",
-    letter: 's',
+    letter: Some('s'),
     aliases: &["symplectic-euler", "semi-implicit-euler"],
     title: "symplectic Euler",
     order: 1,
@@ -16,7 +16,7 @@ pub(super) const METHOD: Method = Method {
     evaluations: 1,
     damped_evaluations: 1,
     view: View::Kicks,
-    create: |system| PLAN.integrator(system),
+    create: Create::Table(|system| PLAN.integrator(system)),
     trial: None,
 };
 

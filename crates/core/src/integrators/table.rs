@@ -1,6 +1,7 @@
 //! The table of all methods.
 
 use super::method::Method;
+use super::registry;
 use super::{
     dop853, dormand_prince, dprkn86, dprkn1210, euler, heun, implicit, midpoint, pefrl, rk4, rkf45,
 };
@@ -31,12 +32,12 @@ pub static METHODS: &[Method] = &[
     vbd::METHOD,
 ];
 
-/// Method with this letter, name or alias.
+/// Method with this letter, name or alias: one of the table or, failing that, an own method that was
+/// [registered](Method::register).
 #[must_use]
 pub fn find(name: &str) -> Option<&'static Method> {
-    METHODS
-        .iter()
-        .find(|m| name.chars().eq([m.letter]) || m.name == name || m.aliases.contains(&name))
+    let of_table = METHODS.iter().find(|m| m.is_called(name));
+    of_table.or_else(|| registry::find(name))
 }
 
 #[cfg(test)]
@@ -48,7 +49,7 @@ mod tests {
     fn no_two_methods_share_a_name() {
         let mut seen = HashSet::new();
         for m in METHODS {
-            for name in [m.name, &m.letter.to_string()]
+            for name in [m.name, &m.letter.unwrap().to_string()]
                 .into_iter()
                 .chain(m.aliases.iter().copied())
             {

@@ -14,7 +14,7 @@
 //! nor is momentum conserved, since the ends of a spring are moved one after the other.
 
 use super::integrator::{Integrator, check_dim};
-use super::method::{Method, View};
+use super::method::{Create, Method, View};
 use super::prediction::{Prediction, springs_of, work};
 use crate::control::Control;
 use crate::error::Error;
@@ -31,7 +31,7 @@ const ITERATIONS: u32 = 10;
 
 pub(super) const METHOD: Method = Method {
     name: "vbd",
-    letter: 'y',
+    letter: Some('y'),
     aliases: &["vertex-block-descent"],
     title: "vertex block descent, 10 iterations",
     order: 1,
@@ -39,7 +39,7 @@ pub(super) const METHOD: Method = Method {
     evaluations: ITERATIONS,
     damped_evaluations: ITERATIONS,
     view: View::Springs,
-    create: |system| Vbd::of(system, ITERATIONS),
+    create: Create::Table(|system| Vbd::of(system, ITERATIONS)),
     trial: None,
 };
 

@@ -15,7 +15,7 @@
 //! the middle and the end of the step, whose mean is that of the middle. The weights 3/5 and 2/5
 //! are chosen for the limit of the step (docs/methods.md).
 
-use super::method::{Method, View};
+use super::method::{Create, Method, View};
 use super::runge_kutta::EULER;
 use super::splitting::{Kicks, Plan};
 use crate::control::Control;
@@ -23,7 +23,7 @@ use crate::rows::Terms;
 
 pub(super) const METHOD: Method = Method {
     name: "verlet",
-    letter: 'v',
+    letter: Some('v'),
     aliases: &["velocity-verlet", "leapfrog"],
     title: "velocity Verlet, exact drag",
     order: 2,
@@ -31,7 +31,7 @@ pub(super) const METHOD: Method = Method {
     evaluations: 1,
     damped_evaluations: 3,
     view: View::Kicks,
-    create: |system| PLAN.integrator(system),
+    create: Create::Table(|system| PLAN.integrator(system)),
     trial: None,
 };
 

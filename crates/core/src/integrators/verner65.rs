@@ -6,12 +6,12 @@
 //! the conditions of orders 5 and 6 in the least-squares sense.
 
 use super::embedded::{EmbeddedPair, Tableau};
-use super::method::{Method, View};
+use super::method::{Create, Method, View};
 use crate::control::Control;
 
 pub(super) const METHOD: Method = Method {
     name: "verner65",
-    letter: 'u',
+    letter: Some('u'),
     aliases: &[],
     title: "Verner 6(5), adaptive",
     order: 6,
@@ -19,7 +19,7 @@ pub(super) const METHOD: Method = Method {
     evaluations: 8,
     damped_evaluations: 8,
     view: View::Derivative,
-    create: |system| Box::new(EmbeddedPair::new(&TABLEAU, system.dim())),
+    create: Create::Table(|system| Box::new(EmbeddedPair::new(&TABLEAU, system.dim()))),
     trial: Some(|system| Box::new(EmbeddedPair::new(&TABLEAU, system.dim()))),
 };
 

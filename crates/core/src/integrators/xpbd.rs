@@ -18,7 +18,7 @@
 //! to implicit Euler, because springs turn between the corrections that are summed up.
 
 use super::integrator::{Integrator, check_dim};
-use super::method::{Method, View};
+use super::method::{Create, Method, View};
 use super::prediction::{Prediction, springs_of, work};
 use crate::control::Control;
 use crate::error::Error;
@@ -33,7 +33,7 @@ const PRICE: f64 = 5.0;
 
 pub(super) const METHOD: Method = Method {
     name: "xpbd",
-    letter: 'c',
+    letter: Some('c'),
     aliases: &["xpbd1"],
     title: "XPBD, 1 iteration",
     order: 1,
@@ -41,19 +41,19 @@ pub(super) const METHOD: Method = Method {
     evaluations: 1,
     damped_evaluations: 1,
     view: View::Springs,
-    create: |system| Xpbd::of(system, 1),
+    create: Create::Table(|system| Xpbd::of(system, 1)),
     trial: None,
 };
 
 pub(super) const TEN: Method = Method {
     name: "xpbd10",
-    letter: 'j',
+    letter: Some('j'),
     aliases: &[],
     title: "XPBD, 10 iterations",
     default_control: Control::Step(0.02),
     evaluations: 10,
     damped_evaluations: 10,
-    create: |system| Xpbd::of(system, 10),
+    create: Create::Table(|system| Xpbd::of(system, 10)),
     ..METHOD
 };
 

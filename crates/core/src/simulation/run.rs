@@ -208,18 +208,22 @@ impl Simulation {
         Ok(())
     }
 
-    /// Ends a run that has blown up, and goes back to the last sound state.
+    /// Ends a run that has blown up, and goes back to the last sound state. A run in which a callback
+    /// failed goes back too, and may go on from there.
     fn fail(&mut self, failure: Failure) -> Error {
+        let failure = match self.model.system().take_failure() {
+            Some(error) => Failure::Error(error),
+            None => failure,
+        };
         let (cause, time) = match failure {
             Failure::BlowUp { cause, time } => (cause, time),
+            Failure::Error(error @ Error::Callback(_)) => {
+                return self.go_back().err().unwrap_or(error);
+            }
             Failure::Error(error) => return error,
         };
         let mut blow_up = self.state.blow_up(cause, time);
-        let (model, state) = (&mut self.model, &mut self.state);
-        let back = self
-            .good
-            .put_back(&self.scene, model, state, &mut self.driver);
-        if let Err(error) = back {
+        if let Err(error) = self.go_back() {
             return error;
         }
         // Constraints that contradict one another cause blow-ups of many kinds.
@@ -229,6 +233,13 @@ impl Simulation {
         }
         self.blow_up = Some(blow_up);
         blow_up.into()
+    }
+
+    /// Goes back to the last sound state.
+    fn go_back(&mut self) -> Result<(), Error> {
+        let (model, state) = (&mut self.model, &mut self.state);
+        self.good
+            .put_back(&self.scene, model, state, &mut self.driver)
     }
 
     /// The run as it is now, with the last step of an adaptive method: some 20 arrays of the size

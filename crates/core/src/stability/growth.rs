@@ -2,7 +2,7 @@
 
 use super::mode::Mode;
 use super::tied::Tied;
-use crate::error::Error;
+use crate::error::{Error, succeeded};
 use crate::integrators::{Integrator, Method};
 
 /// Growth of a mode in one step of a method.
@@ -27,6 +27,8 @@ use crate::integrators::{Integrator, Method};
 pub struct Growth {
     system: Tied,
     integrator: Box<dyn Integrator>,
+    /// Failure of a callback in a step, if there was one.
+    failure: Option<Error>,
 }
 
 impl Growth {
@@ -37,7 +39,19 @@ impl Growth {
     pub fn new(method: &Method, mode: Mode) -> Result<Self, Error> {
         let system = Tied(mode);
         let integrator = method.integrator(&system)?;
-        Ok(Self { system, integrator })
+        Ok(Self {
+            system,
+            integrator,
+            failure: None,
+        })
+    }
+
+    /// Checks that no callback has failed in a step.
+    ///
+    /// # Errors
+    /// That failure.
+    pub(super) fn check(&mut self) -> Result<(), Error> {
+        self.failure.take().map_or(Ok(()), Err)
     }
 
     /// Matrix of a step of h (s) on x times the frequency and on v: a, b, c, d, row by row. `None`
@@ -49,8 +63,12 @@ impl Growth {
         let unit = self.system.0.frequency().max(1e-3);
         (y[0], y[10]) = (1.0, unit);
         let stepped = self.integrator.step(&self.system, 0.0, h, &mut y);
+        let stepped = succeeded(stepped).unwrap_or_else(|failure| {
+            self.failure = Some(failure);
+            false
+        });
         let matrix = [y[0], y[1], y[9] / unit, y[10] / unit];
-        (stepped.is_ok() && matrix.iter().all(|m| m.is_finite())).then_some(matrix)
+        (stepped && matrix.iter().all(|m| m.is_finite())).then_some(matrix)
     }
 
     /// Spectral radius of the matrix of a step of h (s); for a Runge-Kutta method, the larger |R(h

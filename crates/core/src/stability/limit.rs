@@ -81,6 +81,7 @@ pub fn largest_step(method: &Method, modes: &[Mode]) -> Result<Option<Limit>, Er
         } else {
             f64::INFINITY
         };
+        growth.check()?;
         limit = Some(Limit {
             bounded,
             step,

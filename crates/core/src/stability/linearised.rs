@@ -8,7 +8,7 @@ use super::limit::{GROWTH, tenfold_time};
 use crate::columns::columns_mut;
 use crate::coupling::Coupling;
 use crate::elements::flow_each;
-use crate::error::Error;
+use crate::error::{Error, succeeded};
 use crate::integrators::{Integrator, Method};
 use crate::path::Place;
 use crate::random::SplitMix;
@@ -71,16 +71,20 @@ impl<'a> AtRest<'a> {
         let mut integrator = method.integrator(self)?;
         // A slow oscillation may look like growth after fewer steps, but not after more.
         let mut grows = |h: f64| {
-            STEP_COUNTS.into_iter().all(|steps| {
-                let growth = self.growth(&mut *integrator, (h, steps), fastest);
-                growth.ln() * tenfold_time(h) > h * GROWTH.ln()
-            })
+            for steps in STEP_COUNTS {
+                let growth = self.growth(&mut *integrator, (h, steps), fastest)?;
+                let grows = growth.ln() * tenfold_time(h) > h * GROWTH.ln();
+                if !grows {
+                    return Ok(false);
+                }
+            }
+            Ok::<_, Error>(true)
         };
-        let mut fails = |h: f64| grows(h) && grows(MIN_INTERVAL_RATIO * h);
+        let mut fails = |h: f64| Ok::<_, Error>(grows(h)? && grows(MIN_INTERVAL_RATIO * h)?);
         let longest = GUESS_RANGE[1] * guess;
         let near = self.x.len() > MIN_LARGE_LENGTH;
         let mut low = if near { LARGE_START } else { GUESS_RANGE[0] } * guess;
-        while fails(low) {
+        while fails(low)? {
             low *= if near {
                 1.0 / STEP_RATIO
             } else {
@@ -91,7 +95,7 @@ impl<'a> AtRest<'a> {
             }
         }
         let mut high = low * STEP_RATIO;
-        while !fails(high) {
+        while !fails(high)? {
             (low, high) = (high, high * STEP_RATIO);
             if low > longest {
                 return Ok(Some(f64::INFINITY));
@@ -102,19 +106,22 @@ impl<'a> AtRest<'a> {
         }
         while high > (1.0 + PRECISION) * low {
             let middle = (low * high).sqrt();
-            *(if fails(middle) { &mut high } else { &mut low }) = middle;
+            *(if fails(middle)? { &mut high } else { &mut low }) = middle;
         }
         Ok(Some(low))
     }
 
     /// Growth per step of h (s) of the root of the energy, after `steps` steps from a random state
     /// that contains all motion: at least 1, infinite if a step fails.
+    ///
+    /// # Errors
+    /// A callback failed.
     fn growth(
         &self,
         integrator: &mut dyn Integrator,
         (h, steps): (f64, usize),
         fastest: f64,
-    ) -> f64 {
+    ) -> Result<f64, Error> {
         let w = self.mechanics.inverse_masses();
         let n = self.x.len();
         let mut random = SplitMix(6);
@@ -129,8 +136,8 @@ impl<'a> AtRest<'a> {
         // Logarithms of the factors by which the state was divided, and of its largest sizes.
         let (mut scaled, mut largest) = (0.0, [f64::NEG_INFINITY; 2]);
         for k in 1..=steps {
-            if integrator.step(self, 0.0, h, &mut y).is_err() {
-                return f64::INFINITY;
+            if !succeeded(integrator.step(self, 0.0, h, &mut y))? {
+                return Ok(f64::INFINITY);
             }
             let ends = [steps / 2, steps].map(|end| k + COMPARED_STEPS > end && k <= end);
             if k % CHECK_STRIDE != 0 && !ends.contains(&true) {
@@ -138,14 +145,14 @@ impl<'a> AtRest<'a> {
             }
             let now = self.size(&y, &mut scratch);
             if !now.is_finite() {
-                return f64::INFINITY;
+                return Ok(f64::INFINITY);
             }
             if now == 0.0 {
-                return 1.0;
+                return Ok(1.0);
             }
             let grown = scaled + now.ln() - begun;
             if grown > MAX_GROWTH.ln() {
-                return (grown / k as f64).exp();
+                return Ok((grown / k as f64).exp());
             }
             for (largest, seen) in largest.iter_mut().zip(ends) {
                 if seen {
@@ -161,9 +168,9 @@ impl<'a> AtRest<'a> {
         }
         let grown = largest[1] - largest[0];
         if grown < MIN_GROWTH.ln() {
-            return 1.0;
+            return Ok(1.0);
         }
-        (grown / (steps / 2) as f64).exp()
+        Ok((grown / (steps / 2) as f64).exp())
     }
 
     /// Root of twice the energy of a state (J^1/2). Slow motion does not increase it, however far

@@ -15,7 +15,7 @@ use super::spectrum::spectrum;
 use std::cell::RefCell;
 
 use crate::control::Control;
-use crate::error::Error;
+use crate::error::{Error, succeeded};
 use crate::integrators::{Method, find};
 use crate::network::Network;
 use crate::random::SplitMix;
@@ -112,7 +112,7 @@ impl Motion {
             }
             let time = k as f64 * interval;
             let costs_too_much = run.work().total() * scene.model.work() > MAX_TRUE_WORK;
-            if costs_too_much || run.advance_to(time).is_err() {
+            if costs_too_much || !succeeded(run.advance_to(time))? {
                 motion.predictable = motion.predictable.min(time - interval);
                 break;
             }
@@ -135,9 +135,11 @@ impl Motion {
             motion.size = motion
                 .size
                 .max(distance(&run.state()[..n], &scene.state[..n]));
-            let apart = beside.advance_to(time).map_or(f64::INFINITY, |()| {
+            let apart = if succeeded(beside.advance_to(time))? {
                 distance(&run.state()[..n], &beside.state()[..n])
-            });
+            } else {
+                f64::INFINITY
+            };
             if apart > MAX_AMPLIFICATION * first {
                 motion.predictable = time;
             }
@@ -197,13 +199,11 @@ impl Motion {
             let cost = count as f64 * work * f64::from(method.evaluations);
             let affordable = (MAX_LONG_WORK / cost).max(1.0) as u64;
             let mut run = Simulation::new(self.scene.clone(), method, Control::Step(h))?;
-            Ok(take_checked(
-                count * times.min(affordable.max(1)),
-                |count| {
-                    let holds = budget.take(&mut run, count).filter(|_| go_on())?;
-                    Some(holds && level(&run) < most)
-                },
-            ))
+            let held = take_checked(count * times.min(affordable.max(1)), |count| {
+                let holds = budget.take(&mut run, count).filter(|_| go_on())?;
+                Some(holds && level(&run) < most)
+            });
+            budget.check().map(|()| held)
         };
         let mut seen = bisect(expected, work, PRECISION, false, |h| holds(h, 1))?;
         let sharp = limit.is_none_or(|limit| limit.is_sharp());
@@ -299,7 +299,7 @@ impl Motion {
         while left > 0 && error <= most {
             let steps = stride.min(left);
             match budget.take(&mut run, steps) {
-                None => return Ok(None),
+                None => return budget.check().map(|()| None),
                 Some(false) => return Ok(Some(f64::INFINITY)),
                 Some(true) => {}
             }

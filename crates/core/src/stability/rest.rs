@@ -307,14 +307,15 @@ pub fn observe_at_rest(
     let holds = |h: f64| {
         let mut run = Simulation::new(nudged.clone(), method, Control::Step(h))?;
         let mut beside = Simulation::new(still.clone(), method, Control::Step(h))?;
-        Ok(take_checked(steps(h, guess), |count| {
+        let held = take_checked(steps(h, guess), |count| {
             let held = budget.take(&mut run, count).filter(|_| go_on())?;
             let held = held && budget.take(&mut beside, count)?;
             let both = run.state().iter().zip(beside.state());
             let apart: Vec<_> = both.map(|(a, b)| a - b).collect();
             let (dx, dv) = apart.split_at(half);
             Some(held && size.of(dx, dv) < GROWTH * nudge)
-        }))
+        });
+        budget.check().map(|()| held)
     };
     let mut seen = bisect(guess, still.model.work(), PRECISION, true, holds)?;
     // If the limit of the modes is not sharp, shorter steps grow too, but more slowly.

@@ -1,11 +1,11 @@
 //! Search for the largest step that holds, by bisection over runs, within a budget of work.
 
-use std::cell::Cell;
+use std::cell::{Cell, RefCell};
 
 use super::limit::{HORIZON, STEPS};
 use super::observation::Observation;
 use crate::elements::Sheet;
-use crate::error::Error;
+use crate::error::{Error, succeeded};
 use crate::integrators::Method;
 use crate::network::Element;
 use crate::scene::Model;
@@ -50,6 +50,8 @@ pub struct Budget {
     allowed: Cell<f64>,
     spent: Cell<f64>,
     limits: Cell<bool>,
+    /// Failure of a callback in a run, if there was one.
+    failure: RefCell<Option<Error>>,
 }
 
 impl Budget {
@@ -61,6 +63,7 @@ impl Budget {
             allowed: Cell::new(most),
             spent: Cell::new(0.0),
             limits: Cell::new(false),
+            failure: RefCell::new(None),
         }
     }
 
@@ -99,12 +102,25 @@ impl Budget {
         wanted
     }
 
-    /// Takes steps of a run. Returns whether the run holds; `None` once the budget is spent.
+    /// Checks that no callback has failed in a run.
+    ///
+    /// # Errors
+    /// That failure.
+    pub(super) fn check(&self) -> Result<(), Error> {
+        self.failure.take().map_or(Ok(()), Err)
+    }
+
+    /// Takes steps of a run. Returns whether the run holds; `None` once the budget is spent, and if a
+    /// callback fails, see [`check`](Self::check).
     pub(super) fn take(&self, run: &mut Simulation, steps: u64) -> Option<bool> {
         let (mut left, mut portion) = (steps, 1);
         while left > 0 {
             let before = cost(run);
-            let holds = run.take_steps(portion).is_ok();
+            let taken = run.take_steps(portion);
+            let Ok(holds) = succeeded(taken).map_err(|failure| self.failure.replace(Some(failure)))
+            else {
+                return None;
+            };
             let work = cost(run) - before;
             self.spent.set(self.spent.get() + work);
             if !holds {

@@ -165,7 +165,7 @@ fn of_constraints(mechanics: &dyn Linearized) -> Option<Mode> {
 }
 
 /// Modes of a first-order system: one for each real eigenvalue and each conjugate pair of the
-/// Jacobian, which is computed by central differences. It does not distinguish drag from other
+/// Jacobian, which is the system's own or computed by central differences. It does not distinguish drag from other
 /// damping: all damping counts as that of springs if kicks depend on v, else as drag.
 fn of_jacobian(system: &dyn ParticleSystem, t: f64, y: &[f64]) -> Vec<Mode> {
     let carried = |k: &usize| rigid_of(system).is_some_and(|rigid| rigid.is_carried(*k));
@@ -175,7 +175,12 @@ fn of_jacobian(system: &dyn ParticleSystem, t: f64, y: &[f64]) -> Vec<Mode> {
     }
     let mut jacobian = DMatrix::zeros(unknowns.len(), unknowns.len());
     let (mut at, mut above, mut below) = (y.to_vec(), vec![0.0; y.len()], vec![0.0; y.len()]);
-    for (column, &j) in unknowns.iter().enumerate() {
+    let mut exact = vec![0.0; y.len() * y.len()];
+    let is_known = unknowns.len() == y.len() && system.jacobian(t, y, &mut exact);
+    if is_known {
+        jacobian = DMatrix::from_row_slice(y.len(), y.len(), &exact);
+    }
+    for (column, &j) in unknowns.iter().enumerate().filter(|_| !is_known) {
         let h = 1e-6 * y[j].abs().max(1.0);
         at[j] = y[j] + h;
         system.eval_f(t, &at, &mut above);

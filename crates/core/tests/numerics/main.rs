@@ -17,6 +17,7 @@ mod mixed;
 mod nystrom;
 mod observed;
 mod order;
+mod own;
 mod plain;
 mod reference;
 mod scales;

@@ -73,12 +73,12 @@ pub fn chart(
 /// Letters of the solvers whose steps turn rigid bodies by a composition of order 6.
 const TURNING: [char; 3] = ['s', 'v', 'p'];
 
-/// Keeps the curves of the methods that are cheapest for some error in some panel, and of those
-/// that the course teaches.
+/// Keeps the curves of the methods that are cheapest for some error in some panel, of those that the
+/// course teaches, and of own methods.
 pub fn keep_best(chart: &mut WorkPrecision, methods: &[&'static Method], scene: &Scene) {
     let mut kept: Vec<_> = methods
         .iter()
-        .map(|m| style::COURSE.contains(&m.letter))
+        .map(|m| m.is_own() || style::is_of_course(m))
         .collect();
     for problem in &chart.problems {
         for [curve, _] in problem.front() {
@@ -132,9 +132,11 @@ fn turning(scene: &Scene, methods: &[&'static Method]) -> &'static str {
         .network()
         .is_some_and(|network| !network.bodies().is_empty());
     if has_bodies
-        && methods
-            .iter()
-            .any(|method| TURNING.contains(&method.letter))
+        && methods.iter().any(|method| {
+            method
+                .letter
+                .is_some_and(|letter| TURNING.contains(&letter))
+        })
     {
         " Symplectic Euler, Verlet and PEFRL turn bodies by a composition of order 6, whatever \
          their own order: in free flight their errors fall with it."

@@ -16,8 +16,18 @@ const IMPLICIT: &[f64] = &[7.0, 2.0, 1.5, 2.0];
 /// Methods that solve spring by spring with a fixed number of iterations.
 const ITERATED: &[f64] = &[3.5, 3.5];
 
+/// Own methods.
+const OWN: &[f64] = &[9.0, 2.0, 1.5, 2.0, 1.5, 2.0];
+/// Colours and markers of own methods, one after the other.
+const OWN_STYLES: [(&str, Marker); 4] = [
+    ("#e6007e", Marker::Star(7, 0.6)),
+    ("#00a3c7", Marker::Polygon(7, 0.0)),
+    ("#7fae00", Marker::Star(4, 0.7)),
+    ("#8f5bd1", Marker::Star(12, 0.6)),
+];
+
 /// Letters of the solvers that the course teaches, whose curves are always drawn.
-pub const COURSE: [char; 4] = ['e', 't', 'r', 'i'];
+const COURSE: [char; 4] = ['e', 't', 'r', 'i'];
 
 /// Smallest [difference] of two colours on a chart, if there are enough colours.
 const MIN_DIFFERENCE: f64 = 8.0;
@@ -31,9 +41,9 @@ const SPARE: [&str; 18] = [
 /// Returns the styles of methods that are drawn together, in their order. The solvers of the course
 /// keep their colours.
 pub fn together(methods: &[&Method]) -> Vec<CurveStyle> {
-    let mut styles: Vec<_> = methods.iter().map(|method| of(method.letter)).collect();
+    let mut styles = each(methods);
     let mut places: Vec<_> = (0..methods.len()).collect();
-    places.sort_by_key(|k| !COURSE.contains(&methods[*k].letter));
+    places.sort_by_key(|k| !is_of_course(methods[*k]));
     let own_colours: Vec<_> = styles.iter().map(|style| style.colour).collect();
     let mut taken: Vec<&str> = vec![];
     for k in places {
@@ -57,8 +67,29 @@ pub fn together(methods: &[&Method]) -> Vec<CurveStyle> {
     styles
 }
 
-/// Returns the style of a method by its letter; the default style for a method that has none.
-pub fn of(letter: char) -> CurveStyle {
+/// Whether the course teaches a method.
+pub fn is_of_course(method: &Method) -> bool {
+    method.letter.is_some_and(|letter| COURSE.contains(&letter))
+}
+
+/// Returns the own style of each of these methods. Own methods get theirs in turn.
+pub fn each(methods: &[&Method]) -> Vec<CurveStyle> {
+    let mut own = OWN_STYLES.into_iter().cycle();
+    let styles = methods.iter().map(|method| match method.letter {
+        Some(letter) => of(letter),
+        None => own
+            .next()
+            .map_or_else(CurveStyle::default, |(colour, marker)| CurveStyle {
+                colour,
+                dash: OWN,
+                marker,
+            }),
+    });
+    styles.collect()
+}
+
+/// Returns the style of a method of the table by its letter; the default style for any other letter.
+fn of(letter: char) -> CurveStyle {
     use Marker::{Cross, Polygon, Star};
     let (colour, dash, marker) = match letter {
         'e' => ("#d55e00", EXPLICIT, Polygon(32, 0.0)),
@@ -100,9 +131,8 @@ mod tests {
     /// The course's four and any four others, as they are drawn by default.
     #[test]
     fn no_two_colours_on_a_chart_look_alike() {
-        let (course, others): (Vec<_>, Vec<_>) = METHODS
-            .iter()
-            .partition(|method| COURSE.contains(&method.letter));
+        let (course, others): (Vec<_>, Vec<_>) =
+            METHODS.iter().partition(|method| is_of_course(method));
         let mut count = 0;
         for choice in (0..1_u32 << others.len()).filter(|set| set.count_ones() == 4) {
             count += 1;
@@ -117,7 +147,7 @@ mod tests {
                 .collect();
             let styles = together(&shown);
             for (k, style) in styles.iter().enumerate() {
-                assert!(k > 3 || style.colour == of(shown[k].letter).colour);
+                assert!(k > 3 || style.colour == of(shown[k].letter.unwrap()).colour);
                 for other in &styles[..k] {
                     let apart = difference(style.colour, other.colour);
                     assert!(

@@ -97,7 +97,9 @@ fn typed(control: Control, until: f64) -> String {
 
 /// Writes the command line that runs the scene with a method at a step or a tolerance.
 pub fn command(what: &What, method: &Method, control: Control, until: f64) -> String {
-    let mut words = format!("a3 {} {}", method.letter, typed(control, until));
+    let solver = method.letter.map(String::from);
+    let solver = solver.unwrap_or_else(|| method.name.into());
+    let mut words = format!("a3 {solver} {}", typed(control, until));
     if what.scene != "cloth" {
         let _ = write!(words, " --scene {}", what.scene);
     }

@@ -2,7 +2,7 @@
 
 use a3_core::integrators::bdf_growth;
 use a3_core::stability::{GROWTH, Growth, Mode, tenfold_time};
-use a3_plot::{Region, StabilityRegions};
+use a3_plot::{CurveStyle, Region, StabilityRegions};
 
 use super::limits::MethodLimits;
 use super::table::{INTERVAL, is_interval, observation, step};
@@ -10,6 +10,8 @@ use crate::commands::chart::style;
 
 /// Creates the chart of stability regions, with the eigenvalues of the modes times the step h (s).
 pub fn chart(title: String, rows: &[MethodLimits], modes: &[Mode], h: f64) -> StabilityRegions {
+    let methods: Vec<_> = rows.iter().map(|row| row.method).collect();
+    let styles = style::each(&methods);
     StabilityRegions {
         title,
         subtitle: format!(
@@ -25,12 +27,14 @@ pub fn chart(title: String, rows: &[MethodLimits], modes: &[Mode], h: f64) -> St
         } else {
             String::new()
         },
-        regions: rows.iter().map(|row| region(row, modes, h)).collect(),
+        regions: (rows.iter().zip(styles))
+            .map(|(row, style)| region(row, style, modes, h))
+            .collect(),
     }
 }
 
 /// Creates the stability region of a method.
-fn region(row: &MethodLimits, modes: &[Mode], h: f64) -> Region {
+fn region(row: &MethodLimits, style: CurveStyle, modes: &[Mode], h: f64) -> Region {
     let method = row.method;
     let is_bdf = method.name == "bdf";
     let subtitle = format!(
@@ -65,7 +69,7 @@ fn region(row: &MethodLimits, modes: &[Mode], h: f64) -> Region {
         Growth::new(method, mode).map_or(f64::INFINITY, |mut growth| growth.of_step(1.0))
     };
     Region {
-        style: style::of(method.letter),
+        style,
         title: method.title.to_owned(),
         subtitle,
         radius: Box::new(radius),

@@ -20,7 +20,7 @@ use crate::work::Work;
 
 pub(crate) const METHOD: Method = Method {
     name: "bdf",
-    letter: 'o',
+    letter: Some('o'),
     aliases: &["ndf", "ode15s"],
     title: "BDF of orders 1 to 5, implicit, adaptive",
     order: tr_bdf2::METHOD.order,

@@ -3,7 +3,7 @@
 //! more. Order 1.
 
 use super::super::integrator::{Integrator, check_dim};
-use super::super::method::{Method, View};
+use super::super::method::{Create, Method, View};
 use super::newton::Newton;
 use super::stage::StageSolver;
 use crate::control::Control;
@@ -13,7 +13,7 @@ use crate::work::Work;
 
 pub(crate) const METHOD: Method = Method {
     name: "implicit",
-    letter: 'i',
+    letter: Some('i'),
     aliases: &["implicit-euler", "backward-euler"],
     title: "implicit Euler",
     order: 1,
@@ -21,12 +21,12 @@ pub(crate) const METHOD: Method = Method {
     evaluations: 1,
     damped_evaluations: 1,
     view: View::Tangent,
-    create: |system| {
+    create: Create::Table(|system| {
         Box::new(ImplicitEuler {
             stage: StageSolver::new(system),
             base: vec![0.0; system.dim()],
         })
-    },
+    }),
     trial: None,
 };
 

@@ -3,7 +3,7 @@
 //! stable for which the equations have a solution. Order 2.
 
 use super::super::integrator::{Integrator, check_dim};
-use super::super::method::{Method, View};
+use super::super::method::{Create, Method, View};
 use super::newton::Newton;
 use super::stage::StageSolver;
 use crate::control::Control;
@@ -13,7 +13,7 @@ use crate::work::Work;
 
 pub(crate) const METHOD: Method = Method {
     name: "implicit-midpoint",
-    letter: 'n',
+    letter: Some('n'),
     aliases: &[],
     title: "implicit midpoint",
     order: 2,
@@ -21,12 +21,12 @@ pub(crate) const METHOD: Method = Method {
     evaluations: 3,
     damped_evaluations: 3,
     view: View::Tangent,
-    create: |system| {
+    create: Create::Table(|system| {
         Box::new(ImplicitMidpoint {
             stage: StageSolver::new(system),
             base: vec![0.0; system.dim()],
         })
-    },
+    }),
     trial: None,
 };
 

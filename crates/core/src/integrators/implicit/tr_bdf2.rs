@@ -7,7 +7,7 @@
 use std::f64::consts::{FRAC_1_SQRT_2, SQRT_2};
 
 use super::super::integrator::{Integrator, check_dim};
-use super::super::method::{Method, View};
+use super::super::method::{Create, Method, View};
 use super::newton::Newton;
 use super::stage::StageSolver;
 use crate::control::Control;
@@ -17,7 +17,7 @@ use crate::work::Work;
 
 pub(crate) const METHOD: Method = Method {
     name: "tr-bdf2",
-    letter: 'b',
+    letter: Some('b'),
     aliases: &["trbdf2"],
     title: "TR-BDF2, implicit",
     order: 2,
@@ -25,7 +25,7 @@ pub(crate) const METHOD: Method = Method {
     evaluations: 7,
     damped_evaluations: 7,
     view: View::Tangent,
-    create: |system| {
+    create: Create::Table(|system| {
         let zeros = || vec![0.0; system.dim()];
         Box::new(TrBdf2 {
             stage: StageSolver::new(system),
@@ -33,7 +33,7 @@ pub(crate) const METHOD: Method = Method {
             base: zeros(),
             last: zeros(),
         })
-    },
+    }),
     trial: None,
 };
 

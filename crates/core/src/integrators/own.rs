@@ -1,0 +1,272 @@
+//! Own methods: from an integrator, or from a function that takes a step.
+
+use super::integrator::{Integrator, check_dim};
+use super::method::{Create, Method, View};
+use super::{registry, table};
+use crate::control::Control;
+use crate::error::Error;
+use crate::system::ParticleSystem;
+use crate::work::Work;
+
+/// Largest order of an own method, far above that of any known one.
+const MAX_ORDER: u32 = 50;
+/// Largest length of a name (bytes), for tables and legends.
+const MAX_NAME: usize = 40;
+/// Default step of an own method (s).
+const DEFAULT_STEP: f64 = 1e-3;
+
+/// Own methods.
+impl Method {
+    /// Creates an own method from its integrators: `create` makes one, with its scratch, for each
+    /// system that is to be stepped. The global error falls as h to the power of `order`.
+    ///
+    /// Without further words it is called `name` everywhere, needs f(t, y) alone
+    /// ([`View::Derivative`]), takes as many evaluations in a step as its order, and steps of 1 ms
+    /// by default. What `create` holds lives as long as the program, as the rows of the table do.
+    ///
+    /// Symplectic Euler on the forces of a mechanical system:
+    ///
+    /// ```
+    /// use a3_core::integrators::View;
+    /// use a3_core::{Error, Integrator, Method, ParticleSystem, Work};
+    ///
+    /// struct Kick;
+    ///
+    /// impl Integrator for Kick {
+    ///     fn step(
+    ///         &mut self,
+    ///         system: &dyn ParticleSystem,
+    ///         t: f64,
+    ///         h: f64,
+    ///         y: &mut [f64],
+    ///     ) -> Result<Work, Error> {
+    ///         // `View::Kicks` grants the view of forces and masses.
+    ///         let mechanics = system.mechanics().unwrap();
+    ///         let (x, v) = y.split_at_mut(y.len() / 2);
+    ///         let mut a = vec![0.0; v.len()];
+    ///         mechanics.accelerations(t, x, v, &mut a);
+    ///         for ((x, v), a) in x.iter_mut().zip(v).zip(a) {
+    ///             *v += h * a;
+    ///             *x += h * *v;
+    ///         }
+    ///         Ok(Work::of(1))
+    ///     }
+    /// }
+    ///
+    /// let method = Method::new("my-kick", 1, |_| Box::new(Kick))?
+    ///     .with_title("my symplectic Euler")
+    ///     .with_view(View::Kicks)
+    ///     .register();
+    /// assert!(a3_core::integrators::find("my-kick") == Some(method));
+    /// # Ok::<(), a3_core::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// The name is empty, has blanks or more than 40 bytes, or is a name, an alias or a letter of
+    /// the table; or the order is 0 or above 50.
+    pub fn new(
+        name: impl Into<String>,
+        order: u32,
+        create: impl Fn(&dyn ParticleSystem) -> Box<dyn Integrator> + Send + Sync + 'static,
+    ) -> Result<Self, Error> {
+        let name = name.into();
+        check_name(&name)?;
+        if !(1..=MAX_ORDER).contains(&order) {
+            return Err(Error::Invalid(format!(
+                "the order of the method {name} must be from 1 to {MAX_ORDER}, not {order}"
+            )));
+        }
+        let name: &str = name.leak();
+        Ok(Self {
+            name,
+            letter: None,
+            aliases: &[],
+            title: name,
+            order,
+            default_control: Control::Step(DEFAULT_STEP),
+            evaluations: order,
+            damped_evaluations: order,
+            view: View::Derivative,
+            create: Create::Own(Box::leak(Box::new(create))),
+            trial: None,
+        })
+    }
+
+    /// Creates an own method from a function that takes a step: from the [`Derivative`] f, t (s), y
+    /// and h (s) it computes the state at t + h. Evaluations are counted as they are made.
+    ///
+    /// Heun's method:
+    ///
+    /// ```
+    /// use a3_core::{Method, integrators};
+    ///
+    /// let heun = Method::from_step("my-heun", 2, |f, t, y, h| {
+    ///     let a = f.at(t, y)?;
+    ///     let ahead: Vec<f64> = y.iter().zip(&a).map(|(y, a)| y + h * a).collect();
+    ///     let b = f.at(t + h, &ahead)?;
+    ///     let slopes = a.iter().zip(&b).map(|(a, b)| 0.5 * (a + b));
+    ///     Ok(y.iter().zip(slopes).map(|(y, slope)| y + h * slope).collect())
+    /// })?;
+    /// assert_eq!(heun.evaluations, 2);
+    /// # Ok::<(), a3_core::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// Those of [`new`](Self::new). A step fails with the error that `step` returns, which may be
+    /// an [`Error::Callback`] with a text of its own, or if `step` returns a wrong number of
+    /// numbers. Numbers that are not finite end a run as a blow-up.
+    pub fn from_step(
+        name: impl Into<String>,
+        order: u32,
+        step: impl Fn(&mut Derivative, f64, &[f64], f64) -> Result<Vec<f64>, Error>
+        + Send
+        + Sync
+        + 'static,
+    ) -> Result<Self, Error> {
+        let name = name.into();
+        let step: &'static Step = Box::leak(Box::new(step));
+        let named = name.clone();
+        Self::new(name, order, move |system| {
+            Box::new(Stepped {
+                name: named.clone(),
+                dim: system.dim(),
+                step,
+            })
+        })
+    }
+
+    /// Replaces the full title, for legends and errors.
+    #[must_use]
+    pub fn with_title(self, title: impl Into<String>) -> Self {
+        let title = title.into().leak();
+        Self { title, ..self }
+    }
+
+    /// Replaces the number of evaluations in a step, by which runs are planned: charts begin and
+    /// searches end by it. What a run has cost is counted.
+    #[must_use]
+    pub fn with_evaluations(self, evaluations: u32) -> Self {
+        Self {
+            evaluations: evaluations.max(1),
+            damped_evaluations: evaluations.max(1),
+            ..self
+        }
+    }
+
+    /// Replaces the view of a system that the method steps with. Systems that lack it are refused.
+    #[must_use]
+    pub fn with_view(self, view: View) -> Self {
+        Self { view, ..self }
+    }
+
+    /// Replaces the default step (s).
+    #[must_use]
+    pub fn with_default_step(self, step: f64) -> Self {
+        Self {
+            default_control: Control::Step(step),
+            ..self
+        }
+    }
+
+    /// Makes the method one that lives as long as the program, as the rows of the table do, and that
+    /// [`find`](super::find) finds. If an own method of its name was registered before, this one
+    /// takes its place there, and runs by the other one go on.
+    pub fn register(self) -> &'static Self {
+        let method = Box::leak(Box::new(self));
+        registry::add(method);
+        method
+    }
+}
+
+/// Checks that a name can be that of an own method.
+fn check_name(name: &str) -> Result<(), Error> {
+    let is_word = !name.is_empty() && !name.contains(|c: char| c.is_whitespace() || c.is_control());
+    if !is_word || name.len() > MAX_NAME {
+        return Err(Error::Invalid(format!(
+            "a method's name is a word of at most {MAX_NAME} bytes, such as my-heun, not `{}`",
+            name.escape_debug()
+        )));
+    }
+    match table::METHODS.iter().find(|m| m.is_called(name)) {
+        None => Ok(()),
+        Some(taken) => Err(Error::Invalid(format!(
+            "the name {name} stands for {}: give the method another name, such as my-{name}",
+            taken.title
+        ))),
+    }
+}
+
+/// The derivative f(t, y) of a system, for a step of an own method. It counts its evaluations.
+pub struct Derivative<'a> {
+    system: &'a dyn ParticleSystem,
+    dim: usize,
+    evaluations: u64,
+}
+
+impl Derivative<'_> {
+    /// Returns f(t, y).
+    ///
+    /// # Errors
+    /// The length of y is not that of the system's state, or the system reports a failure.
+    pub fn at(&mut self, t: f64, y: &[f64]) -> Result<Vec<f64>, Error> {
+        let mut dydt = vec![0.0; self.dim];
+        self.write(t, y, &mut dydt)?;
+        Ok(dydt)
+    }
+
+    /// Writes f(t, y) to `dydt`.
+    ///
+    /// # Errors
+    /// As [`at`](Self::at); also if the length of `dydt` is not that of the system's state.
+    pub fn write(&mut self, t: f64, y: &[f64], dydt: &mut [f64]) -> Result<(), Error> {
+        check_dim(self.dim, y)?;
+        check_dim(self.dim, dydt)?;
+        self.evaluations += 1;
+        self.system.eval_f(t, y, dydt);
+        self.system.take_failure().map_or(Ok(()), Err)
+    }
+
+    /// Returns the system.
+    #[must_use]
+    pub fn system(&self) -> &dyn ParticleSystem {
+        self.system
+    }
+}
+
+/// Function that takes a step.
+type Step = dyn Fn(&mut Derivative, f64, &[f64], f64) -> Result<Vec<f64>, Error> + Send + Sync;
+
+/// Integrator of a method that is a function.
+struct Stepped {
+    name: String,
+    dim: usize,
+    step: &'static Step,
+}
+
+impl Integrator for Stepped {
+    fn step(
+        &mut self,
+        system: &dyn ParticleSystem,
+        t: f64,
+        h: f64,
+        y: &mut [f64],
+    ) -> Result<Work, Error> {
+        check_dim(self.dim, y)?;
+        let mut f = Derivative {
+            system,
+            dim: self.dim,
+            evaluations: 0,
+        };
+        let next = (self.step)(&mut f, t, y, h)?;
+        if next.len() != self.dim {
+            return Err(Error::Callback(format!(
+                "the method {} returned {} numbers, but the state has {}",
+                self.name,
+                next.len(),
+                self.dim
+            )));
+        }
+        y.copy_from_slice(&next);
+        Ok(Work::of(f.evaluations))
+    }
+}

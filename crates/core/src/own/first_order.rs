@@ -1,0 +1,106 @@
+//! A system of first order from a function.
+
+use std::sync::Arc;
+
+use super::failure::{Failure, Outcome};
+use crate::error::Error;
+use crate::scene::Model;
+use crate::system::ParticleSystem;
+
+/// Function of t and y that writes numbers.
+type Function = dyn Fn(f64, &[f64], &mut [f64]) -> Result<(), String> + Send + Sync;
+
+/// System of first order, y' = f(t, y), whose f is a function. Its numbers have no unit that is
+/// known, and errors are those of its state.
+///
+/// Van der Pol's oscillator, with its Jacobian:
+///
+/// ```
+/// use a3_core::{Ode, ParticleSystem, integrators};
+///
+/// let mu = 5.0;
+/// let oscillator = Ode::new(2, move |_t, y, dydt| {
+///     dydt[0] = y[1];
+///     dydt[1] = mu * (1.0 - y[0] * y[0]) * y[1] - y[0];
+/// })?
+/// .with_jacobian(move |_t, y, jacobian| {
+///     jacobian[..2].copy_from_slice(&[0.0, 1.0]);
+///     let slopes = [-2.0 * mu * y[0] * y[1] - 1.0, mu * (1.0 - y[0] * y[0])];
+///     jacobian[2..].copy_from_slice(&slopes);
+/// });
+///
+/// let mut method = integrators::find("implicit-midpoint").unwrap().integrator(&oscillator)?;
+/// let mut y = [2.0, 0.0];
+/// method.step(&oscillator, 0.0, 0.01, &mut y)?;
+/// assert!((y[1] + 0.02).abs() < 1e-3);
+/// # Ok::<(), a3_core::Error>(())
+/// ```
+pub struct Ode {
+    dim: usize,
+    f: Box<Function>,
+    jacobian: Option<Box<Function>>,
+    failure: Failure,
+}
+
+impl Ode {
+    /// Creates a system of `dim` numbers from a function that writes f(t, y) to its last argument,
+    /// and may fail. What it writes must depend on t and y alone.
+    ///
+    /// # Errors
+    /// `dim` is 0.
+    pub fn new<R: Outcome>(
+        dim: usize,
+        f: impl Fn(f64, &[f64], &mut [f64]) -> R + Send + Sync + 'static,
+    ) -> Result<Self, Error> {
+        if dim == 0 {
+            return Err(Error::Invalid("a system needs at least one number".into()));
+        }
+        Ok(Self {
+            dim,
+            f: Box::new(move |t, y, dydt| f(t, y, dydt).outcome()),
+            jacobian: None,
+            failure: Failure::default(),
+        })
+    }
+
+    /// Adds the Jacobian: a function that writes df/dy, row by row, to its last argument. Without
+    /// it, implicit methods and stability take differences of f.
+    #[must_use]
+    pub fn with_jacobian<R: Outcome>(
+        self,
+        jacobian: impl Fn(f64, &[f64], &mut [f64]) -> R + Send + Sync + 'static,
+    ) -> Self {
+        Self {
+            jacobian: Some(Box::new(move |t, y, out| jacobian(t, y, out).outcome())),
+            ..self
+        }
+    }
+}
+
+impl ParticleSystem for Ode {
+    fn dim(&self) -> usize {
+        self.dim
+    }
+
+    fn eval_f(&self, t: f64, y: &[f64], dydt: &mut [f64]) {
+        self.failure.guard(dydt, |dydt| (self.f)(t, y, dydt));
+    }
+
+    fn jacobian(&self, t: f64, y: &[f64], out: &mut [f64]) -> bool {
+        let Some(jacobian) = &self.jacobian else {
+            return false;
+        };
+        self.failure.guard(out, |out| jacobian(t, y, out));
+        true
+    }
+
+    fn take_failure(&self) -> Option<Error> {
+        self.failure.take()
+    }
+}
+
+impl From<Ode> for Model {
+    fn from(ode: Ode) -> Self {
+        Self::FirstOrder(Arc::new(ode))
+    }
+}
