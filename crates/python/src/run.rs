@@ -166,6 +166,10 @@ impl Run {
         let mut setup = py.detach(|| open.build()).map_err(failed)?;
         add_forces(&mut setup.scene, &forces, &raised)?;
         let run = py.detach(|| open.run(&mut setup, method, value, limits));
+        // Its energy was evaluated.
+        if let Some(raised) = raised.take() {
+            return Err(raised);
+        }
         Ok(Self {
             simulation: Mutex::new(run.map_err(failed)?),
             presentation: setup.presentation,

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use super::force::{At, Force};
 use crate::error::Error;
-use crate::own::{Failure, Outcome};
+use crate::failure::{Failure, Outcome};
 
 /// Function of t, x and v that adds forces.
 type Function = dyn Fn(f64, &[f64], &[f64], &mut [f64]) -> Result<(), String> + Send + Sync;

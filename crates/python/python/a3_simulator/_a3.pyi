@@ -1,9 +1,11 @@
 """The compiled part. Its users are the modules beside it."""
 
-from typing import Callable, List, Optional, Sequence, Tuple
+from typing import Callable, List, Optional, Sequence, Tuple, Union
 
 import numpy as np
 import numpy.typing as npt
+
+from ._own import System
 
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
@@ -12,16 +14,25 @@ def main(args: Sequence[str]) -> int:
     """Runs the program with these arguments, of which the first is its name, and returns its exit code."""
 
 def scenes() -> List[str]: ...
-def methods() -> List[Tuple[str, str, str, int, bool, float]]: ...
+def methods() -> List[Tuple[str, Optional[str], str, int, bool, float]]: ...
 def table(kind: str, text: str) -> str: ...
+
+def add_method(
+    name: str, step: Callable[..., npt.ArrayLike], order: int, evaluations: int, default_step: float
+) -> None: ...
+
+class Derivative:
+    """The function f that a step gets."""
+
+    def __call__(self, t: float, y: npt.ArrayLike) -> Floats:
+        """Returns the derivative f(t, y) of the state y at time t (s), (n,)."""
 
 class Run:
     """The run of a scene by a method."""
 
     def __new__(
         cls,
-        kind: str,
-        text: str,
+        source: Union[Tuple[str, str], "System"],
         method: Optional[str] = None,
         step: Optional[float] = None,
         tolerance: Optional[float] = None,
@@ -32,6 +43,7 @@ class Run:
         self_collision: bool = False,
         absolute: Optional[float] = None,
         max_step: Optional[float] = None,
+        forces: Sequence[Callable[..., npt.ArrayLike]] = (),
     ) -> "Run": ...
     def step(self, count: int = 1) -> None:
         """Takes steps. If the present time is within a step, that step is finished first, and counts."""

@@ -91,7 +91,8 @@ class Method:
         step: function of f, the time t (s), the state y, (n,), and the step h (s), that returns the state at t + h,
             (n,). f(t, y) is the derivative, (n,); it may be called at any time and state. For particles the state is
             all x, all y, all z (m), and then the velocities (m/s) in the same order.
-        order: the error of a run falls as h to this power. By default it is measured, on logistic growth.
+        order: the error of a run falls as h to this power. By default it is measured, by a few steps of logistic
+            growth.
         default_step: step of runs for which none is given (s).
 
         def step(f, t, y, h):
@@ -106,10 +107,9 @@ class Method:
             raise InputError(f"step: a function of f, t, y and h is expected, not {type(step).__name__}")
         if not (math.isfinite(default_step) and default_step > 0):
             raise InputError(f"default_step is a number of seconds above 0, such as 0.01, not {default_step}")
-        measured, evaluations = _measure(step, name)
         self.name = name
         self.step = step
-        self.order = measured if order is None else order
+        self.order, evaluations = _measure(step, name) if order is None else (order, order)
         _a3.add_method(name, step, self.order, evaluations, default_step)
 
     def __reduce__(self) -> Any:
