@@ -95,6 +95,12 @@ impl OpenScene {
         }
     }
 
+    /// Whether a program has built the scene.
+    #[must_use]
+    pub fn is_built(&self) -> bool {
+        matches!(self.made, Made::Built(_))
+    }
+
     /// Returns the table of the scene's keys, as JSON.
     ///
     /// # Errors
@@ -169,7 +175,7 @@ pub fn advance(
 }
 
 /// Returns the message of the program about a run that failed on its way to a time (s): with a step
-/// that would have held, if the step was the cause.
+/// that would have held, if the step was the cause. It is sought with up to 1e8 evaluations.
 #[must_use]
 pub fn message(run: &Simulation, error: &a3_core::Error, until: f64) -> String {
     verdict::lost(run, error, "", until).to_string()

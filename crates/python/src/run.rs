@@ -40,6 +40,8 @@ pub struct Run {
     duration: Option<f64>,
     /// Exceptions of the functions of the scene.
     raised: Raised,
+    /// Whether the scene or the method calls functions of Python.
+    calls: bool,
 }
 
 impl Run {
@@ -175,6 +177,7 @@ impl Run {
             presentation: setup.presentation,
             duration: setup.defaults.duration,
             raised,
+            calls: method.is_own() || open.is_built() || !forces.is_empty(),
         })
     }
 
@@ -204,7 +207,7 @@ impl Run {
     /// Advances to a time (s).
     #[pyo3(signature = (time, progress=None))]
     fn advance(&self, py: Python<'_>, time: f64, progress: Option<&Bound<PyAny>>) -> PyResult<()> {
-        let now = self.simulation(py)?.time();
+        let (now, calls) = (self.simulation(py)?.time(), self.calls);
         if !(0.0..=1e9).contains(&time) {
             return Err(wrong(
                 py,
@@ -223,6 +226,8 @@ impl Run {
                          go_on: &mut (dyn FnMut(&Simulation) -> bool + Send)| {
             let gone = embedded::advance(run, time, go_on);
             match gone.and_then(|arrived| if arrived { run.conclude() } else { Ok(()) }) {
+                // A search for a step that holds would call functions too often.
+                Err(error) if calls => Err((error.clone(), error.to_string())),
                 Err(error) => {
                     let message = embedded::message(run, &error, time);
                     Err((error, message))

@@ -25,18 +25,22 @@ pub const EXIT_CODES: [(&str, &str); 6] = [
     ("143", "SIGTERM ended the work."),
 ];
 
-/// The reason why a command failed, by who can help it.
+/// The reason why a command or a function of the library failed, by who can help it. Its words are
+/// those of the command line.
 #[derive(Debug)]
 pub enum Failure {
-    /// The command line asks for something impossible: exit code 2.
+    /// The request is impossible: exit code 2.
     Usage(String),
-    /// A scene or a file that the command line names is refused: exit code 2.
+    /// A scene or a file that the request names is refused: exit code 2.
     Input(InputError),
     /// The work was possible and failed: exit code 1.
     Run(String),
-    /// A signal interrupted the work: exit code 128 and its number.
+    /// The work was told to stop before it had any result; on the command line, by a signal: exit
+    /// code 128 and its number.
     Interrupted(String),
 }
+
+impl std::error::Error for Failure {}
 
 impl Failure {
     /// A failure of the work itself.

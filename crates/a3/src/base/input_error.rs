@@ -13,14 +13,14 @@ pub enum InputError {
     File {
         /// Path of the file.
         file: String,
-        /// Reason, and what would be right.
+        /// Reason.
         why: String,
     },
     /// A text has a fault. That of a built-in scene is in no file.
     Text {
-        /// Path of the file.
+        /// Path of the file, if there is one.
         file: Option<String>,
-        /// Fault of the text.
+        /// Fault, with its line.
         fault: Fault,
     },
 }

@@ -17,7 +17,7 @@ mod simulate;
 mod stability;
 #[cfg(not(target_arch = "wasm32"))]
 mod sweep;
-mod values;
+pub mod values;
 #[cfg(feature = "window")]
 mod window;
 

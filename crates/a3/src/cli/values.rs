@@ -6,6 +6,7 @@ use std::str::FromStr;
 use a3_core::Grid;
 
 use crate::base::bounds::{LARGEST_STEP, SMALLEST_STEP, TOLERANCES};
+use crate::base::failure::Failure;
 
 /// Largest number of threads.
 const MAX_THREADS: usize = 1024;
@@ -115,40 +116,67 @@ pub fn rate(text: &str) -> Result<f64, String> {
     )
 }
 
+/// Numbers that an option may have.
+pub struct Allowed {
+    range: RangeInclusive<f64>,
+    /// Message for any other number.
+    right: &'static str,
+}
+
+impl Allowed {
+    /// Reads a number of these.
+    fn read(&self, text: &str) -> Result<f64, String> {
+        within(text, self.range.clone(), self.right)
+    }
+
+    /// Checks that a number is one of these.
+    pub fn check(&self, number: f64) -> Result<f64, Failure> {
+        if self.range.contains(&number) {
+            return Ok(number);
+        }
+        Err(Failure::usage(format!("{}, not {number}", self.right)))
+    }
+}
+
+/// Ends of runs that are compared (s).
+pub const HORIZONS: Allowed = Allowed {
+    range: 0.01..=1000.0,
+    right: "the end is a number of seconds from 0.01 to 1000, such as 1",
+};
+/// Factors of the stiffness.
+pub const FACTORS: Allowed = Allowed {
+    range: 1e-6..=1e6,
+    right: "a factor of the stiffness is a number from 1e-6 to 1e6, such as 10",
+};
+/// Errors of positions (m).
+pub const ERRORS: Allowed = Allowed {
+    range: 1e-12..=10.0,
+    right: "an error is a number of metres from 1e-12 to 10, such as 1e-3",
+};
+/// Computing times for a frame (ms).
+pub const BUDGETS: Allowed = Allowed {
+    range: 1e-4..=1e5,
+    right: "a budget is a number of milliseconds from 1e-4 to 1e5, such as 2",
+};
+
 /// Reads the end of runs that are compared (s).
 pub fn horizon(text: &str) -> Result<f64, String> {
-    within(
-        text,
-        0.01..=1000.0,
-        "the end is a number of seconds from 0.01 to 1000, such as 1",
-    )
+    HORIZONS.read(text)
 }
 
 /// Reads a factor of the stiffness.
 pub fn factor(text: &str) -> Result<f64, String> {
-    within(
-        text,
-        1e-6..=1e6,
-        "a factor of the stiffness is a number from 1e-6 to 1e6, such as 10",
-    )
+    FACTORS.read(text)
 }
 
 /// Reads an error of positions (m).
 pub fn error(text: &str) -> Result<f64, String> {
-    within(
-        text,
-        1e-12..=10.0,
-        "an error is a number of metres from 1e-12 to 10, such as 1e-3",
-    )
+    ERRORS.read(text)
 }
 
 /// Reads the computing time for a frame (ms).
 pub fn budget(text: &str) -> Result<f64, String> {
-    within(
-        text,
-        1e-4..=1e5,
-        "a budget is a number of milliseconds from 1e-4 to 1e5, such as 2",
-    )
+    BUDGETS.read(text)
 }
 
 /// Size of a chart for a column of a paper, 90 mm wide (px).

@@ -2,6 +2,7 @@
 
 pub mod chart;
 pub mod choose;
+pub mod compare;
 pub mod list;
 pub mod manual;
 mod motion;

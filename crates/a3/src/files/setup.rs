@@ -197,6 +197,15 @@ pub fn simulate(
     Ok(simulation)
 }
 
+/// Reads and builds a scene: one of the built-in ones by its name, or from a file (TOML, JSON, or a
+/// mesh).
+///
+/// # Errors
+/// There is no such scene, or its file or its meshes have a fault.
+pub fn scene(name: &str) -> Result<Scene, Failure> {
+    Ok(Source::find(name)?.build(None)?.scene)
+}
+
 /// Finds the scene that an option names.
 pub fn find(typed: &str, option: &str) -> Result<Source, Failure> {
     Source::find(typed).map_err(|error| match error {
@@ -206,7 +215,7 @@ pub fn find(typed: &str, option: &str) -> Result<Source, Failure> {
 }
 
 /// Checks that the step or the tolerance is within its range.
-fn check_control(method: &Method, control: Control) -> Result<(), Failure> {
+pub fn check_control(method: &Method, control: Control) -> Result<(), Failure> {
     let range = bounds::of(control);
     if range.contains(&control.value()) {
         return Ok(());

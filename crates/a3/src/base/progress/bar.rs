@@ -5,7 +5,9 @@ use indicatif::{ProgressBar, ProgressStyle};
 use web_time::{Duration, Instant};
 
 use super::march::march;
-use crate::base::terminal;
+use crate::base::failure::Failure;
+use crate::base::monitor::Monitor;
+use crate::base::{interrupt, terminal};
 
 /// Advances a simulation to `until` (s) in whole steps, the last one shortened, with a bar once it
 /// takes longer than a second. Calls `frame` about sixty times a simulated second.
@@ -80,6 +82,41 @@ impl Bar {
     /// Removes the bar.
     pub fn clear(&self) {
         self.0.finish_and_clear();
+    }
+}
+
+/// The work goes on until a signal.
+impl Monitor for Bar {
+    fn go_on(&self) -> bool {
+        interrupt::go_on()
+    }
+
+    fn stage(&self, what: &str) {
+        self.say(format!("{what:<10} "));
+    }
+
+    fn expect(&self, work: f64) {
+        self.expect(work);
+    }
+
+    fn start(&self) {
+        self.start();
+    }
+
+    fn advance(&self, work: f64) {
+        self.advance(work);
+    }
+
+    fn clear(&self) {
+        self.clear();
+    }
+
+    fn warn(&self, line: &str) {
+        self.warn(line);
+    }
+
+    fn note(&self, line: &str) -> Result<(), Failure> {
+        self.pause(|| terminal::say(&format!("{line}\n")))
     }
 }
 

@@ -2,7 +2,7 @@
 //! times at which errors are taken.
 
 use a3_core::accuracy::{Metric, Scope};
-use a3_core::{Method, Scene, integrators};
+use a3_core::{Error, Method, Scene, integrators};
 
 use crate::base::failure::Failure;
 use crate::cli::ErrorScope;
@@ -22,16 +22,52 @@ pub fn methods(
             .filter(|m| m.check(scene.model.system()).is_ok())
             .collect());
     }
+    let asked: Vec<_> = asked.iter().copied().flatten().collect();
+    check_methods(scene, &asked)
+}
+
+/// Returns the methods that were asked for, each once. If there are none, these are all of the table
+/// that support the scene.
+///
+/// # Errors
+/// A method does not support the scene, or two methods have one name.
+pub fn check_methods(
+    scene: &Scene,
+    asked: &[&'static Method],
+) -> Result<Vec<&'static Method>, Failure> {
+    if asked.is_empty() {
+        return methods(scene, &[]);
+    }
     let mut methods: Vec<&'static Method> = vec![];
-    for &method in asked.iter().flatten() {
+    for &method in asked {
         method
             .check(scene.model.system())
             .map_err(|e| Failure::usage(format!("scene {}: {e}", scene.name)))?;
-        if !methods.iter().any(|m| std::ptr::eq(*m, method)) {
-            methods.push(method);
+        match methods.iter().find(|m| m.name == method.name) {
+            None => methods.push(method),
+            Some(other) if std::ptr::eq(*other, method) => {}
+            Some(_) => {
+                return Err(Failure::usage(format!(
+                    "two methods are called {}: give one of them another name",
+                    method.name
+                )));
+            }
         }
     }
     Ok(methods)
+}
+
+/// Checks that a scene's state has the length that its system needs, and finite numbers.
+pub fn check_scene(scene: &Scene) -> Result<(), Failure> {
+    let (expected, found) = (scene.model.system().dim(), scene.state.len());
+    let wrong = |why: String| Err(Failure::usage(format!("scene {}: {why}", scene.name)));
+    if expected != found {
+        return wrong(Error::Dimension { expected, found }.to_string());
+    }
+    match scene.state.iter().position(|y| !y.is_finite()) {
+        Some(k) => wrong(format!("number {k} of the state is not finite")),
+        None => Ok(()),
+    }
 }
 
 /// Checks that the metric is defined for the scene: springs, energy and momentum need a network,
@@ -45,14 +81,20 @@ pub fn check_metric(metric: Metric, scene: &Scene) -> Result<(), Failure> {
             scene.name
         )));
     }
-    let of_motion = matches!(metric, Metric::Position | Metric::Phase);
-    if of_motion || network.is_some() {
-        Ok(())
-    } else {
-        Err(Failure::usage(format!(
-            "the scene {} has neither energy nor momentum nor springs: ask for position or phase",
+    let motion = Metric::of_motion(&scene.model);
+    match metric {
+        Metric::Phase => Ok(()),
+        metric if metric == motion => Ok(()),
+        Metric::State => Err(Failure::usage(format!(
+            "the scene {} has particles: ask for position instead of state",
             scene.name
-        )))
+        ))),
+        _ if network.is_some() => Ok(()),
+        _ => Err(Failure::usage(format!(
+            "the scene {} has neither energy nor momentum nor springs: ask for {} or phase",
+            scene.name,
+            motion.name()
+        ))),
     }
 }
 
@@ -63,10 +105,14 @@ pub fn check_metric(metric: Metric, scene: &Scene) -> Result<(), Failure> {
 pub fn scope(asked: &ErrorScope, scene: &Scene) -> Result<Scope, Failure> {
     let particles = scene.model.particles();
     match asked.particle {
+        Some(_) if particles == 0 => Err(Failure::usage(format!(
+            "the scene {} has no particles, but plain numbers: take the error of all of them",
+            scene.name
+        ))),
         Some(i) if i >= particles => Err(Failure::usage(format!(
             "the scene {} has no particle {i}: its particles are 0 to {}",
             scene.name,
-            particles.max(1) - 1
+            particles - 1
         ))),
         particle => Ok(Scope {
             particle,

@@ -9,33 +9,35 @@ use super::asked::{check_metric, methods, scope};
 use super::data::Data;
 use super::each::Each;
 use super::files::{PICTURES, write_picture};
-use super::horizon::{check_motion, look_ahead};
-use super::measure::{Measured, Study, stiffened};
+use super::value::{Chart, ChartOptions};
+use super::words::Label;
 use super::{picture, table};
 use crate::base::failure::Failure;
 use crate::base::progress::Bar;
 use crate::base::{interrupt, terminal};
-use crate::cli::{Chart, WorkMeasure};
+use crate::cli::{Chart as Options, WorkMeasure};
 use crate::commands::motion::grid_error;
 use crate::files::output;
 use crate::files::setup::Request;
 
 /// Measures, prints and draws what the command line asks for.
-pub fn run(options: &Chart) -> Result<(), Failure> {
+pub fn run(options: &Options) -> Result<(), Failure> {
     interrupt::listen();
     let asked = Asked::new(options)?;
     let mut data = Data::open(options.data.as_deref())?;
     data.each = options.each.as_deref().map(Each::new).transpose()?;
     let bar = Bar::new(1.0);
-    let mut studies = asked.studies(&bar)?;
-    let complete = measure(&mut studies, &mut data, &bar)?;
-    studies.retain(|study| study.records(&data).next().is_some());
-    if studies.is_empty() {
-        return Err(nothing());
+    let mut chart = asked.begin(data, &bar)?;
+    chart.measure(&bar)?;
+    interrupt::write_on();
+    chart.data.save()?;
+    if let Some(each) = chart.data.each.take() {
+        each.finish()?;
     }
-    asked.print(&studies, &data)?;
-    asked.draw(&studies, &data, complete)?;
-    if complete {
+    chart.finish()?;
+    asked.print(&chart)?;
+    asked.draw(&chart)?;
+    if chart.is_complete() {
         Ok(())
     } else {
         Err(Failure::Interrupted(
@@ -46,20 +48,17 @@ pub fn run(options: &Chart) -> Result<(), Failure> {
 
 /// Request of the command line, checked against the scene.
 struct Asked<'a> {
-    options: &'a Chart,
+    options: &'a Options,
     request: Request,
     scene: Scene,
-    /// Name of the scene with a hash of its files, for the data.
-    name: String,
     methods: Vec<&'static Method>,
-    metric: Metric,
     scope: Scope,
     picture: PathBuf,
 }
 
 impl<'a> Asked<'a> {
     /// Reads the scene, and checks the options against it.
-    fn new(options: &'a Chart) -> Result<Self, Failure> {
+    fn new(options: &'a Options) -> Result<Self, Failure> {
         let request = Request::read(&options.what)?;
         let scene = request.scene()?;
         let methods = methods(&scene, &options.solvers)?;
@@ -71,9 +70,7 @@ impl<'a> Asked<'a> {
         check_metric(options.error, &scene)?;
         Ok(Self {
             options,
-            name: request.source.fingerprint(&scene),
             methods,
-            metric: options.error,
             scope: scope(&options.scope, &scene)?,
             picture,
             scene,
@@ -81,57 +78,41 @@ impl<'a> Asked<'a> {
         })
     }
 
-    /// Whether the chart shows computing times, and not work.
-    fn timed(&self) -> bool {
-        self.options.work == WorkMeasure::Time
-    }
-
-    /// Creates a study for each stiffness. All end at the shortest of their horizons.
-    fn studies(&self, bar: &Bar) -> Result<Vec<Study<'_>>, Failure> {
-        let mut scenes = vec![];
-        let mut until = self.options.until;
-        for &factor in &self.options.stiffness {
-            bar.say("looking ahead  ".into());
-            let scene = stiffened(&self.scene, factor)?;
-            let Some(found) = look_ahead(&scene, self.options.until, factor, bar)? else {
-                continue;
-            };
-            check_motion(&scene, &found)?;
-            until = Some(until.map_or(found.until, |until: f64| until.min(found.until)));
-            scenes.push((factor, scene, found.motion));
-        }
-        let until = until.ok_or_else(nothing)?;
-        let measured = Measured {
-            timed: self.timed(),
-            spread: self.options.spread,
+    /// Finds the end of the runs, which are added to these data.
+    fn begin(&self, data: Data, bar: &Bar) -> Result<Chart, Failure> {
+        let (scene, options) = (&self.scene, self.options);
+        let name = self.request.source.fingerprint(scene);
+        let label = Label::asked(&options.what, scene, name);
+        let options = ChartOptions {
+            until: options.until,
+            error: Some(options.error),
+            particle: options.scope.particle,
+            at_end: options.scope.at_end,
+            timed: options.work == WorkMeasure::Time,
+            spread: options.spread,
+            stiffness: options.stiffness.clone(),
         };
-        let studies = scenes.into_iter().map(|(factor, scene, motion)| {
-            let of = (self.metric, self.scope, motion);
-            let named = (&*self.name, &self.options.what);
-            Study::new(scene, named, factor, until, &self.methods, of, measured)
-        });
-        Ok(studies.collect())
+        Chart::begin(scene, &label, self.methods.clone(), &options, data, bar)
     }
 
     /// Prints the tables, advice where the reference is uncertain, and the error of the grid.
-    fn print(&self, studies: &[Study], data: &Data) -> Result<(), Failure> {
-        let (methods, metric, timed) = (&self.methods, self.metric, self.timed());
-        terminal::say(&table::text(studies, data, methods, metric, timed))?;
-        if metric == Metric::Position {
-            for advice in studies.iter().filter_map(table::advice) {
+    fn print(&self, chart: &Chart) -> Result<(), Failure> {
+        terminal::say(&chart.table())?;
+        if chart.metric == Metric::Position {
+            for advice in chart.studies.iter().filter_map(table::advice) {
                 terminal::say(&advice)?;
             }
-            self.print_grid_error(studies)?;
+            self.print_grid_error(chart)?;
         }
         Ok(())
     }
 
     /// Prints the error of the scene's grid, unless `--no-model` was given.
-    fn print_grid_error(&self, studies: &[Study]) -> Result<(), Failure> {
+    fn print_grid_error(&self, chart: &Chart) -> Result<(), Failure> {
         if self.options.no_model || !interrupt::go_on() {
             return Ok(());
         }
-        let frames = studies[0].frames;
+        let frames = chart.studies[0].frames;
         match grid_error(&self.request, &self.scene, frames, self.scope)? {
             Some(own) => terminal::say(&own.sentence()),
             None => Ok(()),
@@ -139,16 +120,15 @@ impl<'a> Asked<'a> {
     }
 
     /// Draws the chart, writes it to its file, and prints the path.
-    fn draw(&self, studies: &[Study], data: &Data, complete: bool) -> Result<(), Failure> {
-        let (methods, metric, timed) = (&self.methods, self.metric, self.timed());
-        let mut chart = picture::chart(studies, data, methods, metric, timed, &self.options.what);
+    fn draw(&self, chart: &Chart) -> Result<(), Failure> {
+        let mut diagram = chart.picture();
         if self.options.solvers.is_empty() {
-            picture::keep_best(&mut chart, methods, &self.scene);
+            picture::keep_best(&mut diagram, &self.methods, &self.scene);
         }
         let (width, height) = self.options.size;
-        let figure = chart.draw(f64::from(width), f64::from(height));
+        let figure = diagram.draw(f64::from(width), f64::from(height));
         let figure = figure.map_err(|why| {
-            if complete {
+            if chart.is_complete() {
                 Failure::usage(why)
             } else {
                 Failure::Interrupted(format!("interrupted: {why}"))
@@ -157,33 +137,4 @@ impl<'a> Asked<'a> {
         write_picture(&self.picture, &figure)?;
         terminal::say(&format!("chart: {}\n", self.picture.display()))
     }
-}
-
-/// Measures the runs that the data lack, and saves the data. Returns whether all were measured;
-/// `false` if the command was interrupted.
-fn measure(studies: &mut [Study], data: &mut Data, bar: &Bar) -> Result<bool, Failure> {
-    let mut expected = 0.0;
-    for study in &*studies {
-        expected += study.expected()?;
-    }
-    bar.expect(expected);
-    let mut complete = true;
-    for study in studies {
-        if !study.run(data, bar)? {
-            complete = false;
-            break;
-        }
-    }
-    bar.clear();
-    interrupt::write_on();
-    data.save()?;
-    if let Some(each) = data.each.take() {
-        each.finish()?;
-    }
-    Ok(complete)
-}
-
-/// Creates the failure of a command that was interrupted before its first run ended.
-fn nothing() -> Failure {
-    Failure::Interrupted("interrupted before anything was measured".into())
 }

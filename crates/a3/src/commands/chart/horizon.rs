@@ -4,20 +4,19 @@ use a3_core::Scene;
 use a3_core::accuracy::{Horizon, horizon};
 
 use crate::base::failure::Failure;
-use crate::base::progress::Bar;
-use crate::base::{interrupt, terminal};
+use crate::base::monitor::Monitor;
 
 /// Finds the time up to which the motion of a scene can be predicted. `until` of the result is the
-/// end of the runs: `asked` (s), or else that time. Prints the end and its reason if it was not
-/// asked for, and warns of one that is too late. `None` if the command was interrupted.
+/// end of the runs: `asked` (s), or else that time. Notes the end and its reason if it was not asked
+/// for, and warns of one that is too late. `None` if the monitor stopped it.
 pub fn look_ahead(
     scene: &Scene,
     asked: Option<f64>,
     stiffness: f64,
-    bar: &Bar,
+    monitor: &dyn Monitor,
 ) -> Result<Option<Horizon>, Failure> {
     let longest = asked.unwrap_or(f64::INFINITY);
-    let Some(found) = horizon(scene, longest, &interrupt::go_on).map_err(Failure::run)? else {
+    let Some(found) = horizon(scene, longest, &|| monitor.go_on()).map_err(Failure::run)? else {
         return Ok(None);
     };
     let Horizon {
@@ -41,12 +40,14 @@ pub fn look_ahead(
         "small differences hardly grow by themselves".to_owned()
     };
     match asked {
-        Some(asked) if asked > until * (1.0 + 1e-9) && lyapunov.is_finite() => bar.warn(&format!(
-            "warning: {of}: {why}: past {until} s an error in position says little; compare \
+        Some(asked) if asked > until * (1.0 + 1e-9) && lyapunov.is_finite() => {
+            monitor.warn(&format!(
+                "warning: {of}: {why}: past {until} s an error in position says little; compare \
              --error energy or strain, or leave out --until"
-        )),
+            ))
+        }
         Some(_) => {}
-        None => bar.pause(|| terminal::say(&format!("{of}: {why}; runs of {until} s\n")))?,
+        None => monitor.note(&format!("{of}: {why}; runs of {until} s"))?,
     }
     Ok(Some(Horizon {
         until: asked.unwrap_or(until),

@@ -9,10 +9,10 @@ use a3_core::{Control, Method, Model, Scene};
 use super::asked::check_contact;
 use super::data::{Data, VERSION};
 use super::record::Record;
-use super::single::{compared, precision, reference, time};
+use super::single::{compared, precision, reference_while, time_while};
+use super::words::Label;
 use crate::base::failure::Failure;
-use crate::base::progress::Bar;
-use crate::cli::What;
+use crate::base::monitor::Monitor;
 
 /// Largest work of a run, in evaluations. A run that blows up may take more.
 const MAX_EVALUATIONS: f64 = 20_000.0;
@@ -24,7 +24,7 @@ const IMPLICIT_WORK: f64 = 25.0;
 const NEIGHBOURS: [f64; 3] = [0.96, 0.98, 1.02];
 
 /// Scene at one stiffness, with all that its runs share.
-pub struct Study<'a> {
+pub struct Study {
     pub scene: Scene,
     pub frames: Frames,
     modes: Vec<Mode>,
@@ -34,7 +34,7 @@ pub struct Study<'a> {
     /// Record of the scene, whose other fields are filled in for each run.
     blank: Record,
     pub reference: Option<Reference>,
-    methods: &'a [&'static Method],
+    methods: Vec<&'static Method>,
     metric: Metric,
     /// Measurements besides errors and work.
     measured: Measured,
@@ -49,28 +49,27 @@ pub struct Measured {
     pub spread: bool,
 }
 
-impl<'a> Study<'a> {
-    /// Creates a study of a scene until `until` (s). `name` and the flags of `what` describe the
-    /// scene in the records; errors are of a metric in a scope, and `motion` is the largest
+impl Study {
+    /// Creates a study of a scene until `until` (s). Its label describes it in the records; errors are of a metric in a scope, and `motion` is the largest
     /// distance of the particles from where they start (m).
     pub fn new(
         scene: Scene,
-        (name, what): (&str, &What),
+        label: &Label,
         stiffness: f64,
         until: f64,
-        methods: &'a [&'static Method],
+        methods: &[&'static Method],
         (metric, scope, motion): (Metric, Scope, f64),
         measured: Measured,
     ) -> Self {
         let grid = scene.grid();
         let blank = Record {
             version: VERSION.into(),
-            scene: name.into(),
+            scene: label.name.clone(),
             rows: grid.map_or(0, |grid| grid.rows()),
             cols: grid.map_or(0, |grid| grid.cols()),
-            wind: what.wind,
-            swing: what.swing,
-            self_collision: what.self_collision,
+            wind: label.wind,
+            swing: label.swing,
+            self_collision: label.self_collision,
             stiffness,
             until,
             scope: words(scope),
@@ -84,7 +83,7 @@ impl<'a> Study<'a> {
             scene,
             blank,
             reference: None,
-            methods,
+            methods: methods.to_vec(),
             metric,
             measured,
         }
@@ -132,7 +131,7 @@ impl<'a> Study<'a> {
     /// Estimates the work of all runs, in evaluations.
     pub fn expected(&self) -> Result<f64, Failure> {
         let mut sum = 0.0;
-        for method in self.methods {
+        for &method in &self.methods {
             sum += self
                 .rungs(method)?
                 .iter()
@@ -154,19 +153,20 @@ impl<'a> Study<'a> {
         steps * each(method) + 100.0
     }
 
-    /// Measures the runs that the data do not have yet. Returns `false` if the command was
-    /// interrupted.
-    pub fn run(&mut self, data: &mut Data, bar: &Bar) -> Result<bool, Failure> {
-        for &method in self.methods {
+    /// Measures the runs that the data do not have yet. Returns `false` if the monitor
+    /// stopped it.
+    pub fn run(&mut self, data: &mut Data, monitor: &dyn Monitor) -> Result<bool, Failure> {
+        for method in self.methods.clone() {
             let (rungs, max_work) = (self.rungs(method)?, self.max_work(method)?);
             let mut coarser_run: Option<Record> = None;
             for (i, &control) in rungs.iter().enumerate() {
                 let like = self.like(method, control);
-                let Some(record) = self.record(method, like, coarser_run.as_ref(), data, bar)?
+                let Some(record) =
+                    self.record(method, like, coarser_run.as_ref(), data, monitor)?
                 else {
                     return Ok(false);
                 };
-                if !self.look_beside(method, control, &record, data, bar)? {
+                if !self.look_beside(method, control, &record, data, monitor)? {
                     return Ok(false);
                 }
                 coarser_run = Some(record.clone());
@@ -179,12 +179,12 @@ impl<'a> Study<'a> {
                     && let Some(longer) = coarser(longest.0, &self.frames)
                 {
                     let like = self.like(method, longer);
-                    let Some(record) = self.record(method, like, None, data, bar)? else {
+                    let Some(record) = self.record(method, like, None, data, monitor)? else {
                         return Ok(false);
                     };
                     longest = (longer, record);
                 }
-                bar.advance(self.expected_of(method, control));
+                monitor.advance(self.expected_of(method, control));
                 // Errors that the reference cannot tell from 0 end the ladder, and so does too much
                 // work: that of linear algebra is known only after a run.
                 let enough = record.resolved(self.metric).max(1e-12);
@@ -195,7 +195,7 @@ impl<'a> Study<'a> {
                 if record.lost_at.is_none() && (record.error(self.metric) < enough || is_expensive)
                 {
                     let rest = rungs[i + 1..].iter();
-                    bar.advance(rest.map(|s| self.expected_of(method, *s)).sum());
+                    monitor.advance(rest.map(|s| self.expected_of(method, *s)).sum());
                     break;
                 }
             }
@@ -205,14 +205,14 @@ impl<'a> Study<'a> {
     }
 
     /// Measures the runs at the neighbours of a tolerance, if they were asked for. Returns `false`
-    /// if the command was interrupted.
+    /// if the command was stopped.
     fn look_beside(
         &mut self,
         method: &'static Method,
         control: Control,
         record: &Record,
         data: &mut Data,
-        bar: &Bar,
+        monitor: &dyn Monitor,
     ) -> Result<bool, Failure> {
         let Some(tolerance) = control.tolerance() else {
             return Ok(true);
@@ -225,7 +225,7 @@ impl<'a> Study<'a> {
                 beside: Some(tolerance),
                 ..self.like(method, Control::Tolerance(factor * tolerance))
             };
-            if self.record(method, like, None, data, bar)?.is_none() {
+            if self.record(method, like, None, data, monitor)?.is_none() {
                 return Ok(false);
             }
         }
@@ -243,26 +243,28 @@ impl<'a> Study<'a> {
 
     /// Returns the run of a method with the setting of `like`. A run that the data do not have yet
     /// is measured and added, with the order between it and a coarser run. `None` if the command
-    /// was interrupted.
+    /// was stopped.
     fn record(
         &mut self,
         method: &'static Method,
         like: Record,
         coarser_run: Option<&Record>,
         data: &mut Data,
-        bar: &Bar,
+        monitor: &dyn Monitor,
     ) -> Result<Option<Record>, Failure> {
-        bar.say(format!("{:<10} ", method.name));
+        monitor.stage(method.name);
         let timed = self.measured.timed && like.beside.is_none();
         let known = data.find(&like, timed).cloned();
         let known = known.filter(|_| data.each.is_none());
         let is_new = known.is_none();
         let record = match known {
             Some(known) => Some(known),
-            None => self.measure(method, like, data, bar)?.map(|record| Record {
-                order: coarser_run.and_then(|run| record.order_from(run)),
-                ..record
-            }),
+            None => self
+                .measure(method, like, data, monitor)?
+                .map(|record| Record {
+                    order: coarser_run.and_then(|run| record.order_from(run, method.is_adaptive())),
+                    ..record
+                }),
         };
         if let Some(record) = &record {
             check_contact(self.metric, record.still(self.metric), record.until)?;
@@ -273,20 +275,22 @@ impl<'a> Study<'a> {
         Ok(record)
     }
 
-    /// Measures one run, and the reference before the first. `None` if the command was interrupted.
+    /// Measures one run, and the reference before the first. `None` if the command was stopped.
     fn measure(
         &mut self,
         method: &'static Method,
         like: Record,
         data: &mut Data,
-        bar: &Bar,
+        monitor: &dyn Monitor,
     ) -> Result<Option<Record>, Failure> {
+        let go_on = &|| monitor.go_on();
         if self.reference.is_none() {
-            bar.say("reference  ".into());
+            monitor.stage("reference");
             let precision = precision(&self.scene, self.motion);
-            self.reference = reference(&self.scene, self.frames, self.scope, precision)?;
-            bar.start();
-            bar.say(format!("{:<10} ", method.name));
+            self.reference =
+                reference_while(go_on, &self.scene, self.frames, self.scope, precision)?;
+            monitor.start();
+            monitor.stage(method.name);
         }
         let Some(reference) = &self.reference else {
             return Ok(None);
@@ -296,7 +300,14 @@ impl<'a> Study<'a> {
             (Some(_), None) => vec![0.0; 3 * self.scene.model.particles()],
             _ => vec![],
         };
-        let found = compared(like, &self.scene, method, reference, &mut coordinates)?;
+        let found = compared(
+            like,
+            &self.scene,
+            method,
+            reference,
+            &mut coordinates,
+            go_on,
+        )?;
         let Some((record, once)) = found else {
             return Ok(None);
         };
@@ -305,7 +316,15 @@ impl<'a> Study<'a> {
         }
         let seconds = if timed && record.lost_at.is_none() {
             let control = method.control(record.setting);
-            let Some(time) = time(&self.scene, method, control, &self.frames, Some(once))? else {
+            let timed = time_while(
+                go_on,
+                &self.scene,
+                method,
+                control,
+                &self.frames,
+                Some(once),
+            )?;
+            let Some(time) = timed else {
                 return Ok(None);
             };
             Some(time.as_secs_f64())

@@ -13,11 +13,14 @@ pub mod single;
 pub mod style;
 pub mod table;
 pub mod text;
+mod value;
 mod vision;
 mod words;
 
-pub use asked::{check_contact, check_metric, methods, scope};
+pub use asked::{check_contact, check_methods, check_metric, check_scene, methods, scope};
 pub use command::run;
 pub use files::{PICTURES, write_picture};
 pub use horizon::{check_motion, look_ahead};
-pub use words::{describe, unit};
+pub use record::Record;
+pub use value::{Chart, ChartOptions, chart};
+pub use words::{Label, describe, unit};

@@ -9,9 +9,8 @@ use a3_plot::{Curve, Measurement, Problem, WorkPrecision};
 use super::data::Data;
 use super::measure::Study;
 use super::record::Record;
-use super::words::{describe, unit};
+use super::words::unit;
 use super::{style, table};
-use crate::cli::What;
 
 /// Largest error of a run that is drawn, over the error of a run in which nothing moves.
 const MAX_ERROR_RATIO: f64 = 10.0;
@@ -26,7 +25,7 @@ pub fn chart(
     methods: &[&'static Method],
     metric: Metric,
     timed: bool,
-    what: &What,
+    title: &str,
 ) -> WorkPrecision {
     let (until, scope) = (studies[0].frames.until, studies[0].scope());
     let problems = studies
@@ -42,10 +41,7 @@ pub fn chart(
         })
         .collect();
     WorkPrecision {
-        title: format!(
-            "Speed against accuracy: {}",
-            describe(what, &studies[0].scene)
-        ),
+        title: format!("Speed against accuracy: {title}"),
         subtitle: format!(
             "{until} s of motion; each point is a run with another step or tolerance{}",
             if studies

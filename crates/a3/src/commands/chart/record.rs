@@ -47,6 +47,9 @@ pub struct Record {
     pub error_penetration: Option<f64>,
     /// Error of the times of the first impact (s).
     pub error_impact: Option<f64>,
+    /// Error of the numbers of a state without particles, in their unit; 0 with particles.
+    #[serde(default)]
+    pub error_state: Option<f64>,
     /// Error of the reference itself: of the positions (m).
     pub floor_position: f64,
     /// Error of the reference itself: of the energy (J).
@@ -61,6 +64,9 @@ pub struct Record {
     pub floor_penetration: f64,
     /// Error of the reference itself: of the first impact (s).
     pub floor_impact: f64,
+    /// Error of the reference itself: of the numbers of a state without particles.
+    #[serde(default)]
+    pub floor_state: f64,
     /// Error of a run in which nothing moves: of the positions (m).
     pub still_position: f64,
     /// Error of a run in which nothing moves: of the springs' stretch.
@@ -69,6 +75,9 @@ pub struct Record {
     pub still_penetration: f64,
     /// Error of a run in which nothing moves: of the first impact (s).
     pub still_impact: f64,
+    /// Error of a run in which nothing moves: of the numbers of a state without particles.
+    #[serde(default)]
+    pub still_state: f64,
     /// Simulated time at which the run blew up (s).
     pub lost_at: Option<f64>,
     /// Number of impulses of the collision safeguard.
@@ -94,7 +103,7 @@ pub struct Record {
     pub factorizations: u64,
     /// Number of steps that were rejected.
     pub rejections: u64,
-    /// Observed order p from the errors of the positions in this run and the next coarser one:
+    /// Observed order p from the errors of the positions, or of the state, in this run and the next coarser one:
     /// their ratio is that of the steps or, for an adaptive method, of the evaluations, to the
     /// power p.
     #[serde(default)]
@@ -125,14 +134,17 @@ impl Record {
     }
 
     /// Returns the observed order between a coarser run of the same method and this one.
-    pub fn order_from(&self, coarser: &Self) -> Option<f64> {
-        let is_adaptive = a3_core::integrators::find(&self.solver)?.is_adaptive();
+    pub fn order_from(&self, coarser: &Self, is_adaptive: bool) -> Option<f64> {
         let refined = if is_adaptive {
             self.evaluations as f64 / coarser.evaluations as f64
         } else {
             coarser.setting / self.setting
         };
-        let order = (coarser.error_position? / self.error_position?).ln() / refined.ln();
+        let ratio = match (coarser.error_state, self.error_state) {
+            (Some(coarser), Some(own)) if own > 0.0 => coarser / own,
+            _ => coarser.error_position? / self.error_position?,
+        };
+        let order = ratio.ln() / refined.ln();
         order.is_finite().then_some(order)
     }
 
@@ -146,7 +158,7 @@ impl Record {
         let or_infinite = |error: Option<f64>| error.unwrap_or(f64::INFINITY);
         metric.of(&Errors {
             position: or_infinite(self.error_position),
-            state: 0.0,
+            state: or_infinite(self.error_state),
             energy: or_infinite(self.error_energy),
             strain: or_infinite(self.error_strain),
             momentum: or_infinite(self.error_momentum),
@@ -165,7 +177,7 @@ impl Record {
     pub fn floor(&self, metric: Metric) -> f64 {
         metric.of(&Errors {
             position: self.floor_position,
-            state: 0.0,
+            state: self.floor_state,
             energy: self.floor_energy,
             strain: self.floor_strain,
             momentum: self.floor_momentum,
@@ -183,7 +195,8 @@ impl Record {
             Metric::Strain => self.still_strain,
             Metric::Penetration => self.still_penetration,
             Metric::Impact => self.still_impact,
-            Metric::Energy | Metric::Momentum | Metric::Phase | Metric::State => f64::INFINITY,
+            Metric::State => self.still_state,
+            Metric::Energy | Metric::Momentum | Metric::Phase => f64::INFINITY,
         }
     }
 }

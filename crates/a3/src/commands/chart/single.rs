@@ -2,7 +2,7 @@
 
 use std::time::{Duration, Instant};
 
-use a3_core::accuracy::{self, Errors, Frames, Metric, Outcome, Precision, Reference, Scope};
+use a3_core::accuracy::{self, Errors, Frames, GoOn, Metric, Outcome, Precision, Reference, Scope};
 use a3_core::{Control, Method, Scene, Simulation};
 
 use super::record::Record;
@@ -25,7 +25,7 @@ const MAX_TOTAL: Duration = Duration::from_millis(20);
 const MAX_SINGLE: Duration = Duration::from_millis(50);
 
 /// Runs a method with the setting of `like`, and compares the run with the reference of its scene.
-/// Returns its record and its computing time; `None` if the command was interrupted. `coordinates`
+/// Returns its record and its computing time; `None` if `go_on` returned false. `coordinates`
 /// receives the largest error of each coordinate (m), n x 3, unless it is empty.
 pub fn compared(
     like: Record,
@@ -33,10 +33,10 @@ pub fn compared(
     method: &'static Method,
     reference: &Reference,
     coordinates: &mut [f64],
+    go_on: GoOn,
 ) -> Result<Option<(Record, Duration)>, Failure> {
     let (control, begun) = (method.control(like.setting), Instant::now());
     let clock = || begun.elapsed();
-    let go_on = &interrupt::go_on;
     let outcome = accuracy::measure_by(
         &clock,
         scene,
@@ -59,8 +59,7 @@ pub fn compared(
     };
     let Errors {
         position,
-        // All scenes of the program have particles, so their errors are those of positions.
-        state: _,
+        state,
         energy,
         strain,
         momentum,
@@ -78,6 +77,7 @@ pub fn compared(
         error_phase: of(phase),
         error_penetration: of(penetration),
         error_impact: of(impact),
+        error_state: of(state),
         floor_position: floor.position,
         floor_energy: floor.energy,
         floor_strain: floor.strain,
@@ -85,10 +85,12 @@ pub fn compared(
         floor_phase: floor.phase,
         floor_penetration: floor.penetration,
         floor_impact: floor.impact,
+        floor_state: floor.state,
         still_position: still.position,
         still_strain: still.strain,
         still_penetration: still.penetration,
         still_impact: still.impact,
+        still_state: still.state,
         lost_at: lost.map(|lost| lost.time),
         guard_impulses: guarded.impulses,
         guard_cuts: guarded.cuts,
@@ -108,7 +110,7 @@ pub fn compared(
 /// largest distance of the particles from where they start (m).
 pub fn precision(scene: &Scene, motion: f64) -> Precision {
     Precision {
-        metric: Metric::Position,
+        metric: Metric::of_motion(&scene.model),
         uncertainty: UNCERTAINTY * motion,
         max_work: MAX_REFERENCE_EVALUATIONS.max(MAX_REFERENCE_NUMBERS / scene.state.len() as f64),
     }
@@ -121,13 +123,36 @@ pub fn reference(
     scope: Scope,
     precision: Precision,
 ) -> Result<Option<Reference>, Failure> {
-    Reference::new(scene, frames, scope, precision, &interrupt::go_on)
+    reference_while(&interrupt::go_on, scene, frames, scope, precision)
+}
+
+/// As [`reference`]. `None` if `go_on` returned false.
+pub fn reference_while(
+    go_on: GoOn,
+    scene: &Scene,
+    frames: Frames,
+    scope: Scope,
+    precision: Precision,
+) -> Result<Option<Reference>, Failure> {
+    Reference::new(scene, frames, scope, precision, go_on)
         .map_err(|e| Failure::run(format!("the reference could not be computed: {e}")))
 }
 
 /// Measures the computing time of a run: the shortest of several, including `before` if it is
 /// given. `None` if the command was interrupted.
 pub fn time(
+    scene: &Scene,
+    method: &'static Method,
+    control: Control,
+    frames: &Frames,
+    before: Option<Duration>,
+) -> Result<Option<Duration>, Failure> {
+    time_while(&interrupt::go_on, scene, method, control, frames, before)
+}
+
+/// As [`time`]. `None` if `go_on` returned false.
+pub fn time_while(
+    go_on: GoOn,
     scene: &Scene,
     method: &'static Method,
     control: Control,
@@ -141,7 +166,7 @@ pub fn time(
         }
         let mut run = Simulation::new(scene.clone(), method, control).map_err(Failure::run)?;
         let begun = Instant::now();
-        let end = accuracy::run(&mut run, frames, &interrupt::go_on, None);
+        let end = accuracy::run(&mut run, frames, go_on, None);
         let elapsed = begun.elapsed();
         if end.map_err(Failure::run)?.is_none() {
             return Ok(None);

@@ -2,6 +2,8 @@
 
 mod command;
 mod search;
+mod value;
 mod words;
 
 pub use command::run;
+pub use value::{Choice, ChooseOptions, Chosen, Goal, choose};

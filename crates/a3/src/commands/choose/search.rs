@@ -1,15 +1,13 @@
 //! The search for the cheapest solvers, and their computing times.
 
-use a3_core::accuracy::{Candidate, Metric, Reference, SetBy, choose, ladder, measure};
+use a3_core::accuracy::{Candidate, Metric, Reference, SetBy, choose_among, ladder, measure};
 use a3_core::stability::spectrum;
 use a3_core::{Method, Scene};
 
 use crate::base::failure::Failure;
-use crate::base::interrupt;
-use crate::base::progress::Bar;
-use crate::cli::WorkMeasure;
-use crate::commands::chart::single::time;
-use crate::commands::chart::{methods, unit};
+use crate::base::monitor::Monitor;
+use crate::commands::chart::single::time_while;
+use crate::commands::chart::unit;
 
 /// Smallest error that may be asked for, over the uncertainty of the reference.
 const MIN_MARGIN: f64 = 3.0;
@@ -20,17 +18,18 @@ const SHOWN: usize = 3;
 /// Simulated time of a frame (s).
 const FRAME_TIME: f64 = 1.0 / 60.0;
 
-/// Finds the cheapest methods for an error, with the computing times of their frames (ms). `None`
-/// if the command was interrupted.
+/// Finds the cheapest methods for an error, with the computing times of their frames (ms). `None` if
+/// the monitor stopped it.
 ///
 /// # Errors
 /// The error is too small for the reference, or a run fails.
 pub fn cheapest(
+    methods: &[&'static Method],
     scene: &Scene,
     reference: &Reference,
     (metric, error): (Metric, f64),
-    work: WorkMeasure,
-    bar: &Bar,
+    timed: bool,
+    monitor: &dyn Monitor,
 ) -> Result<Option<Vec<(Candidate, f64)>>, Failure> {
     let (floor, still) = (metric.of(&reference.floor), metric.of(&reference.still));
     let (unit, until) = (unit(metric), reference.frames.until);
@@ -41,37 +40,37 @@ pub fn cheapest(
             MIN_MARGIN * floor
         )));
     }
-    if metric == Metric::Position && error > still {
-        bar.warn(&format!(
-            "warning: nothing moves further than {still:.0e} m in {until} s: an error of {error:e} m says nothing"
+    if matches!(metric, Metric::Position | Metric::State) && error > still {
+        monitor.warn(&format!(
+            "warning: nothing moves further than {still:.0e} {unit} in {until} s: an error of {error:e} {unit} says nothing"
         ));
     }
-    bar.start();
+    monitor.start();
     let mut begun = 0;
     let begin = |method: &'static Method| {
-        bar.say(format!("{:<10} ", method.name));
-        bar.advance(f64::from(u8::from(begun > 0)));
+        monitor.stage(method.name);
+        monitor.advance(f64::from(u8::from(begun > 0)));
         begun += 1;
     };
-    let found = choose(scene, reference, metric, error, &interrupt::go_on, begin);
-    bar.clear();
+    let go_on = &|| monitor.go_on();
+    let found = choose_among(methods, scene, reference, metric, error, go_on, begin);
+    monitor.clear();
     let Some(mut found) = found.map_err(Failure::run)? else {
         return Ok(None);
     };
-    let by_time = work == WorkMeasure::Time;
-    if !by_time {
+    if !timed {
         found.truncate(SHOWN);
     }
-    let timed = found.into_iter().map(|candidate| {
-        let cost = milliseconds(scene, &candidate, reference)?;
+    let measured = found.into_iter().map(|candidate| {
+        let cost = milliseconds(scene, &candidate, reference, monitor)?;
         Ok(cost.map(|cost| (candidate, cost)))
     });
-    let mut timed = timed.collect::<Result<Option<Vec<_>>, Failure>>()?;
-    if let Some(timed) = timed.as_mut().filter(|_| by_time) {
-        timed.sort_by(|(_, a), (_, b)| a.total_cmp(b));
-        timed.truncate(SHOWN);
+    let mut measured = measured.collect::<Result<Option<Vec<_>>, Failure>>()?;
+    if let Some(measured) = measured.as_mut().filter(|_| timed) {
+        measured.sort_by(|(_, a), (_, b)| a.total_cmp(b));
+        measured.truncate(SHOWN);
     }
-    Ok(timed)
+    Ok(measured)
 }
 
 /// Measures the computing time of a frame (ms), averaged over the whole run. `None` if the command
@@ -80,8 +79,10 @@ fn milliseconds(
     scene: &Scene,
     candidate: &Candidate,
     reference: &Reference,
+    monitor: &dyn Monitor,
 ) -> Result<Option<f64>, Failure> {
-    let time = time(
+    let time = time_while(
+        &|| monitor.go_on(),
         scene,
         candidate.method,
         candidate.control,
@@ -92,13 +93,14 @@ fn milliseconds(
 }
 
 /// Finds the three most accurate methods, each at its most accurate step or tolerance whose frames
-/// take no longer than the budget (ms). `None` if the command was interrupted.
+/// take no longer than the budget (ms). `None` if the monitor stopped it.
 pub fn within(
+    methods: &[&'static Method],
     scene: &Scene,
     reference: &Reference,
     metric: Metric,
     budget: f64,
-    bar: &Bar,
+    monitor: &dyn Monitor,
 ) -> Result<Option<Vec<(Candidate, f64)>>, Failure> {
     let mut found = vec![];
     let modes = spectrum(scene.model.system(), 0.0, &scene.state);
@@ -109,12 +111,12 @@ pub fn within(
     } else {
         metric.of(&reference.still)
     };
-    bar.start();
-    for method in methods(scene, &[])? {
-        bar.say(format!("{:<10} ", method.name));
+    monitor.start();
+    for &method in methods {
+        monitor.stage(method.name);
         let mut best: Option<(Candidate, f64)> = None;
         for control in ladder(&modes, method, &reference.frames, 1_000_000).map_err(Failure::run)? {
-            let outcome = measure(scene, method, control, reference, &interrupt::go_on)
+            let outcome = measure(scene, method, control, reference, &|| monitor.go_on())
                 .map_err(Failure::run)?;
             let Some(outcome) = outcome else {
                 return Ok(None);
@@ -125,7 +127,7 @@ pub fn within(
                 outcome,
                 set_by: SetBy::Accuracy,
             };
-            let Some(cost) = milliseconds(scene, &candidate, reference)? else {
+            let Some(cost) = milliseconds(scene, &candidate, reference, monitor)? else {
                 return Ok(None);
             };
             if cost > budget {
@@ -145,9 +147,9 @@ pub fn within(
             }
         }
         found.extend(best);
-        bar.advance(1.0);
+        monitor.advance(1.0);
     }
-    bar.clear();
+    monitor.clear();
     found.sort_by(|(a, _), (b, _)| error(a).total_cmp(&error(b)));
     found.truncate(SHOWN);
     Ok(Some(found))

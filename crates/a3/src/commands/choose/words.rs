@@ -2,16 +2,17 @@
 
 use std::fmt::Write;
 
-use a3_core::accuracy::{Candidate, Metric, SetBy};
+use a3_core::accuracy::SetBy;
 use a3_core::{Control, Method, Scene};
 
+use super::value::{Choice, Chosen};
 use crate::cli::What;
 use crate::commands::chart::table::fraction;
 use crate::commands::chart::{describe, unit};
 use crate::commands::list;
 
 /// Says why the best candidate's step or tolerance is not larger.
-pub fn set_by(best: &Candidate) -> String {
+pub fn set_by(best: &Chosen) -> String {
     let what = if best.control.step().is_some() {
         "step"
     } else {
@@ -29,13 +30,8 @@ pub fn set_by(best: &Candidate) -> String {
 }
 
 /// Writes the table of candidates, with the computing times of their frames (ms).
-pub fn report(
-    what: &What,
-    scene: &Scene,
-    until: f64,
-    goal: &str,
-    (metric, found): (Metric, &[(Candidate, f64)]),
-) -> String {
+pub fn report(what: &What, scene: &Scene, goal: &str, choice: &Choice) -> String {
+    let (metric, until) = (choice.metric, choice.until);
     let error = format!(" error ({})", unit(metric));
     let mut rows = vec![
         [
@@ -49,7 +45,8 @@ pub fn report(
         .map(String::from)
         .to_vec(),
     ];
-    for (k, (c, cost)) in found.iter().enumerate() {
+    for (k, c) in choice.found.iter().enumerate() {
+        let cost = c.milliseconds;
         rows.push(vec![
             ["best", "runner-up", "then"][k.min(2)].into(),
             c.method.title.into(),
@@ -57,9 +54,9 @@ pub fn report(
                 Control::Step(_) => format!("step {} s", typed(c.control, until)),
                 Control::Tolerance(_) => format!("tolerance {}", typed(c.control, until)),
             },
-            format!("{:.1e}", metric.of(&c.outcome.errors)),
-            format!("{:.0}", c.outcome.work.total() / until),
-            if *cost < 0.1 {
+            format!("{:.1e}", c.error),
+            format!("{:.0}", c.work / until),
+            if cost < 0.1 {
                 format!("{:.2} µs", 1e3 * cost)
             } else {
                 format!("{cost:.2} ms")

@@ -1,23 +1,32 @@
 //! The limits of methods on a scene.
 
 use a3_core::Method;
-use a3_core::stability::{Limit, Mode, Motion, Observation, RestState};
+use a3_core::stability::{Limit, Mode, Observation};
 
-/// Measurements of a scene.
-pub struct Found {
-    /// Limits of each method.
-    pub rows: Vec<MethodLimits>,
-    /// Accurate motion from the start.
-    pub motion: Motion,
-    /// State of rest, if the scene has one.
-    pub hanging: Option<RestState>,
-    /// Modes at the start.
+/// Largest stable and largest accurate steps of methods on a scene.
+#[derive(Clone, Debug)]
+pub struct Stability {
+    /// Limits of each method, in the order of the methods.
+    pub limits: Vec<MethodLimits>,
+    /// Time (s) until which errors mean something: accurate runs are compared with the true motion
+    /// until then.
+    pub predictable: f64,
+    /// Modes at the start, fastest first.
     pub at_start: Vec<Mode>,
+    /// Modes at rest, if the scene comes to rest.
+    pub at_rest: Option<Vec<Mode>>,
+    /// Whether all was measured; false if the monitor stopped it.
+    pub complete: bool,
+    /// Name of the scene.
+    pub(super) name: String,
+    /// Description of the scene in titles.
+    pub(super) title: String,
 }
 
-/// Limits of a method.
-#[derive(Clone, Copy)]
+/// Limits of a method: of the fixed step, also for an adaptive one.
+#[derive(Clone, Copy, Debug)]
 pub struct MethodLimits {
+    /// Method.
     pub method: &'static Method,
     /// Limit by the modes at rest, if the scene comes to rest.
     pub rest: Option<Limit>,

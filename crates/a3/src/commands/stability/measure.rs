@@ -6,10 +6,10 @@ use a3_core::stability::{
 use a3_core::{Error, Method, Scene};
 use rayon::prelude::*;
 
-use super::limits::{Found, MethodLimits};
+use super::limits::{MethodLimits, Stability};
 use crate::base::failure::Failure;
-use crate::base::interrupt;
-use crate::base::progress::Bar;
+use crate::base::monitor::Monitor;
+use crate::commands::chart::Label;
 
 /// Largest work of all searches in motion, in the unit of a [`Budget`].
 const MAX_WORK_IN_MOTION: f64 = 1.5e9;
@@ -20,59 +20,63 @@ const MAX_WORK_AT_REST: f64 = 8e8;
 const FIRST_SHARE: f64 = 0.3;
 
 /// Creates the failure of a command that was interrupted before any limit was measured.
-pub fn nothing() -> Failure {
+fn nothing() -> Failure {
     Failure::Interrupted("interrupted before anything was measured".into())
 }
 
 /// Measures the limits of all methods, at rest and in motion at the same time.
-pub fn measure(scene: &Scene, methods: &[&'static Method]) -> Result<Found, Failure> {
+pub fn measure(
+    scene: &Scene,
+    label: &Label,
+    methods: &[&'static Method],
+    monitor: &dyn Monitor,
+) -> Result<Stability, Failure> {
+    let go_on = || monitor.go_on();
     // Two adaptive solvers may take the same fixed steps, whose limits are measured once.
     let first = |method: &Method| methods.iter().position(|m| m.shares_integrator(method));
     let measured: Vec<_> = (methods.iter().enumerate())
         .filter_map(|(k, &method)| (first(method) == Some(k)).then_some(method))
         .collect();
     // Each method's share is counted as half done, in case it is measured again.
-    let bar = Bar::new(2.0 + 2.0 * measured.len() as f64);
-    bar.say("the true motion and the state of rest ".into());
+    monitor.expect(2.0 + 2.0 * measured.len() as f64);
+    monitor.stage("the true motion and the state of rest");
     let at_start = spectrum(scene.model.system(), 0.0, &scene.state);
-    let say = |method: &Method, stage| bar.say(format!("{} {stage} ", method.name));
+    let say = |method: &Method, stage| monitor.stage(&format!("{} {stage}", method.name));
     // Nothing is timed here, so methods may be measured in parallel.
     let in_motion = || {
-        let motion = Motion::of(scene, interrupt::go_on)?;
-        bar.advance(1.0);
-        let limits = each(&measured, MAX_WORK_IN_MOTION, |method, budget| {
+        let motion = Motion::of(scene, go_on)?;
+        monitor.advance(1.0);
+        let limits = each(&measured, MAX_WORK_IN_MOTION, monitor, |method, budget| {
             let Some(motion) = &motion else {
                 return Ok(None);
             };
             say(method, "in motion");
             budget.allow(0.6);
-            let bounded = motion.bounded(method, budget, interrupt::go_on)?;
-            bar.advance(0.5);
+            let bounded = motion.bounded(method, budget, go_on)?;
+            monitor.advance(0.5);
             say(method, "its errors");
             budget.allow(1.0);
             let longest = bounded.map_or(f64::INFINITY, |seen| seen.held);
-            let accurate = motion.accurate(method, longest, budget, interrupt::go_on)?;
-            bar.advance(0.5);
+            let accurate = motion.accurate(method, longest, budget, go_on)?;
+            monitor.advance(0.5);
             let found = (bounded, accurate, budget.limits());
-            Ok(interrupt::go_on().then_some(found))
+            Ok(go_on().then_some(found))
         });
         Ok::<_, Error>((motion, limits?))
     };
     let at_rest = || {
-        let hanging = rest(scene, interrupt::go_on)?;
-        bar.advance(1.0);
-        let limits = each(&measured, MAX_WORK_AT_REST, |method, budget| {
+        let hanging = rest(scene, go_on)?;
+        monitor.advance(1.0);
+        let limits = each(&measured, MAX_WORK_AT_REST, monitor, |method, budget| {
             say(method, "at rest");
             let by_modes = |rest: &RestState| rest.largest_step(method);
             let limit = hanging.as_ref().map(by_modes).transpose()?.flatten();
             let seen = match &hanging {
-                Some(rest) => {
-                    observe_at_rest(rest, method, limit.as_ref(), budget, interrupt::go_on)?
-                }
+                Some(rest) => observe_at_rest(rest, method, limit.as_ref(), budget, go_on)?,
                 None => None,
             };
-            bar.advance(0.5);
-            Ok(interrupt::go_on().then_some((limit, seen, budget.limits())))
+            monitor.advance(0.5);
+            Ok(go_on().then_some((limit, seen, budget.limits())))
         });
         Ok::<_, Error>((hanging, limits?))
     };
@@ -88,12 +92,18 @@ pub fn measure(scene: &Scene, methods: &[&'static Method]) -> Result<Found, Fail
         Some(MethodLimits { method, ..*row })
     };
     let rows: Vec<_> = methods.iter().filter_map(|method| row(method)).collect();
-    bar.clear();
-    Ok(Found {
-        rows,
-        motion,
-        hanging,
+    monitor.clear();
+    if rows.is_empty() {
+        return Err(nothing());
+    }
+    Ok(Stability {
+        limits: rows,
+        predictable: motion.predictable,
+        at_rest: hanging.map(|rest| rest.modes),
         at_start,
+        complete: monitor.go_on(),
+        name: scene.name.clone(),
+        title: label.title.clone(),
     })
 }
 
@@ -103,6 +113,7 @@ pub fn measure(scene: &Scene, methods: &[&'static Method]) -> Result<Found, Fail
 fn each<T: Send>(
     methods: &[&'static Method],
     work: f64,
+    monitor: &dyn Monitor,
     find: impl Fn(&'static Method, &Budget) -> Result<T, Error> + Sync,
 ) -> Result<Vec<T>, Error> {
     let mut places: Vec<_> = (0..methods.len()).collect();
@@ -117,7 +128,7 @@ fn each<T: Send>(
     };
     let mut found = measure(places, FIRST_SHARE * work)?;
     let spent: f64 = found.iter().map(|(_, _, budget)| budget.spent()).sum();
-    let limited = |budget: &Budget| budget.limits() && interrupt::go_on();
+    let limited = |budget: &Budget| budget.limits() && monitor.go_on();
     let again: Vec<_> = (found.iter())
         .filter_map(|(k, _, budget)| limited(budget).then_some(*k))
         .collect();

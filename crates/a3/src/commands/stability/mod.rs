@@ -7,5 +7,8 @@ mod limits;
 mod measure;
 mod picture;
 mod table;
+mod value;
 
 pub use command::run;
+pub use limits::{MethodLimits, Stability};
+pub use value::stability;

@@ -2,10 +2,9 @@
 
 use std::fmt::Write;
 
-use a3_core::Scene;
 use a3_core::stability::{Limit, Mode, Observation};
 
-use super::limits::{Found, MethodLimits};
+use super::limits::{MethodLimits, Stability};
 use crate::commands::list;
 
 /// Writes a step (s) in ms, to three digits.
@@ -44,13 +43,8 @@ pub fn observation(seen: Option<Observation>) -> String {
 }
 
 /// Writes the table of all limits, below the fastest motion and above the meaning of the columns.
-pub fn text(scene: &Scene, found: &Found) -> String {
-    let Found {
-        rows,
-        motion,
-        hanging,
-        at_start,
-    } = found;
+pub fn text(found: &Stability) -> String {
+    let rows = &found.limits;
     let heading = [
         "solver",
         " at rest: bounded",
@@ -84,11 +78,11 @@ pub fn text(scene: &Scene, found: &Found) -> String {
     };
     let mut text = format!(
         "{}: fastest motion {} at the start",
-        scene.name,
-        frequency(at_start)
+        found.name,
+        frequency(&found.at_start)
     );
-    if let Some(rest) = hanging {
-        let _ = write!(text, ", {} at rest", frequency(&rest.modes));
+    if let Some(rest) = &found.at_rest {
+        let _ = write!(text, ", {} at rest", frequency(rest));
     }
     let _ = write!(
         text,
@@ -97,7 +91,7 @@ pub fn text(scene: &Scene, found: &Found) -> String {
          tenfold   a disturbance at rest grows tenfold in 10 s, or in 1000 steps if that is longer\n\
          accurate  errors stay below a hundredth of the motion in the first {:.2} s\n",
         list::table(&cells),
-        motion.predictable,
+        found.predictable,
     );
     if any_observed(rows, is_interval) {
         let _ = writeln!(text, "a\u{2013}b       {INTERVAL}");

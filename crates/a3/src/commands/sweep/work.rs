@@ -74,7 +74,14 @@ fn run_variant(
             setting: run.setting,
             ..blank.clone()
         };
-        if let Some((record, _)) = compared(like, &scene, run.method, &reference, &mut [])? {
+        if let Some((record, _)) = compared(
+            like,
+            &scene,
+            run.method,
+            &reference,
+            &mut [],
+            &interrupt::go_on,
+        )? {
             folder.write(run.id, record)?;
             done();
         }

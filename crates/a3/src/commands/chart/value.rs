@@ -1,0 +1,269 @@
+//! A chart as a value: the runs of methods on a scene, their table, their picture and their data.
+
+use a3_core::accuracy::Metric;
+use a3_core::{Method, Scene};
+use a3_plot::{Figure, WorkPrecision};
+
+use super::asked::{check_methods, check_metric, check_scene, scope};
+use super::data::Data;
+use super::horizon::{check_motion, look_ahead};
+use super::measure::{Measured, Study, stiffened};
+use super::record::Record;
+use super::words::Label;
+use super::{picture, table, text};
+use crate::base::failure::Failure;
+use crate::base::monitor::Monitor;
+use crate::cli::ErrorScope;
+use crate::cli::values::{FACTORS, HORIZONS};
+
+/// Options of a [chart](chart()).
+#[derive(Clone, Debug, PartialEq)]
+pub struct ChartOptions {
+    /// End of the runs (s), from 0.01 to 1000; by default as long as errors mean something on the
+    /// scene.
+    pub until: Option<f64>,
+    /// Error that counts; by default that of the positions or, without particles, of the state.
+    pub error: Option<Metric>,
+    /// The only particle whose position and phase count; by default all.
+    pub particle: Option<usize>,
+    /// Whether the error at the end counts, instead of the largest one.
+    pub at_end: bool,
+    /// Whether computing times are measured and drawn, instead of evaluations.
+    pub timed: bool,
+    /// Whether adaptive methods are also run at neighbouring tolerances, which shows how much their
+    /// errors vary.
+    pub spread: bool,
+    /// Factors of the stiffness of all springs, from 1e-6 to 1e6, with a panel for each; 1 for the
+    /// scene itself, and for scenes without springs.
+    pub stiffness: Vec<f64>,
+}
+
+impl Default for ChartOptions {
+    fn default() -> Self {
+        Self {
+            until: None,
+            error: None,
+            particle: None,
+            at_end: false,
+            timed: false,
+            spread: false,
+            stiffness: vec![1.0],
+        }
+    }
+}
+
+/// Runs of methods on a scene at smaller and smaller steps or tolerances, with their errors against
+/// a reference, and their costs.
+pub struct Chart {
+    pub(super) studies: Vec<Study>,
+    pub(super) data: Data,
+    pub(super) methods: Vec<&'static Method>,
+    pub(super) metric: Metric,
+    pub(super) timed: bool,
+    title: String,
+    complete: bool,
+}
+
+/// Measures a chart of these methods on a scene, as `a3 chart` does; of all methods of the table
+/// that support the scene, if there are none.
+///
+/// Runs are measured one at a time, so that their computing times are comparable. If the monitor
+/// stops them, the chart has those that were measured until then.
+///
+/// # Errors
+/// A method does not support the scene, two have the same name, an option is out of range or makes
+/// no sense on the scene, nothing moves, the reference blows up, a callback fails, or the monitor
+/// stopped before the first run ended.
+pub fn chart(
+    scene: &Scene,
+    methods: &[&'static Method],
+    options: &ChartOptions,
+    monitor: &dyn Monitor,
+) -> Result<Chart, Failure> {
+    check_scene(scene)?;
+    let methods = check_methods(scene, methods)?;
+    let data = Data::open(None)?;
+    let mut chart = Chart::begin(scene, &Label::of(scene), methods, options, data, monitor)?;
+    chart.measure(monitor)?;
+    chart.finish()?;
+    Ok(chart)
+}
+
+impl Chart {
+    /// Checks the options, and finds the end of the runs, which are added to these data. With a
+    /// study for each stiffness, all end at the shortest of their horizons.
+    pub(super) fn begin(
+        scene: &Scene,
+        label: &Label,
+        methods: Vec<&'static Method>,
+        options: &ChartOptions,
+        data: Data,
+        monitor: &dyn Monitor,
+    ) -> Result<Self, Failure> {
+        let metric = options.error.unwrap_or(Metric::of_motion(&scene.model));
+        check_metric(metric, scene)?;
+        let asked = ErrorScope {
+            particle: options.particle,
+            at_end: options.at_end,
+        };
+        let scope = scope(&asked, scene)?;
+        let mut until = options
+            .until
+            .map(|until| HORIZONS.check(until))
+            .transpose()?;
+        let mut scenes = vec![];
+        for &factor in &options.stiffness {
+            FACTORS.check(factor)?;
+            monitor.stage("looking ahead");
+            let scene = stiffened(scene, factor)?;
+            let Some(found) = look_ahead(&scene, options.until, factor, monitor)? else {
+                continue;
+            };
+            check_motion(&scene, &found)?;
+            until = Some(until.map_or(found.until, |until: f64| until.min(found.until)));
+            scenes.push((factor, scene, found.motion));
+        }
+        let until = until.filter(|_| !scenes.is_empty()).ok_or_else(nothing)?;
+        let measured = Measured {
+            timed: options.timed,
+            spread: options.spread,
+        };
+        let studies = scenes.into_iter().map(|(factor, scene, motion)| {
+            let of = (metric, scope, motion);
+            Study::new(scene, label, factor, until, &methods, of, measured)
+        });
+        Ok(Self {
+            studies: studies.collect(),
+            data,
+            methods,
+            metric,
+            timed: options.timed,
+            title: label.title.clone(),
+            complete: false,
+        })
+    }
+
+    /// Measures the runs that the data lack.
+    pub(super) fn measure(&mut self, monitor: &dyn Monitor) -> Result<(), Failure> {
+        let mut expected = 0.0;
+        for study in &self.studies {
+            expected += study.expected()?;
+        }
+        monitor.expect(expected);
+        self.complete = true;
+        for study in &mut self.studies {
+            if !study.run(&mut self.data, monitor)? {
+                self.complete = false;
+                break;
+            }
+        }
+        monitor.clear();
+        Ok(())
+    }
+
+    /// Leaves out the studies without any run.
+    ///
+    /// # Errors
+    /// None is left.
+    pub(super) fn finish(&mut self) -> Result<(), Failure> {
+        let data = &self.data;
+        self.studies
+            .retain(|study| study.records(data).next().is_some());
+        if self.studies.is_empty() {
+            return Err(nothing());
+        }
+        Ok(())
+    }
+
+    /// Returns the runs: by stiffness, and in the order in which they were measured.
+    pub fn runs(&self) -> impl Iterator<Item = &Record> {
+        self.studies
+            .iter()
+            .flat_map(|study| study.records(&self.data).chain(study.beside(&self.data)))
+    }
+
+    /// Returns the methods, in the order of the table and of the legend.
+    #[must_use]
+    pub fn methods(&self) -> &[&'static Method] {
+        &self.methods
+    }
+
+    /// Returns the error that counts.
+    #[must_use]
+    pub fn metric(&self) -> Metric {
+        self.metric
+    }
+
+    /// Returns the end of the runs (s).
+    #[must_use]
+    pub fn until(&self) -> f64 {
+        self.studies[0].frames.until
+    }
+
+    /// Whether all runs were measured; false if the monitor stopped them.
+    #[must_use]
+    pub fn is_complete(&self) -> bool {
+        self.complete
+    }
+
+    /// Returns the tables as text: the cost of each method for each error, and the cheapest method.
+    #[must_use]
+    pub fn table(&self) -> String {
+        table::text(
+            &self.studies,
+            &self.data,
+            &self.methods,
+            self.metric,
+            self.timed,
+        )
+    }
+
+    /// Returns the work-precision diagram, which may be changed before it is drawn.
+    #[must_use]
+    pub fn picture(&self) -> WorkPrecision {
+        picture::chart(
+            &self.studies,
+            &self.data,
+            &self.methods,
+            self.metric,
+            self.timed,
+            &self.title,
+        )
+    }
+
+    /// Draws the diagram on a sheet of this width and height (px, 96 to the inch), for SVG, PDF or
+    /// PNG.
+    ///
+    /// # Errors
+    /// It does not fit on the sheet, or no run can be drawn.
+    pub fn figure(&self, width: u32, height: u32) -> Result<Figure, Failure> {
+        let figure = self.picture().draw(f64::from(width), f64::from(height));
+        figure.map_err(Failure::usage)
+    }
+
+    /// Returns the runs as CSV, as `a3 chart --data` writes them.
+    ///
+    /// # Errors
+    /// Never for runs that were measured.
+    pub fn csv(&self) -> Result<String, Failure> {
+        self.text(false)
+    }
+
+    /// Returns the runs as a JSON array of objects, as `a3 chart --data` writes them.
+    ///
+    /// # Errors
+    /// Never for runs that were measured.
+    pub fn json(&self) -> Result<String, Failure> {
+        self.text(true)
+    }
+
+    fn text(&self, json: bool) -> Result<String, Failure> {
+        let runs: Vec<_> = self.runs().cloned().collect();
+        text::write(&runs, json).map_err(Failure::run)
+    }
+}
+
+/// Creates the failure of a chart that was stopped before its first run ended.
+fn nothing() -> Failure {
+    Failure::Interrupted("interrupted before anything was measured".into())
+}
