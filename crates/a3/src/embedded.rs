@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use a3_core::{Grid, Method, Scene, Simulation, StepLimits, integrators};
+use a3_core::{Control, Grid, Method, Scene, Simulation, StepLimits, integrators};
 use a3_scenes::{Defaults, Presentation, Setup};
 
 use crate::base::failure::Failure;
@@ -10,6 +10,7 @@ use crate::base::{progress, verdict};
 #[cfg(feature = "window")]
 use crate::cli::Drawing;
 use crate::cli::What;
+use crate::commands::choose::command;
 #[cfg(feature = "window")]
 use crate::draw::{
     painter::Painter,
@@ -127,6 +128,26 @@ impl OpenScene {
                 presentation: Arc::default(),
                 defaults: Defaults::default(),
             }),
+        }
+    }
+
+    /// Returns the scene as it was built, with what its options turn on.
+    ///
+    /// # Errors
+    /// The scene lacks what they turn on.
+    pub fn scene(&self, setup: &Setup) -> Result<Scene, Failure> {
+        setup::scene_of(&self.options, setup)
+    }
+
+    /// Returns the command line that runs the scene with a method at a step or a tolerance until a
+    /// time (s); `None` for a scene or a method that the program does not know.
+    #[must_use]
+    pub fn command(&self, method: &Method, control: Control, until: f64) -> Option<String> {
+        match &self.made {
+            Made::Read(source) if source.is_named() && !method.is_own() => {
+                Some(command(&self.options, method, control, until))
+            }
+            _ => None,
         }
     }
 

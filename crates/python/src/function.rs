@@ -56,9 +56,10 @@ impl Function {
             return Err(wrong(call.py(), why));
         }
         let name = call.getattr("__name__").and_then(|name| name.extract());
+        let name = name.ok().filter(|name| name != "<lambda>");
         Ok(Self {
             call: call.clone().unbind(),
-            name: name.unwrap_or_else(|_| "the function".into()),
+            name: name.unwrap_or_else(|| "the function".into()),
             shape,
             raised: raised.clone(),
         })
@@ -152,11 +153,10 @@ pub fn array<'py>(object: &Bound<'py, PyAny>) -> Option<Bound<'py, PyArrayDyn<f6
     if let Ok(array) = object.cast::<PyArrayDyn<f64>>() {
         return Some(array.clone());
     }
-    if object.is_none() {
-        return None;
-    }
     let as_array = AS_ARRAY.import(object.py(), "numpy", "asarray").ok()?;
-    let array = as_array.call1((object, "float64")).ok()?;
+    let array = as_array.call1((object,)).ok()?;
+    // Of complex numbers, half would be lost.
+    let array = array.call_method1("astype", ("float64", "C", "same_kind")).ok()?;
     array.cast_into().ok()
 }
 

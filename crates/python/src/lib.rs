@@ -7,6 +7,9 @@
 mod arrays;
 mod errors;
 mod function;
+mod measures;
+mod monitor;
+mod open;
 mod own_method;
 mod own_system;
 mod program;
@@ -16,6 +19,10 @@ mod tables;
 /// The compiled part of `a3_simulator`.
 #[pyo3::pymodule]
 mod _a3 {
+    #[pymodule_export]
+    use super::measures::{Chart, Stability, chart, choose, compare, stability};
+    #[pymodule_export]
+    use super::monitor::Monitor;
     #[pymodule_export]
     use super::own_method::{Derivative, add_method};
     #[pymodule_export]

@@ -3,10 +3,8 @@
 use std::sync::{Arc, Mutex, MutexGuard};
 use std::time::{Duration, Instant};
 
-use a3::embedded::{self, Look, OpenScene, SceneOptions};
-use a3_core::{
-    Checkpoint, Error, Grid, Method, Network, Simulation, SpringKind, StepLimits, Vector3,
-};
+use a3::embedded::{self, Look};
+use a3_core::{Checkpoint, Error, Method, Network, Simulation, SpringKind, StepLimits, Vector3};
 use a3_scenes::Presentation;
 use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
@@ -15,9 +13,9 @@ use pyo3::types::PyBytes;
 use super::arrays::{indices, numbers, rows};
 use super::errors::{of_error, of_failure, wrong};
 use super::function::Raised;
+use super::open::{Given, Opened};
 use super::own_method::raised_by;
-use super::own_system::{self, add_forces};
-use super::tables::{method, origin};
+use super::tables::method;
 
 /// Time between two looks for Ctrl-C and two reports of progress.
 const REPORT_PERIOD: Duration = Duration::from_millis(50);
@@ -124,38 +122,18 @@ impl Run {
 #[pymethods]
 impl Run {
     #[new]
-    #[pyo3(signature = (source, method=None, step=None, tolerance=None, *, grid=None, wind=false, swing=false,
-        self_collision=false, absolute=None, max_step=None, forces=vec![]))]
-    #[expect(
-        clippy::too_many_arguments,
-        clippy::fn_params_excessive_bools,
-        reason = "each is an option"
-    )]
     fn new(
         py: Python<'_>,
-        source: &Bound<PyAny>,
+        given: Given,
         method: Option<&str>,
         step: Option<f64>,
         tolerance: Option<f64>,
-        grid: Option<(usize, usize)>,
-        wind: bool,
-        swing: bool,
-        self_collision: bool,
         absolute: Option<f64>,
         max_step: Option<f64>,
-        forces: Vec<Bound<PyAny>>,
     ) -> PyResult<Self> {
-        let options = SceneOptions {
-            grid: grid_of(py, grid)?,
-            wind,
-            swing,
-            self_collision,
-        };
-        let failed = |failure| of_failure(py, &failure);
-        let raised = Raised::default();
-        let open = open(source, options, &raised)?;
+        let mut opened = Opened::new(py, &given)?;
         let method = method.map(|name| self::method(py, name)).transpose()?;
-        let method = open.method_or(method);
+        let method = opened.scene.method_or(method);
         let value = setting(py, method, step, tolerance)?;
         let limits = StepLimits { absolute, max_step };
         if !method.is_adaptive() && limits != StepLimits::default() {
@@ -165,19 +143,18 @@ impl Run {
             );
             return Err(wrong(py, why));
         }
-        let mut setup = py.detach(|| open.build()).map_err(failed)?;
-        add_forces(&mut setup.scene, &forces, &raised)?;
-        let run = py.detach(|| open.run(&mut setup, method, value, limits));
+        let Opened { scene, setup, .. } = &mut opened;
+        let run = py.detach(|| scene.run(setup, method, value, limits));
         // Its energy was evaluated.
-        if let Some(raised) = raised.take() {
+        if let Some(raised) = opened.raised.take() {
             return Err(raised);
         }
         Ok(Self {
-            simulation: Mutex::new(run.map_err(failed)?),
-            presentation: setup.presentation,
-            duration: setup.defaults.duration,
-            raised,
-            calls: method.is_own() || open.is_built() || !forces.is_empty(),
+            simulation: Mutex::new(run.map_err(|failure| of_failure(py, &failure))?),
+            presentation: opened.setup.presentation.clone(),
+            duration: opened.setup.defaults.duration,
+            calls: opened.calls || method.is_own(),
+            raised: opened.raised,
         })
     }
 
@@ -484,22 +461,6 @@ impl Run {
         let png = drawn.map_err(|failure| of_failure(py, &failure))?;
         Ok(PyBytes::new(py, &png))
     }
-}
-
-/// Returns the grid of so many rows and columns.
-fn grid_of(py: Python<'_>, grid: Option<(usize, usize)>) -> PyResult<Option<Grid>> {
-    let grid = grid.map(|(rows, cols)| Grid::new(rows, cols)).transpose();
-    grid.map_err(|why| wrong(py, why.to_string()))
-}
-
-/// Opens a scene: the kind and the text of one, or a `System`.
-fn open(source: &Bound<PyAny>, options: SceneOptions, raised: &Raised) -> PyResult<OpenScene> {
-    let py = source.py();
-    if let Ok((kind, text)) = source.extract::<(String, String)>() {
-        let opened = OpenScene::read(origin(py, &kind, &text)?, options);
-        return opened.map_err(|failure| of_failure(py, &failure));
-    }
-    Ok(OpenScene::of(own_system::scene(source, raised)?, options))
 }
 
 /// Returns the step (s) or the tolerance of a method, if one is given.

@@ -1,8 +1,8 @@
 //! The tables of scenes and methods, and the keys of a scene.
 
 use a3::embedded::{OpenScene, Origin, SceneOptions};
-use a3_core::{Method, integrators};
-use a3_scenes::SCENES;
+use a3_core::{Control, Method, integrators};
+use a3_scenes::{SCENES, Setup};
 use pyo3::prelude::*;
 
 use super::errors::{of_failure, wrong};
@@ -61,4 +61,15 @@ pub fn method(py: Python<'_>, name: &str) -> PyResult<&'static Method> {
         };
         wrong(py, why)
     })
+}
+
+/// Finds methods by their names or letters.
+pub fn methods_named(py: Python<'_>, names: &[String]) -> PyResult<Vec<&'static Method>> {
+    names.iter().map(|name| method(py, name)).collect()
+}
+
+/// Returns the step or tolerance of this value or, without one, that of the scene or the method.
+pub fn control(setup: &Setup, method: &Method, value: Option<f64>) -> Control {
+    let own = || setup.defaults.control_of(method);
+    value.map_or_else(own, |value| method.control(value))
 }

@@ -189,7 +189,7 @@ def test_a_number_that_is_not_finite_is_a_blow_up():
 @pytest.mark.parametrize(
     "step, words",
     [
-        (lambda f, t, y, h: None, "numbers are expected, not NoneType"),
+        (lambda f, t, y, h: None, "what the step of my-wrong returned: numbers are expected, not NoneType"),
         (lambda f, t, y, h: y[:1], "an array of shape (2,) is expected, not (1,)"),
         (lambda f, t, y, h: y * np.nan, "finite numbers are expected"),
         (None, "a function of f, t, y and h is expected"),

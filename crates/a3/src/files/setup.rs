@@ -97,13 +97,7 @@ impl Request {
 
     /// Builds the scene, with the wind, the swing and the self-collision of the options.
     pub fn scene(&self) -> Result<Scene, Failure> {
-        // Euler's method can run every scene.
-        let run = self.simulate(&self.build()?, &integrators::METHODS[0], None)?;
-        Ok(Scene {
-            model: run.model().clone(),
-            state: run.state().to_vec(),
-            ..run.scene().clone()
-        })
+        scene_of(&self.options, &self.build()?)
     }
 
     /// Builds the scene with its presentation and its defaults.
@@ -138,6 +132,17 @@ impl Request {
     ) -> Result<Simulation, Failure> {
         simulate(&self.options, setup, solver, step)
     }
+}
+
+/// Returns a scene as it was built, with the wind, the swing and the self-collision of the options.
+pub fn scene_of(options: &What, setup: &Setup) -> Result<Scene, Failure> {
+    // Euler's method can run every scene.
+    let run = simulate(options, setup, &integrators::METHODS[0], None)?;
+    Ok(Scene {
+        model: run.model().clone(),
+        state: run.state().to_vec(),
+        ..run.scene().clone()
+    })
 }
 
 /// Creates a simulation with these options, as [`Request::simulate`] does.

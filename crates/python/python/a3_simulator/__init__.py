@@ -18,6 +18,16 @@ if TYPE_CHECKING:
     from ._errors import BlowUp as BlowUp
     from ._errors import Error as Error
     from ._errors import InputError as InputError
+    from ._measures import Chart as Chart
+    from ._measures import Choice as Choice
+    from ._measures import Comparison as Comparison
+    from ._measures import Limits as Limits
+    from ._measures import Point as Point
+    from ._measures import Stability as Stability
+    from ._measures import chart as chart
+    from ._measures import choose as choose
+    from ._measures import compare as compare
+    from ._measures import stability as stability
     from ._own import Method as Method
     from ._own import System as System
     from ._picture import Picture as Picture
@@ -37,6 +47,16 @@ _MODULES = {
     "BlowUp": "_errors",
     "Error": "_errors",
     "InputError": "_errors",
+    "Chart": "_measures",
+    "Choice": "_measures",
+    "Comparison": "_measures",
+    "Limits": "_measures",
+    "Point": "_measures",
+    "Stability": "_measures",
+    "chart": "_measures",
+    "choose": "_measures",
+    "compare": "_measures",
+    "stability": "_measures",
     "Method": "_own",
     "System": "_own",
     "Picture": "_picture",

@@ -1,11 +1,11 @@
 """The compiled part. Its users are the modules beside it."""
 
-from typing import Callable, List, Optional, Sequence, Tuple, Union
+from typing import Callable, List, Optional, Sequence, Tuple
 
 import numpy as np
 import numpy.typing as npt
 
-from ._own import System
+from ._given import Given
 
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
@@ -27,23 +27,69 @@ class Derivative:
     def __call__(self, t: float, y: npt.ArrayLike) -> Floats:
         """Returns the derivative f(t, y) of the state y at time t (s), (n,)."""
 
+class Monitor:
+    """Companion of long work, which another thread watches and can stop."""
+
+    def __new__(cls) -> "Monitor": ...
+    def stop(self) -> None: ...
+    def look(self) -> Tuple[str, float, List[str]]: ...
+
+class Chart:
+    def json(self) -> str: ...
+    def table(self) -> str: ...
+    def about(self) -> Tuple[str, float, bool]: ...
+    def drawn(self, kind: str, size: Tuple[int, int]) -> bytes: ...
+
+class Stability:
+    def json(self) -> str: ...
+    def table(self) -> str: ...
+    def complete(self) -> bool: ...
+    def drawn(self, kind: str, size: Tuple[int, int], step: Optional[float]) -> bytes: ...
+
+def chart(
+    given: Given,
+    methods: Sequence[str],
+    monitor: Monitor,
+    until: Optional[float],
+    error: Optional[str],
+    particle: Optional[int],
+    at_end: bool,
+    timed: bool,
+    spread: bool,
+    stiffness: Sequence[float],
+) -> Chart: ...
+def choose(
+    given: Given,
+    methods: Sequence[str],
+    monitor: Monitor,
+    error: Optional[float],
+    budget: Optional[float],
+    of: Optional[str],
+    until: Optional[float],
+    particle: Optional[int],
+    at_end: bool,
+    timed: bool,
+) -> Tuple[List[Tuple[str, float, float, float, float, str, Optional[str]]], str, float, float]: ...
+def stability(given: Given, methods: Sequence[str], monitor: Monitor) -> Stability: ...
+def compare(
+    given: Given,
+    runs: Sequence[Tuple[str, Optional[float]]],
+    monitor: Monitor,
+    until: float,
+    frames: int,
+) -> Tuple[Floats, List[Tuple[str, float, Floats, Floats, float, Optional[str]]], int, int]: ...
+
 class Run:
     """The run of a scene by a method."""
 
     def __new__(
         cls,
-        source: Union[Tuple[str, str], "System"],
-        method: Optional[str] = None,
-        step: Optional[float] = None,
-        tolerance: Optional[float] = None,
-        *,
-        grid: Optional[Tuple[int, int]] = None,
-        wind: bool = False,
-        swing: bool = False,
-        self_collision: bool = False,
-        absolute: Optional[float] = None,
-        max_step: Optional[float] = None,
-        forces: Sequence[Callable[..., npt.ArrayLike]] = (),
+        given: Given,
+        method: Optional[str],
+        step: Optional[float],
+        tolerance: Optional[float],
+        absolute: Optional[float],
+        max_step: Optional[float],
     ) -> "Run": ...
     def step(self, count: int = 1) -> None:
         """Takes steps. If the present time is within a step, that step is finished first, and counts."""

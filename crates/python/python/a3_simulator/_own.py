@@ -136,7 +136,7 @@ def _name(function: Any, otherwise: str) -> str:
 def _numbers(what: str, given: npt.ArrayLike, shape: Sequence[int]) -> Floats:
     """Returns an array of its own, of finite numbers. A length of -1 is any."""
     try:
-        array = np.array(given, dtype=float)
+        array = np.array(given).astype(float, casting="same_kind")
     except (TypeError, ValueError):
         raise InputError(f"{what}: numbers are expected, not {type(given).__name__}") from None
     if array.ndim != len(shape) or any(n not in (-1, m) for n, m in zip(shape, array.shape)):
@@ -161,7 +161,7 @@ def _measure(step: Step, name: str) -> "tuple[int, int]":
         y, h = np.array([0.1, 0.3]), 2.0 / n
         exact = 1.0 / (1.0 + (1.0 / y - 1.0) * np.exp(-2.0))
         for k in range(n):
-            y = _numbers(f"the step of {name} returned", step(f, k * h, y, h), (2,))
+            y = _numbers(f"what the step of {name} returned", step(f, k * h, y, h), (2,))
         return float(np.abs(y - exact).max())
 
     errors = [error(n) for n in (4, 8)]

@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING, Any, Dict, NamedTuple, Optional, Sequence, Tup
 import numpy as np
 
 from . import _a3
+from ._given import given
 from ._own import Forces, Method, method_name
 from ._progress import progress_bar
-from ._scenes import SceneLike, origin
+from ._scenes import SceneLike
 
 if TYPE_CHECKING:
     from ._picture import Picture
@@ -120,14 +121,11 @@ class Simulation(_a3.Run):
             "wind": wind,
             "swing": swing,
             "self_collision": self_collision,
-            "absolute": absolute,
-            "max_step": max_step,
-            "forces": list(forces),
+            "forces": forces,
         }
-        run = super().__new__(
-            cls, origin(scene), method_name(method), step, tolerance, **options
-        )
-        run._given = (scene, method, step, tolerance), options
+        of_method = method_name(method), step, tolerance, absolute, max_step
+        run = super().__new__(cls, given(scene, **options), *of_method)
+        run._given = (scene, method, step, tolerance), {**options, "absolute": absolute, "max_step": max_step}
         return run
 
     def __reduce__(self) -> Any:

@@ -204,6 +204,11 @@ impl Source {
         }
     }
 
+    /// Whether the scene has a name, or is in a file.
+    pub fn is_named(&self) -> bool {
+        self.path.as_deref() != Some(Path::new(TEXT))
+    }
+
     /// Whether the scene came by standard input, which cannot be read again.
     pub fn is_input(&self) -> bool {
         self.typed == INPUT
