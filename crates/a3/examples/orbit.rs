@@ -5,11 +5,9 @@
 //! `cargo run -p a3-simulator --example orbit -- docs/pictures`
 
 use std::error::Error;
-use std::sync::Arc;
 
-use a3_core::accuracy::{Frames, Reference, measure};
-use a3_core::{Model, ParticleSystem, Scene, Simulation, integrators};
-use a3_plot::{Curve, CurveStyle, Marker, Measurement, Problem, WorkPrecision};
+use a3::ChartOptions;
+use a3_core::{Ode, Scene, Simulation, integrators};
 use a3_render::{Ball, Camera, Gpu, Line, OFFSCREEN_FORMAT, Offscreen, Picture, Renderer};
 
 /// Mass of the moon over that of both.
@@ -19,56 +17,28 @@ const PERIOD: f64 = 17.065_216_560_157_96;
 /// State at the start, in distances of the moon: x, y, x', y'.
 const START: [f64; 4] = [0.994, 0.0, 0.0, -2.001_585_106_379_082_5];
 
-/// Motion of the satellite in the plane of earth and moon, in axes that turn with them.
-struct Satellite;
-
-impl ParticleSystem for Satellite {
-    fn dim(&self) -> usize {
-        4
-    }
-
-    fn eval_f(&self, _t: f64, y: &[f64], dydt: &mut [f64]) {
-        let [earth, moon] = [y[0] + MOON, y[0] + MOON - 1.0];
-        let pull = |mass: f64, x: f64| mass / x.hypot(y[1]).powi(3);
-        let [to_earth, to_moon] = [pull(1.0 - MOON, earth), pull(MOON, moon)];
-        dydt[..2].copy_from_slice(&y[2..]);
-        dydt[2] = y[0] + 2.0 * y[3] - to_earth * earth - to_moon * moon;
-        dydt[3] = y[1] - 2.0 * y[2] - (to_earth + to_moon) * y[1];
-    }
+/// Writes the motion of the satellite in the plane of earth and moon, in axes that turn with them.
+fn satellite(_t: f64, y: &[f64], dydt: &mut [f64]) {
+    let [earth, moon] = [y[0] + MOON, y[0] + MOON - 1.0];
+    let pull = |mass: f64, x: f64| mass / x.hypot(y[1]).powi(3);
+    let [to_earth, to_moon] = [pull(1.0 - MOON, earth), pull(MOON, moon)];
+    dydt[..2].copy_from_slice(&y[2..]);
+    dydt[2] = y[0] + 2.0 * y[3] - to_earth * earth - to_moon * moon;
+    dydt[3] = y[1] - 2.0 * y[2] - (to_earth + to_moon) * y[1];
 }
 
 fn main() -> Result<(), Box<dyn Error>> {
     let folder = std::env::args().nth(1).ok_or("which folder?")?;
-    let model = Model::FirstOrder(Arc::new(Satellite));
-    let scene = Scene::new("orbit", model, START.to_vec());
-    let reference = Reference::finest(&scene, Frames::new(PERIOD), &|| true)?.ok_or("stopped")?;
-    let (mut curves, mut lines) = (vec![], vec![]);
+    let scene = Scene::new("Arenstorf's orbit", Ode::new(4, satellite)?, START.to_vec());
+    let (mut methods, mut lines) = (vec![], vec![]);
     // Both fixed steps of the picture take 24 000 evaluations.
-    for (name, value, colour, corners, color) in [
-        ("heun", PERIOD / 12e3, "#777777", 3, [0.2, 0.2, 0.2, 1.0]),
-        ("rk4", PERIOD / 6e3, "#d55e00", 4, [0.67, 0.11, 0.0, 1.0]),
-        ("dopri5", 1e-6, "#0072b2", 8, [0.0, 0.17, 0.45, 1.0]),
+    for (name, value, color) in [
+        ("heun", PERIOD / 12e3, [0.2, 0.2, 0.2, 1.0]),
+        ("rk4", PERIOD / 6e3, [0.67, 0.11, 0.0, 1.0]),
+        ("dopri5", 1e-6, [0.0, 0.17, 0.45, 1.0]),
     ] {
         let method = integrators::find(name).ok_or("no such method")?;
-        let finer: f64 = if method.is_adaptive() { 0.1 } else { 0.5 };
-        let mut runs = vec![];
-        for k in -1..=6 {
-            let control = method.control(value * finer.powi(k));
-            let run = measure(&scene, method, control, &reference, &|| true)?.ok_or("stopped")?;
-            runs.push(Measurement {
-                error: run.errors.state,
-                work: run.work.total(),
-                ..Measurement::default()
-            });
-        }
-        let style = CurveStyle {
-            colour,
-            dash: &[],
-            marker: Marker::Polygon(corners, 0.0),
-        };
-        let name = method.title.into();
-        curves.push(Curve { style, name, runs });
-
+        methods.push(method);
         let mut run = Simulation::new(scene.clone(), method, method.control(value))?;
         let place = |run: &Simulation| [run.state()[0] as f32, run.state()[1] as f32, 0.0];
         let mut from = place(&run);
@@ -78,20 +48,13 @@ fn main() -> Result<(), Box<dyn Error>> {
             from = place(&run);
         }
     }
-    let chart = WorkPrecision {
-        title: "A satellite that comes back".into(),
-        subtitle: "Arenstorf's orbit about the earth and the moon, over one period".into(),
-        x_label: "largest RMS error of the state".into(),
-        y_label: "evaluations".into(),
-        problems: vec![Problem {
-            curves,
-            resolved: Some(10.0 * reference.floor.state),
-            still: Some(reference.still.state),
-            ..Problem::default()
-        }],
-        ..WorkPrecision::default()
+    let until = Some(PERIOD);
+    let options = ChartOptions {
+        until,
+        ..ChartOptions::default()
     };
-    let chart = chart.draw(800.0, 560.0)?.png(1.5)?;
+    let chart = a3::chart(&scene, &methods, &options, &())?;
+    let chart = chart.figure(800, 560)?.png(1.5)?;
     std::fs::write(format!("{folder}/orbit-chart.png"), chart)?;
 
     // Five times as large as they are.

@@ -17,7 +17,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     })?;
     let scene = Scene::new("hares and lynxes", animals, vec![3.0, 1.0]);
 
-    // y + h (2 k1 + 3 k2 + 4 k3) / 9 (Ralston, Runge-Kutta methods with minimum error bounds, 1962).
+    // y + h (2 k1 + 3 k2 + 4 k3) / 9 (Ralston, Runge-Kutta methods with minimum error bounds,
+    // 1962).
     let plus = |y: &[f64], a: f64, k: &[f64]| -> Vec<f64> {
         y.iter().zip(k).map(|(y, k)| y + a * k).collect()
     };

@@ -48,7 +48,7 @@ pub enum Error {
     },
     /// Run that blew up.
     BlowUp(BlowUp),
-    /// Failure of a function that an own system or an own method calls, in its own words.
+    /// Failure of a function of an own system or an own method, in its words.
     Callback(String),
 }
 
@@ -145,8 +145,7 @@ pub enum Cause {
     },
 }
 
-/// Error of a constraint, as a share of its length, from which on it is visible and worth a
-/// warning.
+/// Error of a constraint, as a share of its length, from which on it is visible.
 const VISIBLE_SHARE: f64 = 0.01;
 
 /// Constraint that is not met.
@@ -352,15 +351,6 @@ impl std::error::Error for Error {}
 impl From<BlowUp> for Error {
     fn from(blow_up: BlowUp) -> Self {
         Self::BlowUp(blow_up)
-    }
-}
-
-/// Whether a run or a step succeeded. A failure of a [callback](Error::Callback) stays an error: it
-/// says nothing about the method or its step.
-pub(crate) fn succeeded<T>(done: Result<T, Error>) -> Result<bool, Error> {
-    match done {
-        Err(error @ Error::Callback(_)) => Err(error),
-        done => Ok(done.is_ok()),
     }
 }
 

@@ -6,8 +6,8 @@ use std::sync::{Mutex, PoisonError};
 
 use crate::error::Error;
 
-/// What a function of an own system returns: nothing or, if it can fail, a result, whose error ends a
-/// run as an [`Error::Callback`] of the same text.
+/// What a function of an own system returns: nothing or, if it can fail, a result, whose error ends
+/// a run as an [`Error::Callback`] of the same text.
 pub trait Outcome {
     /// Returns the text of the error, if the function failed.
     ///
@@ -28,6 +28,15 @@ impl<E: Display> Outcome for Result<(), E> {
     }
 }
 
+/// Whether a run or a step succeeded. A failure of a [callback](Error::Callback) stays an error: it
+/// says nothing about the method or its step.
+pub(crate) fn succeeded<T>(done: Result<T, Error>) -> Result<bool, Error> {
+    match done {
+        Err(error @ Error::Callback(_)) => Err(error),
+        done => Ok(done.is_ok()),
+    }
+}
+
 /// Failure of an evaluation, if there was one since it was last taken.
 #[derive(Default)]
 pub(crate) struct Failure {
@@ -37,8 +46,8 @@ pub(crate) struct Failure {
 }
 
 impl Failure {
-    /// Evaluates a function that writes to `out`. If it fails, keeps the first error and fills `out`
-    /// with NaN; until the error is taken, the function is not called again.
+    /// Evaluates a function that writes to `out`. If it fails, keeps the first error and fills
+    /// `out` with NaN; until the error is taken, the function is not called again.
     pub fn guard(&self, out: &mut [f64], evaluate: impl FnOnce(&mut [f64]) -> Result<(), String>) {
         if !self.is_there.load(Ordering::Acquire) {
             let Err(why) = evaluate(out) else {

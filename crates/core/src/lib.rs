@@ -6,8 +6,8 @@
 //!   masses.
 //! * [`Integrator`]: a method that steps any [`ParticleSystem`]; [`integrators::METHODS`] lists
 //!   the methods.
-//! * [`Ode`], [`SecondOrder`]: own systems from functions; [`Method::from_step`], [`Method::new`]: own
-//!   methods.
+//! * [`Ode`], [`SecondOrder`]: own systems from functions.
+//! * [`Method::from_step`], [`Method::new`]: own methods.
 //! * [`Network`]: particles with pins, constraints, obstacles and force elements, such as springs.
 //! * [`Scene`]: a model, the state it starts from, and what a run of it can be disturbed by.
 //! * [`Simulation`]: the run of a scene by a method, which can be disturbed as it goes on.

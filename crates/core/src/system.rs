@@ -48,17 +48,16 @@ pub trait ParticleSystem {
     #[doc(alias = "evalF")]
     fn eval_f(&self, t: f64, y: &[f64], dydt: &mut [f64]);
 
-    /// Writes the Jacobian df/dy at (t, y) to `jacobian`, row by row, and returns true; returns false
-    /// if the system does not know it. Implicit methods and stability then take differences of f.
+    /// Writes the Jacobian df/dy to `jacobian`, row by row, and returns true; returns false if the
+    /// system does not know it: implicit methods and stability then take differences of f.
     fn jacobian(&self, _t: f64, _y: &[f64], _jacobian: &mut [f64]) -> bool {
         false
     }
 
     /// Returns the reason why an evaluation has failed since the last call, and forgets it.
     ///
-    /// An evaluation that can fail writes NaN and keeps its error, an
-    /// [`Error::Callback`](crate::Error::Callback), for this function. A run then ends with that
-    /// error instead of a blow-up.
+    /// An evaluation that fails writes NaN and keeps its error, an [`Error::Callback`], for this
+    /// function. A run then ends with that error instead of a blow-up.
     fn take_failure(&self) -> Option<Error> {
         None
     }
@@ -149,14 +148,12 @@ pub trait Mechanics {
         !reads_velocity && self.linearized().is_some()
     }
 
-    /// Writes the Jacobian df/dy of y = [x | v], see [`ParticleSystem::jacobian`]. It serves systems
-    /// without the view of [`Linearized`].
+    /// See [`ParticleSystem::jacobian`]. It serves systems without the view of [`Linearized`].
     fn jacobian(&self, _t: f64, _y: &[f64], _jacobian: &mut [f64]) -> bool {
         false
     }
 
-    /// Returns the reason why an evaluation has failed since the last call, and forgets it, see
-    /// [`ParticleSystem::take_failure`].
+    /// See [`ParticleSystem::take_failure`].
     fn take_failure(&self) -> Option<Error> {
         None
     }

@@ -156,7 +156,9 @@ pub fn array<'py>(object: &Bound<'py, PyAny>) -> Option<Bound<'py, PyArrayDyn<f6
     let as_array = AS_ARRAY.import(object.py(), "numpy", "asarray").ok()?;
     let array = as_array.call1((object,)).ok()?;
     // Of complex numbers, half would be lost.
-    let array = array.call_method1("astype", ("float64", "C", "same_kind")).ok()?;
+    let array = array
+        .call_method1("astype", ("float64", "C", "same_kind"))
+        .ok()?;
     array.cast_into().ok()
 }
 

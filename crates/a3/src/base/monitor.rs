@@ -2,11 +2,11 @@
 
 use super::failure::Failure;
 
-/// Companion of long work. Every function has a default, so that `()` watches nothing, and a function
-/// that returns whether the work may go on is a monitor too.
+/// Companion of long work. Every function has a default, so that `()` watches nothing, and a
+/// function that returns whether the work may go on is a monitor too.
 pub trait Monitor: Sync {
-    /// Returns whether the work may go on. It is asked many times a second, also from several threads
-    /// at once; the work ends soon after it has returned false.
+    /// Returns whether the work may go on. It is asked many times a second, also from several
+    /// threads at once; the work ends soon after it has returned false.
     fn go_on(&self) -> bool {
         true
     }

@@ -4,7 +4,8 @@ use nalgebra::{Matrix3, Vector3};
 
 use super::frames::GoOn;
 use crate::control::Control;
-use crate::error::{Error, succeeded};
+use crate::error::Error;
+use crate::failure::succeeded;
 use crate::integrators::{Method, find};
 use crate::random::SplitMix;
 use crate::scene::Scene;

@@ -32,8 +32,8 @@ pub static METHODS: &[Method] = &[
     vbd::METHOD,
 ];
 
-/// Method with this letter, name or alias: one of the table or, failing that, an own method that was
-/// [registered](Method::register).
+/// Method with this letter, name or alias: one of the table or, failing that, an own method that
+/// was [registered](Method::register).
 #[must_use]
 pub fn find(name: &str) -> Option<&'static Method> {
     let of_table = METHODS.iter().find(|m| m.is_called(name));

@@ -13,13 +13,14 @@ type Forces = dyn Fn(f64, &[f64], &[f64], &mut [f64]) -> Result<(), String> + Se
 type Tangents =
     dyn Fn(f64, &[f64], &[f64], &mut [f64], &mut [f64]) -> Result<(), String> + Send + Sync;
 
-/// System of second order, M x'' = F(t, x, v), whose F is a function: of n particles in space, or of
-/// any number of coordinates.
+/// System of second order, M x'' = F(t, x, v), whose F is a function: of n particles in space, or
+/// of any number of coordinates.
 ///
-/// The state is y = [x | v], as [`state`](Self::state) makes it. Particles have 3 n coordinates: all
-/// x, then all y, then all z. A system of d coordinates has d particles, each of which moves along
-/// the x axis: its state has 6 d numbers, of which those of the other axes stay 0. So methods that
-/// kick and drift, stability and pictures treat both alike, and errors are those of the positions.
+/// The state is y = [x | v], as [`state`](Self::state) makes it. Particles have 3 n coordinates:
+/// all x, then all y, then all z. A system of d coordinates has d particles, each of which moves
+/// along the x axis: its state has 6 d numbers, of which those of the other axes stay 0. So methods
+/// that kick and drift, stability and pictures treat both alike, and errors are those of the
+/// positions.
 ///
 /// A pendulum of 1 m, by its angle:
 ///
@@ -94,8 +95,8 @@ impl SecondOrder {
         })
     }
 
-    /// Declares that forces do not depend on velocities. Methods that kick and drift then take fewer
-    /// evaluations, and Nyström methods support the system.
+    /// Declares that forces do not depend on velocities. Methods that kick and drift then take
+    /// fewer evaluations, and Nyström methods support the system.
     #[must_use]
     pub fn positional(self) -> Self {
         Self {

@@ -208,19 +208,14 @@ impl Simulation {
         Ok(())
     }
 
-    /// Ends a run that has blown up, and goes back to the last sound state. A run in which a callback
-    /// failed goes back too, and may go on from there.
+    /// Goes back to the last sound state. A run that has blown up ends there; after another error,
+    /// such as that of a callback, it may go on.
     fn fail(&mut self, failure: Failure) -> Error {
-        let failure = match self.model.system().take_failure() {
-            Some(error) => Failure::Error(error),
-            None => failure,
-        };
+        let own = self.model.system().take_failure();
+        let failure = own.map_or(failure, Failure::Error);
         let (cause, time) = match failure {
             Failure::BlowUp { cause, time } => (cause, time),
-            Failure::Error(error @ Error::Callback(_)) => {
-                return self.go_back().err().unwrap_or(error);
-            }
-            Failure::Error(error) => return error,
+            Failure::Error(error) => return self.go_back().err().unwrap_or(error),
         };
         let mut blow_up = self.state.blow_up(cause, time);
         if let Err(error) = self.go_back() {

@@ -2,7 +2,8 @@
 
 use super::mode::Mode;
 use super::tied::Tied;
-use crate::error::{Error, succeeded};
+use crate::error::Error;
+use crate::failure::succeeded;
 use crate::integrators::{Integrator, Method};
 
 /// Growth of a mode in one step of a method.

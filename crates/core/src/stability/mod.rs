@@ -7,6 +7,7 @@
 //! written down here for either: the method takes a step on the mode, and the spectral radius of
 //! the matrix of that step is the growth.
 
+mod checks;
 mod eigenvalues;
 mod growth;
 mod limit;

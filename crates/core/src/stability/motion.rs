@@ -6,16 +6,18 @@
 //! its mean, but never grows: this multiple is known (`Growth::swing`) and allowed. A run is
 //! *accurate* while its error is below a hundredth of the motion.
 
+use super::checks::take_checked;
 use super::growth::Growth;
 use super::limit::{GROWTH, HORIZON, largest_step};
 use super::mode::Mode;
 use super::observation::Observation;
-use super::search::{Budget, MAX_RUN_WORK, bisect, sharpen, steps, take_checked};
+use super::search::{Budget, MAX_RUN_WORK, bisect, sharpen, steps};
 use super::spectrum::spectrum;
 use std::cell::RefCell;
 
 use crate::control::Control;
-use crate::error::{Error, succeeded};
+use crate::error::Error;
+use crate::failure::succeeded;
 use crate::integrators::{Method, find};
 use crate::network::Network;
 use crate::random::SplitMix;

@@ -1,13 +1,14 @@
 //! Scenes at rest: the state of rest, and the largest step with which a small disturbance of it
 //! does not grow.
 
+use super::checks::take_checked;
 use super::limit::{GROWTH, Limit, largest_step};
 use super::linearised::AtRest;
 use super::mode::Mode;
 use super::normalised::Mixing;
 use super::observation::Observation;
 use super::pencil::Pencil;
-use super::search::{Budget, bisect, cost, steps, take_checked};
+use super::search::{Budget, bisect, cost, steps};
 use super::spectrum::{Undamped, of_drag, shapes};
 use crate::control::Control;
 use crate::error::Error;

@@ -5,7 +5,8 @@ use std::cell::{Cell, RefCell};
 use super::limit::{HORIZON, STEPS};
 use super::observation::Observation;
 use crate::elements::Sheet;
-use crate::error::{Error, succeeded};
+use crate::error::Error;
+use crate::failure::succeeded;
 use crate::integrators::Method;
 use crate::network::Element;
 use crate::scene::Model;
@@ -17,8 +18,6 @@ const MAX_STEP: f64 = 1.0;
 const MAX_LIMIT_RATIO: f64 = 32.0;
 /// Largest work of a run, in steps times the work of an evaluation: some seconds.
 pub(super) const MAX_RUN_WORK: f64 = 2e8;
-/// Number of checks during a run that holds.
-const CHECKS: u64 = 200;
 /// Largest work of a run, as a share of the search's budget.
 const MAX_RUN_SHARE: f64 = 0.25;
 /// Work between two checks of the budget, as a share of it.
@@ -110,8 +109,8 @@ impl Budget {
         self.failure.take().map_or(Ok(()), Err)
     }
 
-    /// Takes steps of a run. Returns whether the run holds; `None` once the budget is spent, and if a
-    /// callback fails, see [`check`](Self::check).
+    /// Takes steps of a run. Returns whether the run holds; `None` once the budget is spent, and if
+    /// a callback fails, see [`check`](Self::check).
     pub(super) fn take(&self, run: &mut Simulation, steps: u64) -> Option<bool> {
         let (mut left, mut portion) = (steps, 1);
         while left > 0 {
@@ -167,25 +166,6 @@ pub(super) fn cost(run: &Simulation) -> f64 {
 pub(super) fn steps(h: f64, expected: f64) -> u64 {
     let least = if expected.is_finite() { 1.0 } else { 0.05 };
     (HORIZON / h).ceil().max(least * STEPS) as u64
-}
-
-/// Takes `steps` steps and then 8 more, one by one: calls `check` with numbers of steps to take and
-/// to check. Returns its result as soon as that is not `Some(true)`.
-pub(super) fn take_checked(steps: u64, mut check: impl FnMut(u64) -> Option<bool>) -> Option<bool> {
-    let mut left = steps;
-    while left > 0 {
-        let count = (steps / CHECKS).clamp(1, left);
-        if !check(count)? {
-            return Some(false);
-        }
-        left -= count;
-    }
-    for _ in 0..8 {
-        if !check(1)? {
-            return Some(false);
-        }
-    }
-    Some(true)
 }
 
 /// Reason why a search ends before it has found the limit.

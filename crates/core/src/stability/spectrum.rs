@@ -165,8 +165,9 @@ fn of_constraints(mechanics: &dyn Linearized) -> Option<Mode> {
 }
 
 /// Modes of a first-order system: one for each real eigenvalue and each conjugate pair of the
-/// Jacobian, which is the system's own or computed by central differences. It does not distinguish drag from other
-/// damping: all damping counts as that of springs if kicks depend on v, else as drag.
+/// Jacobian, which is the system's own or computed by central differences. It does not distinguish
+/// drag from other damping: all damping counts as that of springs if kicks depend on v, else as
+/// drag.
 fn of_jacobian(system: &dyn ParticleSystem, t: f64, y: &[f64]) -> Vec<Mode> {
     let carried = |k: &usize| rigid_of(system).is_some_and(|rigid| rigid.is_carried(*k));
     let unknowns: Vec<usize> = (0..y.len()).filter(|k| !carried(k)).collect();

@@ -7,6 +7,7 @@ mod common;
 mod accuracy;
 mod adaptive;
 mod bdf;
+mod callbacks;
 mod compliant;
 mod ends;
 mod foreign;

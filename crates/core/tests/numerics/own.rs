@@ -7,12 +7,12 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use approx::assert_relative_eq;
 
 use crate::common::method;
-use a3_core::accuracy::{Frames, Metric, Reference, choose_among, horizon, measure};
+use a3_core::accuracy::{Frames, Metric, Reference, choose_among, measure};
 use a3_core::integrators::{METHODS, View, find};
-use a3_core::stability::{Budget, Motion, largest_step, spectrum};
+use a3_core::stability::{largest_step, spectrum};
 use a3_core::{
-    Cause, Control, Error, Integrator, Method, Model, Ode, ParticleSystem, Scene, SecondOrder,
-    Simulation, Work,
+    Control, Error, Integrator, Method, Model, Ode, ParticleSystem, Scene, SecondOrder, Simulation,
+    Work,
 };
 
 /// y + a k.
@@ -104,8 +104,8 @@ fn euler_named(name: &str) -> Result<Method, Error> {
     Method::from_step(name, 1, |f, t, y, h| Ok(plus(y, h, &f.at(t, y)?)))
 }
 
-/// Explicit Euler multiplies a decay of rate r by 1 - h r: it is stable up to h = 2 / r. It lets any
-/// oscillation grow.
+/// Explicit Euler multiplies a decay of rate r by 1 - h r: it is stable up to h = 2 / r. It lets
+/// any oscillation grow.
 #[test]
 fn the_limits_of_an_own_euler_are_exact() {
     let own = euler("own-limits").register();
@@ -175,8 +175,8 @@ fn an_own_integrator_kicks_an_own_spring() {
     assert!(own.check(rotation(1.0).model.system()).is_err());
 }
 
-/// All methods solve an own system of three coordinates, x'' = -k x - d x' + g(t), each with its own
-/// mass; with and without its Jacobian implicit methods find the same states.
+/// All methods solve an own system of three coordinates, x'' = -k x - d x' + g(t), each with its
+/// own mass; with and without its Jacobian implicit methods find the same states.
 #[test]
 fn every_method_runs_own_systems_of_any_dimension() {
     let masses = [1.0, 2.0, 0.5];
@@ -262,99 +262,6 @@ fn modes_come_from_an_own_jacobian() {
         assert_relative_eq!(euler.bounded, 2.0 / fastest, max_relative = 1e-6);
     }
     assert_eq!(calls.load(Ordering::Relaxed), 1);
-}
-
-/// A decay whose f fails from a time on.
-fn failing(calls: &Arc<AtomicUsize>) -> Scene {
-    let calls = calls.clone();
-    let f = move |t: f64, y: &[f64], dydt: &mut [f64]| {
-        calls.fetch_add(1, Ordering::Relaxed);
-        dydt[0] = -y[0];
-        if t > 0.5 {
-            Err("no data after half a second")
-        } else {
-            Ok(())
-        }
-    };
-    Scene::new("failing", Ode::new(1, f).unwrap(), vec![1.0])
-}
-
-#[test]
-fn a_failure_of_f_ends_a_run_with_its_own_words() {
-    let told = Error::Callback("no data after half a second".into());
-    for method in METHODS {
-        let calls = Arc::new(AtomicUsize::new(0));
-        let scene = failing(&calls);
-        if method.check(scene.model.system()).is_err() {
-            continue;
-        }
-        for control in [Control::Step(0.01), Control::Tolerance(1e-6)] {
-            let Ok(mut run) = Simulation::new(scene.clone(), method, control) else {
-                continue;
-            };
-            assert_eq!(run.advance_to(1.0), Err(told.clone()), "{}", method.name);
-            let before = calls.load(Ordering::Relaxed);
-            assert!(run.time() <= 0.51 && run.state()[0].is_finite());
-            // The failure is over: the run may go on from there, and fails in the same way.
-            assert_eq!(run.advance_to(1.0), Err(told.clone()), "{}", method.name);
-            let again = calls.load(Ordering::Relaxed) - before;
-            assert!(again < 1000, "{}: {again}", method.name);
-        }
-    }
-    let calls = Arc::default();
-    let scene = failing(&calls);
-    let go_on = || true;
-    let found = horizon(&scene, 2.0, &go_on).map(drop);
-    assert_eq!(found, Err(told.clone()));
-    let found = Reference::finest(&scene, Frames::new(2.0), &go_on).map(drop);
-    assert_eq!(found, Err(told.clone()));
-    let found = Motion::of(&scene, go_on).map(drop);
-    assert_eq!(found, Err(told));
-}
-
-#[test]
-fn a_failure_of_a_step_ends_a_run_with_its_own_words() {
-    let scene = rotation(1.0);
-    let failing = Method::from_step("own-failing", 1, |f, t, y, h| {
-        if t > 0.3 {
-            return Err(Error::Callback("the step gave up".into()));
-        }
-        Ok(plus(y, h, &f.at(t, y)?))
-    });
-    let failing = failing.unwrap().register();
-    let mut run = Simulation::new(scene.clone(), failing, Control::Step(0.1)).unwrap();
-    let told = Error::Callback("the step gave up".into());
-    assert_eq!(run.advance_to(1.0), Err(told.clone()));
-    let motion = Motion::of(&scene, || true).unwrap().unwrap();
-    let budget = Budget::new(1e9);
-    let bounded = motion.bounded(failing, &budget, || true);
-    assert_eq!(bounded.map(drop), Err(told));
-
-    let short = Method::from_step("own-short", 1, |_, _, y, _| Ok(y[1..].to_vec()));
-    let mut run =
-        Simulation::new(scene.clone(), short.unwrap().register(), Control::Step(0.1)).unwrap();
-    let why = run.advance_to(1.0).unwrap_err().to_string();
-    assert_eq!(
-        why,
-        "the method own-short returned 1 numbers, but the state has 2"
-    );
-
-    let wrong = Method::from_step("own-wrong", 1, |f, t, _, _| f.at(t, &[0.0]));
-    let mut run =
-        Simulation::new(scene.clone(), wrong.unwrap().register(), Control::Step(0.1)).unwrap();
-    let (expected, found) = (2, 1);
-    assert_eq!(
-        run.advance_to(1.0),
-        Err(Error::Dimension { expected, found })
-    );
-
-    let nan = Method::from_step("own-nan", 1, |_, _, y, _| Ok(vec![f64::NAN; y.len()]));
-    let mut run =
-        Simulation::new(scene.clone(), nan.unwrap().register(), Control::Step(0.1)).unwrap();
-    let Err(Error::BlowUp(blow_up)) = run.advance_to(1.0) else {
-        panic!("NaN went unnoticed");
-    };
-    assert_eq!(blow_up.cause, Cause::NumberNotFinite { index: 0 });
 }
 
 /// An own Heun's method has order 2 on an own system, and is chosen among methods where it is the

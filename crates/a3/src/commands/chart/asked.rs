@@ -26,8 +26,8 @@ pub fn methods(
     check_methods(scene, &asked)
 }
 
-/// Returns the methods that were asked for, each once. If there are none, these are all of the table
-/// that support the scene.
+/// Returns the methods that were asked for, each once. If there are none, these are all of the
+/// table that support the scene.
 ///
 /// # Errors
 /// A method does not support the scene, or two methods have one name.

@@ -7,8 +7,8 @@ use crate::base::failure::Failure;
 use crate::base::monitor::Monitor;
 
 /// Finds the time up to which the motion of a scene can be predicted. `until` of the result is the
-/// end of the runs: `asked` (s), or else that time. Notes the end and its reason if it was not asked
-/// for, and warns of one that is too late. `None` if the monitor stopped it.
+/// end of the runs: `asked` (s), or else that time. Notes the end and its reason if it was not
+/// asked for, and warns of one that is too late. `None` if the monitor stopped it.
 pub fn look_ahead(
     scene: &Scene,
     asked: Option<f64>,

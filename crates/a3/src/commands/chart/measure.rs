@@ -50,8 +50,9 @@ pub struct Measured {
 }
 
 impl Study {
-    /// Creates a study of a scene until `until` (s). Its label describes it in the records; errors are of a metric in a scope, and `motion` is the largest
-    /// distance of the particles from where they start (m).
+    /// Creates a study of a scene until `until` (s). Its label describes it in the records; errors
+    /// are of a metric in a scope, and `motion` is the largest distance of the particles from where
+    /// they start (m).
     pub fn new(
         scene: Scene,
         label: &Label,

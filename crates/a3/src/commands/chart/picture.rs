@@ -69,8 +69,8 @@ pub fn chart(
 /// Letters of the solvers whose steps turn rigid bodies by a composition of order 6.
 const TURNING: [char; 3] = ['s', 'v', 'p'];
 
-/// Keeps the curves of the methods that are cheapest for some error in some panel, of those that the
-/// course teaches, and of own methods.
+/// Keeps the curves of the methods that are cheapest for some error in some panel, of those that
+/// the course teaches, and of own methods.
 pub fn keep_best(chart: &mut WorkPrecision, methods: &[&'static Method], scene: &Scene) {
     let mut kept: Vec<_> = methods
         .iter()

@@ -103,9 +103,9 @@ pub struct Record {
     pub factorizations: u64,
     /// Number of steps that were rejected.
     pub rejections: u64,
-    /// Observed order p from the errors of the positions, or of the state, in this run and the next coarser one:
-    /// their ratio is that of the steps or, for an adaptive method, of the evaluations, to the
-    /// power p.
+    /// Observed order p from the errors of the positions, or of the state, in this run and the next
+    /// coarser one: their ratio is that of the steps or, for an adaptive method, of the
+    /// evaluations, to the power p.
     #[serde(default)]
     pub order: Option<f64>,
     /// For a run of `--spread`: the tolerance whose spread of errors it shows. That of the run

@@ -88,7 +88,8 @@ pub fn each(methods: &[&Method]) -> Vec<CurveStyle> {
     styles.collect()
 }
 
-/// Returns the style of a method of the table by its letter; the default style for any other letter.
+/// Returns the style of a method of the table by its letter; the default style for any other
+/// letter.
 fn of(letter: char) -> CurveStyle {
     use Marker::{Cross, Polygon, Star};
     let (colour, dash, marker) = match letter {

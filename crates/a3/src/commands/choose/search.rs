@@ -18,8 +18,8 @@ const SHOWN: usize = 3;
 /// Simulated time of a frame (s).
 const FRAME_TIME: f64 = 1.0 / 60.0;
 
-/// Finds the cheapest methods for an error, with the computing times of their frames (ms). `None` if
-/// the monitor stopped it.
+/// Finds the cheapest methods for an error, with the computing times of their frames (ms). `None`
+/// if the monitor stopped it.
 ///
 /// # Errors
 /// The error is too small for the reference, or a run fails.

@@ -107,8 +107,8 @@ impl Choice {
     }
 }
 
-/// Chooses among these methods for a scene, as `a3 choose` does; among all methods of the table that
-/// support the scene, if there are none.
+/// Chooses among these methods for a scene, as `a3 choose` does; among all methods of the table
+/// that support the scene, if there are none.
 ///
 /// # Errors
 /// A method does not support the scene, two have the same name, an option is out of range or makes
@@ -122,11 +122,11 @@ pub fn choose(
 ) -> Result<Choice, Failure> {
     check_scene(scene)?;
     let methods = check_methods(scene, methods)?;
-    let asked = Asked::new(scene, options)?;
-    let reference = asked.reference(monitor)?;
+    let search = Search::new(scene, options)?;
+    let reference = search.reference(monitor)?;
     monitor.expect(methods.len() as f64);
-    let found = asked.search(&methods, &reference, monitor)?;
-    let metric = asked.metric;
+    let found = search.run(&methods, &reference, monitor)?;
+    let metric = search.metric;
     let chosen = |(candidate, cost): &(Candidate, f64)| Chosen::new(candidate, *cost, metric);
     Ok(Choice {
         found: found.iter().map(chosen).collect(),
@@ -136,15 +136,15 @@ pub fn choose(
     })
 }
 
-/// Options, checked against the scene.
-struct Asked<'a> {
+/// Search for a choice: options that are checked against the scene.
+struct Search<'a> {
     scene: &'a Scene,
     options: &'a ChooseOptions,
     metric: Metric,
     scope: Scope,
 }
 
-impl<'a> Asked<'a> {
+impl<'a> Search<'a> {
     fn new(scene: &'a Scene, options: &'a ChooseOptions) -> Result<Self, Failure> {
         let metric = options.metric.unwrap_or(Metric::of_motion(&scene.model));
         check_metric(metric, scene)?;
@@ -195,7 +195,7 @@ impl<'a> Asked<'a> {
     }
 
     /// Finds the best candidates, with the computing times of their frames (ms).
-    fn search(
+    fn run(
         &self,
         methods: &[&'static Method],
         reference: &Reference,

@@ -11,8 +11,8 @@ use crate::base::failure::Failure;
 use crate::base::monitor::Monitor;
 use crate::commands::chart::{Label, check_methods, check_scene};
 
-/// Measures the largest steps of these methods on a scene, as `a3 stability` does; of all methods of
-/// the table that support the scene, if there are none. Methods are measured in parallel.
+/// Measures the largest steps of these methods on a scene, as `a3 stability` does; of all methods
+/// of the table that support the scene, if there are none. Methods are measured in parallel.
 ///
 /// If the monitor stops the search, limits that were not found until then are `None`.
 ///

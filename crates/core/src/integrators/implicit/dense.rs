@@ -143,8 +143,8 @@ impl Dense {
         });
     }
 
-    /// Writes 1 - a J at y into the matrix. A Jacobian that the system knows counts as an evaluation
-    /// for each of its columns, one by differences as two.
+    /// Writes 1 - a J at y into the matrix. A Jacobian that the system knows counts as an
+    /// evaluation for each of its columns, one by differences as two.
     fn form(&mut self, system: &dyn ParticleSystem, t: f64, a: f64, y: &[f64]) -> Work {
         self.measure(system, a, y);
         let count = self.unknowns.len();
