@@ -189,10 +189,8 @@ fn main() -> Result<(), Box<dyn Error>> {
         x_label: "error of the deflection, against Timoshenko's beam".into(),
         y_label: "cost of the forces (single springs)".into(),
         problems: vec![Problem {
-            title: String::new(),
             curves,
-            resolved: None,
-            still: None,
+            ..Problem::default()
         }],
         foot: String::new(),
         held: String::new(),

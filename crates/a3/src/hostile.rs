@@ -1,4 +1,5 @@
-//! Mutated command lines and data of charts: each is accepted or refused, without a panic.
+//! Mutated command lines, data of charts, and states of other programs: each is accepted or
+//! refused, without a panic.
 
 #[path = "../../scenes/tests/hostile/mutation.rs"]
 mod mutation;
@@ -8,6 +9,7 @@ use clap::error::ErrorKind;
 
 use crate::cli::{Cli, explain};
 use crate::commands::chart::text::read;
+use crate::files::states::parse;
 use mutation::{Random, seeds};
 
 /// Number of inputs of each kind.
@@ -59,5 +61,34 @@ fn data_of_charts_are_taken_or_refused() {
             true
         });
         assert!(taken > INPUTS / 25, "{taken}");
+    }
+}
+
+#[test]
+fn states_are_taken_or_refused() {
+    let endings = ["json", "csv", "npz", "npz", "json", "csv"];
+    let seeds = seeds("states");
+    assert_eq!(seeds.len(), endings.len());
+    for (seed, ending) in seeds.iter().zip(endings) {
+        let original = parse(seed, ending, 2).unwrap();
+        assert_eq!(original.times, [0.0, 0.5, 1.0], "{ending}");
+        let mut random = Random(1);
+        let mut taken = 0;
+        for _ in 0..INPUTS {
+            let bytes = random.mutated(std::slice::from_ref(seed));
+            let Ok(states) = parse(&bytes, ending, 2) else {
+                continue;
+            };
+            taken += 1;
+            assert!(states.times.windows(2).all(|pair| pair[0] < pair[1]));
+            let rows = states
+                .positions
+                .iter()
+                .chain(states.velocities.iter().flatten());
+            assert!(rows.into_iter().all(|row| row.len() == 6));
+            let mut numbers = states.positions.iter().flatten();
+            assert!(numbers.all(|x| x.is_finite()));
+        }
+        assert!(taken > INPUTS / 100, "{ending}: {taken}");
     }
 }

@@ -10,7 +10,7 @@ use crate::base::{interrupt, terminal};
 use crate::cli::{self, Cli, Command};
 #[cfg(feature = "window")]
 use crate::commands::render;
-use crate::commands::{chart, choose, list, manual, simplify, simulate, stability, sweep};
+use crate::commands::{chart, choose, judge, list, manual, simplify, simulate, stability, sweep};
 use crate::files::lessons;
 #[cfg(feature = "window")]
 use crate::window::{self, compare};
@@ -47,6 +47,7 @@ pub fn run(args: Vec<OsString>) -> u8 {
             Some(Command::Stability(options)) => stability::run(&options),
             Some(Command::Choose(options)) => choose::run(&options),
             Some(Command::Simplify(options)) => simplify::run(&options),
+            Some(Command::Judge(options)) => judge::run(&options),
             Some(Command::Sweep(options)) => sweep::run(&options),
             Some(Command::Scenes(options)) => list::scenes(&options),
             Some(Command::Solvers) => list::solvers(),

@@ -27,4 +27,4 @@ pub use figure::Figure;
 pub use label::FONT;
 pub use stability::{Region, StabilityRegions};
 pub use style::{CurveStyle, Marker};
-pub use work_precision::{Curve, Measurement, Problem, WorkPrecision};
+pub use work_precision::{Curve, Mark, Measurement, Problem, WorkPrecision};

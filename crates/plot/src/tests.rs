@@ -139,10 +139,10 @@ fn precision_chart(methods: usize, panels: usize) -> WorkPrecision {
         "circle",
     ];
     let problem = |(k, title): (usize, &&str)| Problem {
-        still: None,
         title: (*title).to_owned(),
         curves: curves(methods, 1.0 + 0.7 * k as f64),
         resolved: [Some(8e-9), Some(3e-7), None][k % 3],
+        ..Problem::default()
     };
     WorkPrecision {
         title: "Speed against accuracy".to_owned(),

@@ -12,13 +12,13 @@ pub const EXIT_CODES: [(&str, &str); 6] = [
     ),
     (
         "1",
-        "The work failed: a run blew up, surfaces passed through one another under --check, a file could not be \
-         written, or there is no graphics adapter to draw with.",
+        "The work failed: a run blew up, surfaces passed through one another under --check, judged results err by \
+         more than --within, a file could not be written, or there is no graphics adapter to draw with.",
     ),
     (
         "2",
-        "The request cannot be met: something is wrong with the command line, a scene file, a mesh or the data of a \
-         chart. Nothing was done.",
+        "The request cannot be met: something is wrong with the command line, a scene file, a mesh, the data of a \
+         chart or a judged file. Nothing was done, except that other judged files were.",
     ),
     ("129", "SIGHUP ended the work: the terminal was closed."),
     ("130", "SIGINT ended the work: Ctrl-C."),

@@ -9,6 +9,8 @@ use clap_complete::Shell;
 
 use super::chart::Chart;
 use super::choose::Choose;
+#[cfg(not(target_arch = "wasm32"))]
+use super::judge::Judge;
 use super::scenes::Scenes;
 use super::simplify::Simplify;
 use super::simulate::Simulate;
@@ -73,6 +75,10 @@ pub enum Command {
     /// Find what a scene can do without: each part left out, its grids finer and coarser, and the
     /// leanest scene for an error
     Simplify(Simplify),
+    /// Judge results of other programs: their errors, their order, the solver that they agree with,
+    /// and the usual mistakes
+    #[cfg(not(target_arch = "wasm32"))]
+    Judge(Judge),
     /// Run scenes with many solvers, steps and values of their keys, in shares on many machines
     #[cfg(not(target_arch = "wasm32"))]
     Sweep(Sweep),

@@ -6,6 +6,8 @@ mod command;
 #[cfg(feature = "window")]
 mod drawing;
 mod explain;
+#[cfg(not(target_arch = "wasm32"))]
+mod judge;
 mod measures;
 mod names;
 mod run;
@@ -28,6 +30,8 @@ pub use command::{Cli, Command};
 #[cfg(feature = "window")]
 pub use drawing::Drawing;
 pub use explain::explain;
+#[cfg(not(target_arch = "wasm32"))]
+pub use judge::Judge;
 pub use measures::{ErrorScope, WorkMeasure};
 pub use run::{RunOptions, What};
 pub use scenes::Scenes;

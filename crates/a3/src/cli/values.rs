@@ -179,6 +179,15 @@ pub fn budget(text: &str) -> Result<f64, String> {
     BUDGETS.read(text)
 }
 
+/// Reads the computing time of a run (s).
+pub fn seconds(text: &str) -> Result<f64, String> {
+    within(
+        text,
+        1e-9..=1e9,
+        "a computing time is a number of seconds from 1e-9 to 1e9, such as 0.8",
+    )
+}
+
 /// Size of a chart for a column of a paper, 90 mm wide (px).
 const COLUMN_SIZE: (u32, u32) = (340, 360);
 

@@ -1,7 +1,7 @@
 //! `a3 scenes` and `a3 solvers`: lists of the built-in scenes and of the solvers.
 
 use a3_core::{Control, integrators};
-use a3_scenes::Description;
+use a3_scenes::{Description, List};
 
 use crate::base::failure::Failure;
 use crate::base::terminal;
@@ -39,10 +39,16 @@ pub fn table(rows: &[Vec<String>]) -> String {
         .collect()
 }
 
-/// Lists the scenes, or prints the file of one or the schema.
+/// Lists the scenes, or prints the file of one, its list or the schema.
 pub fn scenes(options: &Scenes) -> Result<(), Failure> {
     if let Some(name) = &options.print {
-        return terminal::send(find(name, "--print")?.text());
+        let source = find(name, "--print")?;
+        if options.list {
+            let scene = source.build(options.grid)?.scene;
+            let text = List::of(&scene).and_then(|list| list.text());
+            return terminal::send(&text.map_err(Failure::usage)?);
+        }
+        return terminal::send(source.text());
     }
     if options.schema {
         return terminal::send(&(Description::schema() + "\n"));

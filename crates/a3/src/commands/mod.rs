@@ -3,6 +3,7 @@
 pub mod chart;
 pub mod choose;
 pub mod compare;
+pub mod judge;
 pub mod list;
 pub mod manual;
 mod motion;

@@ -1,4 +1,4 @@
-//! Files that are read and written: scenes, checkpoints, exports and films.
+//! Files that are read and written: scenes, checkpoints, exports, films, and states of other programs.
 
 pub mod checkpoint;
 pub mod ending;
@@ -13,3 +13,5 @@ pub mod lessons;
 pub mod output;
 pub mod scene_file;
 pub mod setup;
+#[cfg(not(target_arch = "wasm32"))]
+pub mod states;

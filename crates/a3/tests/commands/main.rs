@@ -16,6 +16,7 @@ mod films;
 #[cfg(unix)]
 mod hand_in;
 mod help;
+mod judge;
 mod lessons;
 mod manual;
 #[cfg(unix)]

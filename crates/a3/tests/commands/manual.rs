@@ -6,13 +6,14 @@ use std::process::Command;
 
 use crate::common::{a3, asked, complaint, is_missing, text};
 
-const COMMANDS: [&str; 13] = [
+const COMMANDS: [&str; 14] = [
     "simulate",
     "render",
     "chart",
     "stability",
     "choose",
     "simplify",
+    "judge",
     "sweep",
     "compare",
     "scenes",

@@ -173,6 +173,14 @@ impl Reference {
         Cow::Owned(self.trajectory.at(start, model, t).positions().to_vec())
     }
 
+    /// Coordinates of a model (m) and their rates of change (m/s) at a time (s) up to the last
+    /// frame: known at frames, interpolated between them.
+    #[must_use]
+    pub fn motion(&self, model: &Model, t: f64) -> [Vec<f64>; 2] {
+        let start = (&self.start, self.frames);
+        self.trajectory.motion(start, model, t)
+    }
+
     /// Time (s) until which positions, or a state without particles, are known to less than a
     /// ten-thousandth of the [`floor`](Self::floor), and their uncertainty (m) until then: a later
     /// event is less certain. `None` if none are known so precisely.

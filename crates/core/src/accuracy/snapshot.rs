@@ -159,6 +159,11 @@ impl Snapshot {
         &self.positions
     }
 
+    /// Positions (m) and velocities (m/s), or the numbers of the state and their rates of change.
+    pub fn motion(&self) -> [Vec<f64>; 2] {
+        [self.positions.clone(), self.velocities.clone()]
+    }
+
     /// Errors of another snapshot of the same scene against this one, which is exact. The phase is
     /// not yet divided by the [`square_speed`](Self::square_speed).
     pub fn errors_of(&self, other: &Self, scope: Scope) -> Errors {

@@ -35,6 +35,17 @@ impl Trajectory {
         Snapshot::interpolated(model, &self.around(start, t), t)
     }
 
+    /// Coordinates of a model (m) and their rates of change (m/s) at time t (s).
+    pub fn motion(&self, start: (&Snapshot, Frames), model: &Model, t: f64) -> [Vec<f64>; 2] {
+        let (first, frames) = start;
+        let k = (t / frames.spacing()).round() as u64;
+        match k.min(frames.count) {
+            0 if t <= 0.0 => first.motion(),
+            k if k > 0 && t == frames.time(k) => self.snapshots[k as usize - 1].motion(),
+            _ => self.at(start, model, t).motion(),
+        }
+    }
+
     /// Errors at the nearest end of the step of a model that encloses frame k, counted from 1.
     /// Those of contact are unknown there, and infinite. The error of the positions is at least
     /// that of interpolating the frame from the exact states at both ends of the step.

@@ -5,7 +5,7 @@
 mod panel;
 mod problem;
 
-pub use problem::{Curve, Measurement, Problem};
+pub use problem::{Curve, Mark, Measurement, Problem};
 
 use crate::axis::{self, Axis};
 use crate::error::Error;
@@ -59,6 +59,12 @@ impl WorkPrecision {
             .filter(|run| run.is_drawn())
     }
 
+    /// All runs of other programs that can be drawn.
+    fn marks(&self) -> impl Iterator<Item = &Mark> {
+        let marks = self.problems.iter().flat_map(|problem| &problem.marks);
+        marks.filter(|mark| mark.is_drawn())
+    }
+
     /// The axes of error and of work, around all runs on all problems.
     fn axes(&self) -> Option<[Axis; 2]> {
         let range = |values: &mut dyn Iterator<Item = f64>| {
@@ -71,7 +77,8 @@ impl WorkPrecision {
         let errors = &mut self
             .runs()
             .filter(|run| !run.is_lost() && run.error > 0.0)
-            .map(|run| run.error);
+            .map(|run| run.error)
+            .chain(self.marks().map(|mark| mark.error));
         let (least, most) = range(errors)?;
         // Runs far below the resolution of the reference need no space, whereas a limit just left
         // of all runs is worth showing.
@@ -87,7 +94,8 @@ impl WorkPrecision {
         } else {
             least
         };
-        let (low, high) = range(&mut self.runs().map(|run| run.work))?;
+        let known = self.marks().filter_map(|mark| mark.work);
+        let (low, high) = range(&mut self.runs().map(|run| run.work).chain(known))?;
         Some([Axis::log(least, most.max(least)), Axis::log(low, high)])
     }
 

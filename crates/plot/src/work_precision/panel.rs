@@ -2,13 +2,13 @@
 
 use std::cmp::Reverse;
 
-use super::problem::{Curve, Measurement, Problem};
+use super::problem::{Curve, Mark, Measurement, Problem};
 use crate::axis::{self, Axis};
 use crate::figure::Figure;
 use crate::geometry::{Point, Rect};
 use crate::label::{Anchor, GREY, Label};
 use crate::paint::{Paint, Pen};
-use crate::style::Filling;
+use crate::style::{CurveStyle, Filling, Marker};
 
 /// Opacity of a band of errors.
 const BAND_OPACITY: f64 = 0.25;
@@ -97,6 +97,7 @@ impl<'a> Drawing<'a> {
         self.lines
             .extend(line.windows(2).map(|pair| [pair[0], pair[1]]));
         self.curves(figure);
+        self.marks(figure);
         self.blown_up(figure, strip);
         if limit > 0.0 {
             self.explain_shade(figure, shade);
@@ -176,6 +177,52 @@ impl<'a> Drawing<'a> {
                 style.draw_marker(figure, point, radius, Filling::None);
             }
         }
+    }
+
+    /// Draws the runs of other programs: as stars or, without their work, as lines, with their
+    /// names.
+    fn marks(&mut self, figure: &mut Figure) {
+        let (size, radius) = (self.size, 0.55 * self.fine);
+        let style = CurveStyle {
+            colour: "#000000",
+            dash: &[],
+            marker: Marker::Star(5, 0.45),
+        };
+        let drawn = || self.problem.marks.iter().filter(|mark| mark.is_drawn());
+        let places: Vec<_> = drawn().map(|mark| self.place_of(mark)).collect();
+        for (x, y) in &places {
+            if let Some(y) = y {
+                style.draw_marker(figure, [*x, *y], radius, Filling::Full);
+                self.taken.push(Rect::around([*x, *y], radius));
+            } else {
+                let ends = [[*x, self.main.y0], [*x, self.main.y1]];
+                figure.line(&ends, Pen::new("#000000", 0.1 * self.fine));
+                self.lines.push(ends);
+            }
+        }
+        for (mark, (x, y)) in drawn().zip(places) {
+            let label = Label::new(&mark.name, size).bold();
+            let width = label.room([0.0, 0.0]).width();
+            if let Some(y) = y {
+                let sides = [0.8 * size, -0.8 * size - width, -width / 2.0];
+                let offsets = [0.35, -0.9, 1.6, -2.1, 2.8].into_iter();
+                let places = offsets.flat_map(|dy| sides.map(|dx| [x + dx, y + dy * size]));
+                self.place(figure, label, places);
+            } else {
+                let places = (0..120).map(|k| {
+                    let side = if k % 2 == 0 { -0.4 } else { 1.1 };
+                    let down = (0.6 + 0.3 * f64::from(k)) * size;
+                    [x + side * size, self.main.y0 + width + down]
+                });
+                self.place(figure, label.turned(), places);
+            }
+        }
+    }
+
+    /// The place of a run of another program across, and up if its work is known.
+    fn place_of(&self, mark: &Mark) -> (f64, Option<f64>) {
+        let up = mark.work.map(|work| self.axes[1].at(work));
+        (self.axes[0].at(mark.error), up)
     }
 
     /// Draws the error of a run in which nothing moves, as a line with a label.

@@ -44,6 +44,27 @@ pub struct Problem {
     /// The error of a run in which nothing moves, beyond which errors are meaningless: the front
     /// ends there.
     pub still: Option<f64>,
+    /// Runs of other programs.
+    pub marks: Vec<Mark>,
+}
+
+/// A run of another program, which is drawn with its name.
+#[derive(Clone, Debug, Default)]
+pub struct Mark {
+    /// The error, on the horizontal axis.
+    pub error: f64,
+    /// The work, on the vertical axis; if it is not known, the error is drawn as a line.
+    pub work: Option<f64>,
+    /// The name of the run.
+    pub name: String,
+}
+
+impl Mark {
+    /// Whether the run has a place on the chart.
+    pub(super) fn is_drawn(&self) -> bool {
+        let has_place = |work: f64| work.is_finite() && work > 0.0;
+        self.error.is_finite() && self.error > 0.0 && self.work.is_none_or(has_place)
+    }
 }
 
 impl Measurement {
@@ -151,7 +172,7 @@ mod tests {
                 ]),
             ],
             resolved: Some(1e-8),
-            still: None,
+            ..Problem::default()
         };
         assert_eq!(problem.front(), [[1, 2], [1, 1], [0, 0]]);
         let still = Some(5e-3);

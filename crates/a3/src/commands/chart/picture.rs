@@ -227,9 +227,9 @@ pub fn problem(
         .map(|r| r.still(metric))
         .fold(f64::INFINITY, f64::min);
     Problem {
-        title: String::new(),
         curves: curves.collect(),
         resolved,
         still: Some(still).filter(|still| still.is_finite()),
+        ..Problem::default()
     }
 }

@@ -10,4 +10,5 @@ mod read;
 mod source;
 
 pub use hash::Hash;
+pub use read::read;
 pub use source::Source;

@@ -1,0 +1,263 @@
+//! The command `a3 judge`: reads the files, judges each, and prints what it found.
+
+use std::path::Path;
+
+use a3_core::Scene;
+use a3_core::accuracy::{Horizon, horizon};
+
+use super::judgement::{Course, Judgement, judge};
+use super::picture;
+use super::plain::Plain;
+use super::summary::Record;
+use super::trial::Way;
+use super::truth::Truth;
+use super::words::{is_resolved, is_within, orders, text, too_large};
+use crate::base::failure::Failure;
+use crate::base::progress::Bar;
+use crate::base::{interrupt, terminal};
+use crate::cli::Judge;
+use crate::commands::chart::{PICTURES, check_motion, describe};
+use crate::files::output;
+use crate::files::setup::Request;
+use crate::files::states::{States, read};
+
+/// Largest time that is judged (s).
+const MAX_TIME: f64 = 1000.0;
+
+/// Judges the files that the command line names.
+pub fn run(options: &Judge) -> Result<(), Failure> {
+    interrupt::listen();
+    let scene = scene(options)?;
+    let mut refused = vec![];
+    let files = files(options, &scene, &mut refused)?;
+    let bar = Bar::new(files.len() as f64);
+    let horizon = look_ahead(options, &scene, &files, &bar)?;
+    let judged = judge_all(options, &scene, &horizon, &files, &mut refused, &bar)?;
+    print(options, &scene, &horizon, &judged)?;
+    if let Some(path) = &options.chart {
+        let until = judged.iter().map(|(_, judgement)| judgement.until);
+        let until = until.fold(0.0, f64::max);
+        picture::draw(
+            path,
+            options,
+            (&scene, horizon.motion, until),
+            &judged,
+            &bar,
+        )?;
+    }
+    bar.clear();
+    verdict(options, &judged, refused.len())
+}
+
+/// Builds the scene, and checks the outputs.
+fn scene(options: &Judge) -> Result<Scene, Failure> {
+    let scene = Request::read(&options.what)?.scene()?;
+    if !options.seconds.is_empty() && options.seconds.len() != options.files.len() {
+        return Err(Failure::usage(format!(
+            "--seconds has {} computing times for {} files: give one for each",
+            options.seconds.len(),
+            options.files.len()
+        )));
+    }
+    if let Some(path) = &options.chart {
+        output::check(path, PICTURES)?;
+    }
+    if let Some(path) = options
+        .summary
+        .as_deref()
+        .filter(|path| *path != Path::new("-"))
+    {
+        output::check(path, &["json"])?;
+    }
+    Ok(scene)
+}
+
+/// Reads the files. One that is refused is reported, and those beside it are judged.
+fn files(
+    options: &Judge,
+    scene: &Scene,
+    refused: &mut Vec<Failure>,
+) -> Result<Vec<(String, States)>, Failure> {
+    let mut files = vec![];
+    for (k, path) in options.files.iter().enumerate() {
+        match read(path, scene.model.particles()) {
+            Ok(mut states) => {
+                states.seconds = options.seconds.get(k).copied().or(states.seconds);
+                files.push((path.display().to_string(), states));
+            }
+            Err(error) => refuse(options, error.into(), refused)?,
+        }
+    }
+    if files.is_empty() {
+        return Err(none());
+    }
+    Ok(files)
+}
+
+/// Reports a file that is refused. The only file is the failure of the command.
+fn refuse(options: &Judge, why: Failure, refused: &mut Vec<Failure>) -> Result<(), Failure> {
+    if options.files.len() == 1 {
+        return Err(why);
+    }
+    terminal::warn(&format!("error: {why}"));
+    refused.push(why);
+    Ok(())
+}
+
+fn none() -> Failure {
+    Failure::usage("no file could be judged")
+}
+
+/// Finds how long errors mean something on the scene, up to the last state of the files.
+fn look_ahead(
+    options: &Judge,
+    scene: &Scene,
+    files: &[(String, States)],
+    bar: &Bar,
+) -> Result<Horizon, Failure> {
+    bar.say("looking ahead  ".into());
+    let ends = files.iter().filter_map(|(_, states)| states.times.last());
+    let last = ends
+        .fold(0.0, |last: f64, end| last.max(*end))
+        .min(MAX_TIME);
+    let last = options.until.map_or(last, |until| last.min(until));
+    let found = horizon(scene, last, &interrupt::go_on).map_err(Failure::run)?;
+    let found = found.ok_or_else(stopped)?;
+    check_motion(scene, &found)?;
+    let is_chaotic = found.lyapunov.is_finite() && options.until.is_none();
+    Ok(Horizon {
+        until: if is_chaotic { found.until } else { last },
+        ..found
+    })
+}
+
+/// Judges all files.
+fn judge_all(
+    options: &Judge,
+    scene: &Scene,
+    horizon: &Horizon,
+    files: &[(String, States)],
+    refused: &mut Vec<Failure>,
+    bar: &Bar,
+) -> Result<Vec<(String, Judgement)>, Failure> {
+    let plain = Plain::of(scene).ok();
+    let course = Course {
+        scene,
+        plain: plain.as_ref(),
+        until: horizon.until,
+        step: options.step,
+    };
+    let mut truth = Truth::new(scene, horizon);
+    let mut judged = vec![];
+    for (name, states) in files {
+        bar.say(format!("{name}  "));
+        match judge(&course, &mut truth, states) {
+            Ok(Some(judgement)) => judged.push((name.clone(), judgement)),
+            Ok(None) => return Err(stopped()),
+            Err(Failure::Usage(why)) => {
+                let why = Failure::usage(format!("{name}: {why}"));
+                refuse(options, why, refused)?;
+            }
+            Err(failure) => return Err(failure),
+        }
+        bar.advance(1.0);
+    }
+    bar.clear();
+    if judged.is_empty() {
+        return Err(none());
+    }
+    Ok(judged)
+}
+
+/// Prints the judgements, or writes them as JSON.
+fn print(
+    options: &Judge,
+    scene: &Scene,
+    horizon: &Horizon,
+    judged: &[(String, Judgement)],
+) -> Result<(), Failure> {
+    if let Some(path) = &options.summary {
+        let records: Vec<_> = judged
+            .iter()
+            .map(|(name, judgement)| Record::of(name, judgement, options.within))
+            .collect();
+        let json = serde_json::to_string_pretty(&records).map_err(Failure::run)? + "\n";
+        if path == Path::new("-") {
+            return terminal::send(&json);
+        }
+        output::write(path, json.as_bytes())?;
+    }
+    let name = describe(&options.what, scene);
+    if judged
+        .iter()
+        .any(|(_, judgement)| judgement.judged < judgement.states)
+        && options.until.is_none()
+    {
+        terminal::say(&format!(
+            "{name}: errors grow by themselves e-fold every {:.2} s (Lyapunov time); judged up to {} s\n",
+            horizon.lyapunov, horizon.until
+        ))?;
+    }
+    for (k, (name, judgement)) in judged.iter().enumerate() {
+        let gap = if k == 0 { "" } else { "\n" };
+        terminal::say(&format!("{gap}{}", text(name, judgement, options.within)))?;
+    }
+    let orders = program_orders(judged);
+    if orders.is_empty() {
+        return Ok(());
+    }
+    terminal::say(&format!("\n{orders}"))
+}
+
+/// The orders of the programs: files are of one if they agree with the same method, or with none.
+fn program_orders(judged: &[(String, Judgement)]) -> String {
+    let way = |judgement: &Judgement| judgement.found.found.map(|found| found.trial.way);
+    let mut ways: Vec<_> = judged.iter().map(|(_, judgement)| way(judgement)).collect();
+    ways.dedup();
+    let of = |chosen: &Option<Way>| {
+        let own = judged
+            .iter()
+            .filter(|(_, judgement)| way(judgement) == *chosen);
+        let runs = own.filter(|(_, judgement)| is_resolved(judgement));
+        let runs = runs.filter_map(|(name, judgement)| {
+            Some((&**name, judgement.step?, judgement.worst.error))
+        });
+        orders(&runs.collect::<Vec<_>>())
+    };
+    let once = |k: &usize| !ways[..*k].contains(&ways[*k]);
+    (0..ways.len()).filter(once).map(|k| of(&ways[k])).collect()
+}
+
+/// Fails if a file was refused, or errs by more than was asked for.
+fn verdict(options: &Judge, judged: &[(String, Judgement)], refused: usize) -> Result<(), Failure> {
+    if refused > 0 {
+        return Err(Failure::usage(format!(
+            "{refused} of {} files could not be judged",
+            options.files.len()
+        )));
+    }
+    let Some(within) = options.within else {
+        return Ok(());
+    };
+    let missed: Vec<_> = judged
+        .iter()
+        .filter(|(_, judgement)| !is_within(judgement, within))
+        .collect();
+    match &missed[..] {
+        [] => Ok(()),
+        [(name, judgement)] => Err(Failure::run(format!(
+            "{name}: {}",
+            too_large(judgement, within)
+        ))),
+        several => Err(Failure::run(format!(
+            "{} of {} files err by more than {within:e} m",
+            several.len(),
+            judged.len()
+        ))),
+    }
+}
+
+/// Creates the failure of a command that was interrupted before all files were judged.
+fn stopped() -> Failure {
+    Failure::Interrupted("interrupted before all files were judged".into())
+}

@@ -1,0 +1,21 @@
+//! `a3 judge`: results of other programs against the reference of their scene: their errors, their
+//! order, the method that they agree with, and the usual mistakes.
+
+mod command;
+mod finding;
+mod grid;
+mod judgement;
+mod mistake;
+mod picture;
+mod plain;
+mod quantity;
+mod rows;
+mod scheme;
+mod search;
+mod start;
+mod summary;
+mod trial;
+mod truth;
+mod words;
+
+pub use command::run;

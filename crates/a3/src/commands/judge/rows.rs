@@ -1,0 +1,121 @@
+//! Rows of a file that are judged: their times, and their places on a grid of steps.
+
+use super::grid::Grid;
+use crate::files::states::States;
+
+/// Largest number of coordinates that are judged. Of longer files, every second row is judged, or
+/// every third, ...
+const MAX_NUMBERS: usize = 1_000_000;
+
+/// Rows of a file up to an end.
+pub struct Rows<'a> {
+    states: &'a States,
+    /// Indices of the rows that are judged.
+    kept: Vec<usize>,
+    /// Their times (s).
+    pub times: Vec<f64>,
+    /// Their times as multiples of a step.
+    pub grid: Option<Grid>,
+    /// Number of rows up to the end.
+    pub count: usize,
+}
+
+impl<'a> Rows<'a> {
+    /// Rows up to `until` (s), on a grid of steps `step` (s) if it is known.
+    ///
+    /// # Errors
+    /// There is no row between 0 and `until`.
+    pub fn of(states: &'a States, until: f64, step: Option<f64>) -> Result<Self, String> {
+        let end = until * (1.0 + 1e-9);
+        let count = states.times.iter().take_while(|t| **t <= end).count();
+        let times = &states.times[..count];
+        if times.last().is_none_or(|last| *last <= 0.0) {
+            if let Some(t) = states.not_finite_at {
+                return Err(format!(
+                    "its numbers are not finite from {t} s on, the first after the start"
+                ));
+            }
+            return Err(format!(
+                "it has no state between 0 and {until} s: there is nothing to judge"
+            ));
+        }
+        let rounding = states.rounding[0];
+        let grid = match step {
+            Some(step) => Grid::of_step(times, rounding, step),
+            None => Grid::of(times, rounding),
+        };
+        let numbers = count * states.positions[0].len();
+        let every = numbers.div_ceil(MAX_NUMBERS);
+        let kept: Vec<_> = (0..count)
+            .filter(|k| k % every == 0 || k + 1 == count)
+            .collect();
+        let grid = grid.map(|grid| Grid {
+            numbers: kept.iter().map(|k| grid.numbers[*k]).collect(),
+            ..grid
+        });
+        let times = match &grid {
+            Some(grid) => grid.times().collect(),
+            None => kept.iter().map(|k| times[*k]).collect(),
+        };
+        Ok(Self {
+            states,
+            kept,
+            times,
+            grid,
+            count,
+        })
+    }
+
+    /// Number of rows that are judged.
+    pub fn len(&self) -> usize {
+        self.kept.len()
+    }
+
+    /// Positions of row k (m), column-major.
+    pub fn positions(&self, k: usize) -> &'a [f64] {
+        &self.states.positions[self.kept[k]]
+    }
+
+    /// Velocities of row k (m/s), column-major, if the file has them.
+    pub fn velocities(&self, k: usize) -> Option<&'a [f64]> {
+        let rows = self.states.velocities.as_ref()?;
+        Some(&rows[self.kept[k]])
+    }
+
+    /// Largest error of the positions by the digits of the file (m).
+    pub fn rounding(&self) -> f64 {
+        self.states.rounding[1]
+    }
+
+    /// The last time (s).
+    pub fn until(&self) -> f64 {
+        self.times[self.times.len() - 1]
+    }
+}
+
+/// Root mean square over the particles of the distance between two states' positions (m).
+pub fn distance(a: &[f64], b: &[f64]) -> f64 {
+    let squares = a.iter().zip(b).map(|(a, b)| (a - b).powi(2));
+    (squares.sum::<f64>() / (a.len() as f64 / 3.0)).sqrt()
+}
+
+/// The particle that is farthest from its place, and its distance (m).
+pub fn farthest(a: &[f64], b: &[f64]) -> (usize, f64) {
+    let n = a.len() / 3;
+    let apart = |i: usize| {
+        let squares = (0..3).map(|axis| (a[axis * n + i] - b[axis * n + i]).powi(2));
+        squares.sum::<f64>().sqrt()
+    };
+    let all = (0..n).map(|i| (i, apart(i)));
+    all.fold(
+        (0, 0.0),
+        |most, next| if next.1 > most.1 { next } else { most },
+    )
+}
+
+/// Coordinates of particles, column-major.
+pub fn columns(vectors: &[[f64; 3]]) -> Vec<f64> {
+    (0..3)
+        .flat_map(|axis| vectors.iter().map(move |v| v[axis]))
+        .collect()
+}

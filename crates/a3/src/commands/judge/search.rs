@@ -1,0 +1,315 @@
+//! The search for the method that a file agrees with, for the usual mistakes, and for the nearest
+//! method.
+
+use a3_core::integrators::METHODS;
+
+use super::mistake::Mistake;
+use super::scheme::Scheme;
+use super::trial::{Compared, Judged, Start, Trial, Way};
+use crate::base::interrupt;
+
+/// Numbers of steps between two grid points that are tried.
+const PARTS: [u64; 34] = [
+    1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 12, 15, 16, 18, 20, 24, 25, 30, 32, 40, 48, 50, 60, 64, 75, 80,
+    96, 100, 120, 125, 128, 200, 250, 500,
+];
+/// Number of steps that are tried after one that agrees.
+const MORE_PARTS: usize = 4;
+/// Ratio of distances of which the smaller one tells a method from another.
+const CLEARLY: f64 = 10.0;
+/// Numbers of steps that are tried at any cost, and for the nearest method.
+const FEW_PARTS: [u64; 5] = [1, 2, 4, 5, 10];
+/// Largest work of all trials of a kind, in springs and particles that are visited.
+const MAX_WORK: f64 = 5e7;
+/// Least number of rows that agree before others differ, and least ratio of the distance moved
+/// until then to that at which rows agree.
+const MIN_PART: (usize, f64) = (10, 1e5);
+/// Largest number of particles of networks that are swept particle by particle.
+const MAX_SWEPT: usize = 500;
+/// Least difference of velocities, over the speed, of a file whose positions alone agree.
+pub const MIN_APART: f64 = 1e-3;
+/// Ratio of the distance of a way with a mistake to that of the nearest method, below which it is
+/// named.
+const MUCH_NEARER: f64 = 0.1;
+
+/// Agreement of a file with a way to compute its steps.
+#[derive(Clone, Copy, Debug)]
+pub struct Agreement {
+    pub trial: Trial,
+    /// Step (s).
+    pub step: f64,
+    pub compared: Compared,
+    /// Last time (s) at which it agrees, if it does not until the end.
+    pub until: Option<f64>,
+}
+
+/// Result of the search.
+#[derive(Clone, Debug, Default)]
+pub struct Match {
+    /// The way that the file agrees with.
+    pub found: Option<Agreement>,
+    /// Others that it agrees with as well.
+    pub also: Vec<Agreement>,
+    /// Nearest correct method, if it agrees with none.
+    pub nearest: Option<Agreement>,
+    /// A way with a mistake that is much nearer than that.
+    pub suspect: Option<Agreement>,
+    /// Longest and shortest step that were tried (s).
+    pub steps: [f64; 2],
+}
+
+/// Search in progress.
+struct Search<'a> {
+    judged: &'a Judged<'a>,
+    /// Step between grid points (s).
+    spacing: f64,
+    /// Longest agreement up to some row.
+    part: Option<Agreement>,
+    /// Agreements of positions alone, in a file whose velocities are others.
+    positions: Vec<Agreement>,
+    /// Largest number of steps between grid points that was tried.
+    finest: u64,
+}
+
+/// Finds the method that the rows agree with. `None` if the command was interrupted. `at_start`
+/// tells whether the first row is the start of the scene.
+pub fn search(judged: &Judged, at_start: bool) -> Option<Match> {
+    let grid = judged.rows.grid.as_ref().map(|grid| grid.step);
+    let Some(spacing) = grid.or(judged.step) else {
+        return Some(Match::default());
+    };
+    let mut search = Search {
+        judged,
+        spacing,
+        part: None,
+        positions: vec![],
+        finest: 1,
+    };
+    let parts: &[u64] = if judged.step.is_some() { &[1] } else { &PARTS };
+    let correct = search.correct();
+    let slips = search.slips();
+    let starts = [
+        Start::Ahead,
+        Start::Behind,
+        Start::Row(usize::from(at_start)),
+    ];
+    let plans: [(&[Way], &[Start]); 3] = [
+        (&correct, &[Start::Scene]),
+        (&slips, &[Start::Scene]),
+        (&correct, &starts),
+    ];
+    for (ways, starts) in plans {
+        let found = search.agreements(ways, starts, parts)?;
+        if let Some((first, others)) = found.split_first() {
+            return Some(Match {
+                found: Some(*first),
+                also: others.to_vec(),
+                ..search.blank()
+            });
+        }
+    }
+    let positions = search.positions.first().copied();
+    if let Some(found) = positions.or(search.part) {
+        return Some(Match {
+            found: Some(found),
+            ..search.blank()
+        });
+    }
+    let few: Vec<_> = FEW_PARTS
+        .into_iter()
+        .filter(|p| parts.contains(p))
+        .collect();
+    let nearest = search.nearest(&correct, &few, f64::INFINITY)?;
+    let bound = nearest.map_or(f64::INFINITY, |nearest| nearest.compared.distance);
+    let nearest = nearest.filter(|nearest| nearest.compared.distance < judged.motion);
+    let suspect = search.nearest(&slips, &few[..1], MUCH_NEARER * bound)?;
+    Some(Match {
+        nearest,
+        suspect,
+        ..search.blank()
+    })
+}
+
+impl Search<'_> {
+    fn blank(&self) -> Match {
+        Match {
+            steps: [self.spacing, self.spacing / self.finest as f64],
+            ..Match::default()
+        }
+    }
+
+    /// All solvers of a3 that support the scene, and schemes of textbooks.
+    fn correct(&self) -> Vec<Way> {
+        let scene = self.judged.scene;
+        let methods = METHODS
+            .iter()
+            .filter(|m| m.check(scene.model.system()).is_ok());
+        let schemes = self.schemes(|scheme| scheme.question().is_none());
+        methods
+            .map(Way::Method)
+            .chain(schemes.map(|scheme| Way::Scheme(scheme, None)))
+            .collect()
+    }
+
+    /// Schemes of textbooks with mistakes, and schemes that are mistakes.
+    fn slips(&self) -> Vec<Way> {
+        let Some(plain) = self.judged.plain else {
+            return vec![];
+        };
+        let mistakes = Mistake::ALL
+            .into_iter()
+            .filter(|mistake| plain.can_have(*mistake));
+        let mistakes: Vec<_> = mistakes.collect();
+        let wrong = self.schemes(|scheme| scheme.question().is_some());
+        let right = self.schemes(|scheme| scheme.question().is_none());
+        let with = right.flat_map(|scheme| {
+            let each = mistakes.iter();
+            each.map(move |mistake| Way::Scheme(scheme, Some(*mistake)))
+        });
+        wrong
+            .map(|scheme| Way::Scheme(scheme, None))
+            .chain(with)
+            .collect()
+    }
+
+    fn schemes(&self, is: impl Fn(Scheme) -> bool) -> impl Iterator<Item = Scheme> {
+        let plain = self.judged.plain;
+        Scheme::ALL.into_iter().filter(move |scheme| {
+            let n = self.judged.scene.model.particles();
+            let is_cheap = scheme.evaluations(n) < n || n <= MAX_SWEPT;
+            is(*scheme) && is_cheap && plain.is_some_and(|plain| scheme.serves(plain))
+        })
+    }
+
+    /// The ways that agree with all rows, at the largest step at which one does, or at a slightly
+    /// smaller one at which it agrees much better. `None` if the command was interrupted.
+    fn agreements(
+        &mut self,
+        ways: &[Way],
+        starts: &[Start],
+        parts: &[u64],
+    ) -> Option<Vec<Agreement>> {
+        let (mut work, mut best, mut more) = (0.0, vec![], MORE_PARTS);
+        for &parts in parts {
+            let is_found = !best.is_empty();
+            if is_found && more == 0 {
+                break;
+            }
+            more -= usize::from(is_found);
+            if work > MAX_WORK && !FEW_PARTS.contains(&parts) {
+                continue;
+            }
+            self.finest = self.finest.max(parts);
+            let mut found = vec![];
+            for &start in starts {
+                for &way in ways {
+                    if !interrupt::go_on() {
+                        return None;
+                    }
+                    let trial = Trial { way, parts, start };
+                    found.extend(self.agreement(trial, &mut work));
+                }
+            }
+            if !found.is_empty() && (best.is_empty() || self.are_better(&found, &best)) {
+                best = found;
+            }
+        }
+        let least = least(&best);
+        let rounding = self.judged.rounding();
+        let first = best
+            .iter()
+            .position(|a| a.compared.distance <= CLEARLY * least + rounding);
+        if let Some(first) = first {
+            best[..=first].rotate_right(1);
+        }
+        best.retain(|agreement| agreement.compared.distance <= CLEARLY * least + rounding);
+        Some(best)
+    }
+
+    /// Whether one of several ways agrees much better than all others.
+    fn are_better(&self, ways: &[Agreement], others: &[Agreement]) -> bool {
+        CLEARLY * least(ways) + self.judged.rounding() < least(others)
+    }
+
+    /// Agreement of a trial with all rows. One with many of them is remembered.
+    fn agreement(&mut self, trial: Trial, work: &mut f64) -> Option<Agreement> {
+        let bound = |moved: f64| self.judged.tolerance(moved);
+        let compared = self.judged.compare(trial, &bound, work)?;
+        let rows = self.judged.rows;
+        let mut agreement = Agreement {
+            trial,
+            step: self.judged.step_of(trial)?,
+            compared,
+            until: None,
+        };
+        let moved = compared.moved.max(self.judged.motion);
+        let clear = moved / self.judged.tolerance(compared.moved);
+        let since = match trial.start {
+            Start::Row(row) => row + 1,
+            _ => 0,
+        };
+        if compared.rows == rows.len() {
+            // A single step from a row of the file tells nothing, nor does a file of few digits in
+            // which nothing moves.
+            if clear <= 1.0 || matches!(trial.start, Start::Row(row) if compared.rows <= row + 2) {
+                return None;
+            }
+            if compared
+                .velocities
+                .is_some_and(|[apart, speed]| apart > MIN_APART * speed)
+            {
+                self.positions.push(agreement);
+                return None;
+            }
+            return Some(agreement);
+        }
+        let longest = self.part.map_or(0, |part| part.compared.rows);
+        if compared.rows > longest.max(since + MIN_PART.0) && clear > MIN_PART.1 {
+            agreement.until = Some(rows.times[compared.rows - 1]);
+            self.part = Some(agreement);
+        }
+        None
+    }
+
+    /// The way whose largest distance from the rows is the least, if it is below `bound` (m).
+    /// `None` if the command was interrupted.
+    #[expect(clippy::option_option, reason = "interrupted, or none below the bound")]
+    fn nearest(&mut self, ways: &[Way], parts: &[u64], bound: f64) -> Option<Option<Agreement>> {
+        let (mut nearest, mut least, mut work) = (None, bound, 0.0);
+        for &parts in parts {
+            if work > MAX_WORK {
+                break;
+            }
+            for &way in ways {
+                if !interrupt::go_on() {
+                    return None;
+                }
+                let trial = Trial {
+                    way,
+                    parts,
+                    start: Start::Scene,
+                };
+                let compared = self.judged.compare(trial, &|_| least, &mut work);
+                let whole = compared.filter(|compared| compared.rows == self.judged.rows.len());
+                if let Some(compared) = whole.filter(|compared| compared.distance < least) {
+                    least = compared.distance;
+                    nearest = Some(Agreement {
+                        trial,
+                        step: self.spacing / parts as f64,
+                        compared,
+                        until: None,
+                    });
+                }
+            }
+        }
+        Some(nearest)
+    }
+}
+
+/// Least distance of several agreements (m); infinite without any.
+fn least(agreements: &[Agreement]) -> f64 {
+    let distances = agreements
+        .iter()
+        .map(|agreement| agreement.compared.distance);
+    distances.fold(f64::INFINITY, f64::min)
+}

@@ -1,0 +1,282 @@
+//! Trials: a method, or a scheme with a mistake, against the rows of a file.
+
+use a3_core::{Control, Method, Scene, Simulation};
+
+use super::mistake::Mistake;
+use super::plain::{Forces, Plain};
+use super::rows::{Rows, columns, distance};
+use super::scheme::{PlainRun, Scheme};
+use crate::base::interrupt;
+
+/// Largest distance of rows that agree, over the distance moved until then.
+const AGREEMENT: f64 = 1e-9;
+/// Largest distance of rows that agree, over the size of the scene: its rounding errors.
+const ROUNDING: f64 = 1e-13;
+/// Largest distance of rows that agree, over the error of a coordinate by its digits.
+const DIGITS: f64 = 2.0;
+/// Largest work of a trial, in springs and particles that are visited.
+const MAX_WORK: f64 = 5e8;
+/// Work of a step of an implicit method, over an evaluation.
+const IMPLICIT_WORK: f64 = 25.0;
+
+/// Way to compute a step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Way {
+    /// Solver of a3.
+    Method(&'static Method),
+    /// Scheme on plain masses and springs.
+    Scheme(Scheme, Option<Mistake>),
+}
+
+impl Way {
+    /// Name of the method.
+    pub fn title(self) -> &'static str {
+        match self {
+            Self::Method(method) => method.title,
+            Self::Scheme(scheme, _) => scheme.title(),
+        }
+    }
+
+    /// Name of the solver of a3 that it is, if it is one.
+    pub fn solver(self) -> Option<&'static str> {
+        match self {
+            Self::Method(method) => Some(method.name),
+            Self::Scheme(..) => None,
+        }
+    }
+
+    /// The mistake that it makes.
+    pub fn mistake(self) -> Option<Mistake> {
+        match self {
+            Self::Scheme(_, mistake) => mistake,
+            Self::Method(_) => None,
+        }
+    }
+
+    /// Question to the author of a program that computes steps so.
+    pub fn question(self) -> Option<&'static str> {
+        match self {
+            Self::Scheme(scheme, None) => scheme.question(),
+            Self::Scheme(_, Some(mistake)) => Some(mistake.question()),
+            Self::Method(_) => None,
+        }
+    }
+}
+
+/// Where a trial begins, and which of its steps a row shows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Start {
+    /// At the start of the scene.
+    Scene,
+    /// At a row of the file, counted from 0, with the velocities of the file.
+    Row(usize),
+    /// At the start of the scene; each row shows the state a step later.
+    Ahead,
+    /// At the start of the scene; each row shows the state a step earlier.
+    Behind,
+}
+
+/// Trial of a way with equal steps, of which a grid point of the rows has a whole number.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Trial {
+    pub way: Way,
+    /// Number of steps between two grid points.
+    pub parts: u64,
+    pub start: Start,
+}
+
+/// Result of a trial.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Compared {
+    /// Number of rows up to the first that differs by more than its bound.
+    pub rows: usize,
+    /// Largest distance of these rows (m).
+    pub distance: f64,
+    /// Largest distance moved until then (m).
+    pub moved: f64,
+    /// Largest distance of the velocities of these rows, and their largest size, root mean square
+    /// over the particles (m/s), if the file has them.
+    pub velocities: Option<[f64; 2]>,
+}
+
+/// Scene and rows against which trials run.
+pub struct Judged<'a> {
+    pub scene: &'a Scene,
+    /// The scene as masses and springs, if it is that.
+    pub plain: Option<&'a Plain>,
+    pub rows: &'a Rows<'a>,
+    /// Largest distance that the scene moves until the last row (m).
+    pub motion: f64,
+    /// Step of the program (s), if it is known.
+    pub step: Option<f64>,
+    /// Number of particles and springs, which an evaluation visits.
+    pub size: f64,
+}
+
+/// Number of particles and springs of a scene.
+pub fn size(scene: &Scene) -> f64 {
+    let network = scene.model.network();
+    let springs = network.map_or(0, |network| network.all_springs().count());
+    (scene.model.particles() + springs) as f64
+}
+
+/// A run of a trial.
+enum Run<'a> {
+    Method(Box<Simulation>),
+    Plain(Box<PlainRun<'a>>),
+}
+
+impl Run<'_> {
+    /// Takes steps. Returns `false` if the run blew up.
+    fn advance(&mut self, steps: u64) -> bool {
+        match self {
+            Self::Method(run) => run.take_steps(steps).is_ok(),
+            Self::Plain(run) => {
+                (0..steps).for_each(|_| run.step());
+                run.positions().as_flattened().iter().all(|x| x.is_finite())
+            }
+        }
+    }
+
+    /// Positions (m) and velocities (m/s), column-major.
+    fn motion(&self) -> [Vec<f64>; 2] {
+        match self {
+            Self::Method(run) => {
+                let positions = run.state()[..3 * run.particles()].to_vec();
+                [positions, run.velocities()]
+            }
+            Self::Plain(run) => [run.positions(), run.velocities()].map(columns),
+        }
+    }
+}
+
+impl Judged<'_> {
+    /// Largest distance of a row that agrees (m), after a distance moved (m).
+    pub fn tolerance(&self, moved: f64) -> f64 {
+        AGREEMENT * moved + self.rounding()
+    }
+
+    /// Distance of rows by rounding alone (m).
+    pub fn rounding(&self) -> f64 {
+        ROUNDING * self.scene.extent().1 + DIGITS * self.rows.rounding()
+    }
+
+    /// Work of a step of a way: springs and particles that are visited.
+    pub fn price(&self, way: Way) -> f64 {
+        self.size
+            * match way {
+                Way::Method(method) if method.is_implicit() => IMPLICIT_WORK,
+                Way::Method(method) => f64::from(method.evaluations.max(method.damped_evaluations)),
+                Way::Scheme(scheme, _) => scheme.evaluations(self.scene.model.particles()) as f64,
+            }
+    }
+
+    /// Compares a trial with the rows until a row differs by more than `bound`, a function of the
+    /// distance moved (m). `None` if the trial is not possible. `work` receives its price.
+    pub fn compare(
+        &self,
+        trial: Trial,
+        bound: &dyn Fn(f64) -> f64,
+        work: &mut f64,
+    ) -> Option<Compared> {
+        let steps = self.rows.until() / self.step_of(trial)?;
+        if steps * self.price(trial.way) > MAX_WORK {
+            return None;
+        }
+        let (mut run, first, mut taken) = self.begin(trial)?;
+        let [start, _] = run.motion();
+        let mut compared = Compared {
+            rows: first,
+            distance: 0.0,
+            moved: 0.0,
+            velocities: self.rows.velocities(0).map(|_| [0.0; 2]),
+        };
+        for k in first..self.rows.len() {
+            let is_there = match (&self.rows.grid, &mut run) {
+                (Some(grid), run) => {
+                    let steps = match (grid.numbers[k] * trial.parts, trial.start) {
+                        (steps, Start::Ahead) => steps + 1,
+                        (steps, Start::Behind) => steps.saturating_sub(1),
+                        (steps, _) => steps,
+                    };
+                    let more = steps - taken;
+                    taken = steps;
+                    *work += self.price(trial.way) * more as f64;
+                    run.advance(more)
+                }
+                (None, Run::Method(run)) => run.advance_to(self.rows.times[k]).is_ok(),
+                (None, Run::Plain(_)) => return None,
+            };
+            if !is_there || !interrupt::go_on() {
+                break;
+            }
+            let [x, v] = run.motion();
+            let apart = distance(&x, self.rows.positions(k));
+            let moved = compared.moved.max(distance(&x, &start));
+            // A distance that is no number agrees with nothing.
+            if !(apart <= bound(moved)) {
+                break;
+            }
+            compared.rows = k + 1;
+            compared.moved = moved;
+            compared.distance = compared.distance.max(apart);
+            if let (Some([apart, speed]), Some(own)) =
+                (&mut compared.velocities, self.rows.velocities(k))
+            {
+                *apart = apart.max(distance(&v, own));
+                *speed = speed.max(distance(&v, &vec![0.0; v.len()]));
+            }
+        }
+        Some(compared)
+    }
+
+    /// Step of a trial (s): a part of that between grid points or, without a grid, the known one.
+    pub fn step_of(&self, trial: Trial) -> Option<f64> {
+        match &self.rows.grid {
+            Some(grid) => Some(grid.step / trial.parts as f64),
+            None => self.step,
+        }
+    }
+
+    /// Run of a trial, the first row that it shows, and the number of steps from the start of the
+    /// grid to its beginning.
+    fn begin(&self, trial: Trial) -> Option<(Run<'_>, usize, u64)> {
+        let n = self.scene.model.particles();
+        let step = self.step_of(trial)?;
+        let (row, taken) = match trial.start {
+            Start::Row(row) if row < self.rows.len() => {
+                let grid = self.rows.grid.as_ref()?;
+                (Some(row), grid.numbers[row] * trial.parts)
+            }
+            Start::Row(_) => return None,
+            _ => (None, 0),
+        };
+        // Only masses and springs alone do not depend on time, nor on more than positions and
+        // velocities.
+        let given = match row {
+            Some(row) => {
+                self.plain?;
+                Some([self.rows.positions(row), self.rows.velocities(row)?])
+            }
+            None => None,
+        };
+        let run = match trial.way {
+            Way::Method(method) => {
+                let mut scene = self.scene.clone();
+                if let Some(given) = given {
+                    scene.state = given.concat();
+                }
+                let run = Simulation::new(scene, method, Control::Step(step)).ok()?;
+                Run::Method(Box::new(run))
+            }
+            Way::Scheme(scheme, mistake) => {
+                let plain = self.plain?;
+                let rows = |x: &[f64]| (0..n).map(|i| [x[i], x[n + i], x[2 * n + i]]).collect();
+                let start = given.map_or_else(|| plain.start.clone(), |given| given.map(rows));
+                let forces = Forces::new(plain, mistake);
+                Run::Plain(Box::new(PlainRun::new(forces, scheme, step, start)))
+            }
+        };
+        Some((run, row.unwrap_or(0), taken))
+    }
+}

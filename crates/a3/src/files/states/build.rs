@@ -1,0 +1,131 @@
+//! States at times, checked.
+
+use super::digits::Digits;
+
+/// States of particles at increasing times. Matrices of positions and velocities are n x 3,
+/// column-major: all x, all y, all z.
+#[derive(Clone, Debug)]
+pub struct States {
+    /// Times (s), increasing.
+    pub times: Vec<f64>,
+    /// Positions at each time (m).
+    pub positions: Vec<Vec<f64>>,
+    /// Velocities at each time (m/s), if there are any.
+    pub velocities: Option<Vec<Vec<f64>>>,
+    /// Computing time of the run (s), if the file has it.
+    pub seconds: Option<f64>,
+    /// First time (s) at which a number is not finite. States from then on are left out.
+    pub not_finite_at: Option<f64>,
+    /// Largest error of a time (s) and of a position (m) by the digits of the file.
+    pub rounding: [f64; 2],
+}
+
+/// States as a file has them.
+#[derive(Default)]
+pub struct Raw {
+    pub times: Vec<f64>,
+    pub positions: Vec<Vec<f64>>,
+    /// Empty if there are none.
+    pub velocities: Vec<Vec<f64>>,
+    pub seconds: Option<f64>,
+    /// Digits of the times and of the positions.
+    pub digits: [Digits; 2],
+}
+
+impl States {
+    /// Checks states of that many particles.
+    ///
+    /// # Errors
+    /// There are no states, the times do not increase from 0 on, a number of particles is wrong, or
+    /// the first state has numbers that are not finite.
+    pub fn new(raw: Raw, particles: usize) -> Result<Self, String> {
+        let Raw {
+            mut times,
+            mut positions,
+            mut velocities,
+            seconds,
+            digits,
+        } = raw;
+        if times.is_empty() {
+            return Err("it has no states".into());
+        }
+        check_counts(&times, "positions", &positions, particles)?;
+        if !velocities.is_empty() {
+            check_counts(&times, "velocities", &velocities, particles)?;
+        }
+        check_times(&times)?;
+        let is_finite =
+            |row: Option<&Vec<f64>>| row.is_none_or(|row| row.iter().all(|x| x.is_finite()));
+        let finite = (0..times.len())
+            .take_while(|k| is_finite(positions.get(*k)) && is_finite(velocities.get(*k)))
+            .count();
+        if finite == 0 {
+            return Err("its first state has numbers that are not finite".into());
+        }
+        let not_finite_at = times.get(finite).copied();
+        times.truncate(finite);
+        positions.truncate(finite);
+        velocities.truncate(finite);
+        if seconds.is_some_and(|seconds| !(seconds > 0.0 && seconds.is_finite())) {
+            return Err("its computing time is no number of seconds above 0".into());
+        }
+        let largest = |rows: &[Vec<f64>]| {
+            let all = rows.iter().flatten();
+            all.fold(0.0, |most: f64, x| most.max(x.abs()))
+        };
+        Ok(Self {
+            rounding: [
+                digits[0].rounding(times[times.len() - 1]),
+                digits[1].rounding(largest(&positions)),
+            ],
+            times,
+            positions,
+            velocities: Some(velocities).filter(|rows| !rows.is_empty()),
+            seconds,
+            not_finite_at,
+        })
+    }
+}
+
+/// Checks that there is a row of three numbers for each particle at each time.
+fn check_counts(
+    times: &[f64],
+    name: &str,
+    rows: &[Vec<f64>],
+    particles: usize,
+) -> Result<(), String> {
+    if rows.len() != times.len() {
+        return Err(format!(
+            "it has {} times and {name} for {}: there must be as many",
+            times.len(),
+            rows.len()
+        ));
+    }
+    for (t, row) in times.iter().zip(rows) {
+        if row.len() != 3 * particles {
+            return Err(format!(
+                "its {name} at t = {t} s are of {} particles, and the scene has {particles}",
+                row.len() / 3
+            ));
+        }
+    }
+    Ok(())
+}
+
+/// Checks that times are finite, not below 0, and increasing.
+fn check_times(times: &[f64]) -> Result<(), String> {
+    if let Some(wrong) = times.iter().find(|t| !(t.is_finite() && **t >= 0.0)) {
+        return Err(format!(
+            "a time must be a number of seconds from 0, not {wrong}"
+        ));
+    }
+    let pairs = times.windows(2);
+    let wrong = pairs.into_iter().find(|pair| pair[1] <= pair[0]);
+    match wrong {
+        Some(pair) => Err(format!(
+            "its times must increase: after {} s comes {} s",
+            pair[0], pair[1]
+        )),
+        None => Ok(()),
+    }
+}

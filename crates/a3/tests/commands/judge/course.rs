@@ -1,0 +1,136 @@
+//! A program of a course: masses and springs that are stepped in the ways that courses teach. It
+//! has nothing from a3 but the list of a scene.
+
+use std::fs;
+use std::path::Path;
+
+use serde_json::Value;
+
+pub type Triple = [f64; 3];
+
+/// Masses and springs from `a3 scenes --list`, as a course's program has them.
+pub struct Course {
+    mass: Vec<f64>,
+    pub pinned: Vec<usize>,
+    springs: Vec<(usize, usize, f64, f64, f64)>,
+    pub gravity: Triple,
+    drag: f64,
+    x: Vec<Triple>,
+    v: Vec<Triple>,
+    /// Pull of a spring (N) from its stiffness (N/m), its length (m) and its rest length (m).
+    pub spring: fn(f64, f64, f64) -> f64,
+    /// Whether the force acts on both ends.
+    pub on_both: bool,
+}
+
+impl Course {
+    pub fn of(list: &str) -> Self {
+        let list: Value = serde_json::from_str(list).unwrap();
+        let get = |key: &str| list[key].clone();
+        Self {
+            mass: serde_json::from_value(get("mass")).unwrap(),
+            pinned: serde_json::from_value(get("pinned")).unwrap(),
+            springs: serde_json::from_value(get("springs")).unwrap(),
+            gravity: serde_json::from_value(get("gravity")).unwrap(),
+            drag: list["drag"].as_f64().unwrap(),
+            x: serde_json::from_value(get("positions")).unwrap(),
+            v: serde_json::from_value(get("velocities")).unwrap(),
+            spring: |k, length, rest| k * (length - rest),
+            on_both: true,
+        }
+    }
+
+    /// Accelerations of all particles, one coordinate after another.
+    fn accelerations(&self, x: &[Triple], v: &[Triple]) -> Vec<Triple> {
+        let mut all = vec![[0.0; 3]; x.len()];
+        for (i, a) in all.iter_mut().enumerate() {
+            if self.pinned.contains(&i) {
+                continue;
+            }
+            for axis in 0..3 {
+                let mut force = self.mass[i] * self.gravity[axis] - self.drag * v[i][axis];
+                for &(p, q, k, rest, c) in &self.springs {
+                    let other = match (p == i, q == i) {
+                        (true, _) => q,
+                        (_, true) if self.on_both => p,
+                        _ => continue,
+                    };
+                    let apart: Vec<f64> = (0..3).map(|b| x[other][b] - x[i][b]).collect();
+                    let length = apart.iter().map(|d| d * d).sum::<f64>().sqrt();
+                    let rate: f64 = (0..3).map(|b| (v[other][b] - v[i][b]) * apart[b]).sum();
+                    let pull = (self.spring)(k, length, rest) + c * rate / length;
+                    force += pull * apart[axis] / length;
+                }
+                a[axis] = force / self.mass[i];
+            }
+        }
+        all
+    }
+
+    /// States of a run of steps of length h (s), with the start.
+    pub fn run(&self, step: Step, h: f64, count: usize) -> Vec<[Vec<Triple>; 2]> {
+        let mut states = vec![[self.x.clone(), self.v.clone()]];
+        for _ in 0..count {
+            let [x, v] = states.last().unwrap();
+            states.push(step(self, h, x, v));
+        }
+        states
+    }
+}
+
+pub type Step = fn(&Course, f64, &[Triple], &[Triple]) -> [Vec<Triple>; 2];
+
+fn plus(y: &[Triple], h: f64, f: &[Triple]) -> Vec<Triple> {
+    let both = y.iter().zip(f);
+    both.map(|(y, f)| [y[0] + h * f[0], y[1] + h * f[1], y[2] + h * f[2]])
+        .collect()
+}
+
+pub fn euler(course: &Course, h: f64, x: &[Triple], v: &[Triple]) -> [Vec<Triple>; 2] {
+    [plus(x, h, v), plus(v, h, &course.accelerations(x, v))]
+}
+
+pub fn symplectic(course: &Course, h: f64, x: &[Triple], v: &[Triple]) -> [Vec<Triple>; 2] {
+    let v = plus(v, h, &course.accelerations(x, v));
+    [plus(x, h, &v), v]
+}
+
+pub fn positions_first(course: &Course, h: f64, x: &[Triple], v: &[Triple]) -> [Vec<Triple>; 2] {
+    let x = plus(x, h, v);
+    let a = course.accelerations(&x, v);
+    [x, plus(v, h, &a)]
+}
+
+pub fn trapezoid(course: &Course, h: f64, x: &[Triple], v: &[Triple]) -> [Vec<Triple>; 2] {
+    let a = course.accelerations(x, v);
+    let (x1, v1) = (plus(x, h, v), plus(v, h, &a));
+    let b = course.accelerations(&x1, &v1);
+    let half = |y: &[Triple], f: &[Triple], g: &[Triple]| plus(&plus(y, h / 2.0, f), h / 2.0, g);
+    [half(x, v, &v1), half(v, &a, &b)]
+}
+
+/// The second evaluation is at the velocity before the step.
+pub fn trapezoid_late(course: &Course, h: f64, x: &[Triple], v: &[Triple]) -> [Vec<Triple>; 2] {
+    let a = course.accelerations(x, v);
+    let b = course.accelerations(&plus(x, h, v), v);
+    let half = |y: &[Triple], f: &[Triple], g: &[Triple]| plus(&plus(y, h / 2.0, f), h / 2.0, g);
+    [half(x, v, &plus(v, h, &a)), half(v, &a, &b)]
+}
+
+/// Writes states as CSV with a row for each time.
+pub fn write(path: &Path, h: f64, states: &[[Vec<Triple>; 2]], velocities: bool) {
+    let n = states[0][0].len();
+    let mut names = vec!["t".to_owned()];
+    for prefix in if velocities { &["", "v"][..] } else { &[""] } {
+        names.extend((0..n).flat_map(|i| ["x", "y", "z"].map(|axis| format!("{prefix}{axis}{i}"))));
+    }
+    let mut lines = vec![names.join(",")];
+    for (k, state) in states.iter().enumerate() {
+        let mut cells = vec![(k as f64 * h).to_string()];
+        for part in state.iter().take(1 + usize::from(velocities)) {
+            cells.extend(part.as_flattened().iter().map(f64::to_string));
+        }
+        lines.push(cells.join(","));
+    }
+    fs::write(path, lines.join("\n")).unwrap();
+}

@@ -1,0 +1,148 @@
+//! Scenes as lists of masses and springs, for programs that read no scene files.
+
+use a3_core::{Model, Network, Path, Scene};
+use serde::Serialize;
+
+use crate::description::{SpringSpec, Triple};
+
+/// Forces that a list states.
+const STATED: [&str; 4] = ["springs", "spring damping", "gravity", "drag"];
+
+/// Network of masses and springs, with its state at the start. Its text is JSON that
+/// [`parse_json`](crate::parse_json) reads.
+#[derive(Clone, Debug, PartialEq)]
+pub struct List {
+    /// Name of the scene.
+    pub name: String,
+    /// Gravity (m/s2).
+    pub gravity: Triple,
+    /// Coefficient of viscous drag (kg/s): each particle feels the force -`drag` v.
+    pub drag: f64,
+    /// Mass of each particle (kg).
+    pub mass: Vec<f64>,
+    /// Numbers of the particles that never move, counted from 0.
+    pub pinned: Vec<usize>,
+    /// Positions at the start (m).
+    pub positions: Vec<Triple>,
+    /// Velocities at the start (m/s).
+    pub velocities: Vec<Triple>,
+    /// Springs: [i, j, stiffness (N/m), rest length (m), damping (N s/m)].
+    pub springs: Vec<SpringSpec>,
+}
+
+impl List {
+    /// Lists the masses and springs of a scene.
+    ///
+    /// # Errors
+    /// The scene has other parts, which are named.
+    pub fn of(scene: &Scene) -> Result<Self, String> {
+        let network = network(scene)?;
+        let others = others(network);
+        if !others.is_empty() {
+            return Err(format!(
+                "the scene {} has more than masses and springs: {}; a list states springs with their damping, pins that \
+                 stay, gravity and drag",
+                scene.name,
+                others.join(", ")
+            ));
+        }
+        Ok(Self::new(scene, network))
+    }
+
+    /// Lists the masses and springs of a scene without its obstacles: its motion is that of the
+    /// scene until a particle touches one.
+    ///
+    /// # Errors
+    /// The scene has other parts, which are named.
+    pub fn in_flight(scene: &Scene) -> Result<Self, String> {
+        let mut scene = scene.clone();
+        if let Model::Network(network) = &mut scene.model {
+            while !network.obstacles().is_empty() {
+                network.remove_obstacle(0).map_err(|e| e.to_string())?;
+            }
+        }
+        Self::of(&scene)
+    }
+
+    fn new(scene: &Scene, network: &Network) -> Self {
+        let n = network.particles();
+        let (x, v) = network.halves(&scene.state);
+        let row = |part: &[f64], i: usize| [part[i], part[n + i], part[2 * n + i]];
+        let springs = network.springs().map(|s| {
+            let law = s.law;
+            (s.i, s.j, law.stiffness, law.rest_length, law.damping)
+        });
+        Self {
+            name: scene.name.clone(),
+            gravity: network.gravity().map_or([0.0; 3], Into::into),
+            drag: network.drag().unwrap_or(0.0),
+            mass: network.masses().to_vec(),
+            pinned: network.pins().map(|(i, _)| i).collect(),
+            positions: (0..n).map(|i| row(x, i)).collect(),
+            velocities: (0..n).map(|i| row(v, i)).collect(),
+            springs: springs.collect(),
+        }
+    }
+
+    /// Writes the list as JSON, with a line for each particle and each spring.
+    ///
+    /// # Errors
+    /// A number is not finite.
+    pub fn text(&self) -> Result<String, String> {
+        let entries = [
+            ("name", json(&self.name)?),
+            ("units", json(&"m, kg, s")?),
+            ("gravity", json(&self.gravity)?),
+            ("drag", json(&self.drag)?),
+            ("mass", json(&self.mass)?),
+            ("pinned", json(&self.pinned)?),
+            ("positions", lines(&self.positions)?),
+            ("velocities", lines(&self.velocities)?),
+            ("springs", lines(&self.springs)?),
+        ];
+        let entries = entries.map(|(key, value)| format!("\"{key}\": {value}"));
+        Ok(format!("{{\n{}\n}}\n", entries.join(",\n")))
+    }
+}
+
+/// Writes a value in a line.
+fn json(value: &impl Serialize) -> Result<String, String> {
+    serde_json::to_string(value).map_err(|e| e.to_string())
+}
+
+/// Writes a list with a line for each item.
+fn lines(items: &[impl Serialize]) -> Result<String, String> {
+    let items: Vec<_> = items.iter().map(json).collect::<Result<_, _>>()?;
+    Ok(match &items[..] {
+        [] => "[]".into(),
+        items => format!("[\n{}\n]", items.join(",\n")),
+    })
+}
+
+/// Returns the network of a scene.
+fn network(scene: &Scene) -> Result<&Network, String> {
+    scene.model.network().ok_or_else(|| {
+        format!(
+            "the scene {} is a single equation, without masses and springs",
+            scene.name
+        )
+    })
+}
+
+/// Names the parts of a network that a list does not state.
+fn others(network: &Network) -> Vec<&'static str> {
+    let forces = network.forces_in_use().into_iter();
+    let mut others: Vec<_> = forces.filter(|name| !STATED.contains(name)).collect();
+    let mut add = |there: bool, name| {
+        if there && !others.contains(&name) {
+            others.push(name);
+        }
+    };
+    for obstacle in network.obstacles() {
+        add(true, obstacle.shape.name());
+    }
+    add(!network.bodies().is_empty(), "rigid bodies");
+    let moves = |(_, path): (usize, Path)| !matches!(path, Path::Still(_));
+    add(network.pins().any(moves), "pins that move");
+    others
+}
