@@ -8,6 +8,7 @@
 //! * [`choose()`]: the cheapest method for an error, or the most accurate one for a budget.
 //! * [`stability()`]: the largest stable and accurate steps.
 //! * [`compare()`]: runs side by side, and their distances.
+//! * [`judge_states()`]: the error of another program's results, and the method that they agree with.
 //! * [`scene()`]: a scene by its name, or from a file.
 //!
 //! Heun's method as one's own, on a system of one's own, beside Euler's:
@@ -72,6 +73,8 @@ pub use commands::chart::{Chart, ChartOptions, Record, chart};
 pub use commands::choose::{Choice, ChooseOptions, Chosen, Goal, choose};
 #[cfg(not(target_arch = "wasm32"))]
 pub use commands::compare::{ComparedRun, Comparison, compare};
+#[cfg(not(target_arch = "wasm32"))]
+pub use commands::judge::{JudgeOptions, StatesOf, Verdict, judge_states};
 #[cfg(not(target_arch = "wasm32"))]
 pub use commands::stability::{MethodLimits, Stability, stability};
 #[cfg(not(target_arch = "wasm32"))]

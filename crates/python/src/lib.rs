@@ -20,7 +20,7 @@ mod tables;
 #[pyo3::pymodule]
 mod _a3 {
     #[pymodule_export]
-    use super::measures::{Chart, Stability, chart, choose, compare, stability};
+    use super::measures::{Chart, Stability, chart, choose, compare, judge, stability};
     #[pymodule_export]
     use super::monitor::Monitor;
     #[pymodule_export]

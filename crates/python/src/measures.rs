@@ -1,6 +1,8 @@
 //! Charts, choices, limits and comparisons.
 
-use a3::{ChartOptions, ChooseOptions, Failure, Goal};
+use std::path::PathBuf;
+
+use a3::{ChartOptions, ChooseOptions, Failure, Goal, JudgeOptions, StatesOf};
 use a3_core::accuracy::{Metric, SetBy};
 use a3_core::{Control, Method};
 use numpy::PyArray1;
@@ -316,4 +318,33 @@ pub fn compare<'py>(
         scene.model.particles(),
         scene.state.len(),
     ))
+}
+
+/// Judges states: a file, or an archive of arrays with its name. Returns the judgement in words and
+/// as JSON.
+#[pyfunction]
+pub fn judge(
+    py: Python<'_>,
+    given: Given,
+    file: Option<PathBuf>,
+    archive: Option<(String, Vec<u8>)>,
+    until: Option<f64>,
+    step: Option<f64>,
+    within: Option<f64>,
+) -> PyResult<(String, String)> {
+    let opened = Opened::new(py, &given)?;
+    let scene = opened.scene(py)?;
+    let states = match (&file, &archive) {
+        (Some(file), _) => StatesOf::File(file),
+        (None, Some((name, bytes))) => StatesOf::Npz(name, bytes),
+        (None, None) => return Err(wrong(py, "there are no states to judge")),
+    };
+    let options = JudgeOptions {
+        until,
+        step,
+        within,
+    };
+    let raised = opened.raised([]);
+    let verdict = work(py, &raised, || a3::judge_states(&scene, states, &options))?;
+    Ok((verdict.text, verdict.json))
 }

@@ -264,3 +264,60 @@ def test_a_picture_of_a_scene(tmp_path):
     assert run._repr_png_().startswith(PNG)
     with pytest.raises(a3.InputError, match="saved as .png"):
         pictures[0].save("cloth.jpg")
+
+
+def chain(method, step, count):
+    """Returns the states of a chain: times (s), positions (m) and velocities (m/s)."""
+    run = a3.Simulation("chain", method, step=step)
+    states = [(0.0, run.positions, run.velocities)]
+    for k in range(1, count + 1):
+        run.step()
+        states.append((k * step, run.positions, run.velocities))
+    t, x, v = zip(*states)
+    return np.array(t), np.array(x), np.array(v)
+
+
+@pytest.mark.parametrize("method", ["euler", "trapezoid", "rk4"])
+def test_results_are_judged_by_their_method(method):
+    judgement = a3.judge("chain", chain(method, 0.01, 100), progress=False)
+    assert judgement.method == method and judgement.step == pytest.approx(0.01)
+    assert judgement.error == judgement.errors.max() and judgement.times[-1] == pytest.approx(1.0)
+    assert judgement.mistake is None and "rror" in str(judgement)
+    assert pickle.loads(pickle.dumps(judgement)).error == judgement.error
+
+
+def test_results_in_a_file_are_judged(tmp_path):
+    t, x, v = chain("rk4", 0.01, 50)
+    np.savez(tmp_path / "mine.npz", t=t, x=x, v=v)
+    judgement = a3.judge("chain", tmp_path / "mine.npz", within=1e-3, progress=False)
+    assert judgement.method == "rk4" and judgement.within is True
+    assert a3.judge("chain", (t, x + 0.01), within=1e-3, progress=False).within is False
+
+
+@pytest.mark.parametrize(
+    "states, words",
+    [
+        (lambda t, x, v: (t, x[:, :3]), "particles"),
+        (lambda t, x, v: (t[:-1], x), "times"),
+        (lambda t, x, v: (t, x[:, :, :2]), "shape"),
+        (lambda t, x, v: (t - 1, x), "t"),
+        (lambda t, x, v: (t, x, v[:5]), "v"),
+        (lambda t, x, v: (t, "x"), "x: an array of numbers is expected, not str"),
+        (lambda t, x, v: t, "states are a file, or arrays"),
+        (lambda t, x, v: "nowhere.npz", "nowhere.npz"),
+        (lambda t, x, v: "states.txtt", "states are read from files that end in"),
+    ],
+)
+def test_results_that_do_not_fit_are_refused(states, words):
+    with pytest.raises(a3.InputError) as error:
+        a3.judge("chain", states(*chain("rk4", 0.01, 10)), progress=False)
+    assert words in str(error.value) and "\n" not in str(error.value)
+    print(error.value)
+
+
+def test_results_that_are_not_finite_are_judged_until_then():
+    t, x, v = chain("rk4", 0.01, 100)
+    x[60:] = np.nan
+    judgement = a3.judge("chain", (t, x), progress=False)
+    assert judgement.times[-1] < 0.6 and np.isfinite(judgement.errors).all()
+    assert judgement.data["not_finite_at"] == pytest.approx(0.6)

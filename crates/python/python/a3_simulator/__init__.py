@@ -18,6 +18,8 @@ if TYPE_CHECKING:
     from ._errors import BlowUp as BlowUp
     from ._errors import Error as Error
     from ._errors import InputError as InputError
+    from ._judge import Judgement as Judgement
+    from ._judge import judge as judge
     from ._measures import Chart as Chart
     from ._measures import Choice as Choice
     from ._measures import Comparison as Comparison
@@ -47,6 +49,8 @@ _MODULES = {
     "BlowUp": "_errors",
     "Error": "_errors",
     "InputError": "_errors",
+    "Judgement": "_judge",
+    "judge": "_judge",
     "Chart": "_measures",
     "Choice": "_measures",
     "Comparison": "_measures",

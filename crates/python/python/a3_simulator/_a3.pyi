@@ -79,6 +79,15 @@ def compare(
     frames: int,
 ) -> Tuple[Floats, List[Tuple[str, float, Floats, Floats, float, Optional[str]]], int, int]: ...
 
+def judge(
+    given: Given,
+    file: Optional[str],
+    archive: Optional[Tuple[str, bytes]],
+    until: Optional[float],
+    step: Optional[float],
+    within: Optional[float],
+) -> Tuple[str, str]: ...
+
 class Run:
     """The run of a scene by a method."""
 
