@@ -8,7 +8,7 @@
 //! * [`choose()`]: the cheapest method for an error, or the most accurate one for a budget.
 //! * [`stability()`]: the largest stable and accurate steps.
 //! * [`compare()`]: runs side by side, and their distances.
-//! * [`judge_states()`]: the error of another program's results, and the method that they agree with.
+//! * [`judge_states()`]: the errors of another program, and the method that it agrees with.
 //! * [`scene()`]: a scene by its name, or from a file.
 //!
 //! Heun's method as one's own, on a system of one's own, beside Euler's:

@@ -1,6 +1,7 @@
 //! Functions of Python that a3 calls: their arguments, their results and their exceptions.
 
-use std::sync::{Arc, Mutex, PoisonError};
+use std::cell::OnceCell;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use numpy::{PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::call::PyCallArgs;
@@ -10,23 +11,49 @@ use pyo3::sync::PyOnceLock;
 use super::arrays;
 use super::errors::wrong;
 
-/// The first exception of functions that take part in a piece of work. The work ends with a text in
-/// its place, and then it is raised.
+/// The first exception of functions that take part in a piece of work, and the threads that are in
+/// these functions. The work ends with a text in place of the exception, and then that is raised.
 #[derive(Clone, Default)]
-pub struct Raised(Arc<Mutex<Option<PyErr>>>);
+pub struct Raised(Arc<Calls>);
+
+#[derive(Default)]
+struct Calls {
+    error: Mutex<Option<PyErr>>,
+    /// Numbers of the threads, as Python has them.
+    threads: Mutex<Vec<u64>>,
+}
+
+thread_local! {
+    /// Number of this thread.
+    static THREAD: OnceCell<u64> = const { OnceCell::new() };
+}
+
+/// Returns the number of this thread, by which Python interrupts it.
+fn thread(py: Python<'_>) -> u64 {
+    let ask = || py.import("threading")?.call_method0("get_ident")?.extract();
+    THREAD.with(|thread| *thread.get_or_init(|| ask().unwrap_or_default()))
+}
+
+fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
 
 impl Raised {
     /// Keeps an exception, unless one is kept already. Returns its text.
     fn keep(&self, error: PyErr) -> String {
         let text = error.to_string();
-        let mut kept = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        kept.get_or_insert(error);
+        locked(&self.0.error).get_or_insert(error);
         text
     }
 
     /// Takes the exception.
     pub fn take(&self) -> Option<PyErr> {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner).take()
+        locked(&self.0.error).take()
+    }
+
+    /// Returns the threads that are in functions now.
+    pub fn threads(&self) -> Vec<u64> {
+        locked(&self.0.threads).clone()
     }
 }
 
@@ -96,7 +123,14 @@ impl Function {
         arguments: PyResult<impl PyCallArgs<'py>>,
         out: &mut [f64],
     ) -> Result<(), String> {
+        let (calls, thread) = (&self.raised.0, thread(py));
+        locked(&calls.threads).push(thread);
         let called = arguments.and_then(|arguments| self.call.bind(py).call1(arguments));
+        let mut threads = locked(&calls.threads);
+        if let Some(k) = threads.iter().rposition(|other| *other == thread) {
+            threads.swap_remove(k);
+        }
+        drop(threads);
         let read = called.and_then(|result| read(&result, &self.name, self.shape, out));
         read.map_err(|error| self.raised.keep(error))
     }

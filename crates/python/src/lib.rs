@@ -5,6 +5,7 @@
 #![allow(clippy::needless_pass_by_value)]
 
 mod arrays;
+mod driving;
 mod errors;
 mod function;
 mod measures;

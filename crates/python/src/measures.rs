@@ -137,6 +137,7 @@ pub fn chart(
         stiffness,
     };
     let raised = opened.raised(methods.iter().copied());
+    monitor.watch(&raised);
     work(py, &raised, || {
         a3::chart(&scene, &methods, &options, monitor)
     })
@@ -193,6 +194,7 @@ pub fn choose(
         ..ChooseOptions::new(goal)
     };
     let raised = opened.raised(methods.iter().copied());
+    monitor.watch(&raised);
     let choice = work(py, &raised, || {
         a3::choose(&scene, &methods, &options, monitor)
     })?;
@@ -265,6 +267,7 @@ pub fn stability(
     let opened = Opened::new(py, &given)?;
     let (scene, methods) = (opened.scene(py)?, methods_named(py, &methods)?);
     let raised = opened.raised(methods.iter().copied());
+    monitor.watch(&raised);
     work(py, &raised, || a3::stability(&scene, &methods, monitor)).map(Stability)
 }
 
@@ -279,8 +282,8 @@ type Compared<'py> = (
     Option<String>,
 );
 
-/// Runs a scene by several methods, each with its step or tolerance. Returns the times (s), the runs,
-/// the number of particles, and the length of the state.
+/// Runs a scene by several methods, each with its step or tolerance. Returns the times (s), the
+/// runs, the number of particles, and the length of the state.
 #[pyfunction]
 pub fn compare<'py>(
     py: Python<'py>,
@@ -298,6 +301,7 @@ pub fn compare<'py>(
     });
     let asked = asked.collect::<PyResult<Vec<(&'static Method, Control)>>>()?;
     let raised = opened.raised(asked.iter().map(|(method, _)| *method));
+    monitor.watch(&raised);
     let compared = work(py, &raised, || {
         a3::compare(&scene, &asked, until, frames, monitor)
     })?;

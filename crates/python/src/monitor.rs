@@ -5,6 +5,8 @@ use std::sync::{Mutex, PoisonError};
 
 use pyo3::prelude::*;
 
+use super::function::Raised;
+
 /// What is known of the work.
 #[derive(Clone, Default)]
 struct State {
@@ -12,10 +14,12 @@ struct State {
     expected: f64,
     done: f64,
     warnings: Vec<String>,
+    /// Functions of Python that take part.
+    raised: Vec<Raised>,
 }
 
-/// Companion of long work: the work runs in one thread, and another asks how far it is, and may stop
-/// it.
+/// Companion of long work: the work runs in one thread, and another asks how far it is, and may
+/// stop it.
 #[pyclass(frozen, module = "a3_simulator._a3")]
 #[derive(Default)]
 pub struct Monitor {
@@ -24,6 +28,11 @@ pub struct Monitor {
 }
 
 impl Monitor {
+    /// Is told of the functions of Python that take part.
+    pub fn watch(&self, raised: &[Raised]) {
+        self.change(|state| state.raised = raised.to_vec());
+    }
+
     fn change(&self, change: impl FnOnce(&mut State)) {
         change(&mut self.state.lock().unwrap_or_else(PoisonError::into_inner));
     }
@@ -39,6 +48,12 @@ impl Monitor {
     /// Asks the work to end.
     fn stop(&self) {
         self.stopped.store(true, Ordering::Relaxed);
+    }
+
+    /// The threads that are in functions of Python now.
+    fn threads(&self) -> Vec<u64> {
+        let state = self.state.lock().unwrap_or_else(PoisonError::into_inner);
+        state.raised.iter().flat_map(Raised::threads).collect()
     }
 
     /// The stage of the work, the share of it that is done, from 0 to 1, and the warnings so far.

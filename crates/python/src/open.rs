@@ -87,3 +87,20 @@ impl Opened {
         all
     }
 }
+
+/// Returns the step (s) or the tolerance of a method, if one is given.
+pub fn setting(
+    py: Python<'_>,
+    method: &Method,
+    step: Option<f64>,
+    tolerance: Option<f64>,
+) -> PyResult<Option<f64>> {
+    let why = match (method.is_adaptive(), step, tolerance) {
+        (true, Some(_), _) => {
+            "chooses its steps to a tolerance: give tolerance, such as 1e-4, not step"
+        }
+        (false, _, Some(_)) => "takes a step: give step in seconds, such as 0.01, not tolerance",
+        (_, step, tolerance) => return Ok(step.or(tolerance)),
+    };
+    Err(wrong(py, format!("{} {why}", method.name)))
+}

@@ -1,24 +1,21 @@
 //! Runs of scenes.
 
 use std::sync::{Arc, Mutex, MutexGuard};
-use std::time::{Duration, Instant};
 
 use a3::embedded::{self, Look};
-use a3_core::{Checkpoint, Error, Method, Network, Simulation, SpringKind, StepLimits, Vector3};
+use a3_core::{Checkpoint, Error, Network, Simulation, SpringKind, StepLimits, Vector3};
 use a3_scenes::Presentation;
 use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 
 use super::arrays::{indices, numbers, rows};
+use super::driving::{Driven, GoOn, advance, check_time, drive, take_steps};
 use super::errors::{of_error, of_failure, wrong};
 use super::function::Raised;
-use super::open::{Given, Opened};
+use super::open::{Given, Opened, setting};
 use super::own_method::raised_by;
 use super::tables::method;
-
-/// Time between two looks for Ctrl-C and two reports of progress.
-const REPORT_PERIOD: Duration = Duration::from_millis(50);
 
 /// Data of all springs: ends, kinds, stiffness (N/m), rest length (m), damping (N s/m).
 type Springs<'py> = (
@@ -54,53 +51,17 @@ impl Run {
         })
     }
 
-    /// Runs `work` on the simulation without the global lock, and `look` now and then with it.
+    /// Runs `work` on the simulation without the global lock.
     fn work(
         &self,
         py: Python<'_>,
-        work: impl Send
-        + FnOnce(
-            &mut Simulation,
-            &mut (dyn FnMut(&Simulation) -> bool + Send),
-        ) -> Result<(), (Error, String)>,
         progress: Option<&Bound<PyAny>>,
+        work: impl Send + FnOnce(&mut Simulation, GoOn) -> Driven,
     ) -> PyResult<()> {
         let mut simulation = self.simulation(py)?;
-        let simulation = &mut *simulation;
-        let kept = [Some(self.raised.clone()), raised_by(simulation.method())];
-        for kept in kept.iter().flatten() {
-            kept.take();
-        }
-        let progress = progress.map(|progress| progress.clone().unbind());
-        let mut raised = None;
-        let mut last = Instant::now();
-        let done = py.detach(|| {
-            let mut go_on = |run: &Simulation| {
-                if last.elapsed() < REPORT_PERIOD {
-                    return true;
-                }
-                last = Instant::now();
-                let looked = Python::attach(|py| {
-                    if let Some(progress) = &progress {
-                        progress.call1(py, (run.time(),))?;
-                    }
-                    py.check_signals()
-                });
-                raised = looked.err();
-                raised.is_none()
-            };
-            work(simulation, &mut go_on)
-        });
-        match (raised, done) {
-            (Some(raised), _) => Err(raised),
-            (None, Err((Error::Callback(_), _)))
-                if let Some(raised) = kept.iter().flatten().find_map(Raised::take) =>
-            {
-                Err(raised)
-            }
-            (None, Err((error, message))) => Err(of_error(py, &error, message)),
-            (None, Ok(())) => Ok(()),
-        }
+        let of_method = raised_by(simulation.method());
+        let raised: Vec<_> = [self.raised.clone()].into_iter().chain(of_method).collect();
+        drive(py, &mut simulation, &raised, progress, work)
     }
 
     /// Applies `read` to the network, if the scene is one.
@@ -158,61 +119,21 @@ impl Run {
         })
     }
 
-    /// Takes steps.
+    /// Takes this number of steps. If the present time is within a step, that step is finished
+    /// first, and counts.
     #[pyo3(signature = (count=1))]
     fn step(&self, py: Python<'_>, count: u64) -> PyResult<()> {
-        let work = move |run: &mut Simulation,
-                         go_on: &mut (dyn FnMut(&Simulation) -> bool + Send)| {
-            let (mut left, mut chunk) = (count, 1);
-            while left > 0 {
-                let taken = run.take_steps(chunk.min(left));
-                taken.map_err(|error| (error.clone(), error.to_string()))?;
-                left -= chunk.min(left);
-                let begun = Instant::now();
-                if left > 0 && !go_on(run) {
-                    break;
-                }
-                if begun.elapsed() < REPORT_PERIOD && chunk < 1024 {
-                    chunk *= 2;
-                }
-            }
-            Ok(())
-        };
-        self.work(py, work, None)
+        self.work(py, None, move |run, go_on| take_steps(run, count, go_on))
     }
 
-    /// Advances to a time (s).
+    /// Advances to a time (s). `progress` is called with the time now and then.
     #[pyo3(signature = (time, progress=None))]
     fn advance(&self, py: Python<'_>, time: f64, progress: Option<&Bound<PyAny>>) -> PyResult<()> {
         let (now, calls) = (self.simulation(py)?.time(), self.calls);
-        if !(0.0..=1e9).contains(&time) {
-            return Err(wrong(
-                py,
-                format!("a time is a number of seconds from 0 to 1e9, such as 10, not {time}"),
-            ));
-        }
-        if time < now {
-            return Err(wrong(
-                py,
-                format!(
-                    "the run is at t = {now} s already, past {time} s: reset() goes back to its beginning"
-                ),
-            ));
-        }
-        let work = move |run: &mut Simulation,
-                         go_on: &mut (dyn FnMut(&Simulation) -> bool + Send)| {
-            let gone = embedded::advance(run, time, go_on);
-            match gone.and_then(|arrived| if arrived { run.conclude() } else { Ok(()) }) {
-                // A search for a step that holds would call functions too often.
-                Err(error) if calls => Err((error.clone(), error.to_string())),
-                Err(error) => {
-                    let message = embedded::message(run, &error, time);
-                    Err((error, message))
-                }
-                Ok(()) => Ok(()),
-            }
-        };
-        self.work(py, work, progress)
+        check_time(now, time).map_err(|why| wrong(py, why))?;
+        self.work(py, progress, move |run, go_on| {
+            advance(run, time, calls, go_on)
+        })
     }
 
     /// Goes back to the beginning.
@@ -461,21 +382,4 @@ impl Run {
         let png = drawn.map_err(|failure| of_failure(py, &failure))?;
         Ok(PyBytes::new(py, &png))
     }
-}
-
-/// Returns the step (s) or the tolerance of a method, if one is given.
-fn setting(
-    py: Python<'_>,
-    method: &Method,
-    step: Option<f64>,
-    tolerance: Option<f64>,
-) -> PyResult<Option<f64>> {
-    let why = match (method.is_adaptive(), step, tolerance) {
-        (true, Some(_), _) => {
-            "chooses its steps to a tolerance: give tolerance, such as 1e-4, not step"
-        }
-        (false, _, Some(_)) => "takes a step: give step in seconds, such as 0.01, not tolerance",
-        (_, step, tolerance) => return Ok(step.or(tolerance)),
-    };
-    Err(wrong(py, format!("{} {why}", method.name)))
 }

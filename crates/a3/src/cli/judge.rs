@@ -34,8 +34,8 @@ pub struct Judge {
     /// that divides a row, apart
     #[arg(long, value_name = "H", value_parser = step, allow_negative_numbers = true)]
     pub step: Option<f64>,
-    /// Judge the states up to this time, in seconds; by default, as long as errors are meaningful on
-    /// this scene
+    /// Judge the states up to this time, in seconds; by default, as long as errors are meaningful
+    /// on this scene
     #[arg(long, value_name = "T", value_parser = horizon, allow_negative_numbers = true)]
     pub until: Option<f64>,
     /// Computing time of each file's run in seconds, in the order of the files, such as 0.8,1.6

@@ -1,4 +1,5 @@
-//! Files that are read and written: scenes, checkpoints, exports, films, and states of other programs.
+//! Files that are read and written: scenes, checkpoints, exports, films, and states of other
+//! programs.
 
 pub mod checkpoint;
 pub mod ending;

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Sequence, Tuple, Union
+from typing import Optional, Sequence, Tuple, Union
 
 from ._own import Forces, System
 from ._scenes import SceneLike, origin
@@ -14,14 +14,21 @@ class Given:
     """A scene with its options."""
 
     source: Union[Tuple[str, str], System]
-    grid: "Tuple[int, int] | None" = None
-    wind: bool = False
-    swing: bool = False
-    self_collision: bool = False
-    forces: Sequence[Forces] = ()
+    grid: Optional[Tuple[int, int]]
+    wind: bool
+    swing: bool
+    self_collision: bool
+    forces: Sequence[Forces]
 
 
-def given(scene: SceneLike, **options: object) -> Given:
+def given(
+    scene: SceneLike,
+    *,
+    grid: Optional[Tuple[int, int]] = None,
+    wind: bool = False,
+    swing: bool = False,
+    self_collision: bool = False,
+    forces: Sequence[Forces] = (),
+) -> Given:
     """Returns a scene with its options, which are those of `Simulation`."""
-    forces = options.pop("forces", ())
-    return Given(origin(scene), forces=list(forces), **options)
+    return Given(origin(scene), grid, wind, swing, self_collision, list(forces))

@@ -103,5 +103,5 @@ def _archive(states: Tuple[npt.ArrayLike, ...]) -> bytes:
         except (TypeError, ValueError):
             raise InputError(f"{key}: an array of numbers is expected, not {type(given_array).__name__}") from None
     file = io.BytesIO()
-    np.savez(file, **arrays)
+    np.savez(file, **arrays)  # type: ignore[arg-type]
     return file.getvalue()

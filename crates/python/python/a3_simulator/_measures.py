@@ -154,7 +154,7 @@ class Chart(_Drawn):
 
     def to_pandas(self) -> Any:
         """Returns the points as a `pandas.DataFrame`."""
-        import pandas
+        import pandas  # type: ignore[import-untyped]
 
         return pandas.DataFrame(self.points, columns=Point._fields)
 
@@ -223,7 +223,7 @@ class Stability(_Drawn):
     @staticmethod
     def _limits(row: Dict[str, Any]) -> Limits:
         def seconds(value: Union[None, float, str]) -> float:
-            return {None: float("nan"), "any": float("inf")}.get(value, value)
+            return float("nan" if value is None else "inf" if value == "any" else value)
 
         moving = row["moving_bounded"]
         return Limits(
@@ -455,10 +455,7 @@ def _quiet(scene: SceneLike) -> SceneLike:
 def _names(methods: Sequence[MethodLike]) -> List[str]:
     if isinstance(methods, (str, Method)):
         methods = [methods]
-    names = [method_name(method) for method in methods]
-    if None in names:
-        raise InputError("a method is a name or a letter, or an a3.Method, not None")
-    return names
+    return [method_name(method) for method in methods]
 
 
 def _timed(work: str) -> bool:

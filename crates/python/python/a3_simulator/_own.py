@@ -17,7 +17,7 @@ Derivative = Callable[[float, Floats], npt.ArrayLike]
 #: F(t, x, v): the forces (N), (n, 3), at time t (s) on particles at x (m), (n, 3), that move at v (m/s), (n, 3).
 Forces = Callable[[float, Floats, Floats], npt.ArrayLike]
 #: step(f, t, y, h): the state at t + h, of the shape of y, from the state y at time t (s).
-Step = Callable[["_a3.Derivative", float, Floats, float], npt.ArrayLike]
+Step = Callable[[Callable[[float, npt.ArrayLike], Floats], float, Floats, float], npt.ArrayLike]
 
 
 class System:
@@ -38,7 +38,7 @@ class System:
     positional = False
 
     def __init__(self, f: Derivative, y0: npt.ArrayLike, *, name: Optional[str] = None) -> None:
-        self.f = f
+        self.f: Union[Derivative, Forces] = f
         self.y0 = _numbers("y0", y0, (-1,))
         if self.y0.size == 0:
             raise InputError("y0: a system has at least one number")
@@ -119,9 +119,9 @@ class Method:
         return f"<Method {self.name} of order {self.order}>"
 
 
-def method_name(method: Union[str, Method, None]) -> Optional[str]:
+def method_name(method: Union[str, Method]) -> str:
     """Returns the name of a method."""
-    if method is None or isinstance(method, str):
+    if isinstance(method, str):
         return method
     if isinstance(method, Method):
         return method.name

@@ -4,10 +4,14 @@ from __future__ import annotations
 
 import os
 from dataclasses import dataclass
-from typing import Any, Union
+from typing import TYPE_CHECKING, Any, Optional, Tuple, Union
 
 from ._errors import InputError
 from ._scenes import SceneLike
+
+if TYPE_CHECKING:
+    from ._measures import MethodLike
+    from ._simulation import Simulation
 
 
 @dataclass(frozen=True)
@@ -33,13 +37,13 @@ class Picture:
 
 def render(
     scene: Union[SceneLike, "Simulation"],
-    method: "str | None" = None,
-    step: "float | None" = None,
+    method: "Optional[MethodLike]" = None,
+    step: Optional[float] = None,
     *,
     until: float = 0.0,
-    size: "tuple[int, int]" = (960, 540),
-    colour: "str | None" = None,
-    arrows: "str | None" = None,
+    size: Tuple[int, int] = (960, 540),
+    colour: Optional[str] = None,
+    arrows: Optional[str] = None,
     wireframe: bool = False,
     springs: bool = False,
     orthographic: bool = False,

@@ -23,7 +23,7 @@ _GRACE_PERIOD = 0.5
 def _tqdm(**options: Any) -> Any:
     """Returns a bar, or `None` without tqdm."""
     try:
-        from tqdm.auto import tqdm
+        from tqdm.auto import tqdm  # type: ignore[import-untyped]
     except ImportError:
         return None
     return tqdm(**options)
@@ -77,12 +77,10 @@ def work(function: Callable[[_a3.Monitor], T], progress: bool) -> T:
     except BaseException:
         monitor.stop()
         thread.join(_GRACE_PERIOD)
-        if thread.is_alive():
-            # A function that never ends.
-            ctypes.pythonapi.PyThreadState_SetAsyncExc(
-                ctypes.c_ulong(thread.ident or 0), ctypes.py_object(KeyboardInterrupt)
-            )
-            thread.join(_GRACE_PERIOD)
+        for ident in monitor.threads():
+            # It is in a function that takes long, or never ends.
+            ctypes.pythonapi.PyThreadState_SetAsyncExc(ctypes.c_ulong(ident), ctypes.py_object(KeyboardInterrupt))
+        thread.join(_GRACE_PERIOD)
         raise
     finally:
         if bar is not None:

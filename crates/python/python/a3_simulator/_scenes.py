@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import math
 import os
-from typing import Any, Dict, List, Mapping, NamedTuple, Tuple, Union
+from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Tuple, Union
 
 from . import _a3
 from ._errors import InputError
@@ -19,7 +19,8 @@ class MethodInfo(NamedTuple):
     """A row of the table of methods."""
 
     name: str
-    letter: str
+    #: `None` for a method of one's own.
+    letter: Optional[str]
     title: str
     order: int
     adaptive: bool

@@ -101,7 +101,10 @@ class Simulation(_a3.Run):
     read changes no bit of it. The global lock is free while it computes.
     """
 
-    def __new__(
+    #: The arguments, to make the run again.
+    _given: Tuple[tuple, Dict[str, Any]]
+
+    def __new__(  # type: ignore[misc]
         cls,
         scene: SceneLike,
         method: Union[str, Method, None] = None,
@@ -116,23 +119,26 @@ class Simulation(_a3.Run):
         max_step: Optional[float] = None,
         forces: Sequence[Forces] = (),
     ) -> "Simulation":
+        name = None if method is None else method_name(method)
+        given_scene = given(
+            scene, grid=grid, wind=wind, swing=swing, self_collision=self_collision, forces=forces
+        )
+        run: Any = super().__new__(cls, given_scene, name, step, tolerance, absolute, max_step)
         options = {
             "grid": grid,
             "wind": wind,
             "swing": swing,
             "self_collision": self_collision,
+            "absolute": absolute,
+            "max_step": max_step,
             "forces": forces,
         }
-        of_method = method_name(method), step, tolerance, absolute, max_step
-        run = super().__new__(cls, given(scene, **options), *of_method)
-        run._given = (scene, method, step, tolerance), {**options, "absolute": absolute, "max_step": max_step}
+        run._given = (scene, method, step, tolerance), options
         return run
 
     def __reduce__(self) -> Any:
-        return _restored, (*self._given, self.checkpoint())
-
-    def __copy__(self) -> "Simulation":
-        return _restored(*self._given, self.checkpoint())
+        given, options = self._given
+        return _restored, (given, options, self.checkpoint())
 
     def advance_to(self, time: float, progress: bool = False) -> None:
         """Advances to a time (s).
