@@ -36,7 +36,7 @@ fn command_lines_are_taken_or_refused() {
             error.kind(),
             ErrorKind::DisplayHelp | ErrorKind::DisplayVersion
         ) {
-            let why = explain(&error).unwrap_err().to_string();
+            let why = explain(&error, &[]).unwrap_err().to_string();
             assert!(!why.is_empty() && !why.contains('\n'), "{line}: {why}");
         }
         false

@@ -8,6 +8,7 @@
 //! * [`choose()`]: the cheapest method for an error, or the most accurate one for a budget.
 //! * [`stability()`]: the largest stable and accurate steps.
 //! * [`compare()`]: runs side by side, and their distances.
+//! * [`judge_states()`]: the errors of another program, and the method that it agrees with.
 //! * [`scene()`]: a scene by its name, or from a file.
 //!
 //! Heun's method as one's own, on a system of one's own, beside Euler's:
@@ -52,6 +53,8 @@ mod cli;
 #[cfg(not(target_arch = "wasm32"))]
 mod commands;
 mod draw;
+#[cfg(not(target_arch = "wasm32"))]
+pub mod embedded;
 mod files;
 #[cfg(test)]
 mod hostile;
@@ -71,8 +74,10 @@ pub use commands::choose::{Choice, ChooseOptions, Chosen, Goal, choose};
 #[cfg(not(target_arch = "wasm32"))]
 pub use commands::compare::{ComparedRun, Comparison, compare};
 #[cfg(not(target_arch = "wasm32"))]
+pub use commands::judge::{JudgeOptions, StatesOf, Verdict, judge_states};
+#[cfg(not(target_arch = "wasm32"))]
 pub use commands::stability::{MethodLimits, Stability, stability};
 #[cfg(not(target_arch = "wasm32"))]
 pub use files::setup::scene;
 #[cfg(not(target_arch = "wasm32"))]
-pub use program::main;
+pub use program::{main, run};

@@ -31,7 +31,7 @@ pub fn start() {
 
 fn begin() -> Result<(), Failure> {
     let words = ["a3".to_owned()].into_iter().chain(browser::words());
-    let options = Cli::try_parse_from(words).map_err(|error| match cli::explain(&error) {
+    let options = Cli::try_parse_from(words).map_err(|error| match cli::explain(&error, &[]) {
         Err(failure) => failure,
         Ok(()) => Failure::usage(error),
     })?;

@@ -1,5 +1,6 @@
 //! The program: reads the command line and runs the command.
 
+use std::ffi::OsString;
 use std::process::ExitCode;
 
 use clap::Parser;
@@ -17,8 +18,15 @@ use crate::window::{self, compare};
 /// Runs the command of the command line, and returns the exit code of the program.
 #[must_use]
 pub fn main() -> ExitCode {
+    ExitCode::from(run(std::env::args_os().collect()))
+}
+
+/// Runs the command of a command line, which begins with the name of the program, and returns the
+/// exit code. The signals that end a program are its own from then on.
+#[must_use]
+pub fn run(args: Vec<OsString>) -> u8 {
     interrupt::start();
-    let result = match Cli::try_parse() {
+    let result = match Cli::try_parse_from(&args) {
         Ok(cli) => match cli.command {
             #[cfg(feature = "window")]
             None => window::run(&cli.window),
@@ -47,19 +55,19 @@ pub fn main() -> ExitCode {
             Some(Command::Completions { shell }) => manual::completions(shell),
             Some(Command::Man { output }) => manual::run(output.as_deref()),
         },
-        Err(error) => cli::explain(&error),
+        Err(error) => cli::explain(&error, &args),
     };
     let Err(failure) = result else {
-        return ExitCode::SUCCESS;
+        return 0;
     };
     let code = match failure {
         Failure::Usage(_) | Failure::Input(_) => 2,
         Failure::Run(_) => 1,
         Failure::Interrupted(_) => {
             terminal::warn(&failure.to_string());
-            return ExitCode::from(interrupt::exit_code());
+            return interrupt::exit_code();
         }
     };
     terminal::warn(&format!("error: {failure}"));
-    ExitCode::from(code)
+    code
 }

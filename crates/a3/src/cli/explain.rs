@@ -1,6 +1,7 @@
 //! Messages for a command line that cannot be understood.
 
 use std::error::Error;
+use std::ffi::OsString;
 
 use a3_scenes::nearest;
 use clap::error::{ContextKind, ContextValue, ErrorKind};
@@ -11,18 +12,18 @@ use crate::base::terminal;
 /// Largest number of characters of a quoted argument.
 const MAX_QUOTED_CHARS: usize = 80;
 
-/// Prints help and version as clap does, and returns any mistake in one line.
-pub fn explain(error: &clap::Error) -> Result<(), Failure> {
+/// Prints help and version as clap does, and returns any mistake of the arguments in one line.
+pub fn explain(error: &clap::Error, args: &[OsString]) -> Result<(), Failure> {
     if matches!(
         error.kind(),
         ErrorKind::DisplayHelp | ErrorKind::DisplayVersion
     ) {
         return terminal::check_write(error.print());
     }
-    Err(Failure::Usage(mistake(error)))
+    Err(Failure::Usage(mistake(error, args)))
 }
 
-fn mistake(error: &clap::Error) -> String {
+fn mistake(error: &clap::Error, args: &[OsString]) -> String {
     let arg = text(error, ContextKind::InvalidArg);
     let value = text(error, ContextKind::InvalidValue);
     let option = arg.split([' ', '=']).next().unwrap_or_default();
@@ -79,16 +80,15 @@ fn mistake(error: &clap::Error) -> String {
             format!("{} is missing; --help explains it", missing.join(" and "))
         }
         ErrorKind::ArgumentConflict => conflict(error, &arg),
-        ErrorKind::InvalidUtf8 => not_utf_8(),
+        ErrorKind::InvalidUtf8 => not_utf_8(args),
         _ => "the command line cannot be understood; --help explains it".into(),
     }
 }
 
-/// Message for a name that is not UTF-8, which is the first such argument of the process.
-fn not_utf_8() -> String {
-    let mut all = std::env::args_os();
-    let name = all.find(|arg| arg.to_str().is_none()).unwrap_or_default();
-    let name = quoted(&name.to_string_lossy());
+/// Message for a name that is not UTF-8, which is the first such argument.
+fn not_utf_8(args: &[OsString]) -> String {
+    let name = args.iter().find(|arg| arg.to_str().is_none());
+    let name = quoted(&name.map(|name| name.to_string_lossy()).unwrap_or_default());
     format!("{name} is not UTF-8: give the file a name in UTF-8")
 }
 

@@ -97,13 +97,7 @@ impl Request {
 
     /// Builds the scene, with the wind, the swing and the self-collision of the options.
     pub fn scene(&self) -> Result<Scene, Failure> {
-        // Euler's method can run every scene.
-        let run = self.simulate(&self.build()?, &integrators::METHODS[0], None)?;
-        Ok(Scene {
-            model: run.model().clone(),
-            state: run.state().to_vec(),
-            ..run.scene().clone()
-        })
+        scene_of(&self.options, &self.build()?)
     }
 
     /// Builds the scene with its presentation and its defaults.
@@ -136,56 +130,76 @@ impl Request {
         solver: &'static Method,
         step: Option<f64>,
     ) -> Result<Simulation, Failure> {
-        let scene = &setup.scene;
-        for (asked, there, option) in [
-            (self.options.wind, scene.wind.is_some(), "wind"),
-            (self.options.swing, scene.swing.is_some(), "swing"),
-            (
-                self.options.self_collision,
-                scene.touch.is_some(),
-                "self-collision",
-            ),
-        ] {
-            if asked && !there {
-                return Err(Failure::usage(format!(
-                    "the scene {} has no {option}: leave out --{option}",
-                    scene.name
-                )));
-            }
-        }
-        let own = || setup.defaults.control_of(solver);
-        let control = step.map_or_else(own, |value| solver.control(value));
-        check_control(solver, control)?;
-        if let Err(e) = solver.check(scene.model.system()) {
-            let serve = integrators::METHODS
-                .iter()
-                .filter(|m| m.check(scene.model.system()).is_ok())
-                .map(|m| m.name);
-            let serve = serve.collect::<Vec<_>>().join(", ");
+        simulate(&self.options, setup, solver, step)
+    }
+}
+
+/// Returns a scene as it was built, with the wind, the swing and the self-collision of the options.
+pub fn scene_of(options: &What, setup: &Setup) -> Result<Scene, Failure> {
+    // Euler's method can run every scene.
+    let run = simulate(options, setup, &integrators::METHODS[0], None)?;
+    Ok(Scene {
+        model: run.model().clone(),
+        state: run.state().to_vec(),
+        ..run.scene().clone()
+    })
+}
+
+/// Creates a simulation with these options, as [`Request::simulate`] does.
+pub fn simulate(
+    options: &What,
+    setup: &Setup,
+    solver: &'static Method,
+    step: Option<f64>,
+) -> Result<Simulation, Failure> {
+    let scene = &setup.scene;
+    for (asked, there, option) in [
+        (options.wind, scene.wind.is_some(), "wind"),
+        (options.swing, scene.swing.is_some(), "swing"),
+        (
+            options.self_collision,
+            scene.touch.is_some(),
+            "self-collision",
+        ),
+    ] {
+        if asked && !there {
             return Err(Failure::usage(format!(
-                "scene {}: {e}; the solvers that can run it are {serve}",
+                "the scene {} has no {option}: leave out --{option}",
                 scene.name
             )));
         }
-        let mut simulation =
-            Simulation::new(scene.clone(), solver, control).map_err(Failure::usage)?;
-        // Without --wind the wind stays as it is: in some scenes it blows from the start.
-        if self.options.wind {
-            simulation.set_wind(true);
-            solver
-                .check(simulation.model().system())
-                .map_err(Failure::usage)?;
-        }
-        simulation.set_swinging(self.options.swing);
-        if self.options.self_collision {
-            simulation.set_touching(true).map_err(|why| {
-                Failure::usage(format!(
-                    "--self-collision: {why}; leave the option out, or move apart what crosses"
-                ))
-            })?;
-        }
-        Ok(simulation)
     }
+    let own = || setup.defaults.control_of(solver);
+    let control = step.map_or_else(own, |value| solver.control(value));
+    check_control(solver, control)?;
+    if let Err(e) = solver.check(scene.model.system()) {
+        let serve = integrators::METHODS
+            .iter()
+            .filter(|m| m.check(scene.model.system()).is_ok())
+            .map(|m| m.name);
+        let serve = serve.collect::<Vec<_>>().join(", ");
+        return Err(Failure::usage(format!(
+            "scene {}: {e}; the solvers that can run it are {serve}",
+            scene.name
+        )));
+    }
+    let mut simulation = Simulation::new(scene.clone(), solver, control).map_err(Failure::usage)?;
+    // Without --wind the wind stays as it is: in some scenes it blows from the start.
+    if options.wind {
+        simulation.set_wind(true);
+        solver
+            .check(simulation.model().system())
+            .map_err(Failure::usage)?;
+    }
+    simulation.set_swinging(options.swing);
+    if options.self_collision {
+        simulation.set_touching(true).map_err(|why| {
+            Failure::usage(format!(
+                "--self-collision: {why}; leave the option out, or move apart what crosses"
+            ))
+        })?;
+    }
+    Ok(simulation)
 }
 
 /// Reads and builds a scene: one of the built-in ones by its name, or from a file (TOML, JSON, or a

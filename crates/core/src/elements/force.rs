@@ -120,6 +120,12 @@ pub(crate) trait Force {
         Energy::default()
     }
 
+    /// Returns the reason why an evaluation has failed since the last call, and forgets it. That
+    /// evaluation has filled f with NaN.
+    fn take_failure(&self) -> Option<Error> {
+        None
+    }
+
     /// Whether the forces depend on velocities.
     fn reads_velocity(&self) -> bool {
         false

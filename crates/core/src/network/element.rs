@@ -5,7 +5,8 @@ use std::any::Any;
 use crate::contact::ContactLayer;
 use crate::elements::force::{Force, Matter};
 use crate::elements::{
-    Airflow, Attraction, BucklingSprings, Drag, Fluid, Gravity, Sheet, Solid, Springs, Wind,
+    Airflow, Attraction, BucklingSprings, Drag, Fluid, Gravity, OwnForce, Sheet, Solid, Springs,
+    Wind,
 };
 
 macro_rules! elements {
@@ -92,6 +93,8 @@ elements! {
     Attraction,
     /// Repulsion of surfaces that are nearer than their thickness.
     ContactLayer,
+    /// A force that is a function.
+    OwnForce,
 }
 
 impl Element {

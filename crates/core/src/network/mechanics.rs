@@ -8,6 +8,7 @@ use super::parts::Network;
 use crate::columns::columns_mut;
 use crate::coupling::{Coupling, Diagonal, Matrix};
 use crate::elements::{Drag, Finish};
+use crate::error::Error;
 use crate::path::Place;
 use crate::products::{Products, SolverHints};
 use crate::rows::Terms;
@@ -47,6 +48,11 @@ impl Mechanics for Network {
         for pin in self.particles.pins() {
             visit(pin.particle, pin.path.at(t));
         }
+    }
+
+    fn take_failure(&self) -> Option<Error> {
+        let mut elements = self.elements().iter();
+        elements.find_map(|element| element.force().take_failure())
     }
 
     /// Returns the rows of sheets, if sheets alone couple particles: other couplings would reach

@@ -2,8 +2,8 @@
 
 use std::sync::Arc;
 
-use super::failure::{Failure, Outcome};
 use crate::error::Error;
+use crate::failure::{Failure, Outcome};
 use crate::scene::Model;
 use crate::system::ParticleSystem;
 

@@ -1,10 +1,7 @@
 //! Own systems from functions: of first order, and of second order.
 
-mod failure;
 mod first_order;
 mod second_order;
 
-pub use failure::Outcome;
-pub(crate) use failure::succeeded;
 pub use first_order::Ode;
 pub use second_order::SecondOrder;

@@ -3,8 +3,8 @@
 use super::mode::Mode;
 use super::tied::Tied;
 use crate::error::Error;
+use crate::failure::succeeded;
 use crate::integrators::{Integrator, Method};
-use crate::own::succeeded;
 
 /// Growth of a mode in one step of a method.
 ///

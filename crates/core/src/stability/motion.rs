@@ -17,9 +17,9 @@ use std::cell::RefCell;
 
 use crate::control::Control;
 use crate::error::Error;
+use crate::failure::succeeded;
 use crate::integrators::{Method, find};
 use crate::network::Network;
-use crate::own::succeeded;
 use crate::random::SplitMix;
 use crate::scene::{Model, Scene};
 use crate::simulation::Simulation;

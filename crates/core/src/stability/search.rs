@@ -6,9 +6,9 @@ use super::limit::{HORIZON, STEPS};
 use super::observation::Observation;
 use crate::elements::Sheet;
 use crate::error::Error;
+use crate::failure::succeeded;
 use crate::integrators::Method;
 use crate::network::Element;
-use crate::own::succeeded;
 use crate::scene::Model;
 use crate::simulation::Simulation;
 

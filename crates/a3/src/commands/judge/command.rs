@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use a3_core::Scene;
-use a3_core::accuracy::{Horizon, horizon};
+use a3_core::accuracy::Horizon;
 
 use super::judgement::{Course, Judgement, judge};
 use super::picture;
@@ -11,18 +11,16 @@ use super::plain::Plain;
 use super::summary::Record;
 use super::trial::Way;
 use super::truth::Truth;
+use super::value::{look_ahead as horizon_of, stopped};
 use super::words::{is_resolved, is_within, orders, text, too_large};
 use crate::base::failure::Failure;
 use crate::base::progress::Bar;
 use crate::base::{interrupt, terminal};
 use crate::cli::Judge;
-use crate::commands::chart::{PICTURES, check_motion, describe};
+use crate::commands::chart::{PICTURES, describe};
 use crate::files::output;
 use crate::files::setup::Request;
 use crate::files::states::{States, read};
-
-/// Largest time that is judged (s).
-const MAX_TIME: f64 = 1000.0;
 
 /// Judges the files that the command line names.
 pub fn run(options: &Judge) -> Result<(), Failure> {
@@ -117,18 +115,8 @@ fn look_ahead(
 ) -> Result<Horizon, Failure> {
     bar.say("looking ahead  ".into());
     let ends = files.iter().filter_map(|(_, states)| states.times.last());
-    let last = ends
-        .fold(0.0, |last: f64, end| last.max(*end))
-        .min(MAX_TIME);
-    let last = options.until.map_or(last, |until| last.min(until));
-    let found = horizon(scene, last, &interrupt::go_on).map_err(Failure::run)?;
-    let found = found.ok_or_else(stopped)?;
-    check_motion(scene, &found)?;
-    let is_chaotic = found.lyapunov.is_finite() && options.until.is_none();
-    Ok(Horizon {
-        until: if is_chaotic { found.until } else { last },
-        ..found
-    })
+    let last = ends.fold(0.0, |last: f64, end| last.max(*end));
+    horizon_of(scene, last, options.until)
 }
 
 /// Judges all files.
@@ -255,9 +243,4 @@ fn verdict(options: &Judge, judged: &[(String, Judgement)], refused: usize) -> R
             judged.len()
         ))),
     }
-}
-
-/// Creates the failure of a command that was interrupted before all files were judged.
-fn stopped() -> Failure {
-    Failure::Interrupted("interrupted before all files were judged".into())
 }

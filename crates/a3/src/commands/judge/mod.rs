@@ -16,6 +16,8 @@ mod start;
 mod summary;
 mod trial;
 mod truth;
+mod value;
 mod words;
 
 pub use command::run;
+pub use value::{JudgeOptions, StatesOf, Verdict, judge_states};

@@ -16,6 +16,8 @@ use crate::base::input_error::InputError;
 
 /// Argument that stands for standard input.
 const INPUT: &str = "-";
+/// Name of a scene whose text is in no file.
+const TEXT: &str = "scene";
 
 /// Source of a scene: its name or file, with the text and the description that were read.
 #[derive(Clone)]
@@ -106,6 +108,53 @@ impl Source {
         })
     }
 
+    /// Reads a scene from a text in TOML.
+    pub fn written(text: &str) -> Result<Self, InputError> {
+        let (description, places) = parse_toml(text).map_err(in_text)?;
+        Ok(Self::of_text(text.into(), description, places))
+    }
+
+    /// Reads a scene from the table of its keys, as JSON.
+    pub fn tabulated(json: &str) -> Result<Self, InputError> {
+        let whole = |why: String| {
+            let key = String::new();
+            in_text(Fault {
+                line: None,
+                key,
+                why,
+            })
+        };
+        let table: Value = serde_json::from_str(json).map_err(|e| whole(e.to_string()))?;
+        let text = toml::to_string(&table).map_err(|e| whole(e.to_string()))?;
+        // The lines of this text mean nothing to the user.
+        let parsed = parse_toml(&text).map_err(|fault| {
+            in_text(Fault {
+                line: None,
+                ..fault
+            })
+        });
+        let (description, places) = parsed?;
+        Ok(Self::of_text(text, description, places.without_lines()))
+    }
+
+    fn of_text(text: String, mut description: Description, places: Places) -> Self {
+        description.name.get_or_insert_with(|| TEXT.into());
+        Self {
+            typed: TEXT.into(),
+            path: Some(TEXT.into()),
+            description: Arc::new(description),
+            text: text.into(),
+            places: Arc::new(places),
+            meshes: Arc::default(),
+        }
+    }
+
+    /// Returns the table of the scene's keys, as JSON.
+    pub fn table(&self) -> Result<String, InputError> {
+        let table: Result<Value, _> = a3_scenes::read(&self.text);
+        table.map(|table| table.to_string()).map_err(in_text)
+    }
+
     /// Returns the scene with other values for some keys, which `change` sets in the table of its
     /// keys.
     pub fn with(
@@ -153,6 +202,11 @@ impl Source {
             meshes: Arc::default(),
             ..self.clone()
         }
+    }
+
+    /// Whether the scene has a name, or is in a file.
+    pub fn is_named(&self) -> bool {
+        self.path.as_deref() != Some(Path::new(TEXT))
     }
 
     /// Whether the scene came by standard input, which cannot be read again.
@@ -204,6 +258,12 @@ impl Source {
         hash.add(scene.state.iter().flat_map(|y| y.to_le_bytes()));
         format!("{} {:016x}", scene.name, hash.value())
     }
+}
+
+/// Fault of a text that is in no file.
+fn in_text(fault: Fault) -> InputError {
+    let file = Some(TEXT.into());
+    InputError::Text { file, fault }
 }
 
 /// Writes the error of an unknown name.

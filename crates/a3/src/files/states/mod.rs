@@ -11,6 +11,5 @@ mod parse;
 mod read;
 
 pub use build::States;
-#[cfg(test)]
 pub use parse::parse;
 pub use read::read;

@@ -39,7 +39,7 @@ pub(crate) fn succeeded<T>(done: Result<T, Error>) -> Result<bool, Error> {
 
 /// Failure of an evaluation, if there was one since it was last taken.
 #[derive(Default)]
-pub(super) struct Failure {
+pub(crate) struct Failure {
     /// Whether there is one, which is all that evaluations ask for.
     is_there: AtomicBool,
     error: Mutex<Option<Error>>,

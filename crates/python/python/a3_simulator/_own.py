@@ -1,0 +1,171 @@
+"""Own systems and own methods: functions that a3 calls."""
+
+from __future__ import annotations
+
+import math
+from typing import Any, Callable, Optional, Sequence, Union
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _a3
+from ._errors import InputError
+
+Floats = npt.NDArray[np.float64]
+#: f(t, y): the derivative of the state y at time t, of the shape of y.
+Derivative = Callable[[float, Floats], npt.ArrayLike]
+#: F(t, x, v): the forces (N), (n, 3), at time t (s) on particles at x (m), (n, 3), that move at v (m/s), (n, 3).
+Forces = Callable[[float, Floats, Floats], npt.ArrayLike]
+#: step(f, t, y, h): the state at t + h, of the shape of y, from the state y at time t (s).
+Step = Callable[[Callable[[float, npt.ArrayLike], Floats], float, Floats, float], npt.ArrayLike]
+
+
+class System:
+    """A system of first order, y' = f(t, y), with the state from which it starts.
+
+    Args:
+        f: function of the time t and the state y, an array (n,), that returns y', an array (n,). The result depends on
+            t and y alone.
+        y0: state at t = 0, (n,).
+        name: name, for charts and errors; by default that of f.
+
+    Where a scene is expected, a system can stand. Arrays that f gets are its own: it may keep or change them.
+    """
+
+    #: Masses (kg), (n,), of a system of particles.
+    masses: Optional[Floats] = None
+    #: Whether forces depend on positions and time alone.
+    positional = False
+
+    def __init__(self, f: Derivative, y0: npt.ArrayLike, *, name: Optional[str] = None) -> None:
+        self.f: Union[Derivative, Forces] = f
+        self.y0 = _numbers("y0", y0, (-1,))
+        if self.y0.size == 0:
+            raise InputError("y0: a system has at least one number")
+        self.name = name or _name(f, "system")
+        self._state = self.y0
+
+    @classmethod
+    def of_particles(
+        cls,
+        forces: Forces,
+        masses: npt.ArrayLike,
+        positions: npt.ArrayLike,
+        velocities: Optional[npt.ArrayLike] = None,
+        *,
+        positional: bool = False,
+        name: Optional[str] = None,
+    ) -> "System":
+        """Returns a system of second order, M x'' = F(t, x, v).
+
+        Args:
+            forces: function of the time t (s), the positions x (m), (n, 3), and the velocities v (m/s), (n, 3), that
+                returns the forces (N), (n, 3).
+            masses: masses (kg), (n,).
+            positions: positions at t = 0 (m), (n, 3).
+            velocities: velocities at t = 0 (m/s), (n, 3); by default 0.
+            positional: whether the forces do not depend on v. Verlet's and Nystroem's methods then take fewer
+                evaluations.
+            name: name, for charts and errors; by default that of `forces`.
+        """
+        system = cls.__new__(cls)
+        system.f = forces
+        system.masses = _numbers("masses", masses, (-1,))
+        shape = (system.masses.size, 3)
+        x = _numbers("positions", positions, shape)
+        v = np.zeros(shape) if velocities is None else _numbers("velocities", velocities, shape)
+        system.positional = positional
+        system.name = name or _name(forces, "system")
+        system.y0 = system._state = np.concatenate([x.T.ravel(), v.T.ravel()])
+        return system
+
+    def __repr__(self) -> str:
+        return f"<System {self.name} of {self.y0.size} numbers>"
+
+
+class Method:
+    """A method of one's own, which charts and runs take where a name of a method is expected.
+
+    Args:
+        name: a word that no method of a3 has.
+        step: function of f, the time t (s), the state y, (n,), and the step h (s), that returns the state at t + h,
+            (n,). f(t, y) is the derivative, (n,); it may be called at any time and state. For particles the state is
+            all x, all y, all z (m), and then the velocities (m/s) in the same order.
+        order: the error of a run falls as h to this power. By default it is measured, by a few steps of logistic
+            growth.
+        default_step: step of runs for which none is given (s).
+
+        def step(f, t, y, h):
+            k = f(t, y)
+            return y + h * f(t + h / 2, y + h / 2 * k)
+
+        a3.chart("pendulum", methods=["rk4", a3.Method("mine", step)])
+    """
+
+    def __init__(self, name: str, step: Step, order: Optional[int] = None, *, default_step: float = 1e-3) -> None:
+        if not callable(step):
+            raise InputError(f"step: a function of f, t, y and h is expected, not {type(step).__name__}")
+        if not (math.isfinite(default_step) and default_step > 0):
+            raise InputError(f"default_step is a number of seconds above 0, such as 0.01, not {default_step}")
+        self.name = name
+        self.step = step
+        self.order, evaluations = _measure(step, name) if order is None else (order, order)
+        _a3.add_method(name, step, self.order, evaluations, default_step)
+
+    def __reduce__(self) -> Any:
+        return Method, (self.name, self.step, self.order)
+
+    def __repr__(self) -> str:
+        return f"<Method {self.name} of order {self.order}>"
+
+
+def method_name(method: Union[str, Method]) -> str:
+    """Returns the name of a method."""
+    if isinstance(method, str):
+        return method
+    if isinstance(method, Method):
+        return method.name
+    raise InputError(f"a method is a name or a letter, or an a3.Method, not {type(method).__name__}")
+
+
+def _name(function: Any, otherwise: str) -> str:
+    name = getattr(function, "__name__", otherwise)
+    return otherwise if name == "<lambda>" else name
+
+
+def _numbers(what: str, given: npt.ArrayLike, shape: Sequence[int]) -> Floats:
+    """Returns an array of its own, of finite numbers. A length of -1 is any."""
+    try:
+        array = np.array(given).astype(float, casting="same_kind")
+    except (TypeError, ValueError):
+        raise InputError(f"{what}: numbers are expected, not {type(given).__name__}") from None
+    if array.ndim != len(shape) or any(n not in (-1, m) for n, m in zip(shape, array.shape)):
+        wanted = ", ".join("n" if n < 0 else str(n) for n in shape) + ("," if len(shape) == 1 else "")
+        raise InputError(f"{what}: an array of shape ({wanted}) is expected, not {array.shape}")
+    if not np.isfinite(array).all():
+        raise InputError(f"{what}: finite numbers are expected, not {array[~np.isfinite(array)][0]}")
+    return array
+
+
+def _measure(step: Step, name: str) -> "tuple[int, int]":
+    """Measures the order of a method and its evaluations in a step, on logistic growth y' = y (1 - y) in two numbers."""
+    count = 0
+
+    def f(t: float, y: npt.ArrayLike) -> Floats:
+        nonlocal count
+        count += 1
+        y = np.asarray(y, dtype=float)
+        return y * (1.0 - y)
+
+    def error(n: int) -> float:
+        y, h = np.array([0.1, 0.3]), 2.0 / n
+        exact = 1.0 / (1.0 + (1.0 / y - 1.0) * np.exp(-2.0))
+        for k in range(n):
+            y = _numbers(f"what the step of {name} returned", step(f, k * h, y, h), (2,))
+        return float(np.abs(y - exact).max())
+
+    errors = [error(n) for n in (4, 8)]
+    evaluations = max(1, round(count / 12))
+    if errors[1] < 1e-13 or errors[1] >= errors[0]:
+        return 1, evaluations
+    return min(max(round(math.log2(errors[0] / errors[1])), 1), 12), evaluations

@@ -1,0 +1,199 @@
+"""Runs of scenes."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Dict, NamedTuple, Optional, Sequence, Tuple, Union
+
+import numpy as np
+
+from . import _a3
+from ._given import given
+from ._own import Forces, Method, method_name
+from ._progress import progress_bar
+from ._scenes import SceneLike
+
+if TYPE_CHECKING:
+    from ._picture import Picture
+
+
+class Energy(NamedTuple):
+    """Energy of a state by kind (J)."""
+
+    kinetic: float
+    #: Of springs, bent arcs, solids and compressed fluid.
+    elastic: float
+    #: Of the repulsion of surfaces that are nearer than their thickness.
+    contact: float
+    #: Zero at the origin.
+    gravitational: float
+
+    @property
+    def total(self) -> float:
+        """Sum of all kinds (J)."""
+        return sum(self)
+
+
+class Work(NamedTuple):
+    """Cost of the steps of a run."""
+
+    #: Evaluations of f(t, y) or of the forces.
+    evaluations: int
+    #: Linear systems solved.
+    solves: int
+    #: Matrices factorised.
+    factorizations: int
+    #: Steps of an adaptive method that were rejected.
+    rejections: int
+    #: Total cost with the linear algebra, in evaluations: the same number on every machine.
+    total: float
+
+
+class Springs(NamedTuple):
+    """All m springs of a run."""
+
+    #: Particles at both ends, (m, 2).
+    ends: np.ndarray
+    #: "structural", "shear" or "bend", (m,).
+    kind: np.ndarray
+    #: k (N/m), (m,).
+    stiffness: np.ndarray
+    #: r (m), (m,).
+    rest_length: np.ndarray
+    #: c (N s/m), (m,).
+    damping: np.ndarray
+    #: L (m), (m,).
+    length: np.ndarray
+    #: Pull k (L - r) + c L' (N), (m,): above 0 where a spring pulls its ends together.
+    force: np.ndarray
+
+    @property
+    def strain(self) -> np.ndarray:
+        """L / r - 1, (m,)."""
+        with np.errstate(divide="ignore", invalid="ignore"):
+            return self.length / self.rest_length - 1.0
+
+
+class Simulation(_a3.Run):
+    """The run of a scene by a method.
+
+    Args:
+        scene: name of a built-in scene (`a3.scenes()` lists them), path of a file (TOML, JSON or a mesh), text in
+            TOML, dict of the keys of a scene file (`a3.scene(name)` returns one), or `a3.System`.
+        method: name or letter of a method (`a3.methods()` lists them), or an `a3.Method`; by default that of the
+            scene, or else the explicit trapezoid. For a system, it is "dop853".
+        step: length of the steps (s); by default that of the scene or of the method.
+        tolerance: relative tolerance of an adaptive method, in place of a step.
+        grid: rows and columns of the first cloth, in place of its own.
+        wind, swing, self_collision: whether the wind blows, the pins swing, and surfaces touch one another and
+            themselves, in a scene that has them and in which they are off at the start.
+        absolute: error of positions (m) that a step of an adaptive method may make; by default the tolerance times
+            the radius of the scene.
+        max_step: longest step of an adaptive method (s).
+        forces: functions of one's own, each of the time t (s), the positions x (m), (n, 3), and the velocities v
+            (m/s), (n, 3), that return forces (N), (n, 3), to be added to those of the scene. They depend on t, x and
+            v alone. Implicit methods hold them constant within an iteration.
+
+    Raises:
+        InputError: there is no such scene or method, a key of the scene has a fault, or the method does not support
+            the scene.
+
+    The run computes whole steps. If a time is within a step, the state there is interpolated, so how often a run is
+    read changes no bit of it. The global lock is free while it computes.
+    """
+
+    #: The arguments, to make the run again.
+    _given: Tuple[tuple, Dict[str, Any]]
+
+    def __new__(  # type: ignore[misc]
+        cls,
+        scene: SceneLike,
+        method: Union[str, Method, None] = None,
+        step: Optional[float] = None,
+        tolerance: Optional[float] = None,
+        *,
+        grid: Optional[Tuple[int, int]] = None,
+        wind: bool = False,
+        swing: bool = False,
+        self_collision: bool = False,
+        absolute: Optional[float] = None,
+        max_step: Optional[float] = None,
+        forces: Sequence[Forces] = (),
+    ) -> "Simulation":
+        name = None if method is None else method_name(method)
+        given_scene = given(
+            scene, grid=grid, wind=wind, swing=swing, self_collision=self_collision, forces=forces
+        )
+        run: Any = super().__new__(cls, given_scene, name, step, tolerance, absolute, max_step)
+        options = {
+            "grid": grid,
+            "wind": wind,
+            "swing": swing,
+            "self_collision": self_collision,
+            "absolute": absolute,
+            "max_step": max_step,
+            "forces": forces,
+        }
+        run._given = (scene, method, step, tolerance), options
+        return run
+
+    def __reduce__(self) -> Any:
+        given, options = self._given
+        return _restored, (given, options, self.checkpoint())
+
+    def advance_to(self, time: float, progress: bool = False) -> None:
+        """Advances to a time (s).
+
+        Args:
+            time: from the present time of the run on (s).
+            progress: whether a bar shows the progress, if `tqdm` is installed.
+
+        Raises:
+            BlowUp: the run blew up. It is then back at its last sound state.
+            InputError: the run is past that time, or the time is not finite.
+        """
+        with progress_bar(progress, self.time, time) as report:
+            self.advance(time, report)
+
+    @property
+    def energy(self) -> Optional[Energy]:
+        """Energy by kind (J); `None` if the scene has no forces."""
+        energies = self.energies()
+        return None if energies is None else Energy(*energies)
+
+    @property
+    def work(self) -> Work:
+        """Cost of the steps so far."""
+        return Work(*self.work_done())
+
+    @property
+    def springs(self) -> Springs:
+        """All springs as they are now; broken ones are left out."""
+        ends, kind, stiffness, rest_length, damping = self.spring_data()
+        x, v = self.positions, self.velocities
+        i, j = ends[:, 0], ends[:, 1]
+        apart, moving = x[j] - x[i], v[j] - v[i]
+        length = np.linalg.norm(apart, axis=1)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            rate = np.where(length > 0.0, np.einsum("ij,ij->i", apart, moving) / length, 0.0)
+        force = stiffness * (length - rest_length) + damping * rate
+        return Springs(ends, np.array(kind, dtype="U10"), stiffness, rest_length, damping, length, force)
+
+    def render(self, width: int = 960, height: int = 540, **look: Any) -> "Picture":
+        """Draws the run as it is. `a3.render` lists the options of its look."""
+        from ._picture import Picture
+
+        return Picture(self.picture(width, height, **look))
+
+    def _repr_png_(self) -> bytes:
+        return self.render().png
+
+    def __repr__(self) -> str:
+        setting = "tolerance" if self.adaptive else "step"
+        return f"<Simulation {self.scene} by {self.method}, {setting} {self.setting:g}: t = {self.time:g} s>"
+
+
+def _restored(given: tuple, options: Dict[str, Any], checkpoint: bytes) -> Simulation:
+    """Makes a pickled run again, which continues with the same bits."""
+    run = Simulation(*given, **options)
+    run.restore(checkpoint)
+    return run

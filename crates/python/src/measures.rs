@@ -1,0 +1,354 @@
+//! Charts, choices, limits and comparisons.
+
+use std::path::PathBuf;
+
+use a3::{ChartOptions, ChooseOptions, Failure, Goal, JudgeOptions, StatesOf};
+use a3_core::accuracy::{Metric, SetBy};
+use a3_core::{Control, Method};
+use numpy::PyArray1;
+use pyo3::prelude::*;
+use pyo3::types::PyBytes;
+
+use super::errors::{of_failure, wrong};
+use super::function::Raised;
+use super::monitor::Monitor;
+use super::open::{Given, Opened};
+use super::tables::{control, methods_named};
+
+/// Finds a metric by its name.
+fn metric(py: Python<'_>, name: Option<&str>) -> PyResult<Option<Metric>> {
+    let Some(name) = name else {
+        return Ok(None);
+    };
+    let all = || Metric::OF_PARTICLES.iter().copied().chain([Metric::State]);
+    all()
+        .find(|metric| metric.name() == name)
+        .map(Some)
+        .ok_or_else(|| {
+            let names: Vec<_> = all().map(Metric::name).collect();
+            wrong(
+                py,
+                format!(
+                    "there is no error `{name}`: the errors are {}",
+                    names.join(", ")
+                ),
+            )
+        })
+}
+
+/// Runs work without the global lock. If it failed because a function raised an exception, that is
+/// raised.
+fn work<T: Send>(
+    py: Python<'_>,
+    raised: &[Raised],
+    work: impl Send + FnOnce() -> Result<T, Failure>,
+) -> PyResult<T> {
+    py.detach(work).map_err(|failure| {
+        let raised = raised.iter().find_map(Raised::take);
+        raised.unwrap_or_else(|| of_failure(py, &failure))
+    })
+}
+
+/// A picture that can be drawn.
+type Draw<'a> = dyn Fn(u32, u32) -> Result<a3_plot::Figure, Failure> + Sync + 'a;
+
+/// Draws a picture of this kind: "svg", "pdf" or "png".
+fn drawn<'py>(
+    py: Python<'py>,
+    kind: &str,
+    (width, height): (u32, u32),
+    draw: &Draw,
+) -> PyResult<Bound<'py, PyBytes>> {
+    let bytes = py.detach(|| {
+        let figure = draw(width, height)?;
+        match kind {
+            "svg" => Ok(figure.svg().into_bytes()),
+            "pdf" => Ok(figure.pdf()),
+            _ => figure.png(1.0).map_err(Failure::run),
+        }
+    });
+    let bytes = bytes.map_err(|failure| of_failure(py, &failure))?;
+    Ok(PyBytes::new(py, &bytes))
+}
+
+/// A measured chart.
+#[pyclass(frozen, module = "a3_simulator._a3")]
+pub struct Chart(a3::Chart);
+
+#[pymethods]
+impl Chart {
+    /// The runs, as JSON.
+    fn json(&self, py: Python<'_>) -> PyResult<String> {
+        self.0.json().map_err(|failure| of_failure(py, &failure))
+    }
+
+    /// The tables, as text.
+    fn table(&self) -> String {
+        self.0.table()
+    }
+
+    /// The name of the error that counts, the end of the runs (s), and whether all were measured.
+    fn about(&self) -> (&'static str, f64, bool) {
+        (self.0.metric().name(), self.0.until(), self.0.is_complete())
+    }
+
+    /// A picture of a kind and a size (px).
+    fn drawn<'py>(
+        &self,
+        py: Python<'py>,
+        kind: &str,
+        size: (u32, u32),
+    ) -> PyResult<Bound<'py, PyBytes>> {
+        drawn(py, kind, size, &|width, height| {
+            self.0.figure(width, height)
+        })
+    }
+}
+
+/// Measures a chart.
+#[pyfunction]
+#[expect(
+    clippy::too_many_arguments,
+    clippy::fn_params_excessive_bools,
+    reason = "each is an option"
+)]
+pub fn chart(
+    py: Python<'_>,
+    given: Given,
+    methods: Vec<String>,
+    monitor: &Monitor,
+    until: Option<f64>,
+    error: Option<&str>,
+    particle: Option<usize>,
+    at_end: bool,
+    timed: bool,
+    spread: bool,
+    stiffness: Vec<f64>,
+) -> PyResult<Chart> {
+    let opened = Opened::new(py, &given)?;
+    let (scene, methods) = (opened.scene(py)?, methods_named(py, &methods)?);
+    let options = ChartOptions {
+        until,
+        error: metric(py, error)?,
+        particle,
+        at_end,
+        timed,
+        spread,
+        stiffness,
+    };
+    let raised = opened.raised(methods.iter().copied());
+    monitor.watch(&raised);
+    work(py, &raised, || {
+        a3::chart(&scene, &methods, &options, monitor)
+    })
+    .map(Chart)
+}
+
+/// Method, step or tolerance, error, work, computing time of a frame (ms), the reason why the
+/// setting is not larger, and a command.
+type Chosen = (
+    &'static str,
+    f64,
+    f64,
+    f64,
+    f64,
+    &'static str,
+    Option<String>,
+);
+
+/// Chooses methods. Returns them, the name of the error, the end of the runs (s), and the
+/// uncertainty of the reference.
+#[pyfunction]
+#[expect(clippy::too_many_arguments, reason = "each is an option")]
+pub fn choose(
+    py: Python<'_>,
+    given: Given,
+    methods: Vec<String>,
+    monitor: &Monitor,
+    error: Option<f64>,
+    budget: Option<f64>,
+    of: Option<&str>,
+    until: Option<f64>,
+    particle: Option<usize>,
+    at_end: bool,
+    timed: bool,
+) -> PyResult<(Vec<Chosen>, &'static str, f64, f64)> {
+    let goal = match (error, budget) {
+        (Some(error), None) => Goal::Error(error),
+        (None, Some(budget)) => Goal::Budget(budget),
+        _ => {
+            return Err(wrong(
+                py,
+                "choose takes either error (in m) or budget (in ms per frame)",
+            ));
+        }
+    };
+    let opened = Opened::new(py, &given)?;
+    let (scene, methods) = (opened.scene(py)?, methods_named(py, &methods)?);
+    let options = ChooseOptions {
+        metric: metric(py, of)?,
+        until,
+        particle,
+        at_end,
+        timed,
+        ..ChooseOptions::new(goal)
+    };
+    let raised = opened.raised(methods.iter().copied());
+    monitor.watch(&raised);
+    let choice = work(py, &raised, || {
+        a3::choose(&scene, &methods, &options, monitor)
+    })?;
+    let chosen = |chosen: &a3::Chosen| {
+        let why = match chosen.set_by {
+            SetBy::Accuracy => "accuracy",
+            SetBy::Stability => "stability",
+            SetBy::Nothing => "nothing",
+        };
+        let command = opened
+            .scene
+            .command(chosen.method, chosen.control, choice.until);
+        (
+            chosen.method.name,
+            chosen.control.value(),
+            chosen.error,
+            chosen.work,
+            chosen.milliseconds,
+            why,
+            command,
+        )
+    };
+    let found = choice.found.iter().map(chosen).collect();
+    Ok((found, choice.metric.name(), choice.until, choice.floor))
+}
+
+/// Measured limits.
+#[pyclass(frozen, module = "a3_simulator._a3")]
+pub struct Stability(a3::Stability);
+
+#[pymethods]
+impl Stability {
+    /// The limits (s), as JSON.
+    fn json(&self, py: Python<'_>) -> PyResult<String> {
+        self.0.json().map_err(|failure| of_failure(py, &failure))
+    }
+
+    /// The table, as text.
+    fn table(&self) -> String {
+        self.0.table()
+    }
+
+    /// Whether all was measured.
+    fn complete(&self) -> bool {
+        self.0.complete
+    }
+
+    /// A picture of a kind and a size (px), for a step (s).
+    fn drawn<'py>(
+        &self,
+        py: Python<'py>,
+        kind: &str,
+        size: (u32, u32),
+        step: Option<f64>,
+    ) -> PyResult<Bound<'py, PyBytes>> {
+        drawn(py, kind, size, &|width, height| {
+            self.0.figure(step, width, height)
+        })
+    }
+}
+
+/// Measures the largest steps.
+#[pyfunction]
+pub fn stability(
+    py: Python<'_>,
+    given: Given,
+    methods: Vec<String>,
+    monitor: &Monitor,
+) -> PyResult<Stability> {
+    let opened = Opened::new(py, &given)?;
+    let (scene, methods) = (opened.scene(py)?, methods_named(py, &methods)?);
+    let raised = opened.raised(methods.iter().copied());
+    monitor.watch(&raised);
+    work(py, &raised, || a3::stability(&scene, &methods, monitor)).map(Stability)
+}
+
+/// A run of a comparison: method, setting, states one after the other, energies (J), work, and the
+/// message of a blow-up.
+type Compared<'py> = (
+    &'static str,
+    f64,
+    Bound<'py, PyArray1<f64>>,
+    Bound<'py, PyArray1<f64>>,
+    f64,
+    Option<String>,
+);
+
+/// Runs a scene by several methods, each with its step or tolerance. Returns the times (s), the
+/// runs, the number of particles, and the length of the state.
+#[pyfunction]
+pub fn compare<'py>(
+    py: Python<'py>,
+    given: Given,
+    runs: Vec<(String, Option<f64>)>,
+    monitor: &Monitor,
+    until: f64,
+    frames: usize,
+) -> PyResult<(Bound<'py, PyArray1<f64>>, Vec<Compared<'py>>, usize, usize)> {
+    let opened = Opened::new(py, &given)?;
+    let scene = opened.scene(py)?;
+    let asked = runs.iter().map(|(name, value)| {
+        let method = super::tables::method(py, name)?;
+        Ok((method, control(&opened.setup, method, *value)))
+    });
+    let asked = asked.collect::<PyResult<Vec<(&'static Method, Control)>>>()?;
+    let raised = opened.raised(asked.iter().map(|(method, _)| *method));
+    monitor.watch(&raised);
+    let compared = work(py, &raised, || {
+        a3::compare(&scene, &asked, until, frames, monitor)
+    })?;
+    let runs = compared.runs.iter().map(|run| {
+        (
+            run.method.name,
+            run.control.value(),
+            PyArray1::from_vec(py, run.states.concat()),
+            PyArray1::from_slice(py, &run.energies),
+            run.work,
+            run.blow_up.map(|blow_up| blow_up.to_string()),
+        )
+    });
+    let times = PyArray1::from_slice(py, &compared.times);
+    Ok((
+        times,
+        runs.collect(),
+        scene.model.particles(),
+        scene.state.len(),
+    ))
+}
+
+/// Judges states: a file, or an archive of arrays with its name. Returns the judgement in words and
+/// as JSON.
+#[pyfunction]
+pub fn judge(
+    py: Python<'_>,
+    given: Given,
+    file: Option<PathBuf>,
+    archive: Option<(String, Vec<u8>)>,
+    until: Option<f64>,
+    step: Option<f64>,
+    within: Option<f64>,
+) -> PyResult<(String, String)> {
+    let opened = Opened::new(py, &given)?;
+    let scene = opened.scene(py)?;
+    let states = match (&file, &archive) {
+        (Some(file), _) => StatesOf::File(file),
+        (None, Some((name, bytes))) => StatesOf::Npz(name, bytes),
+        (None, None) => return Err(wrong(py, "there are no states to judge")),
+    };
+    let options = JudgeOptions {
+        until,
+        step,
+        within,
+    };
+    let raised = opened.raised([]);
+    let verdict = work(py, &raised, || a3::judge_states(&scene, states, &options))?;
+    Ok((verdict.text, verdict.json))
+}

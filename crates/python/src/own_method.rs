@@ -1,0 +1,101 @@
+//! Own methods: functions step(f, t, y, h) of Python that return the state at t + h.
+
+use std::collections::BTreeMap;
+use std::sync::{Mutex, PoisonError};
+
+use a3_core::integrators::Derivative as CoreDerivative;
+use a3_core::{Error, Method};
+use numpy::{PyArray1, PyArrayMethods};
+use pyo3::prelude::*;
+use scoped_tls_hkt::scoped_thread_local;
+
+use super::arrays::numbers;
+use super::errors::wrong;
+use super::function::{Function, Raised, Shape, array};
+
+/// f(t, y) of the system that is being stepped.
+trait Evaluate {
+    fn evaluate(&mut self, t: f64, y: &[f64]) -> Result<Vec<f64>, Error>;
+}
+
+impl Evaluate for CoreDerivative<'_> {
+    fn evaluate(&mut self, t: f64, y: &[f64]) -> Result<Vec<f64>, Error> {
+        self.at(t, y)
+    }
+}
+
+scoped_thread_local!(static mut STEPPED: for<'a> &'a mut (dyn Evaluate + 'a));
+
+/// The function f that a step gets: f(t, y) is the derivative of the state y at time t (s).
+#[pyclass(frozen, name = "Derivative", module = "a3_simulator._a3")]
+pub struct Derivative;
+
+#[pymethods]
+impl Derivative {
+    /// Returns f(t, y), an array of the length of y.
+    fn __call__<'py>(
+        &self,
+        py: Python<'py>,
+        t: f64,
+        y: &Bound<'py, PyAny>,
+    ) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        if !STEPPED.is_set() {
+            return Err(wrong(
+                py,
+                "f can be called only while its step is being taken, in the same thread",
+            ));
+        }
+        let array =
+            array(y).ok_or_else(|| wrong(py, "f(t, y) takes a time and an array of numbers"))?;
+        let y = array
+            .to_vec()
+            .map_err(|_| wrong(py, "f(t, y) takes a contiguous array"))?;
+        let evaluated = py.detach(|| STEPPED.with(|f| f.evaluate(t, &y)));
+        let dydt =
+            evaluated.map_err(|error| super::errors::of_error(py, &error, error.to_string()))?;
+        Ok(numbers(py, &dydt))
+    }
+}
+
+/// Registers a method. `step` is called with f, t (s), the state y and h (s), and returns the state
+/// at t + h.
+#[pyfunction]
+pub fn add_method(
+    py: Python<'_>,
+    name: &str,
+    step: &Bound<PyAny>,
+    order: u32,
+    evaluations: u32,
+    default_step: f64,
+) -> PyResult<()> {
+    let raised = Raised::default();
+    let function = Function::new(step, Shape::Flat, &raised)?;
+    let method = Method::from_step(name, order, move |f, t, y, h| {
+        let mut next = vec![0.0; y.len()];
+        let stepped = STEPPED.set(f, || {
+            Python::attach(|py| {
+                let arguments = (Derivative, t, numbers(py, y), h);
+                function.call(py, Ok(arguments), &mut next)
+            })
+        });
+        stepped.map_err(Error::Callback)?;
+        Ok(next)
+    });
+    let method = method.map_err(|error| wrong(py, error.to_string()))?;
+    method
+        .with_evaluations(evaluations)
+        .with_default_step(default_step)
+        .register();
+    let mut all = RAISED.lock().unwrap_or_else(PoisonError::into_inner);
+    all.insert(name.into(), raised);
+    Ok(())
+}
+
+/// Exceptions of own methods, by their names.
+static RAISED: Mutex<BTreeMap<String, Raised>> = Mutex::new(BTreeMap::new());
+
+/// Returns where the exceptions of an own method are kept.
+pub fn raised_by(method: &Method) -> Option<Raised> {
+    let all = RAISED.lock().unwrap_or_else(PoisonError::into_inner);
+    all.get(method.name).cloned()
+}

@@ -1,0 +1,62 @@
+//! Own systems and own forces: functions of Python.
+
+use a3_core::elements::OwnForce;
+use a3_core::{Error, Model, Ode, Scene, SecondOrder};
+use pyo3::prelude::*;
+
+use super::errors::{of_error, wrong};
+use super::function::{Function, Raised, Shape};
+
+/// Builds the scene of a `System` of Python.
+pub fn scene(system: &Bound<PyAny>, raised: &Raised) -> PyResult<Scene> {
+    let py = system.py();
+    let failed = |error: Error| of_error(py, &error, error.to_string());
+    let name: String = system.getattr("name")?.extract()?;
+    let state: Vec<f64> = system.getattr("_state")?.extract()?;
+    let call = system.getattr("f")?;
+    let masses: Option<Vec<f64>> = system.getattr("masses")?.extract()?;
+    let model: Model = if let Some(masses) = masses {
+        let forces = Function::new(&call, Shape::Rows, raised)?;
+        let made = SecondOrder::of_particles(&masses, move |t, x, v, f: &mut [f64]| {
+            forces.of_motion(t, x, v, f)
+        });
+        let system_of = made.map_err(failed)?;
+        if system.getattr("positional")?.extract()? {
+            system_of.positional().into()
+        } else {
+            system_of.into()
+        }
+    } else {
+        let f = Function::new(&call, Shape::Flat, raised)?;
+        let made = Ode::new(state.len(), move |t, y, dydt: &mut [f64]| {
+            f.of_state(t, y, dydt)
+        });
+        made.map_err(failed)?.into()
+    };
+    Ok(Scene::new(name, model, state))
+}
+
+/// Adds forces F(t, x, v) to the network of a scene.
+pub fn add_forces(scene: &mut Scene, forces: &[Bound<PyAny>], raised: &Raised) -> PyResult<()> {
+    for force in forces {
+        let function = Function::new(force, Shape::Rows, raised)?;
+        let Model::Network(network) = &mut scene.model else {
+            let why = format!(
+                "the scene {} has no masses that forces could act on",
+                scene.name
+            );
+            return Err(wrong(force.py(), why));
+        };
+        let own = OwnForce::new(move |t, x: &[f64], v: &[f64], f: &mut [f64]| {
+            let mut added = vec![0.0; f.len()];
+            function.of_motion(t, x, v, &mut added)?;
+            for (f, added) in f.iter_mut().zip(added) {
+                *f += added;
+            }
+            Ok::<(), String>(())
+        });
+        let added = network.add(own);
+        added.map_err(|error| of_error(force.py(), &error, error.to_string()))?;
+    }
+    Ok(())
+}

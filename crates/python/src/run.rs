@@ -1,0 +1,385 @@
+//! Runs of scenes.
+
+use std::sync::{Arc, Mutex, MutexGuard};
+
+use a3::embedded::{self, Look};
+use a3_core::{Checkpoint, Error, Network, Simulation, SpringKind, StepLimits, Vector3};
+use a3_scenes::Presentation;
+use numpy::{PyArray1, PyArray2};
+use pyo3::prelude::*;
+use pyo3::types::PyBytes;
+
+use super::arrays::{indices, numbers, rows};
+use super::driving::{Driven, GoOn, advance, check_time, drive, take_steps};
+use super::errors::{of_error, of_failure, wrong};
+use super::function::Raised;
+use super::open::{Given, Opened, setting};
+use super::own_method::raised_by;
+use super::tables::method;
+
+/// Data of all springs: ends, kinds, stiffness (N/m), rest length (m), damping (N s/m).
+type Springs<'py> = (
+    Bound<'py, PyArray2<i64>>,
+    Vec<&'static str>,
+    Bound<'py, PyArray1<f64>>,
+    Bound<'py, PyArray1<f64>>,
+    Bound<'py, PyArray1<f64>>,
+);
+
+/// The run of a scene by a method.
+#[pyclass(frozen, subclass, module = "a3_simulator._a3")]
+pub struct Run {
+    simulation: Mutex<Simulation>,
+    presentation: Arc<Presentation>,
+    /// Length of a run of the scene (s), if it has one of its own.
+    duration: Option<f64>,
+    /// Exceptions of the functions of the scene.
+    raised: Raised,
+    /// Whether the scene or the method calls functions of Python.
+    calls: bool,
+}
+
+impl Run {
+    /// The simulation, unless it is being advanced.
+    fn simulation(&self, py: Python<'_>) -> PyResult<MutexGuard<'_, Simulation>> {
+        self.simulation.try_lock().map_err(|_| {
+            wrong(
+                py,
+                "this run is being advanced, by another thread or by the caller of this function: wait until it has \
+                 advanced",
+            )
+        })
+    }
+
+    /// Runs `work` on the simulation without the global lock.
+    fn work(
+        &self,
+        py: Python<'_>,
+        progress: Option<&Bound<PyAny>>,
+        work: impl Send + FnOnce(&mut Simulation, GoOn) -> Driven,
+    ) -> PyResult<()> {
+        let mut simulation = self.simulation(py)?;
+        let of_method = raised_by(simulation.method());
+        let raised: Vec<_> = [self.raised.clone()].into_iter().chain(of_method).collect();
+        drive(py, &mut simulation, &raised, progress, work)
+    }
+
+    /// Applies `read` to the network, if the scene is one.
+    fn network<T>(&self, py: Python<'_>, read: impl FnOnce(&Network) -> T) -> PyResult<Option<T>> {
+        Ok(self.simulation(py)?.model().network().map(read))
+    }
+
+    /// Changes the simulation by `change`, which may refuse.
+    fn change(
+        &self,
+        py: Python<'_>,
+        change: impl FnOnce(&mut Simulation) -> Result<(), Error>,
+    ) -> PyResult<()> {
+        let mut simulation = self.simulation(py)?;
+        change(&mut simulation).map_err(|error| of_error(py, &error, error.to_string()))
+    }
+}
+
+#[pymethods]
+impl Run {
+    #[new]
+    fn new(
+        py: Python<'_>,
+        given: Given,
+        method: Option<&str>,
+        step: Option<f64>,
+        tolerance: Option<f64>,
+        absolute: Option<f64>,
+        max_step: Option<f64>,
+    ) -> PyResult<Self> {
+        let mut opened = Opened::new(py, &given)?;
+        let method = method.map(|name| self::method(py, name)).transpose()?;
+        let method = opened.scene.method_or(method);
+        let value = setting(py, method, step, tolerance)?;
+        let limits = StepLimits { absolute, max_step };
+        if !method.is_adaptive() && limits != StepLimits::default() {
+            let why = format!(
+                "{} takes a step, not a tolerance: leave out absolute and max_step",
+                method.name
+            );
+            return Err(wrong(py, why));
+        }
+        let Opened { scene, setup, .. } = &mut opened;
+        let run = py.detach(|| scene.run(setup, method, value, limits));
+        // Its energy was evaluated.
+        if let Some(raised) = opened.raised.take() {
+            return Err(raised);
+        }
+        Ok(Self {
+            simulation: Mutex::new(run.map_err(|failure| of_failure(py, &failure))?),
+            presentation: opened.setup.presentation.clone(),
+            duration: opened.setup.defaults.duration,
+            calls: opened.calls || method.is_own(),
+            raised: opened.raised,
+        })
+    }
+
+    /// Takes this number of steps. If the present time is within a step, that step is finished
+    /// first, and counts.
+    #[pyo3(signature = (count=1))]
+    fn step(&self, py: Python<'_>, count: u64) -> PyResult<()> {
+        self.work(py, None, move |run, go_on| take_steps(run, count, go_on))
+    }
+
+    /// Advances to a time (s). `progress` is called with the time now and then.
+    #[pyo3(signature = (time, progress=None))]
+    fn advance(&self, py: Python<'_>, time: f64, progress: Option<&Bound<PyAny>>) -> PyResult<()> {
+        let (now, calls) = (self.simulation(py)?.time(), self.calls);
+        check_time(now, time).map_err(|why| wrong(py, why))?;
+        self.work(py, progress, move |run, go_on| {
+            advance(run, time, calls, go_on)
+        })
+    }
+
+    /// Goes back to the beginning.
+    fn reset(&self, py: Python<'_>) -> PyResult<()> {
+        self.simulation(py)?.reset();
+        Ok(())
+    }
+
+    /// The run as it is now, to continue from with the same bits.
+    fn checkpoint<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
+        let checkpoint = self.simulation(py)?.checkpoint();
+        let bytes = postcard::to_stdvec(&checkpoint);
+        let bytes = bytes.map_err(|error| wrong(py, error.to_string()))?;
+        Ok(PyBytes::new(py, &bytes))
+    }
+
+    /// Continues from a checkpoint of the same scene.
+    fn restore(&self, py: Python<'_>, checkpoint: &[u8]) -> PyResult<()> {
+        let checkpoint: Checkpoint = postcard::from_bytes(checkpoint)
+            .map_err(|_| wrong(py, "these bytes are not the checkpoint of a run"))?;
+        self.change(py, |run| run.restore(&checkpoint))
+    }
+
+    /// Pins a particle where it is, or releases it, and returns whether it is pinned then.
+    fn toggle_pin(&self, py: Python<'_>, particle: usize) -> PyResult<bool> {
+        let mut is_pinned = false;
+        self.change(py, |run| {
+            is_pinned = run.toggle_pin(particle)?;
+            Ok(())
+        })?;
+        Ok(is_pinned)
+    }
+
+    /// Grabs a particle with the hand.
+    fn grab(&self, py: Python<'_>, particle: usize) -> PyResult<()> {
+        self.change(py, |run| run.grab(particle))
+    }
+
+    /// Pulls the grabbed particle towards a point (m).
+    fn pull(&self, py: Python<'_>, point: [f64; 3]) -> PyResult<()> {
+        if point.iter().any(|x| !x.is_finite()) {
+            return Err(wrong(
+                py,
+                format!("a point is three finite numbers in metres, not {point:?}"),
+            ));
+        }
+        self.change(py, |run| {
+            run.pull(Vector3::from(point));
+            Ok(())
+        })
+    }
+
+    /// Lets go of the grabbed particle.
+    fn release(&self, py: Python<'_>) -> PyResult<()> {
+        self.change(py, |run| {
+            run.release();
+            Ok(())
+        })
+    }
+
+    /// Name of the scene.
+    #[getter]
+    fn scene(&self, py: Python<'_>) -> PyResult<String> {
+        Ok(self.simulation(py)?.scene().name.clone())
+    }
+
+    /// Name of the method.
+    #[getter]
+    fn method(&self, py: Python<'_>) -> PyResult<&'static str> {
+        Ok(self.simulation(py)?.method().name)
+    }
+
+    /// Step (s) or relative tolerance.
+    #[getter]
+    fn setting(&self, py: Python<'_>) -> PyResult<f64> {
+        Ok(self.simulation(py)?.control().value())
+    }
+
+    /// Whether the method chooses its steps.
+    #[getter]
+    fn adaptive(&self, py: Python<'_>) -> PyResult<bool> {
+        Ok(self.simulation(py)?.control().step().is_none())
+    }
+
+    /// Length of the next step or, of an adaptive method, of the last (s).
+    #[getter]
+    fn step_size(&self, py: Python<'_>) -> PyResult<Option<f64>> {
+        Ok(self.simulation(py)?.step_size())
+    }
+
+    /// Length of a run of the scene (s), if it has one of its own.
+    #[getter]
+    fn duration(&self) -> Option<f64> {
+        self.duration
+    }
+
+    /// Simulated time (s).
+    #[getter]
+    fn time(&self, py: Python<'_>) -> PyResult<f64> {
+        Ok(self.simulation(py)?.time())
+    }
+
+    /// Number of steps.
+    #[getter]
+    fn steps(&self, py: Python<'_>) -> PyResult<u64> {
+        Ok(self.simulation(py)?.steps())
+    }
+
+    /// Cost of the steps: evaluations, solves, factorisations, rejections, and the total in
+    /// evaluations.
+    fn work_done(&self, py: Python<'_>) -> PyResult<(u64, u64, u64, u64, f64)> {
+        let work = self.simulation(py)?.work();
+        Ok((
+            work.evaluations,
+            work.solves,
+            work.factorizations,
+            work.rejections,
+            work.total(),
+        ))
+    }
+
+    /// State, as a flat array.
+    #[getter]
+    fn state<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        Ok(numbers(py, self.simulation(py)?.state()))
+    }
+
+    /// Positions (m), n x 3.
+    #[getter]
+    fn positions<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let simulation = self.simulation(py)?;
+        rows(py, &simulation.state()[..3 * simulation.particles()])
+    }
+
+    /// Velocities (m/s), n x 3.
+    #[getter]
+    fn velocities<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let simulation = self.simulation(py)?;
+        let velocities = simulation.velocities();
+        rows(
+            py,
+            if simulation.particles() > 0 {
+                &velocities
+            } else {
+                &[]
+            },
+        )
+    }
+
+    /// Contact forces (N), n x 3, if anything can touch.
+    #[getter]
+    fn contact_forces<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyArray2<f64>>>> {
+        let forces = self.simulation(py)?.contact_forces();
+        forces.map(|forces| rows(py, &forces)).transpose()
+    }
+
+    /// Masses (kg), if the scene has some.
+    #[getter]
+    fn masses<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyArray1<f64>>>> {
+        self.network(py, |network| numbers(py, network.masses()))
+    }
+
+    /// Numbers of the pinned particles.
+    #[getter]
+    fn pinned<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<i64>>> {
+        let pins = self.network(py, |network| {
+            network.pins().map(|(i, _)| i as i64).collect()
+        });
+        Ok(PyArray1::from_vec(py, pins?.unwrap_or_default()))
+    }
+
+    /// Triangles of the surfaces.
+    #[getter]
+    fn triangles<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<i64>>> {
+        let corners = &self.presentation.surface.triangles;
+        let corners: Vec<_> = corners
+            .iter()
+            .map(|corners| corners.map(i64::from))
+            .collect();
+        indices(py, &corners)
+    }
+
+    /// All springs.
+    fn spring_data<'py>(&self, py: Python<'py>) -> PyResult<Springs<'py>> {
+        let simulation = self.simulation(py)?;
+        let network = simulation.model().network();
+        let springs: Vec<_> = network.into_iter().flat_map(Network::all_springs).collect();
+        let ends: Vec<_> = springs.iter().map(|s| [s.i as i64, s.j as i64]).collect();
+        let kind = |kind| match kind {
+            SpringKind::Structural => "structural",
+            SpringKind::Shear => "shear",
+            SpringKind::Bend => "bend",
+        };
+        let column = |number: fn(&a3_core::Spring) -> f64| {
+            PyArray1::from_iter(py, springs.iter().map(number))
+        };
+        Ok((
+            indices(py, &ends)?,
+            springs.iter().map(|s| kind(s.kind)).collect(),
+            column(|s| s.law.stiffness),
+            column(|s| s.law.rest_length),
+            column(|s| s.law.damping),
+        ))
+    }
+
+    /// Energy (J): kinetic, elastic, of contact, gravitational.
+    fn energies(&self, py: Python<'_>) -> PyResult<Option<[f64; 4]>> {
+        let energy = self.simulation(py)?.energy();
+        Ok(energy.map(|e| [e.kinetic, e.elastic, e.contact, e.gravitational]))
+    }
+
+    /// A picture, as a PNG file.
+    #[pyo3(signature = (width, height, *, colour=None, arrows=None, wireframe=false, springs=false,
+        orthographic=false, dark=false, transparent=false))]
+    #[expect(
+        clippy::too_many_arguments,
+        clippy::fn_params_excessive_bools,
+        reason = "each is an option"
+    )]
+    fn picture<'py>(
+        &self,
+        py: Python<'py>,
+        width: u32,
+        height: u32,
+        colour: Option<&str>,
+        arrows: Option<&str>,
+        wireframe: bool,
+        springs: bool,
+        orthographic: bool,
+        dark: bool,
+        transparent: bool,
+    ) -> PyResult<Bound<'py, PyBytes>> {
+        let look = Look {
+            colour,
+            arrows,
+            wireframe,
+            springs,
+            orthographic,
+            dark,
+            transparent,
+        };
+        let mut simulation = self.simulation(py)?;
+        let run = &mut *simulation;
+        let presentation = &self.presentation;
+        let drawn = py.detach(move || embedded::picture(run, presentation, look, (width, height)));
+        let png = drawn.map_err(|failure| of_failure(py, &failure))?;
+        Ok(PyBytes::new(py, &png))
+    }
+}

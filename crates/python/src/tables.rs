@@ -1,0 +1,75 @@
+//! The tables of scenes and methods, and the keys of a scene.
+
+use a3::embedded::{OpenScene, Origin, SceneOptions};
+use a3_core::{Control, Method, integrators};
+use a3_scenes::{SCENES, Setup};
+use pyo3::prelude::*;
+
+use super::errors::{of_failure, wrong};
+
+/// Names of the built-in scenes.
+#[pyfunction]
+pub fn scenes() -> Vec<&'static str> {
+    SCENES.iter().map(|scene| scene.name).collect()
+}
+
+/// Rows of the table of methods: name, letter, title, order, whether the method is adaptive, and
+/// its default step (s) or tolerance.
+#[pyfunction]
+pub fn methods() -> Vec<(&'static str, Option<char>, &'static str, u32, bool, f64)> {
+    let row = |method: &Method| {
+        (
+            method.name,
+            method.letter,
+            method.title,
+            method.order,
+            method.is_adaptive(),
+            method.default_control.value(),
+        )
+    };
+    integrators::METHODS.iter().map(row).collect()
+}
+
+/// The table of the keys of a scene, as JSON. `kind` is one of "named", "toml" and "table".
+#[pyfunction]
+pub fn table(py: Python<'_>, kind: &str, text: &str) -> PyResult<String> {
+    let scene = OpenScene::read(origin(py, kind, text)?, SceneOptions::default());
+    let table = scene.and_then(|scene| scene.table());
+    table.map_err(|failure| of_failure(py, &failure))
+}
+
+/// Returns the origin of a scene of this kind.
+pub fn origin<'a>(py: Python<'_>, kind: &str, text: &'a str) -> PyResult<Origin<'a>> {
+    match kind {
+        "named" => Ok(Origin::Named(text)),
+        "toml" => Ok(Origin::Toml(text)),
+        "table" => Ok(Origin::Table(text)),
+        _ => Err(wrong(py, format!("there is no kind of scene `{kind}`"))),
+    }
+}
+
+/// Finds a method by its name or its letter.
+pub fn method(py: Python<'_>, name: &str) -> PyResult<&'static Method> {
+    integrators::find(name).ok_or_else(|| {
+        let names = || integrators::METHODS.iter().map(|method| method.name);
+        let all = names().collect::<Vec<_>>().join(", ");
+        let why = match a3_scenes::nearest(name, names()) {
+            Some(near) => {
+                format!("there is no solver `{name}`; did you mean {near}? The solvers are {all}")
+            }
+            None => format!("there is no solver `{name}`; the solvers are {all}"),
+        };
+        wrong(py, why)
+    })
+}
+
+/// Finds methods by their names or letters.
+pub fn methods_named(py: Python<'_>, names: &[String]) -> PyResult<Vec<&'static Method>> {
+    names.iter().map(|name| method(py, name)).collect()
+}
+
+/// Returns the step or tolerance of this value or, without one, that of the scene or the method.
+pub fn control(setup: &Setup, method: &Method, value: Option<f64>) -> Control {
+    let own = || setup.defaults.control_of(method);
+    value.map_or_else(own, |value| method.control(value))
+}

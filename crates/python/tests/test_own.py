@@ -1,0 +1,322 @@
+"""Own systems, methods and forces: their results, and what they may do wrong."""
+
+import math
+import pickle
+import signal
+import threading
+import os
+import time
+
+import numpy as np
+import pytest
+
+import a3_simulator as a3
+
+
+def oscillator(t, y):
+    return np.array([y[1], -y[0]])
+
+
+def heun(f, t, y, h):
+    a = f(t, y)
+    b = f(t + h, y + h * a)
+    return y + h / 2 * (a + b)
+
+
+def rk4(f, t, y, h):
+    a = f(t, y)
+    b = f(t + h / 2, y + h / 2 * a)
+    c = f(t + h / 2, y + h / 2 * b)
+    d = f(t + h, y + h * c)
+    return y + h / 6 * (a + 2 * b + 2 * c + d)
+
+
+def test_a_system_of_first_order_has_its_exact_solution():
+    run = a3.Simulation(a3.System(oscillator, [1.0, 0.0]), "dop853", tolerance=1e-11)
+    run.advance_to(10.0)
+    assert run.state == pytest.approx([math.cos(10), -math.sin(10)], abs=1e-9)
+    assert run.positions.shape == (0, 3) and run.scene == "oscillator"
+
+
+def test_a_system_of_particles_has_masses_and_forces():
+    masses = np.array([2.0, 1.0])
+
+    def pull(t, x, v):
+        assert x.shape == v.shape == (2, 3)
+        return -8.0 * x * masses[:, None] / masses[0]
+
+    system = a3.System.of_particles(pull, masses, [[1, 0, 0], [0, 2, 0]], [[0, 0, 0], [0, 0, 2]], positional=True)
+    run = a3.Simulation(system, "verlet", step=1e-3)
+    run.advance_to(1.0)
+    expected = [[math.cos(2), 0, 0], [0, 2 * math.cos(2), math.sin(2)]]
+    assert run.positions == pytest.approx(np.array(expected), abs=1e-5)
+
+
+def test_a_method_of_ones_own_has_the_results_of_the_same_method_of_a3():
+    own = a3.Method("my-rk4", rk4)
+    assert own.order == 4 and "my-rk4" in repr(own)
+    for scene in ["chain", "flag", a3.System(oscillator, [1.0, 0.0])]:
+        runs = [a3.Simulation(scene, method, step=0.005) for method in (own, "rk4", "my-rk4")]
+        for run in runs:
+            run.advance_to(0.5)
+        assert runs[0].state == pytest.approx(runs[1].state, abs=1e-9)
+        assert np.array_equal(runs[0].state, runs[2].state)
+        assert runs[0].work.evaluations == runs[1].work.evaluations
+
+
+def test_the_order_of_a_method_is_measured():
+    assert a3.Method("my-heun", heun).order == 2
+    assert a3.Method("my-euler", lambda f, t, y, h: y + h * f(t, y)).order == 1
+    assert a3.Method("my-other", heun, order=3).order == 3
+
+
+def test_forces_are_added_to_those_of_a_scene():
+    still = a3.Simulation("chain", "rk4", step=0.005)
+    masses = still.masses[:, None]
+    times = []
+
+    def lift(t, x, v):
+        times.append(t)
+        return masses * [0, 9.8, 0]
+
+    run = a3.Simulation("chain", "rk4", step=0.005, forces=[lift])
+    text = a3.scene("chain")
+    text["gravity"] = [0, 0, 0]
+    free = a3.Simulation(text, "rk4", step=0.005)
+    for each in (run, free):
+        each.advance_to(1.0)
+    assert run.positions == pytest.approx(free.positions, abs=1e-12)
+    assert min(times) == 0 and max(times) <= 1.0
+
+
+def test_forces_act_with_contact_and_pins():
+    run = a3.Simulation("mit-sphere", "rk4", step=0.01, forces=[lambda t, x, v: 0.01 * np.cos(t) * np.ones_like(x)])
+    run.advance_to(2.0)
+    distance = np.linalg.norm(run.positions - [1, -4, 0], axis=1)
+    assert distance.min() > 1.49
+    assert run.pinned.size == 2
+
+
+class Broken(Exception):
+    pass
+
+
+def fails(*arguments):
+    raise Broken("at the second call")
+
+
+@pytest.mark.parametrize("method", ["euler", "rk4", "dopri5", "dop853", "implicit", "implicit-midpoint", "bdf"])
+def test_an_exception_of_f_comes_out_as_it_is_and_stops_the_run_at_once(method):
+    calls = []
+
+    def f(t, y):
+        calls.append(t)
+        if t > 0.1:
+            fails()
+        return -y
+
+    run = a3.Simulation(a3.System(f, [1.0]), method)
+    with pytest.raises(Broken, match="at the second call") as error:
+        run.advance_to(1.0)
+    assert error.traceback[-1].name == "fails"
+    assert sum(t > 0.1 for t in calls) == 1
+    count = len(calls)
+    assert np.isfinite(run.state).all()
+    with pytest.raises(Broken):
+        run.advance_to(1.0)
+    assert len(calls) > count
+
+
+def test_an_exception_of_a_step_comes_out_as_it_is():
+    def step(f, t, y, h):
+        if t > 0.5:
+            fails()
+        return y + h * f(t, y)
+
+    a3.Method("my-broken", step, order=1)
+    run = a3.Simulation("simple", "my-broken", step=0.01)
+    with pytest.raises(Broken):
+        run.advance_to(1.0)
+
+
+def test_an_exception_of_a_force_comes_out_as_it_is():
+    with pytest.raises(Broken):
+        a3.Simulation("cloth", "verlet", forces=[fails]).step()
+    run = a3.Simulation("cloth", "verlet", forces=[lambda t, x, v: fails() if t > 0.1 else 0 * x])
+    with pytest.raises(Broken):
+        run.advance_to(1.0)
+
+
+def test_an_exception_of_f_within_a_step_of_ones_own_comes_out_as_it_is():
+    a3.Method("my-inner", rk4)
+    run = a3.Simulation(a3.System(lambda t, y: fails() if t > 0.5 else -y, [1.0]), "my-inner", step=0.1)
+    with pytest.raises(Broken):
+        run.advance_to(1.0)
+
+
+@pytest.mark.parametrize(
+    "f, words",
+    [
+        (lambda t, y: None, "the function returned NoneType, where an array of shape (2,) is expected"),
+        (lambda t, y: [1.0], "returned an array of shape (1,), where an array of shape (2,)"),
+        (lambda t, y: np.zeros((2, 2)), "returned an array of shape (2, 2)"),
+        (lambda t, y: 3.0, "returned an array of shape ()"),
+        (lambda t, y: "ab", "returned str"),
+        (lambda t, y: [[1.0], [2.0, 3.0]], "returned list"),
+        (lambda t, y: np.array([1j, 2j]), "returned ndarray"),
+    ],
+)
+def test_a_wrong_result_of_f_is_one_clear_line(f, words):
+    run = a3.Simulation(a3.System(f, [1.0, 0.0]), "rk4")
+    with pytest.raises(a3.InputError) as error:
+        run.step()
+    assert words in str(error.value) and "\n" not in str(error.value)
+
+
+@pytest.mark.parametrize("result", [lambda y: y.tolist(), tuple, lambda y: y.astype(np.float32), lambda y: np.stack([y, y], 1)[:, 0]])
+def test_results_may_be_of_other_kinds(result):
+    run = a3.Simulation(a3.System(lambda t, y: result(np.array([y[1], -y[0]])), [1.0, 0.0]), "rk4", step=0.01)
+    run.advance_to(1.0)
+    assert run.state == pytest.approx([math.cos(1), -math.sin(1)], abs=1e-6)
+
+
+def test_a_number_that_is_not_finite_is_a_blow_up():
+    run = a3.Simulation(a3.System(lambda t, y: y * (np.nan if t > 0.5 else 1.0), [1.0]), "rk4", step=0.1)
+    with pytest.raises(a3.BlowUp, match="not finite"):
+        run.advance_to(1.0)
+
+
+@pytest.mark.parametrize(
+    "step, words",
+    [
+        (lambda f, t, y, h: None, "what the step of my-wrong returned: numbers are expected, not NoneType"),
+        (lambda f, t, y, h: y[:1], "an array of shape (2,) is expected, not (1,)"),
+        (lambda f, t, y, h: y * np.nan, "finite numbers are expected"),
+        (None, "a function of f, t, y and h is expected"),
+    ],
+)
+def test_a_wrong_step_is_refused_when_the_method_is_made(step, words):
+    with pytest.raises(a3.InputError) as error:
+        a3.Method("my-wrong", step)
+    assert words in str(error.value)
+
+
+def test_a_wrong_shape_later_is_one_clear_line():
+    a3.Method("my-late", lambda f, t, y, h: y[: 2 if t < 0.2 else 1] + 0.0, order=1)
+    run = a3.Simulation(a3.System(oscillator, [1.0, 0.0]), "my-late", step=0.1)
+    with pytest.raises(a3.InputError, match=r"returned an array of shape \(1,\), where an array of shape \(2,\)"):
+        run.advance_to(1.0)
+
+
+@pytest.mark.parametrize(
+    "make, words",
+    [
+        (lambda: a3.Method("rk4", heun), "the name rk4 stands for"),
+        (lambda: a3.Method("two words", heun), "a word"),
+        (lambda: a3.Method("my-0", heun, order=0), "order"),
+        (lambda: a3.Method("my-step", heun, default_step=-1), "default_step"),
+        (lambda: a3.System(oscillator, []), "y0: a system has at least one number"),
+        (lambda: a3.System(oscillator, [[1, 2]]), "y0: an array of shape (n,) is expected"),
+        (lambda: a3.System(oscillator, [1, np.inf]), "y0: finite numbers"),
+        (lambda: a3.System(oscillator, "y"), "y0: numbers are expected"),
+        (lambda: a3.Simulation(a3.System(3, [1.0])), "a function is expected, not int"),
+        (lambda: a3.System.of_particles(fails, [1.0, 2.0], [[0, 0, 0]]), "positions: an array of shape (2, 3)"),
+        (lambda: a3.Simulation(a3.System.of_particles(fails, [-1.0], [[0, 0, 0]])), "mass 0"),
+        (lambda: a3.Simulation(a3.System(oscillator, [1.0, 0.0]), "verlet"), "needs forces and masses"),
+        (lambda: a3.Simulation(a3.System(oscillator, [1.0, 0.0]), grid=(3, 3)), "has no grid"),
+        (lambda: a3.Simulation("simple", forces=[fails]), "has no masses"),
+        (lambda: a3.Simulation("chain", forces=[3]), "a function is expected, not int"),
+        (lambda: a3.scene(a3.System(oscillator, [1.0, 0.0])), "has no keys"),
+        (lambda: a3.Simulation("chain", method=3), "a method is a name"),
+    ],
+)
+def test_what_cannot_be_is_refused(make, words):
+    with pytest.raises(a3.InputError) as error:
+        make()
+    assert words in str(error.value) and "\n" not in str(error.value)
+
+
+def test_f_of_a_step_cannot_be_called_later():
+    kept = []
+
+    def step(f, t, y, h):
+        kept.append(f)
+        return y + h * f(t, y)
+
+    a3.Method("my-keeper", step, order=1)
+    a3.Simulation("simple", "my-keeper", step=0.1).step()
+    with pytest.raises(a3.InputError, match="only while its step is being taken"):
+        kept[-1](0.0, np.zeros(3))
+
+
+def test_f_of_a_step_checks_what_it_gets():
+    def step(f, t, y, h):
+        return y + h * f(t, y[:2] if len(y) == 3 else y)
+
+    a3.Method("my-short", step, order=1)
+    with pytest.raises(a3.InputError, match="the state has 2 numbers, but the system needs 3"):
+        a3.Simulation("simple", "my-short", step=0.1).step()
+
+
+def test_a_run_within_a_function_of_another_run():
+    def f(t, y):
+        inner = a3.Simulation("simple", "rk4", step=0.1)
+        inner.advance_to(0.5)
+        return -y * (1.0 + 0.0 * inner.state[0])
+
+    run = a3.Simulation(a3.System(f, [1.0]), "rk4", step=0.1)
+    run.advance_to(1.0)
+    assert run.state[0] == pytest.approx(math.exp(-1), abs=1e-6)
+
+
+def test_a_function_cannot_advance_its_own_run():
+    def f(t, y):
+        if run is not None:
+            run.step()
+        return -y
+
+    run = None
+    run = a3.Simulation(a3.System(f, [1.0]), "rk4", step=0.1)
+    with pytest.raises(a3.InputError, match="this run is being advanced"):
+        run.step()
+
+
+@pytest.mark.skipif(os.name == "nt", reason="signals of POSIX")
+def test_ctrl_c_ends_a_step_that_never_ends():
+    def step(f, t, y, h):
+        while t > 0.5:
+            pass
+        return y + h * f(t, y)
+
+    a3.Method("my-endless", step, order=1)
+    run = a3.Simulation("simple", "my-endless", step=0.1)
+    threading.Timer(0.3, os.kill, (os.getpid(), signal.SIGINT)).start()
+    with pytest.raises(KeyboardInterrupt):
+        run.advance_to(1.0)
+
+
+def test_runs_of_own_functions_in_threads():
+    def work(results, k):
+        run = a3.Simulation(a3.System(oscillator, [1.0, float(k)]), "rk4", step=0.01)
+        run.advance_to(3.0)
+        results[k] = run.state
+
+    results = {}
+    threads = [threading.Thread(target=work, args=(results, k)) for k in range(4)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    for k in range(4):
+        assert results[k] == pytest.approx(
+            [math.cos(3) + k * math.sin(3), -math.sin(3) + k * math.cos(3)], abs=1e-7
+        )
+
+
+def test_a_run_of_a_system_is_pickled():
+    run = a3.Simulation(a3.System(oscillator, [1.0, 0.0]), "dopri5")
+    run.advance_to(1.0)
+    again = pickle.loads(pickle.dumps(run))
+    for each in (run, again):
+        each.advance_to(2.0)
+    assert np.array_equal(run.state, again.state)
