@@ -1,4 +1,5 @@
-//! Arrays in the format of `NumPy` (Kern, *NEP 1*, 2007): a header that is a Python literal, and numbers.
+//! Arrays in the format of `NumPy` (Kern, *NEP 1*, 2007): a header, which is a Python literal, and
+//! numbers.
 
 /// Largest length of a header (bytes).
 const MAX_HEADER: usize = 1 << 16;
