@@ -1,5 +1,5 @@
-//! Numbers in the lanes of a SIMD vector. Each lane is computed alike, so that the bits are the same
-//! for any length of the vector.
+//! Numbers in the lanes of a SIMD vector. Each lane is computed alike, so that the bits are the
+//! same for any length of the vector.
 
 #![expect(
     clippy::inline_always,
