@@ -18,6 +18,8 @@ T = TypeVar("T")
 _PERIOD = 0.05
 #: Time (s) that work has to end by itself after Ctrl-C, before an exception is raised within its functions.
 _GRACE_PERIOD = 0.5
+#: Number of times that functions are interrupted: after one of them has ended, the work may call another.
+_ATTEMPTS = 8
 
 
 def _tqdm(**options: Any) -> Any:
@@ -76,11 +78,13 @@ def work(function: Callable[[_a3.Monitor], T], progress: bool) -> T:
                 bar.update(max(0.0, share - bar.n))
     except BaseException:
         monitor.stop()
-        thread.join(_GRACE_PERIOD)
-        for ident in monitor.threads():
-            # It is in a function that takes long, or never ends.
-            ctypes.pythonapi.PyThreadState_SetAsyncExc(ctypes.c_ulong(ident), ctypes.py_object(KeyboardInterrupt))
-        thread.join(_GRACE_PERIOD)
+        for _ in range(_ATTEMPTS):
+            thread.join(_GRACE_PERIOD)
+            if not thread.is_alive():
+                break
+            for ident in monitor.threads():
+                # It is in a function that takes long, or never ends.
+                ctypes.pythonapi.PyThreadState_SetAsyncExc(ctypes.c_ulong(ident), ctypes.py_object(KeyboardInterrupt))
         raise
     finally:
         if bar is not None:
