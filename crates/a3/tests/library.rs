@@ -70,7 +70,7 @@ fn an_own_heun_is_charted_like_the_built_in_one() {
         assert!(chart.is_complete());
         let metric = chart.metric();
         let of = |name: &str| -> Vec<_> { chart.runs().filter(|r| r.solver == name).collect() };
-        let (a, b) = (of("heun"), of("chart-heun"));
+        let (a, b) = (of(built_in.name), of(own.name));
         assert!(a.len() > 4 && a.len() == b.len(), "{}", a.len());
         for (a, b) in a.iter().zip(&b) {
             assert_eq!((a.setting, a.evaluations), (b.setting, b.evaluations));

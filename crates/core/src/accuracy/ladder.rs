@@ -44,7 +44,9 @@ pub fn ladder(
             })
             .collect());
     }
-    let limit = largest_step(method, modes)?.map_or(f64::INFINITY, |limit| limit.step);
+    // Where every step is unstable, any is as good as another.
+    let limit = largest_step(method, modes)?.filter(|limit| limit.step > 0.0);
+    let limit = limit.map_or(f64::INFINITY, |limit| limit.step);
     let until = frames.until;
     let mut count = round(
         (until / (MAX_LIMIT_RATIO * limit))

@@ -17,6 +17,9 @@ pub(super) const MAX_DENSE: usize = 1024;
 /// Function of an own method that creates an integrator for a system.
 pub(super) type CreateOwn = dyn Fn(&dyn ParticleSystem) -> Box<dyn Integrator> + Send + Sync;
 
+/// Function that creates the trial steps of an adaptive method for a system.
+type CreateTrial = fn(system: &dyn ParticleSystem) -> Box<dyn Trial>;
+
 /// Function that creates an integrator for a system.
 #[derive(Clone, Copy)]
 pub(super) enum Create {
@@ -77,7 +80,7 @@ pub struct Method {
     pub(super) create: Create,
     /// Creates the trial steps of an adaptive method, which chooses its steps to a tolerance;
     /// `None` for other methods.
-    pub(super) trial: Option<fn(system: &dyn ParticleSystem) -> Box<dyn Trial>>,
+    pub(super) trial: Option<CreateTrial>,
 }
 
 impl Method {

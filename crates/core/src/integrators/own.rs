@@ -171,6 +171,7 @@ impl Method {
     /// Makes the method one that lives as long as the program, as the rows of the table do, and
     /// that [`find`](super::find) finds. If an own method of its name was registered before, this
     /// one takes its place there, and runs by the other one go on.
+    #[must_use]
     pub fn register(self) -> &'static Self {
         let method = Box::leak(Box::new(self));
         registry::add(method);

@@ -44,7 +44,7 @@ pub fn look_ahead(
             monitor.warn(&format!(
                 "warning: {of}: {why}: past {until} s an error in position says little; compare \
              --error energy or strain, or leave out --until"
-            ))
+            ));
         }
         Some(_) => {}
         None => monitor.note(&format!("{of}: {why}; runs of {until} s"))?,

@@ -125,6 +125,7 @@ impl Study {
     /// Returns the largest work of a run of a method, in evaluations.
     fn max_work(&self, method: &'static Method) -> Result<f64, Failure> {
         let limit = largest_step(method, &self.modes).map_err(Failure::run)?;
+        let limit = limit.filter(|limit| limit.step > 0.0);
         let steps = limit.map_or(0.0, |limit| MIN_STEP_RATIO * self.frames.until / limit.step);
         Ok(MAX_EVALUATIONS.max(steps * each(method)))
     }

@@ -119,6 +119,7 @@ pub struct Record {
 
 impl Record {
     /// Whether both runs are of the same scene, by the same version.
+    #[must_use]
     pub fn same_scene(&self, other: &Self) -> bool {
         (&self.version, &self.scene, self.rows, self.cols)
             == (&other.version, &other.scene, other.rows, other.cols)
@@ -129,11 +130,13 @@ impl Record {
     }
 
     /// Whether both runs are of the same scene, method and setting.
+    #[must_use]
     pub fn same_run(&self, other: &Self) -> bool {
         self.same_scene(other) && self.solver == other.solver && self.setting == other.setting
     }
 
     /// Returns the observed order between a coarser run of the same method and this one.
+    #[must_use]
     pub fn order_from(&self, coarser: &Self, is_adaptive: bool) -> Option<f64> {
         let refined = if is_adaptive {
             self.evaluations as f64 / coarser.evaluations as f64
@@ -149,11 +152,13 @@ impl Record {
     }
 
     /// Whether the collision safeguard acted in the run.
+    #[must_use]
     pub fn is_held(&self) -> bool {
         self.guard_impulses + self.guard_cuts > 0
     }
 
     /// Returns the error of the run; infinite if it blew up.
+    #[must_use]
     pub fn error(&self, metric: Metric) -> f64 {
         let or_infinite = |error: Option<f64>| error.unwrap_or(f64::INFINITY);
         metric.of(&Errors {
@@ -169,11 +174,13 @@ impl Record {
     }
 
     /// Returns the smallest error that the reference can tell from 0: ten times its own.
+    #[must_use]
     pub fn resolved(&self, metric: Metric) -> f64 {
         10.0 * self.floor(metric)
     }
 
     /// Returns the error of the reference itself.
+    #[must_use]
     pub fn floor(&self, metric: Metric) -> f64 {
         metric.of(&Errors {
             position: self.floor_position,
@@ -189,6 +196,7 @@ impl Record {
 
     /// Returns the error of a run in which nothing moves, beyond which an error says nothing;
     /// infinite for the energy, the momentum and the phase.
+    #[must_use]
     pub fn still(&self, metric: Metric) -> f64 {
         match metric {
             Metric::Position => self.still_position,

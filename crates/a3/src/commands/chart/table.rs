@@ -106,7 +106,12 @@ pub fn text(
     metric: Metric,
     timed: bool,
 ) -> String {
-    let unit = unit(metric);
+    // Plain numbers have no unit that is known.
+    let unit = match metric {
+        Metric::State => String::new(),
+        metric => format!(" {}", unit(metric)),
+    };
+    let unit = &unit;
     let what = if timed {
         "computing time (ms)"
     } else {
@@ -138,7 +143,7 @@ fn rows(
     timed: bool,
     unit: &str,
 ) -> Vec<Vec<String>> {
-    let heading = |digits: i32| format!(" 1e-{digits} {unit}");
+    let heading = |digits: i32| format!(" 1e-{digits}{unit}");
     let mut rows = vec![
         ["solver".to_owned()]
             .into_iter()
@@ -207,9 +212,9 @@ fn winners(
     for digits in DIGITS {
         let error = 10f64.powi(-digits);
         let line = if error < resolved {
-            format!("the reference is exact enough for errors above {resolved:.0e} {unit} only")
+            format!("the reference is exact enough for errors above {resolved:.0e}{unit} only")
         } else if error > still {
-            format!("nothing moves further than {still:.0e} {unit}: such an error says nothing")
+            format!("nothing moves further than {still:.0e}{unit}: such an error says nothing")
         } else {
             match cheapest(study.records(data), metric, timed, error) {
                 None => "no run was that accurate".to_owned(),
@@ -221,7 +226,7 @@ fn winners(
                     }),
             }
         };
-        let _ = writeln!(text, "  1e-{digits} {unit}  {line}");
+        let _ = writeln!(text, "  1e-{digits}{unit}  {line}");
     }
     text
 }
