@@ -17,7 +17,7 @@ const MAX_CHUNK: u64 = 1024;
 /// Function that returns whether a run may go on.
 pub type GoOn<'a> = &'a mut (dyn FnMut(&Simulation) -> bool + Send);
 /// The end of the way, or an error with its message.
-pub type Driven = Result<(), (Error, String)>;
+pub type Driven = Result<(), Box<(Error, String)>>;
 
 /// Runs `work` on a simulation without the global lock. Exceptions of its functions are kept in
 /// `raised`; one of them is raised if it ended the work.
@@ -53,7 +53,8 @@ pub fn drive(
     if let Some(stopped) = stopped {
         return Err(stopped);
     }
-    done.map_err(|(error, message)| {
+    done.map_err(|failed| {
+        let (error, message) = *failed;
         let raised =
             matches!(error, Error::Callback(_)).then(|| raised.iter().find_map(Raised::take));
         raised
@@ -67,7 +68,7 @@ pub fn take_steps(run: &mut Simulation, count: u64, go_on: GoOn) -> Driven {
     let (mut left, mut chunk) = (count, 1);
     while left > 0 {
         let taken = run.take_steps(chunk.min(left));
-        taken.map_err(|error| (error.clone(), error.to_string()))?;
+        taken.map_err(|error| Box::new((error.clone(), error.to_string())))?;
         left -= chunk.min(left);
         if left > 0 && !go_on(run) {
             break;
@@ -88,7 +89,7 @@ pub fn advance(run: &mut Simulation, time: f64, calls: bool, go_on: GoOn) -> Dri
         } else {
             embedded::message(run, &error, time)
         };
-        (error, message)
+        Box::new((error, message))
     })
 }
 

@@ -107,11 +107,7 @@ impl Chart {
 
 /// Measures a chart.
 #[pyfunction]
-#[expect(
-    clippy::too_many_arguments,
-    clippy::fn_params_excessive_bools,
-    reason = "each is an option"
-)]
+#[expect(clippy::too_many_arguments, reason = "each is an option")]
 pub fn chart(
     py: Python<'_>,
     given: Given,
@@ -282,8 +278,10 @@ type Compared<'py> = (
     Option<String>,
 );
 
-/// Runs a scene by several methods, each with its step or tolerance. Returns the times (s), the
-/// runs, the number of particles, and the length of the state.
+/// Times (s), the runs, the number of particles, and the length of the state.
+type AllCompared<'py> = (Bound<'py, PyArray1<f64>>, Vec<Compared<'py>>, usize, usize);
+
+/// Runs a scene by several methods, each with its step or tolerance.
 #[pyfunction]
 pub fn compare<'py>(
     py: Python<'py>,
@@ -292,7 +290,7 @@ pub fn compare<'py>(
     monitor: &Monitor,
     until: f64,
     frames: usize,
-) -> PyResult<(Bound<'py, PyArray1<f64>>, Vec<Compared<'py>>, usize, usize)> {
+) -> PyResult<AllCompared<'py>> {
     let opened = Opened::new(py, &given)?;
     let scene = opened.scene(py)?;
     let asked = runs.iter().map(|(name, value)| {

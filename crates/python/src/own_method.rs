@@ -33,6 +33,7 @@ pub struct Derivative;
 #[pymethods]
 impl Derivative {
     /// Returns f(t, y), an array of the length of y.
+    #[expect(clippy::unused_self, reason = "the system is that of the thread")]
     fn __call__<'py>(
         &self,
         py: Python<'py>,
@@ -82,10 +83,10 @@ pub fn add_method(
         Ok(next)
     });
     let method = method.map_err(|error| wrong(py, error.to_string()))?;
-    method
+    let method = method
         .with_evaluations(evaluations)
-        .with_default_step(default_step)
-        .register();
+        .with_default_step(default_step);
+    let _ = method.register();
     let mut all = RAISED.lock().unwrap_or_else(PoisonError::into_inner);
     all.insert(name.into(), raised);
     Ok(())

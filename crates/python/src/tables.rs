@@ -13,10 +13,13 @@ pub fn scenes() -> Vec<&'static str> {
     SCENES.iter().map(|scene| scene.name).collect()
 }
 
-/// Rows of the table of methods: name, letter, title, order, whether the method is adaptive, and
-/// its default step (s) or tolerance.
+/// Name, letter, title and order of a method, whether it is adaptive, and its default step (s) or
+/// tolerance.
+type Row = (&'static str, Option<char>, &'static str, u32, bool, f64);
+
+/// Rows of the table of methods.
 #[pyfunction]
-pub fn methods() -> Vec<(&'static str, Option<char>, &'static str, u32, bool, f64)> {
+pub fn methods() -> Vec<Row> {
     let row = |method: &Method| {
         (
             method.name,

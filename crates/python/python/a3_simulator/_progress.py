@@ -18,6 +18,8 @@ T = TypeVar("T")
 _PERIOD = 0.05
 #: Time (s) that work has to end by itself after Ctrl-C, before an exception is raised within its functions.
 _GRACE_PERIOD = 0.5
+#: Number of times that functions are interrupted: after one of them has ended, the work may call another.
+_ATTEMPTS = 8
 
 
 def _tqdm(**options: Any) -> Any:
@@ -55,6 +57,7 @@ def work(function: Callable[[_a3.Monitor], T], progress: bool) -> T:
     monitor = _a3.Monitor()
     results: List[T] = []
     errors: List[BaseException] = []
+    done = threading.Event()
 
     def run() -> None:
         try:
@@ -62,31 +65,34 @@ def work(function: Callable[[_a3.Monitor], T], progress: bool) -> T:
                 results.append(function(monitor))
         except BaseException as error:
             errors.append(error)
+        finally:
+            done.set()
 
     thread = threading.Thread(target=run, daemon=True)
     form = "{desc:<14}{percentage:3.0f}%|{bar}| [{elapsed}<{remaining}]"
     bar = _tqdm(total=1.0, bar_format=form, leave=False) if progress else None
     thread.start()
     try:
-        while thread.is_alive():
-            thread.join(_PERIOD)
+        # A join that Ctrl-C interrupts leaves a thread that is taken for one that has ended.
+        while not done.wait(_PERIOD):
             if bar is not None:
                 stage, share, _ = monitor.look()
                 bar.set_description_str(stage, refresh=False)
                 bar.update(max(0.0, share - bar.n))
     except BaseException:
         monitor.stop()
-        thread.join(_GRACE_PERIOD)
-        for ident in monitor.threads():
-            # It is in a function that takes long, or never ends.
-            ctypes.pythonapi.PyThreadState_SetAsyncExc(ctypes.c_ulong(ident), ctypes.py_object(KeyboardInterrupt))
-        thread.join(_GRACE_PERIOD)
+        for _ in range(_ATTEMPTS):
+            if done.wait(_GRACE_PERIOD):
+                break
+            for ident in monitor.threads():
+                # It is in a function that takes long, or never ends.
+                ctypes.pythonapi.PyThreadState_SetAsyncExc(ctypes.c_ulong(ident), ctypes.py_object(KeyboardInterrupt))
         raise
     finally:
         if bar is not None:
             bar.close()
     for line in monitor.look()[2]:
-        warnings.warn(line.removeprefix("warning: ") if hasattr(line, "removeprefix") else line, stacklevel=3)
+        warnings.warn(line.removeprefix("warning: "), stacklevel=3)
     if errors:
         raise errors[0]
     return results[0]

@@ -23,7 +23,7 @@ const MAX_TIME: f64 = 1000.0;
 pub enum StatesOf<'a> {
     /// File in one of the formats of `a3 judge`.
     File(&'a Path),
-    /// Contents of an archive of NumPy arrays t, x and perhaps v, with its name.
+    /// Name and contents of an archive (`.npz`) of arrays t, x and perhaps v.
     Npz(&'a str, &'a [u8]),
 }
 
