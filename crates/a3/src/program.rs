@@ -18,15 +18,16 @@ use crate::window::{self, compare};
 /// Runs the command of the command line, and returns the exit code of the program.
 #[must_use]
 pub fn main() -> ExitCode {
-    ExitCode::from(run(std::env::args_os().collect()))
+    let args: Vec<_> = std::env::args_os().collect();
+    ExitCode::from(run(&args))
 }
 
 /// Runs the command of a command line, which begins with the name of the program, and returns the
 /// exit code. The signals that end a program are its own from then on.
 #[must_use]
-pub fn run(args: Vec<OsString>) -> u8 {
+pub fn run(args: &[OsString]) -> u8 {
     interrupt::start();
-    let result = match Cli::try_parse_from(&args) {
+    let result = match Cli::try_parse_from(args) {
         Ok(cli) => match cli.command {
             #[cfg(feature = "window")]
             None => window::run(&cli.window),
@@ -55,7 +56,7 @@ pub fn run(args: Vec<OsString>) -> u8 {
             Some(Command::Completions { shell }) => manual::completions(shell),
             Some(Command::Man { output }) => manual::run(output.as_deref()),
         },
-        Err(error) => cli::explain(&error, &args),
+        Err(error) => cli::explain(&error, args),
     };
     let Err(failure) = result else {
         return 0;

@@ -7,5 +7,5 @@ use pyo3::prelude::*;
 /// Runs the command of a command line, and returns the exit code of the program.
 #[pyfunction]
 pub fn main(py: Python<'_>, args: Vec<OsString>) -> u8 {
-    py.detach(|| a3::run(args))
+    py.detach(|| a3::run(&args))
 }
