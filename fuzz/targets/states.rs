@@ -2,22 +2,23 @@
 #![no_main]
 
 #[allow(dead_code, missing_docs)]
+#[path = "."]
 mod states {
-    #[path = "../../../crates/a3/src/files/states/build.rs"]
+    #[path = "../../crates/a3/src/files/states/build.rs"]
     pub mod build;
-    #[path = "../../../crates/a3/src/files/states/columns.rs"]
+    #[path = "../../crates/a3/src/files/states/columns.rs"]
     mod columns;
-    #[path = "../../../crates/a3/src/files/states/csv.rs"]
+    #[path = "../../crates/a3/src/files/states/csv.rs"]
     mod csv;
-    #[path = "../../../crates/a3/src/files/states/digits.rs"]
+    #[path = "../../crates/a3/src/files/states/digits.rs"]
     mod digits;
-    #[path = "../../../crates/a3/src/files/states/json.rs"]
+    #[path = "../../crates/a3/src/files/states/json.rs"]
     mod json;
-    #[path = "../../../crates/a3/src/files/states/npy.rs"]
+    #[path = "../../crates/a3/src/files/states/npy.rs"]
     mod npy;
-    #[path = "../../../crates/a3/src/files/states/npz.rs"]
+    #[path = "../../crates/a3/src/files/states/npz.rs"]
     mod npz;
-    #[path = "../../../crates/a3/src/files/states/parse.rs"]
+    #[path = "../../crates/a3/src/files/states/parse.rs"]
     pub mod parse;
 }
 
