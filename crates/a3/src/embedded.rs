@@ -6,11 +6,14 @@ use a3_core::{Control, Grid, Method, Scene, Simulation, StepLimits, integrators}
 use a3_scenes::{Defaults, Presentation, Setup};
 
 use crate::base::failure::Failure;
+use crate::base::monitor::Monitor;
 use crate::base::{progress, verdict};
 #[cfg(feature = "window")]
 use crate::cli::Drawing;
 use crate::cli::What;
+use crate::commands::chart::describe;
 use crate::commands::choose::command;
+use crate::commands::simplify::{Simplified, SimplifyOptions, measure};
 #[cfg(feature = "window")]
 use crate::draw::{
     painter::Painter,
@@ -19,7 +22,7 @@ use crate::draw::{
 #[cfg(feature = "window")]
 use crate::files::output;
 use crate::files::scene_file::Source;
-use crate::files::setup;
+use crate::files::setup::{self, Request};
 
 /// Origin of a scene.
 #[derive(Clone, Copy, Debug)]
@@ -180,6 +183,29 @@ impl OpenScene {
         setup.scene.limits = limits.or(setup.scene.limits);
         setup::simulate(&self.options, setup, method, value)
     }
+}
+
+/// Finds what a scene can do without for an error, as `a3 simplify` does.
+///
+/// # Errors
+/// A program has built the scene, an option is out of range or makes no sense on the scene, nothing
+/// moves, no run is accurate enough, or the monitor stopped the work before anything was measured.
+pub fn simplify(
+    scene: &OpenScene,
+    options: &SimplifyOptions,
+    monitor: &dyn Monitor,
+) -> Result<Simplified, Failure> {
+    let Made::Read(source) = &scene.made else {
+        return Err(Failure::usage(
+            "this scene was not read, so it has no parts that could be left out",
+        ));
+    };
+    let given = Request {
+        source: source.clone(),
+        options: scene.options.clone(),
+    };
+    let title = describe(&scene.options, &given.scene()?);
+    measure(&given.described(), &title, options, monitor)
 }
 
 /// Advances a run to a time (s) as the program does, and calls `go_on` about sixty times a

@@ -9,6 +9,7 @@
 //! * [`stability()`]: the largest stable and accurate steps.
 //! * [`compare()`]: runs side by side, and their distances.
 //! * [`judge_states()`]: the errors of another program, and the method that it agrees with.
+//! * [`embedded::simplify()`]: what a scene can do without.
 //! * [`scene()`]: a scene by its name, or from a file.
 //!
 //! Heun's method as one's own, on a system of one's own, beside Euler's:
@@ -68,6 +69,8 @@ mod window;
 #[cfg(not(target_arch = "wasm32"))]
 pub use base::{failure::Failure, input_error::InputError, monitor::Monitor};
 #[cfg(not(target_arch = "wasm32"))]
+pub use cli::Quantity;
+#[cfg(not(target_arch = "wasm32"))]
 pub use commands::chart::{Chart, ChartOptions, Record, chart};
 #[cfg(not(target_arch = "wasm32"))]
 pub use commands::choose::{Choice, ChooseOptions, Chosen, Goal, choose};
@@ -75,6 +78,8 @@ pub use commands::choose::{Choice, ChooseOptions, Chosen, Goal, choose};
 pub use commands::compare::{ComparedRun, Comparison, compare};
 #[cfg(not(target_arch = "wasm32"))]
 pub use commands::judge::{JudgeOptions, StatesOf, Verdict, judge_states};
+#[cfg(not(target_arch = "wasm32"))]
+pub use commands::simplify::{LeanScene, ModelEffect, SceneRun, Simplified, SimplifyOptions};
 #[cfg(not(target_arch = "wasm32"))]
 pub use commands::stability::{MethodLimits, Stability, stability};
 #[cfg(not(target_arch = "wasm32"))]

@@ -15,6 +15,7 @@ mod own_method;
 mod own_system;
 mod program;
 mod run;
+mod simplify;
 mod tables;
 
 /// The compiled part of `a3_simulator`.
@@ -30,6 +31,8 @@ mod _a3 {
     use super::program::main;
     #[pymodule_export]
     use super::run::Run;
+    #[pymodule_export]
+    use super::simplify::{Simplified, simplify};
     #[pymodule_export]
     use super::tables::{methods, scenes, table};
 }

@@ -38,7 +38,7 @@ fn metric(py: Python<'_>, name: Option<&str>) -> PyResult<Option<Metric>> {
 
 /// Runs work without the global lock. If it failed because a function raised an exception, that is
 /// raised.
-fn work<T: Send>(
+pub fn work<T: Send>(
     py: Python<'_>,
     raised: &[Raised],
     work: impl Send + FnOnce() -> Result<T, Failure>,
@@ -53,7 +53,7 @@ fn work<T: Send>(
 type Draw<'a> = dyn Fn(u32, u32) -> Result<a3_plot::Figure, Failure> + Sync + 'a;
 
 /// Draws a picture of this kind: "svg", "pdf" or "png".
-fn drawn<'py>(
+pub fn drawn<'py>(
     py: Python<'py>,
     kind: &str,
     (width, height): (u32, u32),

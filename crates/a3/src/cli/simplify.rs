@@ -22,6 +22,7 @@ pub enum Quantity {
 
 impl Quantity {
     /// Returns the name of the quantity.
+    #[must_use]
     pub fn name(self) -> &'static str {
         match self {
             Self::Position => "position",

@@ -38,6 +38,10 @@ if TYPE_CHECKING:
     from ._scenes import methods as methods
     from ._scenes import scene as scene
     from ._scenes import scenes as scenes
+    from ._simplify import LeanScene as LeanScene
+    from ._simplify import ModelEffect as ModelEffect
+    from ._simplify import Simplified as Simplified
+    from ._simplify import simplify as simplify
     from ._simulation import Energy as Energy
     from ._simulation import Simulation as Simulation
     from ._simulation import Springs as Springs
@@ -69,6 +73,10 @@ _MODULES = {
     "methods": "_scenes",
     "scene": "_scenes",
     "scenes": "_scenes",
+    "LeanScene": "_simplify",
+    "ModelEffect": "_simplify",
+    "Simplified": "_simplify",
+    "simplify": "_simplify",
     "Energy": "_simulation",
     "Simulation": "_simulation",
     "Springs": "_simulation",

@@ -89,6 +89,23 @@ def judge(
     within: Optional[float],
 ) -> Tuple[str, str]: ...
 
+class Simplified:
+    def text(self) -> str: ...
+    def json(self) -> str: ...
+    def drawn(self, kind: str, size: Tuple[int, int]) -> bytes: ...
+
+def simplify(
+    given: Given,
+    monitor: Monitor,
+    error: float,
+    of: str,
+    until: Optional[float],
+    particle: Optional[int],
+    at_end: bool,
+    data: Optional[str],
+    chart: bool,
+) -> Simplified: ...
+
 class Run:
     """The run of a scene by a method."""
 

@@ -9,7 +9,7 @@ use a3_core::{Control, Method, Model, Scene};
 use super::asked::check_contact;
 use super::data::{Data, VERSION};
 use super::record::Record;
-use super::single::{compared, precision, reference_while, time_while};
+use super::single::{compared, precision, reference, time};
 use super::words::Label;
 use crate::base::failure::Failure;
 use crate::base::monitor::Monitor;
@@ -290,8 +290,7 @@ impl Study {
         if self.reference.is_none() {
             monitor.stage("reference");
             let precision = precision(&self.scene, self.motion);
-            self.reference =
-                reference_while(go_on, &self.scene, self.frames, self.scope, precision)?;
+            self.reference = reference(go_on, &self.scene, self.frames, self.scope, precision)?;
             monitor.start();
             monitor.stage(method.name);
         }
@@ -319,7 +318,7 @@ impl Study {
         }
         let seconds = if timed && record.lost_at.is_none() {
             let control = method.control(record.setting);
-            let timed = time_while(
+            let timed = time(
                 go_on,
                 &self.scene,
                 method,

@@ -7,7 +7,6 @@ use a3_core::{Control, Method, Scene, Simulation};
 
 use super::record::Record;
 use crate::base::failure::Failure;
-use crate::base::interrupt;
 
 /// Largest work of a reference, in evaluations. Small scenes may take more, see
 /// [`MAX_REFERENCE_NUMBERS`].
@@ -116,18 +115,8 @@ pub fn precision(scene: &Scene, motion: f64) -> Precision {
     }
 }
 
-/// Computes the reference of a scene from its start. `None` if the command was interrupted.
+/// Computes the reference of a scene from its start. `None` if `go_on` returned false.
 pub fn reference(
-    scene: &Scene,
-    frames: Frames,
-    scope: Scope,
-    precision: Precision,
-) -> Result<Option<Reference>, Failure> {
-    reference_while(&interrupt::go_on, scene, frames, scope, precision)
-}
-
-/// As [`reference`]. `None` if `go_on` returned false.
-pub fn reference_while(
     go_on: GoOn,
     scene: &Scene,
     frames: Frames,
@@ -139,19 +128,8 @@ pub fn reference_while(
 }
 
 /// Measures the computing time of a run: the shortest of several, including `before` if it is
-/// given. `None` if the command was interrupted.
+/// given. `None` if `go_on` returned false.
 pub fn time(
-    scene: &Scene,
-    method: &'static Method,
-    control: Control,
-    frames: &Frames,
-    before: Option<Duration>,
-) -> Result<Option<Duration>, Failure> {
-    time_while(&interrupt::go_on, scene, method, control, frames, before)
-}
-
-/// As [`time`]. `None` if `go_on` returned false.
-pub fn time_while(
     go_on: GoOn,
     scene: &Scene,
     method: &'static Method,

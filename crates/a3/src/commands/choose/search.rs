@@ -6,7 +6,7 @@ use a3_core::{Method, Scene};
 
 use crate::base::failure::Failure;
 use crate::base::monitor::Monitor;
-use crate::commands::chart::single::time_while;
+use crate::commands::chart::single::time;
 use crate::commands::chart::unit;
 
 /// Smallest error that may be asked for, over the uncertainty of the reference.
@@ -81,7 +81,7 @@ fn milliseconds(
     reference: &Reference,
     monitor: &dyn Monitor,
 ) -> Result<Option<f64>, Failure> {
-    let time = time_while(
+    let time = time(
         &|| monitor.go_on(),
         scene,
         candidate.method,

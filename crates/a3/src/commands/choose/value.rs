@@ -8,7 +8,7 @@ use crate::base::failure::Failure;
 use crate::base::monitor::Monitor;
 use crate::cli::ErrorScope;
 use crate::cli::values::{BUDGETS, ERRORS, HORIZONS};
-use crate::commands::chart::single::{precision, reference_while};
+use crate::commands::chart::single::{precision, reference};
 use crate::commands::chart::{
     check_contact, check_methods, check_metric, check_motion, check_scene, look_ahead, scope, unit,
 };
@@ -188,7 +188,7 @@ impl<'a> Search<'a> {
             Goal::Budget(_) => precision(scene, horizon.motion),
         };
         let go_on = &|| monitor.go_on();
-        let reference = reference_while(go_on, scene, frames, self.scope, precision)?;
+        let reference = reference(go_on, scene, frames, self.scope, precision)?;
         let reference = reference.ok_or_else(stopped)?;
         check_contact(self.metric, self.metric.of(&reference.still), frames.until)?;
         Ok(reference)

@@ -6,6 +6,7 @@ use a3_core::stability::{Mode, spectrum};
 
 use super::rows::Rows;
 use crate::base::failure::Failure;
+use crate::base::interrupt;
 use crate::commands::chart::single::{precision, reference};
 
 /// Largest number of coordinates in all frames of a reference.
@@ -43,7 +44,14 @@ impl<'a> Truth<'a> {
         }
         let frames = self.frames(rows).map_err(Failure::usage)?;
         let precision = precision(self.scene, self.motion);
-        let Some(made) = reference(self.scene, frames, Scope::default(), precision)? else {
+        let Some(made) = reference(
+            &interrupt::go_on,
+            self.scene,
+            frames,
+            Scope::default(),
+            precision,
+        )?
+        else {
             return Ok(None);
         };
         self.references.push(made);

@@ -8,6 +8,7 @@ use a3_scenes::{Description, Regridded, regridded};
 use super::known::Known;
 use super::track::{Compared, Motion};
 use crate::base::failure::Failure;
+use crate::base::interrupt;
 use crate::cli::Quantity;
 use crate::files::rows::Rows;
 use crate::files::setup::Request;
@@ -105,13 +106,13 @@ pub fn grid_error(
             return Ok(Some(known.change));
         }
         let other = request.with(description).scene()?;
-        let other = compared.follow(&other, accurate, Some(&places));
+        let other = compared.follow(&other, accurate, Some(&places), &interrupt::go_on);
         let Some(Motion::Known(other)) = other.map_err(Failure::run)? else {
             return Ok(None);
         };
         if whole.is_none() {
             whole = compared
-                .follow(scene, accurate, None)
+                .follow(scene, accurate, None, &interrupt::go_on)
                 .map_err(Failure::run)?;
         }
         let Some(Motion::Known(whole)) = &whole else {

@@ -2,10 +2,9 @@
 
 use std::time::{Duration, Instant};
 
-use a3_core::accuracy::{FrameState, Frames, Scope, run};
+use a3_core::accuracy::{FrameState, Frames, GoOn, Scope, run};
 use a3_core::{Control, Error, Method, Network, Scene, Simulation};
 
-use crate::base::interrupt;
 use crate::cli::Quantity;
 
 /// Particles of one grid, each as a weighted mean of particles of another grid.
@@ -64,13 +63,14 @@ pub enum Motion {
 
 impl Compared {
     /// Runs a scene by a method, and records the quantity. On other grids than those of the scene
-    /// that it is compared with, `places` gives the particles of that scene. `None` if the command
-    /// was interrupted.
+    /// that it is compared with, `places` gives the particles of that scene. `None` if `go_on`
+    /// returned false.
     pub fn follow(
         self,
         scene: &Scene,
         (method, control): (&'static Method, Control),
         places: Option<&Places>,
+        go_on: GoOn,
     ) -> Result<Option<Motion>, Error> {
         let mut simulation = Simulation::new(scene.clone(), method, control)?;
         let mut values = vec![self.of(&simulation, 0.0, &scene.state, places)];
@@ -82,7 +82,6 @@ impl Compared {
             values.push(self.of(look.run, t, look.state, places));
             spent += begun.elapsed();
         };
-        let go_on = &interrupt::go_on;
         let end = run(&mut simulation, &self.frames, go_on, Some(&mut visit))?;
         let time = begun.elapsed().saturating_sub(spent);
         if self.quantity == Quantity::Energy {

@@ -11,7 +11,6 @@ use a3_scenes::{Regridded, regridded};
 use super::lean::Solved;
 use super::models::{FACTORS, Models};
 use crate::base::failure::Failure;
-use crate::base::progress::Bar;
 use crate::cli::Quantity;
 use crate::commands::chart::single::time;
 use crate::commands::chart::table::words;
@@ -49,13 +48,12 @@ struct Grid {
 /// not limited by the grid.
 const LONG_STEPS: [&str; 2] = ["implicit", "tr-bdf2"];
 
-/// Measures the runs of the chart. `None` if the scene has one grid only, or the command was
-/// interrupted.
+/// Measures the runs of the chart. `None` if the scene has one grid only, or the monitor
+/// stopped it.
 pub fn chart(
     models: &Models,
     whole: &Solved,
     title: String,
-    bar: &Bar,
 ) -> Result<Option<WorkPrecision>, Failure> {
     let Some(mut grids) = grids(models)? else {
         return Ok(None);
@@ -84,16 +82,17 @@ pub fn chart(
         .into_iter()
         .chain(long.filter(supports))
         .collect();
-    bar.expect((grids.len() * methods.len() * MAX_RUNS) as f64);
+    let monitor = models.monitor;
+    monitor.expect((grids.len() * methods.len() * MAX_RUNS) as f64);
     let motion = models.compared.way(&models.whole);
     let (mut curves, mut balance) = (vec![], vec![]);
     let styles = STYLES.iter().skip(STYLES.len() - grids.len());
     for (grid, (colour, marker)) in grids.iter().zip(styles) {
-        bar.say(format!("{}  ", grid.name));
+        monitor.stage(&grid.name);
         let least = models.compared.distance(&truth, &grid.motion);
         let mut runs = vec![];
         for method in &methods {
-            let Some(own) = measured(models, grid, method, (&truth, least), bar)? else {
+            let Some(own) = measured(models, grid, method, (&truth, least))? else {
                 return Ok(None);
             };
             runs.extend(own);
@@ -228,15 +227,15 @@ fn grids(models: &Models) -> Result<Option<Vec<Grid>>, Failure> {
 
 /// Measures runs on a grid by a method at several steps or tolerances, from the coarsest on, until
 /// the grid makes nearly all of the error. `least` is the error of its accurate run. `None` if the
-/// command was interrupted.
+/// monitor stopped it.
 fn measured(
     models: &Models,
     grid: &Grid,
     method: &'static Method,
     (truth, least): (&Track, f64),
-    bar: &Bar,
 ) -> Result<Option<Vec<Measurement>>, Failure> {
     let (scene, compared) = (&grid.scene, models.compared);
+    let go_on = &|| models.monitor.go_on();
     let modes = spectrum(scene.model.system(), 0.0, &scene.state);
     let rungs = ladder(&modes, method, &compared.frames, MAX_WORK).map_err(Failure::run)?;
     // The limit of stability is that of the start, and may be longer in motion.
@@ -246,19 +245,20 @@ fn measured(
     let mut found = vec![];
     let places: Option<&Places> = grid.places.as_deref();
     for control in first.into_iter().chain(rungs).take(MAX_RUNS) {
-        let run = compared.follow(scene, (method, control), places);
+        let run = compared.follow(scene, (method, control), places, go_on);
         let measured = match run.map_err(Failure::run)? {
             None => return Ok(None),
             Some(Motion::Failed) => None,
             Some(Motion::Known(track)) => {
                 let frames = &compared.frames;
-                let Some(time) = time(scene, method, control, frames, Some(track.time))? else {
+                let Some(time) = time(go_on, scene, method, control, frames, Some(track.time))?
+                else {
                     return Ok(None);
                 };
                 Some((compared.distance(truth, &track), time))
             }
         };
-        bar.advance(1.0);
+        models.monitor.advance(1.0);
         let Some((error, time)) = measured else {
             continue;
         };

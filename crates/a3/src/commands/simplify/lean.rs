@@ -74,7 +74,7 @@ pub struct Answer {
 }
 
 /// Assembles the leanest model that changes the motion by at most the model's share of the error.
-/// `None` if the command was interrupted.
+/// `None` if the monitor stopped it.
 pub fn assemble(models: &Models, all: &[Model], error: f64) -> Result<Option<LeanModel>, Failure> {
     let max_change = MODEL_SHARE * error;
     let own = &*models.request.source.description;
@@ -126,7 +126,7 @@ pub fn assemble(models: &Models, all: &[Model], error: f64) -> Result<Option<Lea
 
 /// Finds the cheapest solver for a model whose run differs from the motion of the whole scene by
 /// at most the error: that of the model and of the time steps together. `None` if no solver was
-/// found, or the command was interrupted.
+/// found, or the monitor stopped it.
 /// `first` is the method that is tried first: the cheaper it is, the fewer runs of others are
 /// necessary.
 pub fn solve(
@@ -144,10 +144,11 @@ pub fn solve(
         None
     };
     let frames = models.compared.frames;
+    let go_on = &|| models.monitor.go_on();
     let measure = |method, control| {
         let run = models
             .compared
-            .follow(&scene, (method, control), places.as_deref())?;
+            .follow(&scene, (method, control), places.as_deref(), go_on)?;
         Ok::<_, Error>(run.map(|motion| match motion {
             Motion::Failed => Trial {
                 error: f64::INFINITY,
@@ -177,7 +178,7 @@ pub fn solve(
     let Some(best) = found.and_then(|found| found.into_iter().next()) else {
         return Ok(None);
     };
-    let time = time(&scene, best.method, best.control, &frames, None)?;
+    let time = time(go_on, &scene, best.method, best.control, &frames, None)?;
     Ok(time.map(|time| Solved {
         method: best.method,
         control: best.control,
@@ -188,7 +189,7 @@ pub fn solve(
 }
 
 /// Times the runs of both scenes again in turns, so that other work of the machine slows both
-/// alike, and keeps the shortest time of each. Stops if the command is interrupted.
+/// alike, and keeps the shortest time of each. Stops if the monitor does.
 pub fn time_in_turns(
     models: &Models,
     model: &LeanModel,
@@ -196,11 +197,12 @@ pub fn time_in_turns(
     whole: &mut Solved,
 ) -> Result<(), Failure> {
     let (scene, frames) = (models.build(&model.description)?, models.compared.frames);
+    let go_on = &|| models.monitor.go_on();
     for _ in 0..TURNS {
         for (scene, solved) in [(&scene, &mut *lean), (&models.scene, &mut *whole)] {
             let before = Duration::from_secs_f64(solved.time * frames.until);
             let (method, control) = (solved.method, solved.control);
-            let Some(best) = time(scene, method, control, &frames, Some(before))? else {
+            let Some(best) = time(go_on, scene, method, control, &frames, Some(before))? else {
                 return Ok(());
             };
             solved.time = best.as_secs_f64() / frames.until;

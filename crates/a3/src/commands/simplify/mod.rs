@@ -8,5 +8,7 @@ mod command;
 mod lean;
 mod models;
 mod table;
+mod value;
 
 pub use command::run;
+pub use value::{LeanScene, ModelEffect, SceneRun, Simplified, SimplifyOptions, measure};

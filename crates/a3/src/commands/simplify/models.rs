@@ -7,7 +7,7 @@ use a3_core::{Control, Method, Scene};
 use a3_scenes::{Description, Part, Regridded, parts, regridded, without};
 
 use crate::base::failure::Failure;
-use crate::base::progress::Bar;
+use crate::base::monitor::Monitor;
 use crate::commands::chart::single::time;
 use crate::commands::motion::{Compared, Known, Motion, Places, Track, grid};
 use crate::files::rows::Rows;
@@ -33,6 +33,8 @@ pub const FACTORS: [f64; 4] = [0.5, 0.25, 0.75, 2.0];
 /// Comparison of models of a scene with the whole scene.
 pub struct Models<'a> {
     pub request: &'a Request,
+    /// Companion of the work, which may stop it.
+    pub monitor: &'a dyn Monitor,
     /// Whole scene.
     pub scene: Scene,
     /// Quantity that is compared.
@@ -73,7 +75,7 @@ pub struct Model {
 
 impl<'a> Models<'a> {
     /// Integrates the whole scene much more accurately than to the error that is asked for, which
-    /// two methods of different orders have to agree about. `None` if the command was interrupted.
+    /// two methods of different orders have to agree about. `None` if the monitor stopped it.
     ///
     /// # Errors
     /// No run is accurate enough.
@@ -82,7 +84,9 @@ impl<'a> Models<'a> {
         scene: Scene,
         compared: Compared,
         error: f64,
+        monitor: &'a dyn Monitor,
     ) -> Result<Option<Self>, Failure> {
+        let go_on = &|| monitor.go_on();
         let [method, other] = ["verner65", "dop853"].map(|name| find(name).expect(name));
         let mut best: Option<(Track, f64, f64)> = None;
         let mut stuck = 0;
@@ -90,7 +94,10 @@ impl<'a> Models<'a> {
             let mut runs = vec![];
             for (method, tolerance) in [(method, tolerance), (other, CHECK_RATIO * tolerance)] {
                 let by = (method, Control::Tolerance(tolerance));
-                let Some(run) = compared.follow(&scene, by, None).map_err(Failure::run)? else {
+                let Some(run) = compared
+                    .follow(&scene, by, None, go_on)
+                    .map_err(Failure::run)?
+                else {
                     return Ok(None);
                 };
                 runs.push(run);
@@ -125,9 +132,17 @@ impl<'a> Models<'a> {
             )));
         }
         let control = Control::Tolerance(tolerance);
-        let found = time(&scene, method, control, &compared.frames, Some(whole.time))?;
+        let found = time(
+            go_on,
+            &scene,
+            method,
+            control,
+            &compared.frames,
+            Some(whole.time),
+        )?;
         Ok(found.map(|time| Self {
             request,
+            monitor,
             scene,
             compared,
             whole: whole.timed(time),
@@ -178,7 +193,7 @@ impl<'a> Models<'a> {
         (all, why.filter(|_| !has_grids))
     }
 
-    /// Measures a model, unless it is known. Returns `false` if the command was interrupted.
+    /// Measures a model, unless it is known. Returns `false` if the monitor stopped it.
     pub fn measure(&self, model: &mut Model, known: &mut Rows<Known>) -> Result<bool, Failure> {
         let like = Known {
             model: model.name.clone(),
@@ -226,14 +241,15 @@ impl<'a> Models<'a> {
         let Ok(scene) = self.build(description) else {
             return Ok(Some(Err("a scene without it cannot be built".into())));
         };
-        let found = self.compared.follow(&scene, self.accurate, places);
+        let go_on = &|| self.monitor.go_on();
+        let found = self.compared.follow(&scene, self.accurate, places, go_on);
         Ok(match found.map_err(Failure::run)? {
             None => None,
             Some(Motion::Failed) => Some(Err("it blows up".into())),
             Some(Motion::Known(track)) => {
                 let (method, control) = self.accurate;
                 let frames = &self.compared.frames;
-                let time = time(&scene, method, control, frames, Some(track.time))?;
+                let time = time(go_on, &scene, method, control, frames, Some(track.time))?;
                 time.map(|time| Ok(track.timed(time)))
             }
         })
@@ -245,24 +261,24 @@ impl<'a> Models<'a> {
     }
 }
 
-/// Measures all models that can be measured and are not known. Returns `false` if the command was
-/// interrupted.
+/// Measures all models that can be measured and are not known. Returns `false` if the monitor
+/// stopped it.
 pub fn measure_all(
     models: &Models,
     all: &mut [Model],
     known: &mut Rows<Known>,
-    bar: &Bar,
 ) -> Result<bool, Failure> {
     // A model on a finer grid has more particles and, by an explicit method, shorter steps.
     let weight = |model: &Model| model.factor.powi(4);
-    bar.expect(all.iter().map(weight).sum());
-    bar.start();
+    let monitor = models.monitor;
+    monitor.expect(all.iter().map(weight).sum());
+    monitor.start();
     for model in all {
-        bar.say(format!("{}  ", model.name));
+        monitor.stage(&model.name);
         if !models.measure(model, known)? {
             return Ok(false);
         }
-        bar.advance(weight(model));
+        monitor.advance(weight(model));
     }
     Ok(true)
 }

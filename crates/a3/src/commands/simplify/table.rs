@@ -28,33 +28,37 @@ pub fn text(
     ];
     let mut rows = vec![heading.map(String::from).to_vec()];
     for model in models {
-        let is_out = lean.is_some_and(|lean| match &model.part {
-            Some(part) => lean.parts.contains(part),
-            None => model.factor < 1.0 && lean.factor == model.factor,
-        });
         rows.push(match &model.effect {
-            Err(why) => vec![
+            Err(_) => vec![
                 model.name.clone(),
                 "-".into(),
                 "-".into(),
                 "-".into(),
-                why.clone(),
+                verdict(model, error, lean).into(),
             ],
             Ok(effect) => vec![
                 model.name.clone(),
                 number(effect.change),
                 percent(effect.change / motion),
                 percent(1.0 - effect.time),
-                verdict(model, effect.change / error, is_out).into(),
+                verdict(model, error, lean).into(),
             ],
         });
     }
     list::table(&rows)
 }
 
-/// Returns the verdict on a model. `share` is its change of the motion over the error that is asked
-/// for; `is_out` says whether the leanest scene makes this change.
-fn verdict(model: &Model, share: f64, is_out: bool) -> &'static str {
+/// Returns the verdict on a model, or the reason why it was not measured. `error` is the error that
+/// is asked for.
+pub fn verdict<'a>(model: &'a Model, error: f64, lean: Option<&LeanModel>) -> &'a str {
+    let share = match &model.effect {
+        Ok(effect) => effect.change / error,
+        Err(why) => return why,
+    };
+    let is_out = lean.is_some_and(|lean| match &model.part {
+        Some(part) => lean.parts.contains(part),
+        None => model.factor < 1.0 && lean.factor == model.factor,
+    });
     match (&model.part, share <= 1.0) {
         (Some(_), _) if is_out => "leave it out",
         (Some(_), false) => "needed",
@@ -67,17 +71,16 @@ fn verdict(model: &Model, share: f64, is_out: bool) -> &'static str {
     }
 }
 
-/// Describes the error of the scene's grid, estimated from a coarser and a finer one. `None` if no
+/// Estimates the error of the scene's grid from a coarser and a finer one. `None` if no
 /// finer grid was measured.
-pub fn of_grid(models: &[Model], description: &Description) -> Option<String> {
+pub fn of_grid(models: &[Model], description: &Description) -> Option<GridError> {
     let change = |factor: f64| {
         let model = models
             .iter()
             .find(|m| m.part.is_none() && m.factor == factor)?;
         model.effect.as_ref().ok().map(|effect| effect.change)
     };
-    let own = GridError::new(grid(description), change(0.5), change(2.0)?);
-    Some(own.sentence())
+    Some(GridError::new(grid(description), change(0.5), change(2.0)?))
 }
 
 /// Describes the leanest scene in words, beside the whole scene.

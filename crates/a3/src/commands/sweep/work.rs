@@ -54,7 +54,14 @@ fn run_variant(
     let ahead = horizon(&scene, until, &interrupt::go_on).map_err(Failure::run)?;
     let Some(ahead) = ahead else { return Ok(()) };
     let precision = precision(&scene, ahead.motion);
-    let Some(reference) = reference(&scene, Frames::new(until), scope, precision)? else {
+    let Some(reference) = reference(
+        &interrupt::go_on,
+        &scene,
+        Frames::new(until),
+        scope,
+        precision,
+    )?
+    else {
         return Ok(());
     };
     let grid = scene.grid();

@@ -1,0 +1,90 @@
+//! What a scene can do without.
+
+use std::path::PathBuf;
+
+use a3::embedded;
+use a3::{Failure, Quantity, SimplifyOptions};
+use pyo3::prelude::*;
+use pyo3::types::PyBytes;
+
+use super::errors::{of_failure, wrong};
+use super::measures::{drawn, work};
+use super::monitor::Monitor;
+use super::open::{Given, Opened};
+
+/// What a scene can do without.
+#[pyclass(frozen, module = "a3_simulator._a3")]
+pub struct Simplified(a3::Simplified);
+
+#[pymethods]
+impl Simplified {
+    /// All of it in words.
+    fn text(&self) -> String {
+        self.0.text.clone()
+    }
+
+    /// All of it as JSON.
+    fn json(&self, py: Python<'_>) -> PyResult<String> {
+        self.0.json().map_err(|failure| of_failure(py, &failure))
+    }
+
+    /// A picture of the chart of models, of a kind and a size (px).
+    fn drawn<'py>(
+        &self,
+        py: Python<'py>,
+        kind: &str,
+        size: (u32, u32),
+    ) -> PyResult<Bound<'py, PyBytes>> {
+        drawn(py, kind, size, &|width, height| {
+            self.0.figure(width, height)?.ok_or_else(|| {
+                Failure::usage(
+                    "there is no chart: ask for it with chart=True, on a scene with a grid",
+                )
+            })
+        })
+    }
+}
+
+/// Finds what a scene can do without for an error.
+#[pyfunction]
+#[expect(clippy::too_many_arguments, reason = "each is an option")]
+pub fn simplify(
+    py: Python<'_>,
+    given: Given,
+    monitor: &Monitor,
+    error: f64,
+    of: &str,
+    until: Option<f64>,
+    particle: Option<usize>,
+    at_end: bool,
+    data: Option<PathBuf>,
+    chart: bool,
+) -> PyResult<Simplified> {
+    let opened = Opened::new(py, &given)?;
+    if opened.calls {
+        return Err(wrong(
+            py,
+            "what a scene can do without is found for scenes without functions of Python",
+        ));
+    }
+    let quantities = [Quantity::Position, Quantity::Centre, Quantity::Energy];
+    let quantity = quantities.into_iter().find(|it| it.name() == of);
+    let quantity = quantity.ok_or_else(|| {
+        let names = quantities.map(Quantity::name).join(", ");
+        wrong(
+            py,
+            format!("there is no quantity `{of}`: the quantities are {names}"),
+        )
+    })?;
+    let options = SimplifyOptions {
+        of: quantity,
+        until,
+        particle,
+        at_end,
+        data,
+        chart,
+        ..SimplifyOptions::new(error)
+    };
+    let scene = &opened.scene;
+    work(py, &[], || embedded::simplify(scene, &options, monitor)).map(Simplified)
+}
