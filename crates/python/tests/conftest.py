@@ -1,6 +1,7 @@
 """The tests of the Python module, to be run against the installed wheel: `crates/python/check`."""
 
 import shutil
+import signal
 import sys
 from pathlib import Path
 
@@ -15,3 +16,9 @@ def program() -> str:
     found = shutil.which("a3", path=str(Path(sys.executable).parent))
     assert found, "the wheel brings no program"
     return found
+
+
+@pytest.fixture(scope="session", autouse=True)
+def ctrl_c() -> None:
+    """Lets Ctrl-C interrupt, also if a shell that started these tests in the background ignores it."""
+    signal.signal(signal.SIGINT, signal.default_int_handler)
