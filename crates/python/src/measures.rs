@@ -325,9 +325,11 @@ pub fn compare<'py>(
 /// Judges states: a file, or an archive of arrays with its name. Returns the judgement in words and
 /// as JSON.
 #[pyfunction]
+#[expect(clippy::too_many_arguments, reason = "each is an option")]
 pub fn judge(
     py: Python<'_>,
     given: Given,
+    monitor: &Monitor,
     file: Option<PathBuf>,
     archive: Option<(String, Vec<u8>)>,
     until: Option<f64>,
@@ -347,6 +349,9 @@ pub fn judge(
         within,
     };
     let raised = opened.raised([]);
-    let verdict = work(py, &raised, || a3::judge_states(&scene, states, &options))?;
+    monitor.watch(&raised);
+    let verdict = work(py, &raised, || {
+        a3::judge_states(&scene, states, &options, monitor)
+    })?;
     Ok((verdict.text, verdict.json))
 }

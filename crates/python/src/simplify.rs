@@ -18,6 +18,11 @@ pub struct Simplified(a3::Simplified);
 
 #[pymethods]
 impl Simplified {
+    /// Whether the chart of models was measured.
+    fn has_chart(&self) -> bool {
+        self.0.has_chart()
+    }
+
     /// All of it in words.
     fn text(&self) -> String {
         self.0.text.clone()
@@ -38,7 +43,7 @@ impl Simplified {
         drawn(py, kind, size, &|width, height| {
             self.0.figure(width, height)?.ok_or_else(|| {
                 Failure::usage(
-                    "there is no chart: ask for it with chart=True, on a scene with a grid",
+                    "there is no chart: it needs chart=True, and a scene with grids that differ by less than the motion",
                 )
             })
         })

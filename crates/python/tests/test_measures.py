@@ -221,6 +221,13 @@ def test_ctrl_c_ends_a_chart():
 
 
 @pytest.mark.skipif(os.name == "nt", reason="signals of POSIX")
+def test_ctrl_c_ends_a_judgement():
+    t = 0.01 * np.arange(1000)
+    x = np.random.default_rng(1).normal(size=(len(t), 400, 3))
+    assert interrupted(lambda: a3.judge("cloth", (t, x), progress=False)) < 5
+
+
+@pytest.mark.skipif(os.name == "nt", reason="signals of POSIX")
 def test_ctrl_c_ends_a_chart_of_a_step_that_never_ends():
     def step(f, t, y, h):
         while t > 0.5:

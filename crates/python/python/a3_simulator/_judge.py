@@ -88,7 +88,9 @@ def judge(
         file = os.fspath(states)
     else:
         archive = (name, _archive(states))
-    text, data = work(lambda _: _a3.judge(scene_given, file, archive, until, step, within), progress)
+    text, data = work(
+        lambda monitor: _a3.judge(scene_given, monitor, file, archive, until, step, within), progress
+    )
     return Judgement(text, json.loads(data))
 
 

@@ -73,7 +73,7 @@ class Simplified(_Drawn):
 
     def __init__(self, source: _a3.Simplified, size: Tuple[int, int], chart: bool) -> None:
         self._source, self._size, self._forms = source, size, {}
-        self._has_chart = chart
+        self._has_chart = chart and source.has_chart()
         self.text = source.text()
         self.data: Dict[str, Any] = json.loads(source.json())
         self.models = [ModelEffect(**model) for model in self.data["models"]]

@@ -116,7 +116,7 @@ fn look_ahead(
     bar.say("looking ahead  ".into());
     let ends = files.iter().filter_map(|(_, states)| states.times.last());
     let last = ends.fold(0.0, |last: f64, end| last.max(*end));
-    horizon_of(scene, last, options.until)
+    horizon_of(scene, last, options.until, bar)
 }
 
 /// Judges all files.
@@ -130,12 +130,13 @@ fn judge_all(
 ) -> Result<Vec<(String, Judgement)>, Failure> {
     let plain = Plain::of(scene).ok();
     let course = Course {
+        monitor: bar,
         scene,
         plain: plain.as_ref(),
         until: horizon.until,
         step: options.step,
     };
-    let mut truth = Truth::new(scene, horizon);
+    let mut truth = Truth::new(scene, horizon, bar);
     let mut judged = vec![];
     for (name, states) in files {
         bar.say(format!("{name}  "));

@@ -10,6 +10,7 @@ use super::start::{Difference, difference, with_y_up};
 use super::trial::{Judged, size};
 use super::truth::{Truth, frame_at};
 use crate::base::failure::Failure;
+use crate::base::monitor::Monitor;
 use crate::files::states::States;
 
 /// Ratio of the error with the axes y and z exchanged to that without, below which they are.
@@ -17,6 +18,8 @@ const MUCH_LESS: f64 = 0.1;
 
 /// Scene with all that judgements of its files share.
 pub struct Course<'a> {
+    /// Companion of the work, which may stop it.
+    pub monitor: &'a dyn Monitor,
     pub scene: &'a Scene,
     /// The scene as masses and springs, if it is that.
     pub plain: Option<&'a Plain>,
@@ -100,7 +103,7 @@ impl Drift {
     }
 }
 
-/// Judges states. `None` if the command was interrupted.
+/// Judges states. `None` if the monitor stopped it.
 ///
 /// # Errors
 /// No state is within the time of the judgement, or the reference cannot be computed.
@@ -116,6 +119,7 @@ pub fn judge(
     };
     let mut judgement = measured(scene, states, &rows, reference);
     let judged = Judged {
+        monitor: course.monitor,
         scene,
         plain: course.plain,
         rows: &rows,

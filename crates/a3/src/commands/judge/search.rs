@@ -6,7 +6,6 @@ use a3_core::integrators::METHODS;
 use super::mistake::Mistake;
 use super::scheme::Scheme;
 use super::trial::{Compared, Judged, Start, Trial, Way};
-use crate::base::interrupt;
 
 /// Numbers of steps between two grid points that are tried.
 const PARTS: [u64; 34] = [
@@ -71,7 +70,7 @@ struct Search<'a> {
     finest: u64,
 }
 
-/// Finds the method that the rows agree with. `None` if the command was interrupted. `at_start`
+/// Finds the method that the rows agree with. `None` if the monitor stopped it. `at_start`
 /// tells whether the first row is the start of the scene.
 pub fn search(judged: &Judged, at_start: bool) -> Option<Match> {
     let grid = judged.rows.grid.as_ref().map(|grid| grid.step);
@@ -186,7 +185,7 @@ impl Search<'_> {
     }
 
     /// The ways that agree with all rows, at the largest step at which one does, or at a slightly
-    /// smaller one at which it agrees much better. `None` if the command was interrupted.
+    /// smaller one at which it agrees much better. `None` if the monitor stopped it.
     fn agreements(
         &mut self,
         ways: &[Way],
@@ -207,7 +206,7 @@ impl Search<'_> {
             let mut found = vec![];
             for &start in starts {
                 for &way in ways {
-                    if !interrupt::go_on() {
+                    if !self.judged.monitor.go_on() {
                         return None;
                     }
                     let trial = Trial { way, parts, start };
@@ -279,8 +278,8 @@ impl Search<'_> {
     }
 
     /// The way whose largest distance from the rows is the least, if it is below `bound` (m).
-    /// `None` if the command was interrupted.
-    #[expect(clippy::option_option, reason = "interrupted, or none below the bound")]
+    /// `None` if the monitor stopped it.
+    #[expect(clippy::option_option, reason = "stopped, or none below the bound")]
     fn nearest(&mut self, ways: &[Way], parts: &[u64], bound: f64) -> Option<Option<Agreement>> {
         let (mut nearest, mut least, mut work) = (None, bound, 0.0);
         for &parts in parts {
@@ -288,7 +287,7 @@ impl Search<'_> {
                 break;
             }
             for &way in ways {
-                if !interrupt::go_on() {
+                if !self.judged.monitor.go_on() {
                     return None;
                 }
                 let trial = Trial {

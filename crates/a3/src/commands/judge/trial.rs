@@ -6,7 +6,7 @@ use super::mistake::Mistake;
 use super::plain::{Forces, Plain};
 use super::rows::{Rows, columns, distance};
 use super::scheme::{PlainRun, Scheme};
-use crate::base::interrupt;
+use crate::base::monitor::Monitor;
 
 /// Largest distance of rows that agree, over the distance moved until then.
 const AGREEMENT: f64 = 1e-9;
@@ -101,6 +101,8 @@ pub struct Compared {
 
 /// Scene and rows against which trials run.
 pub struct Judged<'a> {
+    /// Companion of the work, which may stop it.
+    pub monitor: &'a dyn Monitor,
     pub scene: &'a Scene,
     /// The scene as masses and springs, if it is that.
     pub plain: Option<&'a Plain>,
@@ -210,7 +212,7 @@ impl Judged<'_> {
                 (None, Run::Method(run)) => run.advance_to(self.rows.times[k]).is_ok(),
                 (None, Run::Plain(_)) => return None,
             };
-            if !is_there || !interrupt::go_on() {
+            if !is_there || !self.monitor.go_on() {
                 break;
             }
             let [x, v] = run.motion();

@@ -6,7 +6,7 @@ use a3_core::stability::{Mode, spectrum};
 
 use super::rows::Rows;
 use crate::base::failure::Failure;
-use crate::base::interrupt;
+use crate::base::monitor::Monitor;
 use crate::commands::chart::single::{precision, reference};
 
 /// Largest number of coordinates in all frames of a reference.
@@ -22,21 +22,23 @@ const TOLERANCE: f64 = 1e-9;
 /// The motion of a scene, as it is known.
 pub struct Truth<'a> {
     scene: &'a Scene,
+    monitor: &'a dyn Monitor,
     /// Largest distance of the particles from where they start (m).
     motion: f64,
     references: Vec<Reference>,
 }
 
 impl<'a> Truth<'a> {
-    pub fn new(scene: &'a Scene, horizon: &Horizon) -> Self {
+    pub fn new(scene: &'a Scene, horizon: &Horizon, monitor: &'a dyn Monitor) -> Self {
         Self {
             scene,
+            monitor,
             motion: horizon.motion,
             references: vec![],
         }
     }
 
-    /// Reference with states at the times of rows. `None` if the command was interrupted.
+    /// Reference with states at the times of rows. `None` if the monitor stopped it.
     pub fn at(&mut self, rows: &Rows) -> Result<Option<&Reference>, Failure> {
         let known = self.references.iter().position(|known| serves(known, rows));
         if let Some(known) = known {
@@ -45,7 +47,7 @@ impl<'a> Truth<'a> {
         let frames = self.frames(rows).map_err(Failure::usage)?;
         let precision = precision(self.scene, self.motion);
         let Some(made) = reference(
-            &interrupt::go_on,
+            &|| self.monitor.go_on(),
             self.scene,
             frames,
             Scope::default(),
@@ -76,10 +78,17 @@ impl<'a> Truth<'a> {
         let rate = (FRAMES_PER_RADIAN * fastest).max(MIN_RATE);
         let count = (rate * until).ceil().max(4.0);
         if count > most {
-            return Err(format!(
-                "its times are not equally spaced, and {until} s are too long to interpolate between them: write states \
-                 at equal distances, or judge less with --until"
-            ));
+            return Err(if rows.grid.is_some() {
+                format!(
+                    "{until} s of it are too many states of {} particles: write fewer, or judge less with --until",
+                    self.scene.model.particles()
+                )
+            } else {
+                format!(
+                    "its times are not equally spaced, and {until} s are too long to interpolate between them: write \
+                     states at equal distances, or judge less with --until"
+                )
+            });
         }
         Ok(Frames {
             until,

@@ -11,7 +11,7 @@ use super::summary::Record;
 use super::truth::Truth;
 use super::words::text;
 use crate::base::failure::Failure;
-use crate::base::interrupt;
+use crate::base::monitor::Monitor;
 use crate::commands::chart::{check_motion, check_scene};
 use crate::files::states::{parse, read};
 
@@ -56,6 +56,7 @@ pub fn judge_states(
     scene: &Scene,
     states: StatesOf,
     options: &JudgeOptions,
+    monitor: &dyn Monitor,
 ) -> Result<Verdict, Failure> {
     check_scene(scene)?;
     let particles = scene.model.particles();
@@ -70,15 +71,16 @@ pub fn judge_states(
         }
     };
     let last = states.times.last().copied().unwrap_or_default();
-    let horizon = look_ahead(scene, last, options.until)?;
+    let horizon = look_ahead(scene, last, options.until, monitor)?;
     let plain = Plain::of(scene).ok();
     let course = Course {
+        monitor,
         scene,
         plain: plain.as_ref(),
         until: horizon.until,
         step: options.step,
     };
-    let judged = judge(&course, &mut Truth::new(scene, &horizon), &states);
+    let judged = judge(&course, &mut Truth::new(scene, &horizon, monitor), &states);
     let judged = judged.map_err(|failure| match failure {
         Failure::Usage(why) => Failure::usage(format!("{name}: {why}")),
         failure => failure,
@@ -96,10 +98,15 @@ fn verdict(name: &str, judgement: &Judgement, within: Option<f64>) -> Result<Ver
 
 /// Finds how long errors mean something on the scene, up to the last of the states (s) or to
 /// `until` (s).
-pub fn look_ahead(scene: &Scene, last: f64, until: Option<f64>) -> Result<Horizon, Failure> {
+pub fn look_ahead(
+    scene: &Scene,
+    last: f64,
+    until: Option<f64>,
+    monitor: &dyn Monitor,
+) -> Result<Horizon, Failure> {
     let last = last.min(MAX_TIME);
     let last = until.map_or(last, |until| last.min(until));
-    let found = horizon(scene, last, &interrupt::go_on).map_err(Failure::run)?;
+    let found = horizon(scene, last, &|| monitor.go_on()).map_err(Failure::run)?;
     let found = found.ok_or_else(stopped)?;
     check_motion(scene, &found)?;
     let is_chaotic = found.lyapunov.is_finite() && until.is_none();

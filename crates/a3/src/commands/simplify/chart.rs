@@ -112,6 +112,9 @@ pub fn chart(
             runs,
         });
     }
+    if curves.iter().all(|curve| curve.runs.is_empty()) {
+        return Ok(None);
+    }
     let guide = (balance.len() > 1).then(|| Guide {
         name: "grid and time steps err alike".into(),
         points: balance,

@@ -55,7 +55,9 @@ fn draw(path: &Path, (width, height): (u32, u32), found: &Simplified) -> Result<
             write_picture(path, &figure)?;
             terminal::say(&format!("chart: {}\n", path.display()))
         }
-        None if found.lean.is_some() => terminal::say("no chart: the scene has one grid only\n"),
+        None if found.lean.is_some() => terminal::say(
+            "no chart: the scene has one grid only, or grids differ by more than the motion\n",
+        ),
         None => Ok(()),
     }
 }

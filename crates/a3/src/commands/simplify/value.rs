@@ -142,8 +142,14 @@ pub struct Simplified {
 }
 
 impl Simplified {
-    /// Draws the chart of models in a size (px); `None` if it was not measured, or the scene has
-    /// one grid only.
+    /// Whether there is a chart of models: it was asked for, and the scene has grids that differ by
+    /// less than the motion.
+    #[must_use]
+    pub fn has_chart(&self) -> bool {
+        self.chart.is_some()
+    }
+
+    /// Draws the chart of models in a size (px); `None` if there is none.
     ///
     /// # Errors
     /// The size is too small.
