@@ -48,8 +48,8 @@ struct Grid {
 /// not limited by the grid.
 const LONG_STEPS: [&str; 2] = ["implicit", "tr-bdf2"];
 
-/// Measures the runs of the chart. `None` if the scene has one grid only, or the monitor
-/// stopped it.
+/// Measures the runs of the chart. `None` if the scene has one grid only, if grids differ by more
+/// than the motion, or if the monitor stopped it.
 pub fn chart(
     models: &Models,
     whole: &Solved,
@@ -119,17 +119,7 @@ pub fn chart(
         name: "grid and time steps err alike".into(),
         points: balance,
     });
-    let foot = if guide.is_some() {
-        "On the dashed line, the time steps err as much as the grid. Left of it, where markers are filled, a shorter \
-         step is wasted, and a finer grid helps. Right of it, a shorter step helps."
-    } else {
-        "Where a marker is filled, the grid errs more than the time steps: a shorter step is wasted, and a finer grid \
-         helps."
-    };
-    let truth = match estimate.order {
-        Some(_) => "the motion that the two finest grids extrapolate to",
-        None => "the motion on a grid twice as fine: grids do not converge yet",
-    };
+    let foot = foot(guide.is_some(), estimate.order.is_some());
     let solvers = methods
         .iter()
         .map(|it| format!("{} {}", short(it), it.title));
@@ -157,9 +147,26 @@ pub fn chart(
             guide,
             ..Problem::default()
         }],
-        foot: format!("{foot} Errors are differences from {truth}."),
+        foot,
         held: "the time steps err more than the grid".into(),
     }))
+}
+
+/// Explains the chart: whether it has the line of balance, and whether grids converge.
+fn foot(is_balanced: bool, converges: bool) -> String {
+    let balance = if is_balanced {
+        "On the dashed line, the time steps err as much as the grid. Left of it, where markers are filled, a shorter \
+         step is wasted, and a finer grid helps. Right of it, a shorter step helps."
+    } else {
+        "Where a marker is filled, the grid errs more than the time steps: a shorter step is wasted, and a finer grid \
+         helps."
+    };
+    let truth = if converges {
+        "the motion that the two finest grids extrapolate to"
+    } else {
+        "the motion on a grid twice as fine: grids do not converge yet"
+    };
+    format!("{balance} Errors are differences from {truth}.")
 }
 
 /// Returns the letter of a method, or its name if it has none.
