@@ -177,6 +177,21 @@ fn the_error_of_a_grid_is_that_of_a_closed_form() {
     assert!((0.8..1.2).contains(&order), "{order}");
 }
 
+#[test]
+fn a_large_grid_is_compared_with_a_coarser_one() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let scene = "gravity = [0, -9.81, 0]\n[[cloth]]\ngrid = [41, 41]\nwidth = 1\ndensity = 1\nstiffness = [200, 0, 0]\n\
+         at = [0, 0, 0]\npin = [{ at = [\"top\"] }]\n";
+    write(folder, "large.toml", scene);
+    let words = "choose --scene large.toml --error 1e-6 --until 0.1";
+    let found = said(folder, &words.split(' ').collect::<Vec<_>>());
+    assert!(
+        found.contains("the grid of 41 x 41 differs from one half as fine by "),
+        "{found}"
+    );
+}
+
 /// A strip of cloth that hangs between its ends: an elastic catenary. With the weight w of a unit
 /// of its unstretched length, the stiffness k, and tensions H and V along x and y,
 /// x(s) = H s / k + H / w (asinh(V(0) / H) - asinh(V(s) / H)) and

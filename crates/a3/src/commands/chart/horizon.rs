@@ -42,8 +42,8 @@ pub fn look_ahead(
     match asked {
         Some(asked) if asked > until * (1.0 + 1e-9) && lyapunov.is_finite() => {
             monitor.warn(&format!(
-                "warning: {of}: {why}: past {until} s an error in position says little; compare \
-             --error energy or strain, or leave out --until"
+                "warning: {of}: {why}: past {until} s an error in position says little: compare the \
+                 energy, or leave out --until"
             ));
         }
         Some(_) => {}

@@ -15,18 +15,33 @@ use crate::files::setup::Request;
 
 /// Relative tolerance of the runs, whose errors are far below those of grids.
 const TOLERANCE: f64 = 1e-5;
-/// Largest number of particles of a scene whose grid error is measured: more would take too long.
-const MAX_PARTICLES: usize = 1500;
+/// Largest number of particles of a scene that is compared with finer grids: more would take too
+/// long.
+const MAX_FINER: usize = 1500;
+/// Largest number of particles of a scene whose grid error is measured.
+const MAX_PARTICLES: usize = 20_000;
 
 /// Error that a grid causes.
 pub struct GridError {
     /// Numbers of particles along each axis, in words.
     pub grid: String,
-    /// Estimated error of the positions (m); if grids do not converge yet, the difference from a
-    /// grid twice as fine.
+    /// Estimated error of the positions (m); if that is not known, the difference from another
+    /// grid.
     pub error: f64,
-    /// Observed order, if grids converge.
-    pub order: Option<f64>,
+    /// Way in which the error was found.
+    pub found: Found,
+}
+
+/// Way in which the error of a grid was found.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Found {
+    /// Extrapolated by the observed order.
+    Order(f64),
+    /// Difference from a grid twice as fine: grids do not converge yet.
+    Finer,
+    /// Difference from a grid half as fine, because a finer one would take too long. At order 1,
+    /// it is the error itself.
+    Coarser,
 }
 
 /// Observed order above which grids count as convergent.
@@ -44,27 +59,38 @@ impl GridError {
         Self {
             grid,
             error: finer / share,
-            order,
+            found: order.map_or(Found::Finer, Found::Order),
+        }
+    }
+
+    /// Returns the observed order, if grids converge.
+    pub fn order(&self) -> Option<f64> {
+        match self.found {
+            Found::Order(order) => Some(order),
+            Found::Finer | Found::Coarser => None,
         }
     }
 
     /// Describes the error in a sentence.
     pub fn sentence(&self) -> String {
-        let Self { grid, error, order } = self;
-        let how = match order {
-            Some(order) => {
+        let Self { grid, error, found } = self;
+        let how = match found {
+            Found::Order(order) => {
                 format!("the grid of {grid} errs by about {error:.1e} m (order {order:.1})")
             }
-            None => format!(
+            Found::Finer => format!(
                 "the grid of {grid} differs from one twice as fine by {error:.1e} m, and grids do not converge yet"
             ),
+            Found::Coarser => {
+                format!("the grid of {grid} differs from one half as fine by {error:.1e} m")
+            }
         };
         format!("{how}: smaller errors describe the model, not the material\n")
     }
 }
 
 /// Measures the error of a scene's grids at frames, in a scope, unless it is known. `None` if the
-/// scene has no grid that can be made finer or has too many particles, if a run fails, or if the
+/// scene has no grid that can be changed or has too many particles, if a run fails, or if the
 /// command was interrupted.
 pub fn grid_error(
     request: &Request,
@@ -128,6 +154,14 @@ pub fn grid_error(
         known.save()?;
         Ok::<_, Failure>(Some(change))
     };
+    if particles > MAX_FINER {
+        let coarser = change(0.5)?;
+        return Ok(coarser.map(|error| GridError {
+            grid: grid(own),
+            error,
+            found: Found::Coarser,
+        }));
+    }
     let Some(finer) = change(2.0)? else {
         return Ok(None);
     };

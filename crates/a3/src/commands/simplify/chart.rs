@@ -68,10 +68,10 @@ pub fn chart(
     let estimate = GridError::new(String::new(), half.map(difference), difference(finest));
     // The finest grid errs by 2^-p of what the grid in use does.
     let share = estimate
-        .order
+        .order()
         .map_or(0.0, |order| 1.0 / (order.exp2() - 1.0));
     let truth = Track::extrapolated(&own.motion, &finest.motion, share);
-    if estimate.order.is_none() {
+    if estimate.order().is_none() {
         // The finest grid cannot be compared with itself.
         grids.pop();
     }
@@ -119,7 +119,7 @@ pub fn chart(
         name: "grid and time steps err alike".into(),
         points: balance,
     });
-    let foot = foot(guide.is_some(), estimate.order.is_some());
+    let foot = foot(guide.is_some(), estimate.order().is_some());
     let solvers = methods
         .iter()
         .map(|it| format!("{} {}", short(it), it.title));

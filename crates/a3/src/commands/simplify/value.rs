@@ -216,7 +216,7 @@ pub fn measure(
         uncertainty: models.uncertainty,
         models: all.iter().map(effect).collect(),
         grid_error: of_grid.as_ref().map(|grid| grid.error),
-        grid_order: of_grid.and_then(|grid| grid.order),
+        grid_order: of_grid.and_then(|grid| grid.order()),
         lean: answer.as_ref().map(scene).transpose()?,
         chart: of_models,
     })
