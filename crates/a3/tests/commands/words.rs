@@ -135,6 +135,10 @@ const WRONG: &[(&str, &str)] = &[
     ),
     (
         "scenes --list",
+        "`--print NAME` is missing; --help explains it",
+    ),
+    (
+        "solvers --list",
         "there is no option `--list` here; --help lists the options",
     ),
     (
