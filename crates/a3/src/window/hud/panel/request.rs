@@ -105,7 +105,9 @@ pub fn press(session: &mut Session, key: PanelKey, other: bool) -> bool {
     let at = rows.iter().rposition(|k| *k <= chosen).unwrap_or(0);
     let turn = match key {
         PanelKey::Up => {
-            session.panel.row = rows[(at + rows.len() - 1) % rows.len()];
+            // From the first row, to the last of the same page.
+            let knobs = self::rows(session).len();
+            session.panel.row = rows[at.checked_sub(1).unwrap_or(knobs.saturating_sub(1))];
             return true;
         }
         PanelKey::Down => {
