@@ -1,8 +1,8 @@
-//! The companion of long work, which says whether it may go on and is told how far it is.
+//! The monitor of long work: it decides whether the work may go on, and receives its progress.
 
 use super::failure::Failure;
 
-/// Companion of long work. Every function has a default, so that `()` watches nothing, and a
+/// Monitor of long work. Every function has a default, so that `()` watches nothing, and a
 /// function that returns whether the work may go on is a monitor too.
 pub trait Monitor: Sync {
     /// Returns whether the work may go on. It is asked many times a second, also from several
@@ -11,25 +11,25 @@ pub trait Monitor: Sync {
         true
     }
 
-    /// Is told what is done now, such as the name of a method.
+    /// Receives the name of the present stage, such as that of a method.
     fn stage(&self, _what: &str) {}
 
-    /// Is told how much work there is in all, in a unit of its own. None of it is done yet.
+    /// Receives the total amount of work, in a unit of its own. None of it is done yet.
     fn expect(&self, _work: f64) {}
 
-    /// Is told that the preparations are over, and the work itself begins.
+    /// Marks the end of the preparations: the work itself begins.
     fn start(&self) {}
 
-    /// Is told that a part of the work is done.
+    /// Receives the amount of work that was done since the last call.
     fn advance(&self, _work: f64) {}
 
-    /// Is told that the work is over or interrupted.
+    /// Marks the end or the interruption of the work.
     fn clear(&self) {}
 
-    /// Is given a warning.
+    /// Receives a warning.
     fn warn(&self, _line: &str) {}
 
-    /// Is given a remark on what was found.
+    /// Receives a remark on a result.
     ///
     /// # Errors
     /// It could not be written.

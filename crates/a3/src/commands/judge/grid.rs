@@ -1,4 +1,4 @@
-//! Grid of the times of a file: the step of which all of them are multiples.
+//! Grid of the times of a file: all times are multiples of its step.
 
 use crate::base::rounding::short;
 

@@ -14,7 +14,7 @@ const PARTS: [u64; 34] = [
 ];
 /// Number of steps that are tried after one that agrees.
 const MORE_PARTS: usize = 4;
-/// Ratio of distances of which the smaller one tells a method from another.
+/// Ratio of the distances of two methods from the rows, from which on the nearer one stands out.
 const CLEARLY: f64 = 10.0;
 /// Numbers of steps that are tried at any cost, and for the nearest method.
 const FEW_PARTS: [u64; 5] = [1, 2, 4, 5, 10];

@@ -76,7 +76,7 @@ pub enum Start {
     Behind,
 }
 
-/// Trial of a way with equal steps, of which a grid point of the rows has a whole number.
+/// Trial of a method or a scheme with equal steps, a whole number of them between grid points.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Trial {
     pub way: Way,

@@ -116,7 +116,7 @@ pub fn chart(
         return Ok(None);
     }
     let guide = (balance.len() > 1).then(|| Guide {
-        name: "grid and time steps err alike".into(),
+        name: "errors of grid and time steps are equal".into(),
         points: balance,
     });
     let foot = foot(guide.is_some(), estimate.order().is_some());

@@ -11,7 +11,7 @@ use crate::window::hud::panel::{self, Request};
 
 /// Delay after which a skipped frame is drawn again.
 const RETRY_DELAY: Duration = Duration::from_millis(50);
-/// Delay after which a frame shows what was measured meanwhile, if nothing else moves.
+/// Delay after which a frame shows new measurements, if nothing else moves.
 const MEASURING_DELAY: Duration = Duration::from_millis(100);
 
 impl App {

@@ -86,7 +86,7 @@ pub fn begin(session: &mut Session) {
     }
 }
 
-/// Collects what was measured meanwhile, and forgets it if the scene is another one now.
+/// Collects the new measurements of the thread, and discards all of them if the scene has changed.
 pub fn update(session: &mut Session) {
     if let Some(pane) = session.effects.pane() {
         let (now, time) = situation(session, pane);
