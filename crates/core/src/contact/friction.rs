@@ -4,12 +4,13 @@ use std::collections::BTreeMap;
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::candidates::Candidates;
+use super::candidates::{Candidates, Linear};
 use super::listing::Candidate;
 use super::motion::{Guarded, Motion};
 use super::repulsion::Pair;
-use super::solids::{Arm, Field, SAME_TOLERANCE, Solid};
-use super::surface::{Law, Surface};
+use super::skin::Law;
+use super::solids::{Arm, Field, Masses, SAME_TOLERANCE, Solid};
+use super::surface::Surface;
 use crate::geometry::{PairKind, weighted};
 
 /// Largest number of passes of friction between surfaces that the contact force keeps apart.
@@ -29,15 +30,6 @@ const RESTORED_SHARE: f64 = 0.1;
 
 /// Number of most recent contacts of two bodies among which one at the same point is searched for.
 const SEARCHED_CONTACTS: usize = 32;
-
-/// Masses on which impulses act.
-#[derive(Clone, Copy)]
-pub(super) struct Masses<'a> {
-    /// Inverse mass of each vertex (1/kg).
-    pub inverse: &'a [f64],
-    /// Rigid bodies.
-    pub solids: &'a [Solid],
-}
 
 /// Contact of a pair: the weights of its closest points, the normal from the second primitive to
 /// the first, and the sum of the weighted inverse masses (1/kg).
@@ -286,7 +278,15 @@ pub(super) fn apply_friction(
         (contact.inverse_mass > 0.0).then_some((contact, law.skin.friction * force * h))
     };
     let mut pressed = Pressed::default();
-    candidates.each(0.0, find, |(contact, most)| pressed.add(contact, most));
+    let ended = Linear {
+        x: motion.ends(),
+        moves: None,
+        rounding: surface.rounding(),
+    };
+    let reach = |pair: &Candidate| Some(surface.reach(pair.kind, &pair.points));
+    candidates.each(0.0, &ended, reach, find, |(contact, most)| {
+        pressed.add(contact, most);
+    });
     if pressed.contacts.is_empty() {
         return false;
     }
