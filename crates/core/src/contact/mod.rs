@@ -31,6 +31,7 @@ mod listing;
 mod met;
 mod motion;
 mod obstacle;
+mod passes;
 mod rebound;
 mod repulsion;
 mod resolve;
