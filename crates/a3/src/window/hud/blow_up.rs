@@ -4,7 +4,7 @@ use a3_core::{BlowUp, Cause, Control};
 use egui::Ui;
 
 use super::style::{ALARM, text};
-use super::words::digits;
+use super::words::{digits, seconds};
 use crate::window::session::Pane;
 
 /// Writes when the run blew up, which limit the step exceeded, and which step would have been
@@ -15,25 +15,38 @@ pub fn explain(ui: &mut Ui, pane: &Pane, blow_up: &BlowUp) {
     let same = method == pane.simulation.method().title;
     let limit = pane.limit.limit().map(|limit| limit.step);
     ui.label(text(match (blow_up.control, pane.limit.would_hold()) {
-        _ if blow_up.cause == Cause::ReadsVelocity => format!("{method} cannot integrate forces that depend on velocity."),
+        _ if blow_up.cause == Cause::ReadsVelocity => {
+            format!("{method} cannot integrate forces that depend on velocity.")
+        }
         _ if no_step_is_stable(blow_up) => "A shorter step does not help.".into(),
-        (Control::Tolerance(tolerance), _) if matches!(blow_up.cause, Cause::StepTooSmall { .. }) => {
-            format!("{method} found no step that meets a tolerance of {tolerance:e}. Try a larger one.")
+        (Control::Tolerance(tolerance), _)
+            if matches!(blow_up.cause, Cause::StepTooSmall { .. }) =>
+        {
+            format!(
+                "{method} found no step that meets a tolerance of {tolerance:e}. Try a larger one."
+            )
         }
         (Control::Tolerance(tolerance), _) => {
             format!("A tolerance of {tolerance:e} was too large for {method}.")
         }
         (Control::Step(step), Some(would_hold)) if same => {
-            let past = limit.filter(|limit| step > *limit).map(|limit| {
-                format!(": past its limit here of {} ms", digits(1e3 * limit))
-            });
+            let past = limit
+                .filter(|limit| step > *limit)
+                .map(|limit| format!(": past its limit here of {} ms", digits(1e3 * limit)));
             let past = past.unwrap_or_default();
-            format!("A step of {step} s was too long for {method}{past}. {would_hold} s would have held.")
+            format!(
+                "A step of {} s was too long for {method}{past}. {} s would have held.",
+                seconds(step),
+                seconds(would_hold)
+            )
         }
         (Control::Step(step), None) if same => format!(
-            "A step of {step} s was too long for {method}, and no shorter one was found to hold."
+            "A step of {} s was too long for {method}, and no shorter one was found to hold.",
+            seconds(step)
         ),
-        (Control::Step(step), _) => format!("A step of {step} s was too long for {method}."),
+        (Control::Step(step), _) => {
+            format!("A step of {} s was too long for {method}.", seconds(step))
+        }
     }));
 }
 
