@@ -65,7 +65,8 @@ pub fn advice(blow_up: &BlowUp) -> String {
     if is_pinched(blow_up) {
         return "Press , to go back, or x to let surfaces pass through one another, then r.".into();
     }
-    "Press < to go back, - for a shorter step, or a digit for another solver; or r to start again."
+    "Press , or drag the timeline to see how, - for a shorter step, or a digit for another solver; or r to \
+     start again."
         .into()
 }
 

@@ -5,6 +5,7 @@ use egui::{
     Align2, Area, Color32, Context, CursorIcon, FontId, Id, ScrollArea, Sense, Ui, pos2, vec2,
 };
 
+use super::list::pressed_at;
 use super::panel::Request;
 use super::style::{MARGIN, TEXT, sheet, title};
 use crate::window::session::{Action, Binding, GROUPS, Group, MOUSE, RunAction, WindowAction};
@@ -40,13 +41,7 @@ pub fn help(ctx: &Context, several: bool) -> Option<Request> {
             });
         });
     // A click beside the help closes it, except on the bar.
-    let pressed = ctx.input(|input| {
-        let pointer = input
-            .pointer
-            .latest_pos()
-            .filter(|_| input.pointer.any_pressed());
-        pointer.is_some_and(|at| ctx.content_rect().contains(at))
-    });
+    let pressed = pressed_at(ctx).is_some_and(|at| ctx.content_rect().contains(at));
     if pressed && !area.response.contains_pointer() {
         request = Some(Request::Act(Action::Run(RunAction::Help)));
     }

@@ -102,15 +102,19 @@ pub fn show(
             });
         });
     // A click beside the list closes it, except on the bar, which may open another.
-    let outside = ctx.input(|input| {
-        let pressed = input.pointer.any_pressed();
-        let pointer = input.pointer.latest_pos().filter(|_| pressed);
-        pointer.is_some_and(|at| ctx.content_rect().contains(at))
-    });
+    let outside = pressed_at(ctx).is_some_and(|at| ctx.content_rect().contains(at));
     if request.is_none() && outside && !area.response.contains_pointer() {
         request = Some(PanelRequest::CloseList);
     }
     request
+}
+
+/// Returns the place of the pointer, if a button was pressed just now.
+pub fn pressed_at(ctx: &Context) -> Option<Pos2> {
+    ctx.input(|input| {
+        let pressed = input.pointer.any_pressed();
+        input.pointer.latest_pos().filter(|_| pressed)
+    })
 }
 
 /// Draws an entry, and returns whether it was clicked. An entry of a scene has room for its
@@ -236,7 +240,7 @@ mod tests {
         let mut session = session(&["v", "0.005"]);
         session.act(RunAction::Scenes, 0);
         let ctx = crate::window::hud::style::context();
-        let middle = Pos2::new(320.0, 180.0);
+        let middle = Pos2::new(200.0, 180.0);
         for _ in 0..3 {
             assert_eq!(draw(&ctx, &session, middle, None), None);
         }
