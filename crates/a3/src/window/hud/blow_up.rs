@@ -76,7 +76,7 @@ mod tests {
 
     use crate::draw::show::{Manner, Show};
     use crate::window::hud::{pane, read};
-    use crate::window::session::{Pane, Readings};
+    use crate::window::session::{Pane, Readings, RunAction, session, times};
 
     #[test]
     fn a_blow_up_says_which_limit_was_passed() {
@@ -153,5 +153,56 @@ mod tests {
                 );
             }
         }
+    }
+
+    /// Each of the last steps before the blow-up is a moment, up to the last valid state.
+    #[test]
+    fn a_blow_up_can_be_seen_step_by_step() {
+        for (words, step) in [
+            (["r", "0.05", "--scene", "mit"], 0.05),
+            (["e", "0.002", "--scene", "mit"], 0.002),
+        ] {
+            let mut session = session(&words);
+            session.readings.in_window = true;
+            while session.runs.panes[0].alive() {
+                session.tick(1.0 / 60.0);
+            }
+            let end = session.runs.first().blow_up().unwrap().step;
+            assert!(session.readings.timeline.unwrap().blew_up);
+            let (mut energies, mut steps) = (vec![], vec![]);
+            let count = 40.min(end - 1);
+            for _ in 0..count {
+                session.act(RunAction::Scrub(-1), 0);
+                energies.push(session.runs.first().energy().unwrap().total());
+                steps.push(session.runs.first().steps());
+            }
+            // The newest moment is the state before the step that failed.
+            let expected: Vec<_> = (0..count).map(|k| end - 2 - k).collect();
+            assert_eq!(steps, expected, "{words:?}");
+            // The motion grows, and faster and faster.
+            let third = energies.len() / 3;
+            let [late, middle, early] = [0, third, 2 * third].map(|k| energies[k]);
+            assert!(late - middle > middle - early, "{energies:?}");
+            assert!(session.readings.timeline.unwrap().back < 45.0 * step);
+            // It blows up again at the same step.
+            session.act(RunAction::Pause, 0);
+            while session.runs.panes[0].alive() {
+                session.tick(1.0 / 60.0);
+            }
+            assert_eq!(session.runs.first().blow_up().unwrap().step, end);
+        }
+    }
+
+    #[test]
+    fn in_a_comparison_all_runs_go_back_to_the_steps_before_a_blow_up() {
+        let mut session = session(&["compare", "e:0.002", "r:0.01", "--scene", "mit"]);
+        session.readings.in_window = true;
+        while session.runs.panes[0].alive() {
+            session.tick(1.0 / 60.0);
+        }
+        session.act(RunAction::Scrub(-10), 0);
+        let times = times(&session);
+        assert!(session.runs.panes[0].alive());
+        assert!((times[0] - times[1]).abs() < 0.0101, "{times:?}");
     }
 }
