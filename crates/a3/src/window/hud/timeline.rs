@@ -4,6 +4,7 @@ use egui::{Align2, Color32, CursorIcon, FontId, Id, Rect, Sense, Stroke, Ui, pos
 
 use super::panel::PanelRequest;
 use super::style::{ALARM, FAINT, PAPER, TEXT};
+use super::words::digits;
 use crate::window::session::TimelinePosition;
 
 /// Colour of the track up to the chosen moment.
@@ -41,7 +42,7 @@ pub fn show(ui: &Ui, room: Rect, position: &TimelinePosition) -> Option<PanelReq
         painter.text(place, align, words, FontId::proportional(12.0), color);
     };
     if position.share < 1.0 {
-        let back = format!("{:.2} s back", position.back);
+        let back = format!("{} s back", digits(position.back));
         say(room.left(), Align2::LEFT_TOP, back, TEXT);
     }
     if room.width() > 150.0 {
