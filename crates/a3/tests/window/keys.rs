@@ -113,7 +113,7 @@ fn pausing_the_camera_and_help() {
         (app.number("steps")? == steps + 1.0).then_some(())
     });
 
-    // The surface is red, the wires are not.
+    // The surface is red, the wires are not; the button that films is, a little.
     assert!(
         shaded.count(is_red) > 20_000,
         "{} red pixels",
@@ -122,7 +122,7 @@ fn pausing_the_camera_and_help() {
     app.press_for("w", "style", "Wireframe");
     let wires = app.still_screen();
     assert!(
-        wires.count(is_red) < 100,
+        wires.count(is_red) < 400,
         "{} red pixels",
         wires.count(is_red)
     );

@@ -193,10 +193,8 @@ impl Mouse {
         self.pointer.inside = true;
         let under = screen.pane_at(session, position);
         session.panel.pane = under.unwrap_or(session.panel.pane);
-        if session.panel.open {
-            // The panel highlights the row under the pointer.
-            screen.redraw();
-        }
+        // Panel, bar, lists and help highlight what is under the pointer, and follow its drags.
+        screen.redraw();
         let tile = screen.tile(session, self.pane);
         // Do not move the camera until the pointer is too far for a click.
         self.pointer.update_click(position, screen.scale());
@@ -211,9 +209,8 @@ impl Mouse {
             Drag::Orbit => camera.orbit(-ORBIT_ANGLE * dx * aspect, ORBIT_ANGLE * dy),
             Drag::Pan => camera.pan(-dx * aspect, dy),
             Drag::Select { .. } => self.show_selection(session, screen),
-            Drag::Pull(_) | Drag::None => return,
+            Drag::Pull(_) | Drag::None => {}
         }
-        screen.redraw();
     }
 
     /// Zooms towards the pointer by the notches of the wheel.
