@@ -128,7 +128,7 @@ fn clicks_slow_motion_and_going_back() {
     let go = |x: &str| display.xdotool(&["mousemove", "--window", &app.window, x, "707"]);
     go("800");
     display.xdotool(&["mousedown", "1"]);
-    go("420");
+    go("190");
     until("long before", || {
         (app.number("time")? < 0.4 * now).then_some(())
     });
