@@ -1,0 +1,50 @@
+//! The plane below a scene, from which heights are read.
+
+use a3_core::contact::Shape;
+use a3_core::{Network, Scene, Vector3};
+use a3_render::Floor;
+use a3_scenes::{Presentation, Viewpoint};
+
+/// Depth of the ground below the point that the camera looks at, as a share of its distance from
+/// the camera. It is near the lower edge of the picture.
+const DEPTH: f64 = 0.36;
+/// Depth from which on obstacles, such as poles, stand on the ground.
+const STANDING_DEPTH: f64 = 0.2;
+
+/// Returns the ground of a scene that has gravity but no floor: below everything that is there at
+/// the start, and where tanks and poles stand. Nothing touches it.
+pub fn below(scene: &Scene, network: &Network, presentation: &Presentation) -> Option<Floor> {
+    network.gravity().filter(|g| g.y < 0.0)?;
+    let n = scene.model.particles();
+    let lowest = scene.state[n..2 * n]
+        .iter()
+        .copied()
+        .fold(f64::INFINITY, f64::min);
+    let foot = obstacles(network).fold(f64::INFINITY, f64::min);
+    let Viewpoint { eye, target } = presentation.viewpoint;
+    let below = |share: f64| target.y - share * (eye - target).norm();
+    let height = if !presentation.tanks.is_empty() || foot < below(STANDING_DEPTH) {
+        lowest.min(foot)
+    } else {
+        lowest.min(foot).min(below(DEPTH))
+    };
+    height.is_finite().then_some(Floor {
+        height: height as f32,
+        solid: false,
+    })
+}
+
+/// Returns the heights of the lowest points of the obstacles at the start (m).
+fn obstacles(network: &Network) -> impl Iterator<Item = f64> {
+    network.obstacles().iter().flat_map(|obstacle| {
+        let pose = obstacle.at(0.0);
+        let (points, below): (Vec<Vector3<f64>>, f64) = match &obstacle.shape {
+            Shape::Sphere { radius } => (vec![Vector3::zeros()], *radius),
+            Shape::Capsule { ends, radius } => (ends.to_vec(), *radius),
+            shape => (shape.simplices().points.clone(), 0.0),
+        };
+        points
+            .into_iter()
+            .map(move |point| pose.of(point).position.y - below)
+    })
+}
