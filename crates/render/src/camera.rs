@@ -29,6 +29,9 @@ pub struct Camera {
     parallel: bool,
     /// Unit of length of the scene (m).
     unit: f32,
+    /// Left, top, width and height of the part of the picture in whose middle the target is, as
+    /// shares of the picture.
+    focus: [f32; 4],
 }
 
 impl Camera {
@@ -52,6 +55,7 @@ impl Camera {
             } else {
                 10.0f32.powf(distance.log10().floor())
             },
+            focus: [0.0, 0.0, 1.0, 1.0],
         }
     }
 
@@ -60,6 +64,19 @@ impl Camera {
     #[must_use]
     pub fn unit(&self) -> f32 {
         self.unit
+    }
+
+    /// Chooses the part of the picture that shows what a whole picture would: its left, top, width
+    /// and height, as shares of the picture. The rest of the picture shows what is around.
+    ///
+    /// # Panics
+    /// Panics if the width or the height is not above 0.
+    pub fn set_focus(&mut self, focus: [f32; 4]) {
+        assert!(
+            focus[2] > 0.0 && focus[3] > 0.0,
+            "an empty focus: {focus:?}"
+        );
+        self.focus = focus;
     }
 
     /// Moves the target, unless the new one is too far away.
@@ -100,7 +117,7 @@ impl Camera {
 
     /// Moves eye and target parallel to the picture, by fractions of its height.
     pub fn pan(&mut self, right: f32, up: f32) {
-        let height = 2.0 * self.distance * (0.5 * FIELD_OF_VIEW).tan();
+        let height = 2.0 * self.distance * (0.5 * FIELD_OF_VIEW).tan() / self.focus[3];
         let (x, y, _) = self.axes();
         self.aim(self.target + (x * right + y * up) * height);
     }
@@ -174,6 +191,16 @@ impl Camera {
             0.0, 0.0, 0.5, 0.5,
             0.0, 0.0, 0.0, 1.0,
         );
+        let [left, top, width, height] = self.focus;
+        let aspect = aspect * width / height;
+        let (right, up) = (2.0 * left + width - 1.0, 1.0 - 2.0 * top - height);
+        #[rustfmt::skip]
+        let focus = Matrix4::new(
+            width, 0.0, 0.0, right,
+            0.0, height, 0.0, up,
+            0.0, 0.0, 1.0, 0.0,
+            0.0, 0.0, 0.0, 1.0,
+        );
         let fovy = Self::field_of_view(aspect);
         let projection = if self.parallel {
             let half = self.distance * (0.5 * fovy).tan();
@@ -186,7 +213,8 @@ impl Camera {
             let far = 20.0 * self.distance + 100.0 * self.unit;
             Perspective3::new(aspect, fovy, near, far).to_homogeneous()
         };
-        half_depth
+        focus
+            * half_depth
             * projection
             * Isometry3::look_at_rh(&self.eye(), &self.target, &Vector3::y()).to_homogeneous()
     }
@@ -226,6 +254,9 @@ impl Camera {
         } else {
             distance
         };
+        let [left, top, width, height] = self.focus;
+        let at = [(at[0] - left) / width, (at[1] - top) / height];
+        let aspect = aspect * width / height;
         let half = depth * (0.5 * Self::field_of_view(aspect)).tan();
         let (x, y, z) = self.axes();
         let across = x * ((2.0 * at[0] - 1.0) * half * aspect) + y * ((1.0 - 2.0 * at[1]) * half);
@@ -301,6 +332,35 @@ mod tests {
                 most = most.max((u - 0.5).abs()).max((v - 0.5).abs());
             }
             assert!((0.42..0.5).contains(&most), "{most}");
+        }
+    }
+
+    /// The focus shows what a picture of its size would, and places in it are found again.
+    #[test]
+    fn the_focus_is_a_picture_in_the_picture() {
+        for aspect in [0.5, 1.7] {
+            for parallel in [false, true] {
+                let mut camera = Camera::look_at([3.0, 2.0, 5.0], [0.1, 1.0, -0.2]);
+                camera.set_parallel(parallel);
+                let whole = camera;
+                let [left, top, width, height] = [0.25, 0.1, 0.6, 0.8];
+                camera.set_focus([left, top, width, height]);
+                for point in [[0.1, 1.0, -0.2], [1.0, 2.0, 0.5], [-0.4, 0.3, -1.0]] {
+                    let (part, _) = whole.project(point, aspect * width / height).unwrap();
+                    let (at, depth) = camera.project(point, aspect).unwrap();
+                    let expected = [left + width * part[0], top + height * part[1]];
+                    assert!((0..2).all(|k| (at[k] - expected[k]).abs() < 1e-5), "{at:?}");
+                    let back = Point3::from(camera.unproject(at, depth, aspect));
+                    assert!((back - Point3::from(point)).norm() < 1e-4, "{back}");
+                }
+                let ([_, before], _) = camera.project([0.1, 1.0, -0.2], aspect).unwrap();
+                let mut panned = camera;
+                panned.pan(0.0, 0.1);
+                let ([_, after], _) = panned.project([0.1, 1.0, -0.2], aspect).unwrap();
+                if aspect > 1.0 {
+                    assert!((after - before - 0.1).abs() < 0.01, "{before} {after}");
+                }
+            }
         }
     }
 
