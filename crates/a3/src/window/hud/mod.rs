@@ -2,6 +2,8 @@
 //! knobs and plots.
 
 mod blow_up;
+#[cfg(not(target_arch = "wasm32"))]
+mod caption;
 mod help;
 pub mod layout;
 mod legend;
@@ -17,6 +19,8 @@ mod text;
 mod timeline;
 mod words;
 
+#[cfg(not(target_arch = "wasm32"))]
+pub use caption::caption;
 pub use list::show as show_list;
 pub use overlay::Overlay;
 pub use picture::Studio;
