@@ -119,9 +119,32 @@ impl Session {
                 share.max(least)
             };
             let simulated = real * 0.5f64.powi(self.readings.slowness);
+            let left = self
+                .tuning
+                .defaults
+                .duration
+                .map(|end| end - self.runs.clock);
+            let left = left.filter(|left| *left > 0.0);
+            let simulated = left.map_or(simulated, |left| simulated.min(left));
             self.advance(simulated, budget(STEP_BUDGET), budget(REFERENCE_BUDGET));
+            self.pause_at_end(left.is_some());
         } else {
             self.runs.drop_due_steps();
+        }
+    }
+
+    /// Pauses at the end of the scene, if it has one and the run was before it.
+    fn pause_at_end(&mut self, was_before: bool) {
+        let end = self
+            .tuning
+            .defaults
+            .duration
+            .filter(|end| self.runs.clock >= *end);
+        if let Some(end) = end.filter(|_| was_before) {
+            self.readings.paused = true;
+            self.readings.say(format!(
+                "The scene ends at {end} s: Space goes on, r begins again."
+            ));
         }
     }
 
