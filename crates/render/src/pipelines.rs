@@ -10,7 +10,11 @@ use crate::gpu::DEPTH;
 use crate::picture::{Ball, Corner, Line, Solid, Spring};
 
 /// The source of the shaders.
-pub(crate) const SOURCE: &str = concat!(include_str!("scene.wgsl"), include_str!("lines.wgsl"));
+pub(crate) const SOURCE: &str = concat!(
+    include_str!("scene.wgsl"),
+    include_str!("floor.wgsl"),
+    include_str!("lines.wgsl")
+);
 
 /// The pipelines, one for each kind of object.
 pub(crate) struct Pipelines {

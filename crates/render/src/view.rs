@@ -15,7 +15,7 @@ const LIGHT: [f32; 3] = [-0.62, 0.78, 0.42];
 /// the eye from the target.
 const FLOOR_REACH: (f32, f32) = (14.0, 1.4);
 /// The height above the floor, in units of length, below which surfaces have a contact shadow, as
-/// in `scene.wgsl`.
+/// in `floor.wgsl`.
 const CONTACT_REACH: f32 = 0.22;
 /// The radii, in units of length, from which on balls are drawn with more triangles.
 const DETAIL_RADII: [f32; 2] = [0.03, 0.25];

@@ -48,3 +48,33 @@ fn obstacles(network: &Network) -> impl Iterator<Item = f64> {
             .map(move |point| pose.of(point).position.y - below)
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn height(scene: &str) -> Option<f32> {
+        let setup = a3_scenes::find(scene).unwrap().build(None).unwrap();
+        let network = setup.scene.model.network()?;
+        let ground = below(&setup.scene, network, &setup.presentation)?;
+        assert!(!ground.solid);
+        Some(ground.height)
+    }
+
+    #[test]
+    fn poles_and_tanks_stand_on_the_ground_and_all_else_is_above_it() {
+        let pole = height("flag").unwrap();
+        assert!((pole + 1.62).abs() < 1e-6, "{pole}");
+        assert!(height("mit").unwrap() < -4.0 && height("pendulum").unwrap() < -1.5);
+        // The lowest particles of the tank's walls.
+        let tank = height("dam-break").unwrap();
+        assert!((-0.3..=0.0).contains(&tank), "{tank}");
+    }
+
+    #[test]
+    fn weightless_scenes_have_no_ground() {
+        for scene in ["drop", "t-handle", "simple"] {
+            assert_eq!(height(scene), None, "{scene}");
+        }
+    }
+}

@@ -296,6 +296,23 @@ mod tests {
         }
     }
 
+    /// The edges of boxes are sharp: a corner has three sides, an edge has two. Cloth has no edges.
+    #[test]
+    fn boxes_are_split_along_their_edges() {
+        for (scene, [a, b, c]) in [("jelly", [7, 7, 7]), ("cantilever", [7, 3, 3])] {
+            let (simulation, presentation) = run(scene);
+            let Topology { splits, .. } = topology(&presentation.surface, &simulation);
+            let along_edges = 4 * (a + b + c - 6);
+            assert_eq!(splits.len(), 3 * 8 + 2 * along_edges, "{scene}");
+        }
+        let (simulation, presentation) = run("cloth");
+        assert!(
+            topology(&presentation.surface, &simulation)
+                .splits
+                .is_empty()
+        );
+    }
+
     /// Two squares of two triangles beside a tetrahedron, and a particle that belongs to none.
     #[test]
     fn every_body_has_its_look() {

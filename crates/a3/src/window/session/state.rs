@@ -288,6 +288,17 @@ mod tests {
     }
 
     #[test]
+    fn a_scene_pauses_at_its_end_and_can_go_on() {
+        let mut session = session(&["v", "0.005", "--scene", "drop"]);
+        frames(&mut session, 1.5);
+        let time = |session: &Session| session.runs.first().time();
+        assert!(session.readings.paused && (time(&session) - 0.8).abs() < 1e-9);
+        session.act(RunAction::Pause, 0);
+        frames(&mut session, 0.5);
+        assert!(!session.readings.paused && time(&session) > 1.2);
+    }
+
+    #[test]
     fn a_long_step_waits_until_it_is_due() {
         let mut session = session(&["r", "0.5", "--scene", "simple"]);
         for _ in 0..65 {
