@@ -79,6 +79,15 @@ impl Camera {
         self.focus = focus;
     }
 
+    /// Whether another camera shows the same in its focus.
+    #[must_use]
+    pub fn shows_as(&self, other: &Self) -> bool {
+        Self {
+            focus: other.focus,
+            ..*self
+        } == *other
+    }
+
     /// Moves the target, unless the new one is too far away.
     fn aim(&mut self, target: Point3<f32>) {
         if target

@@ -188,7 +188,7 @@ fn finished(color: vec3<f32>, finish: vec3<f32>, n: vec3<f32>, world: vec3<f32>)
     let thin = 1.0 - max(dot(n, eye), 0.0);
     let through = 0.30 + 0.45 * thin * thin + 0.35 * max(dot(-lamp, eye), 0.0) + 0.2 * max(-dot(n, lamp), 0.0);
     let own = mix(1.0, 0.6, finish.z) * color;
-    let inner = finish.z * (through * color + 0.5 * mirrored_sky(n, eye));
+    let inner = finish.z * (through * color + 0.25 * mirrored_sky(n, eye));
     return lit(own, n, world, finish.x, finish.y) + inner;
 }
 

@@ -12,6 +12,7 @@ fn the_focus_is_a_picture_in_the_picture() {
             let whole = camera;
             let [left, top, width, height] = [0.25, 0.1, 0.6, 0.8];
             camera.set_focus([left, top, width, height]);
+            assert!(whole != camera && whole.shows_as(&camera));
             for point in [[0.1, 1.0, -0.2], [1.0, 2.0, 0.5], [-0.4, 0.3, -1.0]] {
                 let (part, _) = whole.project(point, aspect * width / height).unwrap();
                 let (at, depth) = camera.project(point, aspect).unwrap();
@@ -26,6 +27,7 @@ fn the_focus_is_a_picture_in_the_picture() {
             let ([_, before], _) = camera.project([0.1, 1.0, -0.2], aspect).unwrap();
             let mut panned = camera;
             panned.pan(0.0, 0.1);
+            assert!(!whole.shows_as(&panned));
             let ([_, after], _) = panned.project([0.1, 1.0, -0.2], aspect).unwrap();
             if aspect > 1.0 {
                 assert!((after - before - 0.1).abs() < 0.01, "{before} {after}");

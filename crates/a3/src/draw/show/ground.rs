@@ -3,7 +3,7 @@
 use a3_core::contact::Shape;
 use a3_core::{Network, Scene, Vector3};
 use a3_render::Floor;
-use a3_scenes::{Presentation, Viewpoint};
+use a3_scenes::{Presentation, TANK_LAYERS, Viewpoint};
 
 /// Depth of the ground below the point that the camera looks at, as a share of its distance from
 /// the camera. It is near the lower edge of the picture.
@@ -23,7 +23,11 @@ pub fn below(scene: &Scene, network: &Network, presentation: &Presentation) -> O
     let foot = obstacles(network).fold(f64::INFINITY, f64::min);
     let Viewpoint { eye, target } = presentation.viewpoint;
     let below = |share: f64| target.y - share * (eye - target).norm();
-    let height = if !presentation.tanks.is_empty() || foot < below(STANDING_DEPTH) {
+    let spacing = network.fluid().map(|fluid| fluid.law().spacing);
+    let height = if let Some(spacing) = spacing.filter(|_| !presentation.tanks.is_empty()) {
+        // The ground is where the edges of the tank are drawn: inside its walls.
+        lowest + (TANK_LAYERS as f64 - 0.5) * spacing
+    } else if foot < below(STANDING_DEPTH) {
         lowest.min(foot)
     } else {
         lowest.min(foot).min(below(DEPTH))
@@ -66,9 +70,9 @@ mod tests {
         let pole = height("flag").unwrap();
         assert!((pole + 1.62).abs() < 1e-6, "{pole}");
         assert!(height("mit").unwrap() < -4.0 && height("pendulum").unwrap() < -1.5);
-        // The lowest particles of the tank's walls.
+        // The tank's inside begins at height 0.
         let tank = height("dam-break").unwrap();
-        assert!((-0.3..=0.0).contains(&tank), "{tank}");
+        assert!(tank.abs() < 1e-6, "{tank}");
     }
 
     #[test]
