@@ -273,7 +273,8 @@ pub fn picture(
     crate::window::begin::check_drawing(run, drawing, false)?;
     let mut show = Show::new(presentation.clone(), drawing.of(None));
     show.transparent = look.transparent;
-    let mut painter = Painter::new(&show, run, size)?;
+    let caption = crate::window::hud::caption(&show, size);
+    let mut painter = Painter::new(&show, run, size, caption)?;
     let pixels = painter.draw(&mut show, run)?;
     output::png(&pixels, size)
 }

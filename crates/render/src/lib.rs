@@ -24,7 +24,8 @@ pub use camera::Camera;
 pub use gpu::{Gpu, GpuError};
 pub use offscreen::{OFFSCREEN_FORMAT, Offscreen, TEXT_FORMAT};
 pub use picture::{
-    Ball, Corner, LOOKS, Line, Liquid, Picture, STEEL_LOOK, Solid, Spring, Style, Tile, Topology,
+    Ball, Corner, Floor, LOOKS, Line, Liquid, Picture, STEEL_LOOK, Solid, Spring, Style, Tile,
+    Topology,
 };
 pub use ramp::{ramp, shaded_by};
 pub use renderer::Renderer;

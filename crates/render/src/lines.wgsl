@@ -78,7 +78,7 @@ fn faded(a: vec3<f32>, b: vec3<f32>) -> f32 {
 struct LineShadow {
     @builtin(position) clip: vec4<f32>,
     @location(0) world: vec3<f32>,
-    @location(1) height: f32,
+    @location(1) opacity: f32,
     @location(2) across: vec2<f32>,
     @location(3) @interpolate(flat) half_width: f32,
 };
@@ -90,7 +90,7 @@ fn line_shadow(a: vec3<f32>, b: vec3<f32>, points_wide: f32, i: u32) -> LineShad
     var out: LineShadow;
     out.clip = drawn.clip;
     out.world = select(sa.world, sb.world, i >= 2u);
-    out.height = select(sa.height, sb.height, i >= 2u);
+    out.opacity = select(sa.opacity, sb.opacity, i >= 2u);
     out.across = drawn.across;
     out.half_width = drawn.half_width;
     return out;
@@ -117,9 +117,7 @@ fn line_shadow(a: vec3<f32>, b: vec3<f32>, points_wide: f32, i: u32) -> LineShad
 
 @fragment fn line_shadow_fragment(in: LineShadow) -> @location(0) vec4<f32> {
     let edge = clamp(in.half_width + 0.5 - abs(in.across.x / in.across.y), 0.0, 1.0) * step(0.01, in.half_width);
-    // The stencil counts drawn pixels: those outside must stay free.
-    if edge < 0.05 { discard; }
-    return shadow_color(in.world, in.height) * vec4(1.0, 1.0, 1.0, edge);
+    return shadow_color(in.world, in.clip.xy, edge * in.opacity);
 }
 
 @fragment fn line_fragment(in: Line) -> @location(0) vec4<f32> {

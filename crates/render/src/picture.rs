@@ -29,13 +29,25 @@ pub struct Topology {
     /// Number of particles.
     pub points: usize,
     /// Corners of the triangles of a surface, all with the same orientation. Empty without a
-    /// surface.
+    /// surface. A corner `points + k` is at the point `splits[k]`.
     pub triangles: Vec<[u32; 3]>,
+    /// Points at sharp edges, once for each group of triangles that are smooth among themselves.
+    pub splits: Vec<u32>,
     /// Ends of the wires.
     pub wires: Vec<[u32; 2]>,
     /// Springs that replace the wires in the style [`Style::Springs`]: later ones are drawn over
     /// earlier ones.
     pub springs: Vec<Spring>,
+}
+
+impl Topology {
+    /// The point at which a corner of a triangle is.
+    pub(crate) fn point_of(&self, corner: u32) -> u32 {
+        match (corner as usize).checked_sub(self.points) {
+            Some(split) => self.splits[split],
+            None => corner,
+        }
+    }
 }
 
 /// A spring between two particles.
@@ -150,6 +162,15 @@ pub struct Liquid<'a> {
     pub triangles: &'a [[u32; 3]],
 }
 
+/// Horizontal plane on which shadows fall.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Floor {
+    /// Height (m).
+    pub height: f32,
+    /// Whether it hides what is below it, seen from above. One that does not only marks a height.
+    pub solid: bool,
+}
+
 /// All data of one frame.
 #[derive(Clone, Copy, Debug)]
 pub struct Picture<'a> {
@@ -170,8 +191,8 @@ pub struct Picture<'a> {
     pub lines: &'a [Line],
     /// Surface of a liquid, which is drawn in all styles.
     pub liquid: Liquid<'a>,
-    /// Height of the floor (m), if there is one.
-    pub floor: Option<f32>,
+    /// The floor, if there is one.
+    pub floor: Option<Floor>,
     /// Whether floor, shadows and background are left out, so that the picture can be laid over
     /// another one.
     pub transparent: bool,

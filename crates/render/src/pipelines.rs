@@ -10,7 +10,11 @@ use crate::gpu::DEPTH;
 use crate::picture::{Ball, Corner, Line, Solid, Spring};
 
 /// The source of the shaders.
-pub(crate) const SOURCE: &str = concat!(include_str!("scene.wgsl"), include_str!("lines.wgsl"));
+pub(crate) const SOURCE: &str = concat!(
+    include_str!("scene.wgsl"),
+    include_str!("floor.wgsl"),
+    include_str!("lines.wgsl")
+);
 
 /// The pipelines, one for each kind of object.
 pub(crate) struct Pipelines {
@@ -25,6 +29,10 @@ pub(crate) struct Pipelines {
     pub(crate) ball_shadow: wgpu::RenderPipeline,
     pub(crate) solid_shadow: wgpu::RenderPipeline,
     pub(crate) liquid_shadow: wgpu::RenderPipeline,
+    pub(crate) mesh_contact: wgpu::RenderPipeline,
+    pub(crate) ball_contact: wgpu::RenderPipeline,
+    pub(crate) solid_contact: wgpu::RenderPipeline,
+    pub(crate) liquid_contact: wgpu::RenderPipeline,
     pub(crate) mesh: wgpu::RenderPipeline,
     pub(crate) ball: wgpu::RenderPipeline,
     pub(crate) solid: wgpu::RenderPipeline,
@@ -71,7 +79,9 @@ pub(crate) fn layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
 enum Layer {
     /// Drawn where nothing else is.
     Back,
-    /// Blended over the floor, once at most for each pixel.
+    /// Opaque, and marked in the stencil where it is seen.
+    Floor,
+    /// Drawn where the floor is seen, if it is darker than the picture so far.
     Shadow,
     /// Opaque.
     Solid,
@@ -98,7 +108,6 @@ impl Maker<'_> {
         buffers: &[wgpu::VertexBufferLayout],
     ) -> wgpu::RenderPipeline {
         let buffers: Vec<_> = buffers.iter().cloned().map(Some).collect();
-        let blended = matches!(layer, Layer::Shadow | Layer::Over);
         self.device
             .create_render_pipeline(&wgpu::RenderPipelineDescriptor {
                 label: Some(vertex),
@@ -124,7 +133,7 @@ impl Maker<'_> {
                     compilation_options: wgpu::PipelineCompilationOptions::default(),
                     targets: &[Some(wgpu::ColorTargetState {
                         format: self.color,
-                        blend: blended.then_some(wgpu::BlendState::ALPHA_BLENDING),
+                        blend: blend(layer),
                         write_mask: wgpu::ColorWrites::ALL,
                     })],
                 }),
@@ -200,12 +209,16 @@ impl Pipelines {
         );
         Self {
             background: pipeline("background", "background", list, Layer::Back, &[]),
-            floor: pipeline("floor", "floor", strip, Layer::Solid, &[]),
+            floor: pipeline("floor", "floor", strip, Layer::Floor, &[]),
             floor_below: pipeline("floor", "floor_below", strip, Layer::Over, &[]),
             mesh_shadow: pipeline("mesh_shadow", "shadow", list, Layer::Shadow, &[]),
             ball_shadow: pipeline("ball_shadow", "shadow", list, Layer::Shadow, &balls),
             solid_shadow: pipeline("solid_shadow", "shadow", list, Layer::Shadow, &solids),
             liquid_shadow: pipeline("liquid_shadow", "shadow", list, Layer::Shadow, &liquid),
+            mesh_contact: pipeline("mesh_contact", "shadow", list, Layer::Shadow, &[]),
+            ball_contact: pipeline("ball_contact", "shadow", list, Layer::Shadow, &balls),
+            solid_contact: pipeline("solid_contact", "shadow", list, Layer::Shadow, &solids),
+            liquid_contact: pipeline("liquid_contact", "shadow", list, Layer::Shadow, &liquid),
             wire_shadow: pipeline("wire_shadow", "line_shadow", strip, Layer::Shadow, &wires),
             spring_shadow: pipeline(
                 "spring_shadow",
@@ -239,29 +252,50 @@ fn stream(
     }
 }
 
+/// How a layer is combined with the picture so far, unless it replaces it.
+fn blend(layer: Layer) -> Option<wgpu::BlendState> {
+    let darkest = wgpu::BlendComponent {
+        src_factor: wgpu::BlendFactor::One,
+        dst_factor: wgpu::BlendFactor::One,
+        operation: wgpu::BlendOperation::Min,
+    };
+    match layer {
+        Layer::Back | Layer::Floor | Layer::Solid => None,
+        Layer::Shadow => Some(wgpu::BlendState {
+            color: darkest,
+            alpha: darkest,
+        }),
+        Layer::Over => Some(wgpu::BlendState::ALPHA_BLENDING),
+    }
+}
+
 /// Depth and stencil tests of a layer.
 fn depth_stencil(layer: Layer) -> wgpu::DepthStencilState {
-    let once = wgpu::StencilFaceState {
-        compare: CompareFunction::Equal,
+    let face = |compare, pass_op| wgpu::StencilFaceState {
+        compare,
         fail_op: StencilOperation::Keep,
         depth_fail_op: StencilOperation::Keep,
-        pass_op: StencilOperation::IncrementClamp,
+        pass_op,
     };
-    let stencil = if layer == Layer::Shadow {
-        wgpu::StencilState {
-            front: once,
-            back: once,
-            read_mask: 0xff,
-            write_mask: 0xff,
-        }
-    } else {
-        wgpu::StencilState::default()
+    let face = match layer {
+        Layer::Floor => face(CompareFunction::Always, StencilOperation::Replace),
+        Layer::Shadow => face(CompareFunction::Equal, StencilOperation::Keep),
+        Layer::Back | Layer::Solid | Layer::Over => wgpu::StencilFaceState::IGNORE,
     };
     wgpu::DepthStencilState {
         format: DEPTH,
-        depth_write_enabled: Some(layer == Layer::Solid),
-        depth_compare: Some(CompareFunction::LessEqual),
-        stencil,
+        depth_write_enabled: Some(matches!(layer, Layer::Floor | Layer::Solid)),
+        depth_compare: Some(if layer == Layer::Shadow {
+            CompareFunction::Always
+        } else {
+            CompareFunction::LessEqual
+        }),
+        stencil: wgpu::StencilState {
+            front: face,
+            back: face,
+            read_mask: 0xff,
+            write_mask: 0xff,
+        },
         bias: wgpu::DepthBiasState::default(),
     }
 }

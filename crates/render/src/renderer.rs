@@ -10,6 +10,9 @@ use crate::picture::{Picture, Style, Tile, Topology};
 use crate::pipelines::{Pipelines, SOURCE, layout};
 use crate::view::{Side, View};
 
+/// The mark in the stencil of pixels in which the floor is seen.
+const ON_FLOOR: u32 = 1;
+
 /// Draws [`Picture`]s of one scene.
 pub struct Renderer {
     pipelines: Pipelines,
@@ -102,23 +105,12 @@ impl Renderer {
 
     /// Draws one view into the current viewport.
     fn draw_view(&self, pass: &mut wgpu::RenderPass, view: &View) {
-        let (p, mesh, frame) = (&self.pipelines, &view.mesh, view.frame);
-        let shaded = frame.style == Style::Shaded;
+        let (p, frame) = (&self.pipelines, view.frame);
         pass.set_bind_group(0, &view.bind, &[]);
         // Opaque objects come first, so that no pixel is shaded twice, and blended ones last.
-        if shaded {
-            pass.set_pipeline(&p.mesh);
-            mesh.draw(pass);
-        }
-        if frame.liquid > 0 {
-            pass.set_pipeline(&p.liquid);
-            view.draw_liquid(pass);
-        }
-        pass.set_pipeline(&p.ball);
-        self.draw_balls(pass, view);
-        pass.set_pipeline(&p.solid);
-        self.draw_solids(pass, view);
+        self.draw_surfaces(pass, view, [&p.mesh, &p.liquid, &p.ball, &p.solid], true);
         if frame.floor == Some(Side::Above) {
+            pass.set_stencil_reference(ON_FLOOR);
             pass.set_pipeline(&p.floor);
             pass.draw(0..4, 0..1);
         }
@@ -127,26 +119,51 @@ impl Renderer {
             pass.draw(0..3, 0..1);
         }
         if frame.floor == Some(Side::Above) {
-            pass.set_stencil_reference(0);
-            if shaded {
-                pass.set_pipeline(&p.mesh_shadow);
-                mesh.draw(pass);
-            }
-            if frame.liquid > 0 {
-                pass.set_pipeline(&p.liquid_shadow);
-                view.draw_liquid(pass);
-            }
-            pass.set_pipeline(&p.ball_shadow);
-            self.draw_balls(pass, view);
-            pass.set_pipeline(&p.solid_shadow);
-            self.draw_solids(pass, view);
+            let cast = [
+                &p.mesh_shadow,
+                &p.liquid_shadow,
+                &p.ball_shadow,
+                &p.solid_shadow,
+            ];
+            self.draw_surfaces(pass, view, cast, false);
             draw_lines(pass, view, &p.wire_shadow, &p.spring_shadow, &p.line_shadow);
+            if frame.touches_floor {
+                let below = [
+                    &p.mesh_contact,
+                    &p.liquid_contact,
+                    &p.ball_contact,
+                    &p.solid_contact,
+                ];
+                self.draw_surfaces(pass, view, below, false);
+            }
         }
         draw_lines(pass, view, &p.wire, &p.spring, &p.line);
         if frame.floor == Some(Side::Below) {
             pass.set_pipeline(&p.floor_below);
             pass.draw(0..4, 0..1);
         }
+    }
+
+    /// Draws meshes, with sharp edges or as a whole, liquid, balls and solids with these pipelines.
+    fn draw_surfaces(
+        &self,
+        pass: &mut wgpu::RenderPass,
+        view: &View,
+        [mesh, liquid, ball, solid]: [&wgpu::RenderPipeline; 4],
+        sharp: bool,
+    ) {
+        if view.frame.style == Style::Shaded {
+            pass.set_pipeline(mesh);
+            view.mesh.draw(pass, sharp);
+        }
+        if view.frame.liquid > 0 {
+            pass.set_pipeline(liquid);
+            view.draw_liquid(pass);
+        }
+        pass.set_pipeline(ball);
+        self.draw_balls(pass, view);
+        pass.set_pipeline(solid);
+        self.draw_solids(pass, view);
     }
 
     fn draw_balls(&self, pass: &mut wgpu::RenderPass, view: &View) {

@@ -1,13 +1,13 @@
 // The shaders of all pipelines. They share one bind group: the camera and the light, and the
 // positions of the particles with the triangles that give them normals. Positions are sent once per
 // frame; the mesh, the wireframe and the shadow read the same copy. Lists are in the rows of
-// textures, because WebGL has no storage buffers.
+// textures, because WebGL has no storage buffers. floor.wgsl and lines.wgsl continue this file.
 
 struct Globals {
     view_proj: mat4x4<f32>,
     // Position of the eye, and unit of length (m).
     eye: vec4<f32>,
-    // The direction towards the light, in world space.
+    // The direction towards the light, in world space; 1 if the floor only marks a height.
     light: vec4<f32>,
     // Left, top, width and height of the picture in its target (px).
     tile: vec4<f32>,
@@ -98,88 +98,6 @@ fn dither(pixel: vec2<f32>) -> f32 {
     return vec4(background(pixel.xy) + dither(pixel.xy), 1.0);
 }
 
-// ---- Floor: a faint grid of units of length that fades into the background.
-
-struct Floor { @builtin(position) clip: vec4<f32>, @location(0) world: vec3<f32> };
-
-@vertex fn floor_vertex(@builtin(vertex_index) i: u32) -> Floor {
-    let corner = vec2(f32(i & 1u), f32(i >> 1u)) * 2.0 - 1.0;
-    let at = globals.floor.zw + corner * globals.floor.y;
-    var out: Floor;
-    out.world = vec3(at.x, globals.floor.x, at.y);
-    out.clip = globals.view_proj * vec4(out.world, 1.0);
-    return out;
-}
-
-// The visibility of the floor, from 1 at its centre to 0 at its edge.
-fn floor_fade(world: vec3<f32>) -> f32 {
-    return 1.0 - smoothstep(0.25, 1.0, length(world.xz - globals.floor.zw) / globals.floor.y);
-}
-
-// The visibility of the lines of the grid, from 0 between them to 1 on them.
-fn floor_grid(world: vec3<f32>) -> f32 {
-    let at = world.xz / globals.eye.w;
-    let width = max(fwidth(at), vec2(1e-5));
-    let line = 1.0 - min(abs(fract(at - 0.5) - 0.5) / width / globals.depth.z, vec2(1.0));
-    return max(line.x, line.y) * min(1.0, 0.2 / max(width.x, width.y));
-}
-
-// The floor is fainter at grazing angles.
-fn floor_grazing(world: vec3<f32>) -> f32 {
-    return smoothstep(0.0, 0.12, abs(normalize(globals.eye.xyz - world).y));
-}
-
-@fragment fn floor_fragment(in: Floor) -> @location(0) vec4<f32> {
-    let ground = mix(vec3(0.90, 0.895, 0.88), vec3(0.085, 0.092, 0.11), globals.depth.w);
-    let color = mix(ground, grid(), 0.35 * floor_grid(in.world));
-    let behind = background(in.clip.xy) + dither(in.clip.xy);
-    let fade = floor_fade(in.world) * floor_grazing(in.world);
-    return vec4(mix(behind, color, 0.75 * fade), 1.0);
-}
-
-// From below the floor is glass, through which everything on it is visible.
-@fragment fn floor_below_fragment(in: Floor) -> @location(0) vec4<f32> {
-    let opacity = 0.16 + 0.5 * floor_grid(in.world);
-    return vec4(grid() * 0.9, opacity * floor_fade(in.world) * floor_grazing(in.world));
-}
-
-// ---- Shadow: the projection of everything above the floor onto it, along the light. The stencil
-// lets each pixel be darkened once.
-
-struct Shadow { @builtin(position) clip: vec4<f32>, @location(0) world: vec3<f32>, @location(1) height: f32 };
-
-fn shadow(p: vec3<f32>) -> Shadow {
-    var out: Shadow;
-    out.height = max(p.y - globals.floor.x, 0.0);
-    out.world = p - globals.light.xyz * (out.height / globals.light.y);
-    out.world.y = globals.floor.x;
-    out.clip = globals.view_proj * vec4(out.world, 1.0);
-    // The shadow lies a little above the floor, so that the floor does not hide it.
-    out.clip.z -= 1e-4 * out.clip.w;
-    return out;
-}
-
-// Opacity at a height above the floor: the higher, the fainter.
-fn shadow_color(world: vec3<f32>, height: f32) -> vec4<f32> {
-    let color = mix(vec3(0.10, 0.11, 0.17), vec3(0.0), globals.depth.w);
-    let opacity = mix(0.34, 0.6, globals.depth.w);
-    return vec4(color, opacity * floor_fade(world) / (1.0 + 0.35 * height / globals.eye.w));
-}
-
-@vertex fn mesh_shadow_vertex(@builtin(vertex_index) i: u32) -> Shadow {
-    return shadow(point(i).xyz);
-}
-
-@vertex fn ball_shadow_vertex(
-    @location(0) unit: vec3<f32>, @location(1) ball: vec4<f32>, @location(2) color: vec4<f32>
-) -> Shadow {
-    return shadow(ball.xyz + ball.w * unit);
-}
-
-@fragment fn shadow_fragment(in: Shadow) -> @location(0) vec4<f32> {
-    return shadow_color(in.world, in.height);
-}
-
 // ---- Light: a lamp, the sky, and a faint light from the eye, so that nothing is black.
 
 fn lit(color: vec3<f32>, n: vec3<f32>, world: vec3<f32>, gloss: f32, sheen: f32) -> vec3<f32> {
@@ -223,15 +141,22 @@ const JELLY = vec3(0.55, 0.5, 1.0);
 const STEEL = vec3(0.5, 0.25, 0.0);
 const CHART = vec3(0.0, 0.1, 0.0);
 
-@vertex fn mesh_vertex(@builtin(vertex_index) i: u32) -> Mesh {
-    let here = point(i);
-    let p = here.xyz;
+// The normal of point i, not of unit length.
+fn mesh_normal(i: u32) -> vec3<f32> {
+    let p = point(i).xyz;
     let end = textureLoad(first, item(i + 1u), 0).x;
     var n = vec3(0.0);
     for (var k = textureLoad(first, item(i), 0).x; k < end; k++) {
         let others = textureLoad(around, item(k), 0).xy;
         n += cross(point(others.x).xyz - p, point(others.y).xyz - p);
     }
+    return n;
+}
+
+@vertex fn mesh_vertex(@builtin(vertex_index) i: u32) -> Mesh {
+    let here = point(i);
+    let p = here.xyz;
+    let n = mesh_normal(i);
     var out: Mesh;
     out.clip = globals.view_proj * vec4(p, 1.0);
     out.world = p;
@@ -246,6 +171,15 @@ const CHART = vec3(0.0, 0.1, 0.0);
     return out;
 }
 
+// The light of the sky that a smooth surface mirrors, by Schlick's approximation of Fresnel's
+// equations.
+fn mirrored_sky(n: vec3<f32>, eye: vec3<f32>) -> vec3<f32> {
+    let grazing = 1.0 - max(dot(n, eye), 0.0);
+    let squared = grazing * grazing;
+    let sky = mix(shade(), vec3(1.0), smoothstep(-0.3, 0.9, reflect(-eye, n).y)) * mix(1.0, 0.4, globals.depth.w);
+    return (0.04 + 0.96 * squared * squared * grazing) * sky;
+}
+
 // The light of a surface. Jelly also transmits light from the other side: more along the outline,
 // where it is thin, and where the lamp is opposite the eye.
 fn finished(color: vec3<f32>, finish: vec3<f32>, n: vec3<f32>, world: vec3<f32>) -> vec3<f32> {
@@ -253,8 +187,9 @@ fn finished(color: vec3<f32>, finish: vec3<f32>, n: vec3<f32>, world: vec3<f32>)
     let lamp = globals.light.xyz;
     let thin = 1.0 - max(dot(n, eye), 0.0);
     let through = 0.30 + 0.45 * thin * thin + 0.35 * max(dot(-lamp, eye), 0.0) + 0.2 * max(-dot(n, lamp), 0.0);
-    let own = mix(1.0, 0.75, finish.z) * color;
-    return lit(own, n, world, finish.x, finish.y) + finish.z * through * color;
+    let own = mix(1.0, 0.6, finish.z) * color;
+    let inner = finish.z * (through * color + 0.25 * mirrored_sky(n, eye));
+    return lit(own, n, world, finish.x, finish.y) + inner;
 }
 
 // The colour of a value, with a thin dark line at each tenth of the scale. `change` is its fwidth,
@@ -300,9 +235,28 @@ fn valued(value: f32, change: f32, color: vec3<f32>, finish: vec3<f32>, n: vec3<
     return shadow(corner.xyz);
 }
 
+@vertex fn liquid_contact_vertex(@location(0) corner: vec4<f32>, @location(1) normal: vec3<f32>) -> Shadow {
+    return contact(corner.xyz, normal);
+}
+
+// Water: the background seen through it, bent by its surface and the bluer the more of it there is,
+// the light that it scatters, and the sky and the lamp that it mirrors.
+fn water(n: vec3<f32>, world: vec3<f32>, pixel: vec2<f32>) -> vec3<f32> {
+    let eye = normalize(globals.eye.xyz - world);
+    let facing = max(dot(n, eye), 0.0);
+    let bend = (globals.view_proj * vec4(n, 0.0)).xy * vec2(-0.12, 0.12) * globals.tile.w;
+    let through = background(pixel + bend) * mix(vec3(0.30, 0.66, 0.82), vec3(0.02, 0.25, 0.44), facing);
+    let scattered = WATER * (0.1 + 0.45 * max(dot(n, globals.light.xyz), 0.0));
+    let spark = pow(max(dot(n, normalize(globals.light.xyz + eye)), 0.0), 90.0);
+    return through + scattered + mirrored_sky(n, eye) + vec3(0.9 * spark);
+}
+
 @fragment fn liquid_fragment(in: Ball) -> @location(0) vec4<f32> {
     let n = in.normal / max(length(in.normal), 1e-20);
-    return valued(ball_value(in.value), fwidth(length(in.value.xyz)), in.color, JELLY, n, in.world);
+    let value = ball_value(in.value);
+    let change = fwidth(length(in.value.xyz));
+    if value >= 0.0 { return vec4(finished(banded(value, change), CHART, n, in.world), 1.0); }
+    return vec4(water(n, in.world, in.clip.xy), 1.0);
 }
 
 // ---- Balls: particles, pins and spherical obstacles.
@@ -379,4 +333,8 @@ fn solid_position(in: Solid) -> vec3<f32> {
 
 @vertex fn solid_shadow_vertex(in: Solid) -> Shadow {
     return shadow(solid_position(in));
+}
+
+@vertex fn solid_contact_vertex(in: Solid) -> Shadow {
+    return contact(solid_position(in), solid_normal(in));
 }

@@ -14,6 +14,9 @@ const LIGHT: [f32; 3] = [-0.62, 0.78, 0.42];
 /// The radius of the floor: its least value in units of length, and its ratio to the distance of
 /// the eye from the target.
 const FLOOR_REACH: (f32, f32) = (14.0, 1.4);
+/// The height above the floor, in units of length, below which surfaces have a contact shadow, as
+/// in `floor.wgsl`.
+const CONTACT_REACH: f32 = 0.22;
 /// The radii, in units of length, from which on balls are drawn with more triangles.
 const DETAIL_RADII: [f32; 2] = [0.03, 0.25];
 
@@ -56,6 +59,8 @@ pub(crate) struct Frame {
     pub(crate) tile: Tile,
     /// The side from which the floor is seen, if it is drawn.
     pub(crate) floor: Option<Side>,
+    /// Whether anything is near enough to the floor for a contact shadow.
+    pub(crate) touches_floor: bool,
     /// Whether the background is drawn.
     pub(crate) background: bool,
     /// The style that is drawn: wires if there is no surface.
@@ -79,7 +84,8 @@ impl View {
             BufferUsages::UNIFORM,
             size_of::<Globals>(),
         );
-        let points = List::new(device, "points", TextureFormat::Rgba32Float, mesh.points);
+        let places = mesh.points + mesh.splits.len();
+        let points = List::new(device, "points", TextureFormat::Rgba32Float, places);
         let lists = [&points, &mesh.first, &mesh.around];
         let lists = lists.map(|list| wgpu::BindingResource::TextureView(&list.view));
         let entries: Vec<_> = (0..)
@@ -109,7 +115,13 @@ impl View {
     /// Sends a picture to the GPU, to be drawn in this part of the target.
     pub(crate) fn prepare(&mut self, gpu: &Gpu, picture: &Picture, tile: Tile) {
         let queue = &gpu.queue;
-        self.points.write(gpu, picture.points);
+        if self.mesh.splits.is_empty() {
+            self.points.write(gpu, picture.points);
+        } else {
+            let splits = self.mesh.splits.iter().map(|i| picture.points[*i as usize]);
+            let places: Vec<_> = picture.points.iter().copied().chain(splits).collect();
+            self.points.write(gpu, &places);
+        }
         let mut balls = picture.balls.to_vec();
         balls.sort_by(|a, b| a.radius.total_cmp(&b.radius));
         self.balls.write(gpu, &balls);
@@ -124,16 +136,16 @@ impl View {
         queue.write_buffer(&self.globals, 0, bytemuck::bytes_of(&globals));
         self.frame = Frame {
             tile,
-            floor: picture
+            floor: picture.floor.filter(|_| !picture.transparent).map(|floor| {
+                if picture.camera.eye().y > floor.height {
+                    Side::Above
+                } else {
+                    Side::Below
+                }
+            }),
+            touches_floor: picture
                 .floor
-                .filter(|_| !picture.transparent)
-                .map(|height| {
-                    if picture.camera.eye().y > height {
-                        Side::Above
-                    } else {
-                        Side::Below
-                    }
-                }),
+                .is_some_and(|floor| lowest(picture) < floor.height + CONTACT_REACH * unit),
             background: !picture.transparent,
             style: match picture.style {
                 Style::Shaded if self.mesh.indices == 0 => Style::Wireframe,
@@ -161,10 +173,32 @@ impl View {
     }
 }
 
+/// The height of the lowest particle, ball or solid (m).
+fn lowest(picture: &Picture) -> f32 {
+    let points = picture.points.iter().map(|p| p[1]);
+    let balls = picture
+        .balls
+        .iter()
+        .map(|ball| ball.center[1] - ball.radius);
+    let solids = picture.solids.iter().map(|solid| {
+        let below: f32 = solid
+            .axes
+            .iter()
+            .map(|axis| (axis[1] * axis[3]).abs())
+            .sum();
+        solid.center[1] - solid.radius - below
+    });
+    points
+        .chain(balls)
+        .chain(solids)
+        .fold(f32::INFINITY, f32::min)
+}
+
 /// The uniforms for a picture in this part of the target.
 fn globals(picture: &Picture, tile: Tile) -> Globals {
     let eye = picture.camera.eye();
     let target = picture.camera.target();
+    let marks = f32::from(u8::from(picture.floor.is_some_and(|floor| !floor.solid)));
     let length = LIGHT.iter().map(|l| l * l).sum::<f32>().sqrt();
     let (near, far) = picture
         .points
@@ -177,10 +211,15 @@ fn globals(picture: &Picture, tile: Tile) -> Globals {
     Globals {
         view_projection: picture.camera.view_projection(tile.aspect()).into(),
         eye: [eye.x, eye.y, eye.z, picture.camera.unit()],
-        light: [LIGHT[0] / length, LIGHT[1] / length, LIGHT[2] / length, 0.0],
+        light: [
+            LIGHT[0] / length,
+            LIGHT[1] / length,
+            LIGHT[2] / length,
+            marks,
+        ],
         tile: [tile.x, tile.y, tile.width, tile.height].map(|side| side as f32),
         floor: [
-            picture.floor.unwrap_or(0.0),
+            picture.floor.map_or(0.0, |floor| floor.height),
             (FLOOR_REACH.0 * picture.camera.unit()).max(FLOOR_REACH.1 * (eye - target).norm()),
             target.x,
             target.z,

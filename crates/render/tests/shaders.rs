@@ -7,6 +7,7 @@ use naga::proc::BoundsCheckPolicies;
 const SOURCES: [&str; 2] = [
     concat!(
         include_str!("../src/scene.wgsl"),
+        include_str!("../src/floor.wgsl"),
         include_str!("../src/lines.wgsl")
     ),
     include_str!("../src/transfer.wgsl"),

@@ -73,7 +73,7 @@ pub struct Render {
     /// Simulated seconds before a film begins
     #[arg(long, value_name = "T", value_parser = beginning, allow_negative_numbers = true)]
     pub from: Option<f64>,
-    /// Leave out floor and background: a PNG gets opacity, a GIF transparent pixels
+    /// Leave out floor, background and legend: a PNG gets opacity, a GIF transparent pixels
     #[arg(long)]
     pub transparent: bool,
     /// Width and height in pixels

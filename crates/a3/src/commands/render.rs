@@ -7,7 +7,7 @@ use crate::draw::painter::Painter;
 use crate::draw::show::{self, Show};
 use crate::files::setup::Run;
 use crate::files::{film, output};
-use crate::window::begin;
+use crate::window::{begin, hud};
 
 /// Endings of pictures and films.
 const ENDINGS: &[&str] = &["png", "gif", "mp4"];
@@ -30,7 +30,8 @@ pub fn run(options: &Render) -> Result<(), Failure> {
     let film = film::begin(options, until)?;
     let mut show = Show::new(presentation, options.manner.of(options.springs_of));
     show.transparent = options.transparent;
-    let mut painter = Painter::new(&show, &simulation, size)?;
+    let caption = hud::caption(&show, size);
+    let mut painter = Painter::new(&show, &simulation, size, caption)?;
     if let Some(i) = options.springs_of {
         terminal::say(&show::list_springs_of(&simulation, i))?;
     }

@@ -1,13 +1,19 @@
 //! Pictures of one run, drawn without a window.
 
 use a3_core::Simulation;
-use a3_render::{Camera, Gpu, OFFSCREEN_FORMAT, Offscreen, Renderer};
+use a3_render::{Camera, Gpu, OFFSCREEN_FORMAT, Offscreen, Renderer, Tile};
+use wgpu::{CommandBuffer, CommandEncoder, TextureView};
 
 use crate::base::failure::Failure;
 use crate::draw::show::Show;
 
 /// Height of a picture (px) in which lines are drawn at one pixel per point.
 const UNSCALED_HEIGHT: f32 = 720.0;
+
+/// Draws text over a picture of a run, with these commands and into this view. Returns the commands
+/// to submit first.
+pub type Caption =
+    Box<dyn FnMut(&Show, &Gpu, &mut CommandEncoder, &TextureView) -> Vec<CommandBuffer>>;
 
 /// Draws pictures of a run, seen by the camera of its scene.
 pub struct Painter {
@@ -17,11 +23,17 @@ pub struct Painter {
     /// Number of broken springs when the topology was made.
     tears: usize,
     camera: Camera,
+    caption: Option<Caption>,
 }
 
 impl Painter {
-    /// Creates a painter for pictures of this run, of this size (px).
-    pub fn new(show: &Show, simulation: &Simulation, size: (u32, u32)) -> Result<Self, Failure> {
+    /// Creates a painter for pictures of this run, of this size (px), with a caption or without.
+    pub fn new(
+        show: &Show,
+        simulation: &Simulation,
+        size: (u32, u32),
+        caption: Option<Caption>,
+    ) -> Result<Self, Failure> {
         let gpu = pollster::block_on(Gpu::headless()).map_err(Failure::run)?;
         let offscreen = Offscreen::new(&gpu, size).map_err(Failure::usage)?;
         let samples = gpu.samples(OFFSCREEN_FORMAT);
@@ -30,6 +42,7 @@ impl Painter {
             renderer: Renderer::new(&gpu, OFFSCREEN_FORMAT, samples, &topology),
             tears: simulation.tears(),
             camera: show.camera(),
+            caption,
             offscreen,
             gpu,
         })
@@ -43,9 +56,15 @@ impl Painter {
             self.renderer.set_topology_of(&self.gpu, 0, &topology);
         }
         show.compose(simulation);
-        let picture = show.picture(self.camera, scale(self.offscreen.size()));
+        let size = self.offscreen.size();
+        let picture = (show.picture(self.camera, scale(size)), Tile::whole(size));
+        let (gpu, caption) = (&self.gpu, &mut self.caption);
         self.offscreen
-            .render(&self.gpu, &mut self.renderer, &picture)
+            .render_tiles(gpu, &mut self.renderer, &[picture], |encoder, view| {
+                caption
+                    .as_mut()
+                    .map_or(vec![], |caption| caption(show, gpu, encoder, view))
+            })
             .map_err(Failure::run)
     }
 }

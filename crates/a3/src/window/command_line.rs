@@ -126,7 +126,7 @@ fn recreates(words: &[String], session: &Session) -> bool {
     };
     let mut pairs = session.runs.panes.iter().zip(&made.runs.panes);
     panel::tuned(session).is_empty()
-        && session.view.camera == made.view.camera
+        && session.view.camera.shows_as(&made.view.camera)
         && pairs.all(|(now, made)| begins_alike(&now.simulation, &made.simulation))
 }
 

@@ -55,6 +55,38 @@ fn pictures_without_a_window() {
     assert!(text(&output.stderr).contains("99999x99999"));
 }
 
+/// The legend is a sheet in the lower left corner; a transparent picture has none.
+#[test]
+fn coloured_pictures_have_their_scale() {
+    let folder = tempfile::tempdir().unwrap();
+    let corner = |more: &[&str]| {
+        let words = ["render", "t", "0.01", "--until", "0.1", "--output", "x.png"];
+        let output = a3(folder.path(), &[&words, more].concat());
+        if gpu_is_missing(&output) {
+            return None;
+        }
+        assert!(output.status.success(), "{}", text(&output.stderr));
+        let picture = image::open(folder.path().join("x.png")).unwrap().to_rgba8();
+        let corner = image::imageops::crop_imm(&picture, 0, 620, 300, 100).to_image();
+        // The brightest colour of the scale is a yellow that nothing else has.
+        let is_end = |p: &image::Rgba<u8>| p.0[0] > 200 && p.0[1] > 190 && p.0[2] < 90;
+        let dark = |p: &image::Rgba<u8>| p.0[..3].iter().all(|c| *c < 120) && p.0[3] > 200;
+        let count =
+            |is: &dyn Fn(&image::Rgba<u8>) -> bool| corner.pixels().filter(|p| is(p)).count();
+        Some((count(&is_end), count(&dark)))
+    };
+    let Some(plain) = corner(&[]) else { return };
+    assert_eq!(plain, (0, 0));
+    let (yellow, _) = corner(&["--colour", "speed"]).unwrap();
+    assert!(yellow > 50, "{yellow} pixels");
+    let (yellow, words) = corner(&["--arrows", "velocity"]).unwrap();
+    assert!(yellow == 0 && words > 50, "{words} pixels");
+    assert_eq!(
+        corner(&["--colour", "speed", "--transparent"]),
+        Some((0, 0))
+    );
+}
+
 /// Solvers are compared in panes side by side, with their errors as text and the trails of their
 /// particles.
 #[test]

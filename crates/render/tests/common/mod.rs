@@ -117,7 +117,10 @@ impl Sheet {
                 corners: &self.liquid.0,
                 triangles: &self.liquid.1,
             },
-            floor: Some(0.0),
+            floor: Some(a3_render::Floor {
+                height: 0.0,
+                solid: true,
+            }),
             transparent: false,
             dark: self.dark,
         }

@@ -5,6 +5,8 @@ mod bodies;
 mod coil;
 mod colouring;
 mod colours;
+mod creases;
+mod ground;
 mod liquid;
 mod manner;
 mod obstacles;

@@ -3,13 +3,13 @@
 
 use std::sync::Arc;
 
-use a3_core::{Network, Simulation, Spring, SpringKind};
+use a3_core::{Network, Simulation, Spring, SpringKind, Vector3};
 use a3_render::{STEEL_LOOK, Spring as Drawn, Topology};
 use a3_scenes::{Presentation, Surface};
 
 use super::colours::INK;
 use super::springs::{KINDS, kind_look};
-use super::{bodies, obstacles};
+use super::{bodies, creases, obstacles};
 use crate::draw::surfaces::whole_triangles;
 
 /// Parts of a scene, which change only with the scene or when something tears.
@@ -124,7 +124,7 @@ pub fn topology(surface: &Surface, simulation: &Simulation) -> Topology {
             .filter(|s| s.kind == SpringKind::Structural && body(surface, s).is_some())
             .map(|s| [s.i as u32, s.j as u32])
             .collect(),
-        springs: vec![],
+        ..Topology::default()
     };
     let structural = topology.wires.len();
     add_edges(&mut topology, surface);
@@ -147,7 +147,43 @@ pub fn topology(surface: &Surface, simulation: &Simulation) -> Topology {
         topology.points += mesh.points().len();
     }
     add_springs(&mut topology, structural, surface, simulation);
+    let places = places_of_closed(surface, simulation, topology.points);
+    creases::split(&mut topology, &places);
     topology
+}
+
+/// Returns the places at rest (m) of the points of closed surfaces; `None` for other points.
+fn places_of_closed(
+    surface: &Surface,
+    simulation: &Simulation,
+    points: usize,
+) -> Vec<Option<Vector3<f64>>> {
+    let mut places = vec![None; points];
+    let (state, n) = (&simulation.scene().state, simulation.particles());
+    let mut start = 0;
+    for (look, &end) in looks(surface).iter().zip(&surface.bodies) {
+        if *look as usize >= STEEL_LOOK / 2 {
+            for (i, place) in (start..end).zip(&mut places[start..end]) {
+                *place = Some(Vector3::new(state[i], state[n + i], state[2 * n + i]));
+            }
+        }
+        start = end;
+    }
+    let network = simulation.model().network();
+    let bodies = network.into_iter().flat_map(bodies::meshes);
+    let mut next = n;
+    let obstacles = network.into_iter().flat_map(obstacles::meshes);
+    let obstacles = obstacles.map(|(mesh, _)| {
+        let first = next;
+        next += mesh.points().len();
+        (mesh, first)
+    });
+    for (mesh, first) in bodies.chain(obstacles) {
+        for (place, point) in places[first..].iter_mut().zip(mesh.points()) {
+            *place = Some(*point);
+        }
+    }
+    places
 }
 
 /// Adds the edges of the triangles of bodies that have no wires, such as solids.
@@ -258,6 +294,23 @@ mod tests {
                 "{scene}"
             );
         }
+    }
+
+    /// The edges of boxes are sharp: a corner has three sides, an edge has two. Cloth has no edges.
+    #[test]
+    fn boxes_are_split_along_their_edges() {
+        for (scene, [a, b, c]) in [("jelly", [7, 7, 7]), ("cantilever", [7, 3, 3])] {
+            let (simulation, presentation) = run(scene);
+            let Topology { splits, .. } = topology(&presentation.surface, &simulation);
+            let along_edges = 4 * (a + b + c - 6);
+            assert_eq!(splits.len(), 3 * 8 + 2 * along_edges, "{scene}");
+        }
+        let (simulation, presentation) = run("cloth");
+        assert!(
+            topology(&presentation.surface, &simulation)
+                .splits
+                .is_empty()
+        );
     }
 
     /// Two squares of two triangles beside a tetrahedron, and a particle that belongs to none.

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use a3_core::{Network, Simulation, SpringKind, Vector3};
-use a3_render::{Ball, Camera, Line, Picture, Solid, Style, Topology};
+use a3_render::{Ball, Camera, Floor, Line, Picture, Solid, Style, Topology};
 use a3_scenes::{Presentation, TANK_LAYERS};
 
 use super::arrows::Field;
@@ -17,7 +17,7 @@ use super::pull::pull;
 use super::springs::{KINDS, has_springs, kind_look, springs_of};
 use super::trail::Trail;
 use super::vectors::to_f32;
-use super::{bodies, obstacles, view, wires};
+use super::{bodies, ground, obstacles, view, wires};
 
 /// Largest number of springs or particles without a surface that are drawn as coils and balls. More
 /// of them are drawn as lines and small balls, because a coil has 170 lines.
@@ -54,7 +54,7 @@ pub struct Show {
     solids: Vec<Solid>,
     lines: Vec<Line>,
     liquid: Liquid,
-    floor: Option<f32>,
+    floor: Option<Floor>,
     /// Unit of length of the scene (m).
     unit: f32,
 }
@@ -190,7 +190,13 @@ impl Show {
         self.liquid = Liquid::of(simulation, self.style, &self.colouring);
         if let Some(network) = simulation.model().network() {
             let time = simulation.time();
-            self.floor = obstacles::draw(network, time, &mut self.balls, &mut self.solids);
+            let floor = obstacles::draw(network, time, &mut self.balls, &mut self.solids);
+            let solid = |height| Floor {
+                height,
+                solid: true,
+            };
+            let ground = || ground::below(simulation.scene(), network, &self.presentation);
+            self.floor = floor.map(solid).or_else(ground);
             obstacles::add_points(network, time, &mut self.points);
             self.lines.extend(obstacles::meridians(network, time));
             let (balls, solids) = (&mut self.balls, &mut self.solids);

@@ -27,6 +27,9 @@ impl App {
         let real = now.duration_since(self.last_tick).as_secs_f64();
         self.last_tick = now;
         let session = &mut self.session;
+        if let Some(graphics) = &self.screen.graphics {
+            session.view.camera.set_focus(graphics.focus(session));
+        }
         self.mouse.pull(session, &self.screen);
         session.tick(self.platform.films.time_to_advance(session, real));
         session.view.track_followed(&session.runs.panes);

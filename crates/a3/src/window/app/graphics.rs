@@ -108,6 +108,12 @@ impl Graphics {
         layout::tiles(session.runs.panes.len(), size, self.scale())
     }
 
+    /// Returns the part of each pane in which no text hides the scene, as shares of the pane.
+    pub fn focus(&self, session: &Session) -> [f32; 4] {
+        let tile = self.tiles(session)[0];
+        layout::focus(session.runs.panes.len(), layout::points(tile, self.scale()))
+    }
+
     /// Returns the number of pixels per point.
     pub fn scale(&self) -> f32 {
         self.window.scale_factor() as f32 * self.zoom

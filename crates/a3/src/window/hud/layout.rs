@@ -87,6 +87,52 @@ pub fn tiles(panes: usize, size: (u32, u32), scale: f32) -> Vec<Tile> {
         .collect()
 }
 
+/// Width and height of the readings of a single pane (points).
+const READINGS: [f32; 2] = [300.0, 235.0];
+/// Smallest width of the caption of one of several panes (points), and its share of the pane's
+/// width.
+const CAPTION_WIDTH: (f32, f32) = (210.0, 0.42);
+/// Height of the caption of one of several panes, and in a low pane (points).
+const CAPTION_HEIGHTS: [f32; 2] = [180.0, 76.0];
+/// Height of a pane below which its caption is low (points).
+const MIN_FULL_HEIGHT: f32 = 230.0;
+/// Share of the shorter side of a pane that its free part has at least.
+const MIN_FREE: f32 = 0.55;
+
+/// Returns the width and height of a part of a target (points), at `scale` pixels per point.
+pub fn points(tile: Tile, scale: f32) -> [f32; 2] {
+    [tile.width, tile.height].map(|side| side as f32 / scale)
+}
+
+/// Returns whether a pane of a height (points) has a low and wide caption.
+pub fn is_low(height: f32) -> bool {
+    height < MIN_FULL_HEIGHT
+}
+
+/// Returns the width of the caption of one of several panes, in a pane of a width (points).
+pub fn caption_width(width: f32) -> f32 {
+    (CAPTION_WIDTH.1 * width).max(CAPTION_WIDTH.0).min(width)
+}
+
+/// Returns the part of each of a number of panes of a size (points) in which no text hides the
+/// scene: left, top, width and height, as shares of the pane. It is beside the text or below it,
+/// whichever is larger, or the whole pane if neither has room.
+pub fn focus(panes: usize, [width, height]: [f32; 2]) -> [f32; 4] {
+    let [wide, high] = match panes {
+        1 => READINGS,
+        _ if is_low(height) => [width, CAPTION_HEIGHTS[1]],
+        _ => [caption_width(width), CAPTION_HEIGHTS[0]],
+    };
+    let (beside, below) = ((width - wide).min(height), width.min(height - high));
+    if beside.max(below) < MIN_FREE * width.min(height) {
+        [0.0, 0.0, 1.0, 1.0]
+    } else if beside >= below {
+        [wide / width, 0.0, 1.0 - wide / width, 1.0]
+    } else {
+        [0.0, high / height, 1.0, 1.0 - high / height]
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -116,6 +162,16 @@ mod tests {
             corners(4, (260, 860)),
             [(false, false), below, below, below]
         );
+    }
+
+    #[test]
+    fn the_scene_is_beside_the_text_or_below_it() {
+        let near = |a: [f32; 4], b: [f32; 4]| a.iter().zip(b).all(|(a, b)| (a - b).abs() < 0.01);
+        assert!(near(focus(1, [1200.0, 700.0]), [0.25, 0.0, 0.75, 1.0]));
+        assert!(near(focus(1, [500.0, 940.0]), [0.0, 0.25, 1.0, 0.75]));
+        assert!(near(focus(2, [640.0, 720.0]), [0.0, 0.25, 1.0, 0.75]));
+        assert!(near(focus(4, [1280.0, 400.0]), [0.42, 0.0, 0.58, 1.0]));
+        assert!(near(focus(1, [320.0, 240.0]), [0.0, 0.0, 1.0, 1.0]));
     }
 
     #[test]

@@ -4,6 +4,8 @@
 mod all;
 mod bar;
 mod blow_up;
+#[cfg(not(target_arch = "wasm32"))]
+mod caption;
 mod help;
 mod hint;
 pub mod layout;
@@ -22,6 +24,8 @@ mod timeline;
 mod words;
 
 pub use all::show_all;
+#[cfg(not(target_arch = "wasm32"))]
+pub use caption::caption;
 pub use overlay::Overlay;
 pub use picture::Studio;
 pub use words::digits;

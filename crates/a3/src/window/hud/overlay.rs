@@ -130,10 +130,11 @@ impl Overlay {
             input
         };
         // The first pass measures the layout; in the next ones the text fades in.
-        let mut output = self.lay_out(gpu, input(0.0), &mut contents);
-        for pass in 1..3 {
+        let start = self.context.input(|input| input.time);
+        let mut output = self.lay_out(gpu, input(start + 1.0), &mut contents);
+        for pass in 2..4 {
             output.textures_delta.free.drain().for_each(drop);
-            output = self.lay_out(gpu, input(f64::from(pass)), &mut contents);
+            output = self.lay_out(gpu, input(start + f64::from(pass)), &mut contents);
         }
         self.paint(gpu, encoder, (view, wgpu::LoadOp::Load), size, output)
     }

@@ -12,9 +12,6 @@ use crate::window::session::{Pane, Readings};
 /// Distance of a sheet from the edge of its pane (points).
 const MARGIN: f32 = 8.0;
 
-/// Smallest height of a pane that has room for all lines (points).
-const MIN_FULL_HEIGHT: f32 = 230.0;
-
 /// Draws the bar, and a sheet in each pane unless the help is shown.
 pub fn show(ctx: &Context, panes: &[Pane], readings: &Readings) {
     let scale = ctx.pixels_per_point();
@@ -36,10 +33,10 @@ pub fn show(ctx: &Context, panes: &[Pane], readings: &Readings) {
     }
     for (k, (pane, rect)) in panes.iter().zip(rects).enumerate() {
         within(ctx, &format!("pane {k}"), rect, |ui| {
-            let low = rect.height() < MIN_FULL_HEIGHT;
+            let low = layout::is_low(rect.height());
             // A narrow sheet hides little of the picture, but in a low pane the text needs a wide
             // one.
-            let narrow = (0.42 * rect.width()).max(210.0).min(rect.width());
+            let narrow = layout::caption_width(rect.width());
             ui.set_max_width(if low { rect.width() } else { narrow });
             Frame::new()
                 .outer_margin(MARGIN)

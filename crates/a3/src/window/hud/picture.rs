@@ -58,10 +58,17 @@ impl Studio {
             pane.show.hovered = hovered;
         }
         let panes = &*panes;
+        let tiles = layout::tiles(panes.len(), size, scale);
+        let mut camera = camera;
+        camera.set_focus(if panes.len() == 1 {
+            [0.0, 0.0, 1.0, 1.0]
+        } else {
+            layout::focus(panes.len(), layout::points(tiles[0], scale))
+        });
         let pictures: Vec<_> = panes
             .iter()
             .map(|pane| pane.show.picture(camera, scale))
-            .zip(layout::tiles(panes.len(), size, scale))
+            .zip(tiles)
             .collect();
         let write = |encoder: &mut wgpu::CommandEncoder, view: &wgpu::TextureView| {
             if panes.len() == 1 {

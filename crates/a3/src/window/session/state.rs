@@ -130,9 +130,32 @@ impl Session {
                 share.max(least)
             };
             let simulated = real * 0.5f64.powi(self.readings.slowness);
+            let left = self
+                .tuning
+                .defaults
+                .duration
+                .map(|end| end - self.runs.clock);
+            let left = left.filter(|left| *left > 0.0);
+            let simulated = left.map_or(simulated, |left| simulated.min(left));
             self.advance(simulated, budget(STEP_BUDGET), budget(REFERENCE_BUDGET));
+            self.pause_at_end(left.is_some());
         } else {
             self.runs.drop_due_steps();
+        }
+    }
+
+    /// Pauses at the end of the scene, if it has one and the run was before it.
+    fn pause_at_end(&mut self, was_before: bool) {
+        let end = self
+            .tuning
+            .defaults
+            .duration
+            .filter(|end| self.runs.clock >= *end);
+        if let Some(end) = end.filter(|_| was_before) {
+            self.readings.paused = true;
+            self.readings.say(format!(
+                "The scene ends at {end} s: Space goes on, r begins again."
+            ));
         }
     }
 
@@ -322,6 +345,17 @@ mod tests {
         session.tick(300.0);
         assert!(session.runs.panes[0].simulation.time() <= MAX_FRAME_TIME + 1e-9);
         assert!(session.runs.panes[0].simulation.steps() <= 30);
+    }
+
+    #[test]
+    fn a_scene_pauses_at_its_end_and_can_go_on() {
+        let mut session = session(&["v", "0.005", "--scene", "drop"]);
+        frames(&mut session, 1.5);
+        let time = |session: &Session| session.runs.first().time();
+        assert!(session.readings.paused && (time(&session) - 0.8).abs() < 1e-9);
+        session.act(RunAction::Pause, 0);
+        frames(&mut session, 0.5);
+        assert!(!session.readings.paused && time(&session) > 1.2);
     }
 
     #[test]
