@@ -54,7 +54,7 @@ fn squares(squares: &[(f32, f32)]) -> (Topology, Vec<[f32; 4]>) {
 }
 
 /// Whether a pixel is of cloth.
-fn is_red(pixel: &image::Rgba<u8>) -> bool {
+fn is_red(pixel: image::Rgba<u8>) -> bool {
     i32::from(pixel.0[0]) > i32::from(pixel.0[2]) + 60
 }
 
@@ -64,7 +64,7 @@ fn a_cloth_on_the_floor_is_seen() {
     let (topology, points) = squares(&[(0.0, 1.0)]);
     let lying = draw(&gpu, &topology, &points, &[], Some(FLOOR));
     let alone = draw(&gpu, &topology, &points, &[], None);
-    let red = |picture: &RgbaImage| picture.pixels().filter(|p| is_red(p)).count();
+    let red = |picture: &RgbaImage| picture.pixels().filter(|p| is_red(**p)).count();
     assert!(red(&alone) > 2000 && red(&lying) == red(&alone));
 }
 
@@ -115,7 +115,7 @@ fn the_ground_hides_nothing() {
     let red = |solid| {
         let floor = Floor { solid, ..FLOOR };
         let picture = draw(&gpu, &topology, &points, &[], Some(floor));
-        picture.pixels().filter(|p| is_red(p)).count()
+        picture.pixels().filter(|p| is_red(**p)).count()
     };
     assert_eq!(red(true), 0);
     assert!(red(false) > 500);

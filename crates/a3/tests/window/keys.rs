@@ -89,6 +89,30 @@ fn keys() {
     app.quit();
 }
 
+/// Esc closes the help, then asks; Esc or another key stays. Ctrl and a letter is no letter.
+fn escape_closes_and_asks(app: &App) {
+    app.press_for("h", "help", "true");
+    app.press_for("Escape", "help", "false");
+    assert_eq!(app.get("asks"), "false");
+    app.press_for("Escape", "asks", "true");
+    app.press_for("Escape", "asks", "false");
+    app.press_for("Escape", "asks", "true");
+    app.press_for("w", "style", "Wireframe");
+    app.expect("asks", "false");
+    for key in ["ctrl+w", "ctrl+t", "ctrl+v", "alt+w"] {
+        app.press(key);
+    }
+    app.press_for("d", "wind", "true");
+    for (key, value) in [("style", "Wireframe"), ("scene", "cloth"), ("colour", "-")] {
+        assert_eq!(app.get(key), value);
+    }
+    app.press_for("d", "wind", "false");
+    for _ in 0..2 {
+        app.press("w");
+    }
+    app.expect("style", "Shaded");
+}
+
 #[test]
 fn pausing_the_camera_and_help() {
     let Some(display) = Display::open() else {
@@ -152,27 +176,7 @@ fn pausing_the_camera_and_help() {
         (display.screen().difference(&before) < 0.1).then_some(())
     });
 
-    // Esc closes the help, then asks; Esc or another key stays. Ctrl and a letter is no letter.
-    app.press_for("h", "help", "true");
-    app.press_for("Escape", "help", "false");
-    assert_eq!(app.get("asks"), "false");
-    app.press_for("Escape", "asks", "true");
-    app.press_for("Escape", "asks", "false");
-    app.press_for("Escape", "asks", "true");
-    app.press_for("w", "style", "Wireframe");
-    app.expect("asks", "false");
-    for key in ["ctrl+w", "ctrl+t", "ctrl+v", "alt+w"] {
-        app.press(key);
-    }
-    app.press_for("d", "wind", "true");
-    for (key, value) in [("style", "Wireframe"), ("scene", "cloth"), ("colour", "-")] {
-        assert_eq!(app.get(key), value);
-    }
-    app.press_for("d", "wind", "false");
-    for _ in 0..2 {
-        app.press("w");
-    }
-    app.expect("style", "Shaded");
+    escape_closes_and_asks(&app);
 
     // Wheel and drag move the camera, and c resets it.
     display.xdotool(&[

@@ -58,9 +58,9 @@ fn groups(count: usize, joined: impl Fn(usize, usize) -> bool) -> Vec<usize> {
         let mut open = vec![start];
         of[start] = next;
         while let Some(item) = open.pop() {
-            for other in 0..count {
-                if of[other] == usize::MAX && joined(item, other) {
-                    of[other] = next;
+            for (other, group) in of.iter_mut().enumerate() {
+                if *group == usize::MAX && joined(item, other) {
+                    *group = next;
                     open.push(other);
                 }
             }

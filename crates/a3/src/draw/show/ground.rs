@@ -26,7 +26,7 @@ pub fn below(scene: &Scene, network: &Network, presentation: &Presentation) -> O
     let spacing = network.fluid().map(|fluid| fluid.law().spacing);
     let height = if let Some(spacing) = spacing.filter(|_| !presentation.tanks.is_empty()) {
         // The ground is where the edges of the tank are drawn: inside its walls.
-        lowest + (TANK_LAYERS as f64 - 0.5) * spacing
+        lowest + (f64::from(TANK_LAYERS) - 0.5) * spacing
     } else if foot < below(STANDING_DEPTH) {
         lowest.min(foot)
     } else {

@@ -89,9 +89,15 @@ pub fn show(
                                 ui.vertical(|ui| {
                                     ui.set_width(side);
                                     for (k, entry) in column {
-                                        let picture = scenes.then(|| pictures.get(&entry.name));
+                                        let picture = pictures.get(&entry.name).copied();
                                         let dark = session.runs.panes[0].show.dark;
-                                        if row(ui, entry, *k == list.chosen, picture, dark) {
+                                        if row(
+                                            ui,
+                                            entry,
+                                            *k == list.chosen,
+                                            (scenes, picture),
+                                            dark,
+                                        ) {
                                             request = Some(PanelRequest::TakeEntry(entry.number));
                                         }
                                     }
@@ -117,16 +123,16 @@ pub fn pressed_at(ctx: &Context) -> Option<Pos2> {
     })
 }
 
-/// Draws an entry, and returns whether it was clicked. An entry of a scene has room for its
+/// Draws an entry, and returns whether it was clicked. One of the `scenes` has room for its
 /// `picture`, which may be missing.
 fn row(
     ui: &mut Ui,
     entry: &Entry,
     chosen: bool,
-    picture: Option<Option<&TextureId>>,
+    (scenes, picture): (bool, Option<TextureId>),
     dark: bool,
 ) -> bool {
-    let height = ENTRY_HEIGHTS[usize::from(picture.is_some())];
+    let height = ENTRY_HEIGHTS[usize::from(scenes)];
     let (rect, response) =
         ui.allocate_exact_size(vec2(ui.available_width(), height), Sense::click());
     // Scroll to the chosen entry only when it changes, so that the wheel can scroll.
@@ -141,8 +147,8 @@ fn row(
         ui.painter()
             .rect_filled(rect, CornerRadius::same(5), colour);
     }
-    if let Some(picture) = picture {
-        card(ui, rect, entry, picture.copied(), dark);
+    if scenes {
+        card(ui, rect, entry, picture, dark);
     } else {
         line(ui, rect, entry);
     }
@@ -228,7 +234,7 @@ mod tests {
         };
         let mut request = None;
         let mut output = ctx.run_ui(input, |ui| {
-            request = show(ui.ctx(), session, &HashMap::new()).or(request)
+            request = show(ui.ctx(), session, &HashMap::new()).or(request);
         });
         output.textures_delta.set.clear();
         output.textures_delta.free.clear();

@@ -30,6 +30,7 @@ pub struct Selection {
 
 /// Values that the text shows.
 #[derive(Clone, Debug, Default)]
+#[expect(clippy::struct_excessive_bools, reason = "each is shown by itself")]
 pub struct Readings {
     /// Whether the runs are paused.
     pub paused: bool,
