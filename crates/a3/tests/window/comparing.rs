@@ -25,19 +25,20 @@ fn errors_in_colour() {
     let folder = tempfile::tempdir().unwrap();
     let words = ["compare", "r:0.05", "r:0.02", "--scene", "simple"];
     let app = App::open(&display, folder.path(), &words);
-    let red = until("two red balls", || {
-        Some(display.screen().count(is_red)).filter(|red| *red > 100)
-    });
+    // The button that films is red, too.
+    let (left, top) = app.corner();
+    let reds = || {
+        let above_bar = top..top + 680;
+        let screen = display.screen();
+        screen.count_within(left..left + 1280, above_bar, is_red)
+    };
+    let red = until("two red balls", || Some(reds()).filter(|red| *red > 100));
     for colour in ["speed", "error"] {
         app.press_for("v", "colour", colour);
     }
-    until("no red ball", || {
-        (display.screen().count(is_red) < red / 4).then_some(())
-    });
+    until("no red ball", || (reds() < red / 4).then_some(()));
     app.press_for("v", "colour", "-");
-    until("red balls", || {
-        (display.screen().count(is_red) > red / 2).then_some(())
-    });
+    until("red balls", || (reds() > red / 2).then_some(()));
 }
 
 /// Each method has its pane and its error; keys and pulls act on all.

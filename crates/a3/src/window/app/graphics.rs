@@ -43,6 +43,8 @@ pub struct Graphics {
     egui_winit: egui_winit::State,
     /// Pictures of scenes, once their list was opened.
     thumbnails: Option<Thumbnails>,
+    /// Whether the last layout had the help, a list or a question over the picture.
+    covered: bool,
     /// Scale factor of text and panel, on top of the screen's own.
     zoom: f32,
     /// Whether the surface must be resized to the window.
@@ -90,6 +92,7 @@ impl Graphics {
             config,
             format,
             thumbnails: None,
+            covered: false,
             zoom: 1.0,
             stale: false,
             gpu,
@@ -357,6 +360,15 @@ impl Graphics {
             .get(&egui::ViewportId::ROOT)
             .map(|viewport| viewport.repaint_delay);
         let again = again.filter(|delay| *delay < Duration::from_mins(1));
+        // For egui, what has just been closed is under the pointer for one more layout.
+        let (readings, was_covered) = (&session.readings, self.covered);
+        self.covered = readings.help || readings.asks_to_quit || session.list.is_some();
+        let is_uncovered = was_covered && !self.covered;
+        let again = if is_uncovered {
+            Some(Duration::ZERO)
+        } else {
+            again
+        };
         let size = (self.config.width, self.config.height);
         self.overlay.dark = session.runs.panes[0].show.dark;
         let target = (view, below);

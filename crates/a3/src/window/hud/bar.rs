@@ -88,7 +88,8 @@ pub fn show(ctx: &Context, session: &Session) -> Option<Request> {
     let mut request = None;
     Area::new(Id::unique("controls"))
         .fixed_pos(rect.min)
-        .constrain_to(window)
+        // An area that was moved would grow to reach from there to the bar, for good.
+        .constrain(false)
         .fade_in(false)
         .show(ctx, |ui| {
             ui.allocate_rect(rect, Sense::click());

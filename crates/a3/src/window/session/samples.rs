@@ -93,6 +93,7 @@ impl Samples {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::window::session::{RunAction, compared, session, times};
     use a3_core::{Control, integrators};
 
     #[test]
@@ -123,5 +124,33 @@ mod tests {
         run.reset();
         kept.take(&run, run.energy(), None, computing);
         assert_eq!(kept.iter().count(), 1);
+    }
+
+    #[test]
+    fn a_diverged_run_leaves_no_line_across_the_picture() {
+        let mut session = session(&["e", "2", "--scene", "simple"]);
+        while session.runs.panes[0].simulation.blow_up().is_none() {
+            session.act(RunAction::Step, 0);
+        }
+        let radius = |p: &[f32; 3]| p[0].hypot(p[1]);
+        assert!(
+            session.runs.panes[0]
+                .show
+                .trail()
+                .all(|p| radius(p) <= 100.0)
+        );
+        let last = session.runs.panes[0].show.trail().last().copied();
+        session.act(RunAction::Step, 0);
+        assert_eq!(session.runs.panes[0].show.trail().last().copied(), last);
+    }
+
+    #[test]
+    fn a_diverged_pane_leaves_the_others_alone() {
+        let mut session = compared(&["e:0.05", "r:0.01", "--scene", "mit"], 2.0);
+        assert!(!session.runs.panes[0].alive() && session.runs.panes[0].error.is_none());
+        assert!(session.animated() && session.runs.panes[1].error.unwrap() < 1e-3);
+        assert!((times(&session)[1] - session.runs.clock).abs() < 0.011);
+        session.act(RunAction::Reset, 0);
+        assert!(session.runs.panes[0].alive());
     }
 }

@@ -3,10 +3,8 @@
 use egui::{Context, Event, PointerButton, Pos2, RawInput, Rect, Shape, pos2};
 
 use crate::window::hud::panel::request::{Request, apply};
-
-use crate::window::hud::layout::insets;
-use crate::window::hud::panel::view::{MARGIN, show, width};
-use crate::window::hud::{style, text};
+use crate::window::hud::panel::view::{MARGIN, picture_size, show, width};
+use crate::window::hud::style;
 use crate::window::session::Session;
 
 /// A window of egui without a display.
@@ -33,7 +31,7 @@ impl Screen {
     ) -> (egui::FullOutput, Option<Request>) {
         self.time += 0.05;
         let px = self.size.map(|side| side as u32);
-        let [right, _] = insets(session, px.into(), 1.0);
+        let right = (px[0] - picture_size(session, px.into(), 1.0).0) as f32;
         let input = RawInput {
             screen_rect: Some(Rect::from_min_size(Pos2::ZERO, self.size.into())),
             safe_area_insets: Some(egui::SafeAreaInsets(egui::epaint::MarginF32 {
@@ -46,7 +44,6 @@ impl Screen {
         };
         let mut request = None;
         let mut output = self.ctx.run_ui(input, |ui| {
-            text::show(ui.ctx(), &session.runs.panes, &session.readings);
             request = show(ui.ctx(), session).or(request);
         });
         output.textures_delta.set.clear();
