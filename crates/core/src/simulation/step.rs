@@ -21,6 +21,8 @@ use super::stepper::Stepper;
 use super::watch::Watch;
 use crate::control::Control;
 use crate::error::{Cause, Error};
+use crate::integrators::Work;
+use crate::network::{Least, has_ropes, settle, taut, tighten};
 use crate::scene::{Model, Scene, StepLimits};
 use crate::system::ParticleSystem;
 
@@ -91,10 +93,15 @@ impl Pipeline {
             if let Model::Network(network) = model {
                 network.list_strained();
             }
+            self.tighten(model, state, begin);
+            self.choose_taut(model, state, begin);
             self.watch.begin_step(model, begin, &state.y);
             let (cause, part) = match self.integrate_and_settle(model, state, begin, target)? {
                 Err(cause) => (Some(cause), Part::of(begin, whole.unwrap_or(0.0))),
-                Ok((part, settled)) => (self.end_part(model, state, part.end, &settled), part),
+                Ok((part, settled)) => {
+                    self.tighten(model, state, part.end);
+                    (self.end_part(model, state, part.end, &settled), part)
+                }
             };
             let is_last =
                 cause.is_some() || !self.locator.splits(&self.stepper) || target == Some(part.end);
@@ -294,6 +301,43 @@ impl Pipeline {
         let order = state.method.order;
         let end = End { order, t, y };
         self.watch.end_step(model, balance, end, &settled.met, lost)
+    }
+
+    /// Applies the impacts of ropes that tighten at time t (s), and accounts for the energy that is
+    /// lost in them.
+    fn tighten(&mut self, model: &mut Model, state: &mut RunState, t: f64) {
+        let Model::Network(network) = model else {
+            return;
+        };
+        if !has_ropes(network) || state.y.iter().any(|y| !y.is_finite()) {
+            return;
+        }
+        let depths = Depths::new(self.bounds.radius, self.limits, state.control);
+        let least = Least {
+            none: depths.none,
+            height: depths.none.max(depths.shallow),
+            time: state.control.step().unwrap_or(0.0),
+        };
+        let before = energy_of(network, t, &state.y).total();
+        if tighten(network, t, &mut state.y, least) {
+            let after = energy_of(network, t, &state.y).total();
+            state.balance.allow(after - before);
+            self.watch.forget_power();
+            self.stepper.forget();
+        }
+    }
+
+    /// Decides which ropes are taut from time t (s) on.
+    fn choose_taut(&mut self, model: &mut Model, state: &mut RunState, t: f64) {
+        let Model::Network(network) = model else {
+            return;
+        };
+        let before: Vec<_> = taut(network).collect();
+        let none = Depths::new(self.bounds.radius, self.limits, state.control).none;
+        state.work += Work::of(settle(network, t, &state.y, none));
+        if !taut(network).eq(before) {
+            self.stepper.forget();
+        }
     }
 
     /// Breaks springs that are stretched too far at the end of a step, or were located to be there,
