@@ -266,6 +266,7 @@ pub fn picture(
         springs: look.springs,
         orthographic: look.orthographic,
         dark: look.dark,
+        light: false,
         colour: named(look.colour, "colour", &Quantity::ALL, Quantity::name)?,
         arrows: named(look.arrows, "arrows", &Arrows::ALL, Arrows::name)?,
     };

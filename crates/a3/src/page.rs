@@ -49,7 +49,7 @@ fn begin() -> Result<(), Failure> {
     } else {
         Settings::read().map_err(|why| browser::log(&why)).ok()
     };
-    app::spawn(session, look.status, settings)
+    app::spawn(session, &look, settings)
 }
 
 /// Takes steps of the run that a command line describes, as fast as possible. Returns a hash

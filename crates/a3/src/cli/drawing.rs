@@ -46,9 +46,12 @@ pub struct Drawing {
     /// Draw in parallel projection instead of perspective
     #[arg(long)]
     pub orthographic: bool,
-    /// Draw light objects on a dark background
-    #[arg(long)]
+    /// Draw light objects on a dark background, for this run only
+    #[arg(long, overrides_with = "light")]
     pub dark: bool,
+    /// Draw on a light background, even if the panel of an earlier window chose the dark one
+    #[arg(long, overrides_with = "dark")]
+    pub light: bool,
     /// Colour each particle by a quantity
     #[arg(long, value_name = "QUANTITY", value_parser = quantity(), alias = "color")]
     pub colour: Option<Quantity>,

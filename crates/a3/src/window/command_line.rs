@@ -11,9 +11,10 @@ use crate::window::begin;
 use crate::window::hud::panel;
 use crate::window::session::{Session, looks, write_scene};
 
-/// Returns the command line that opens the present run and the picture of pane `at`. If options
-/// cannot express the state, writes a scene file. A comparison starts from its initial state,
-/// because its runs share no later one. Fails if that file cannot be written.
+/// Returns the command line that opens the present run and the picture of pane `at`, from the
+/// beginning. If options cannot express the run, writes a scene file, from whose state a single run
+/// continues. A comparison starts from its initial state, because its runs share no later one.
+/// Fails if that file cannot be written.
 pub fn of(session: &Session, at: usize) -> Result<String, Failure> {
     let mut words = arguments(session, at);
     if !recreates(&words, session) {
@@ -101,8 +102,8 @@ fn arguments_with_scene(session: &Session, at: usize, scene: &str) -> Vec<String
     words
 }
 
-/// Returns whether these arguments recreate the present state of a session, or the initial state of
-/// a comparison.
+/// Returns whether these arguments recreate the run of a session, or the initial state of a
+/// comparison. A run that no hand has touched is recreated by its beginning.
 fn recreates(words: &[String], session: &Session) -> bool {
     let program = ["a3".to_owned()];
     let Ok(options) = Cli::try_parse_from(program.iter().chain(words)) else {
@@ -116,7 +117,7 @@ fn recreates(words: &[String], session: &Session) -> bool {
         return false;
     };
     let begins_alike = |now: &Simulation, made: &Simulation| {
-        let begun = if session.runs.panes.len() == 1 {
+        let begun = if session.runs.panes.len() == 1 && session.runs.touched {
             Ok(now.moment())
         } else {
             initial_run(now).map(|run| run.moment())
@@ -174,6 +175,23 @@ mod tests {
             let made: std::collections::BTreeSet<_> = line.split(' ').skip(1).collect();
             assert_eq!(made, words.iter().copied().collect(), "{line}");
         }
+        // A run that no hand has touched starts again, and one that was pulled is in a file.
+        let mut later = session(&["verlet", "0.005", "--scene", "cloth"]);
+        frames(&mut later, 0.5);
+        let line = of(&later, 0).ok().unwrap();
+        assert_eq!(line, "a3 verlet 0.005 --scene cloth");
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("own.toml");
+        std::fs::write(&file, a3_scenes::find("cloth").unwrap().text).unwrap();
+        let mut pulled = session(&["verlet", "0.005", "--scene", file.to_str().unwrap()]);
+        assert!(pulled.runs.grab(210));
+        frames(&mut pulled, 0.1);
+        pulled.release();
+        let line = of(&pulled, 0).ok().unwrap();
+        assert!(line.contains("/a3-cloth-1.toml"), "{line}");
+        pulled.act(RunAction::Reset, 0);
+        let line = of(&pulled, 0).ok().unwrap();
+        assert!(line.ends_with("/own.toml"), "{line}");
         // A comparison starts from its initial state.
         let later = compared(&["e:0.05", "r:0.01", "--scene", "simple"], 0.5);
         let line = of(&later, 0).ok().unwrap();

@@ -43,7 +43,7 @@ fn open(session: Session, look: &Look, files: Vec<PathBuf>) -> Result<(), Failur
         // A file of another program or version is not overwritten.
         Settings::read().map_err(|why| terminal::warn(&why)).ok()
     };
-    match app::open(session, look.status, files, settings)? {
+    match app::open(session, look, files, settings)? {
         End::Closed => Ok(()),
         End::NoWindow(why, session) => headless::run(&why, *session),
     }

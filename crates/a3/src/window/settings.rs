@@ -35,6 +35,8 @@ pub struct Settings {
     pub dark: bool,
     /// Whether the panel is open.
     pub panel: bool,
+    /// Whether the user has pulled something, and needs no hint.
+    pub pulled: bool,
     /// Largest frame rate (1/s), or 0 for that of the screen.
     pub frame_limit: u32,
     /// The format of films.
@@ -52,6 +54,7 @@ impl Default for Settings {
             full_screen: false,
             dark: false,
             panel: false,
+            pulled: false,
             frame_limit: 0,
             film: Ending::default(),
             film_seconds: DEFAULT_FILM_SECONDS,

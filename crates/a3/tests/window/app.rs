@@ -200,6 +200,13 @@ impl<'d> App<'d> {
         fields[11].parse::<u64>().unwrap() + fields[12].parse::<u64>().unwrap()
     }
 
+    /// Quits as a user does: Esc asks, and Enter answers.
+    pub fn quit(self) {
+        self.press_for("Escape", "asks", "true");
+        self.press("Return");
+        assert!(self.exit().success());
+    }
+
     pub fn exit(mut self) -> ExitStatus {
         let status = until("the end", || self.child.try_wait().unwrap());
         let lines = self.lines.lock().unwrap();

@@ -8,6 +8,7 @@
 #![allow(missing_docs, reason = "a test")]
 
 mod app;
+mod bar;
 mod choosing;
 mod comparing;
 mod display;

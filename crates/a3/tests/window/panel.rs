@@ -57,15 +57,13 @@ fn tuning() {
     let file = folder.path().join("a3-cloth-1.toml");
     until("a scene file", || file.exists().then_some(()));
     app.press_for("Tab", "panel", "false");
-    app.press("Escape");
-    assert!(app.exit().success());
+    app.quit();
     let again = ["--scene", "a3-cloth-1.toml"];
     let app = App::open(&display, folder.path(), &again);
     for (key, value) in [("scene", "cloth"), ("solver", "rk4"), ("step", "0.01")] {
         assert_eq!(app.get(key), value);
     }
-    app.press("Escape");
-    assert!(app.exit().success());
+    app.quit();
 }
 
 /// Key k saves the run, and key l and the command line load it, with its tuning.
@@ -84,13 +82,11 @@ fn saving_and_loading() {
     app.press_for("plus", "step", "0.012");
     app.press_for("l", "swing", "true");
     app.expect("step", "0.01");
-    app.press("Escape");
-    assert!(app.exit().success());
+    app.quit();
     let again = ["--resume", "a3-cloth-1.checkpoint"];
     let app = App::open(&display, folder.path(), &again);
     for (key, value) in [("solver", "rk4"), ("step", "0.01"), ("swing", "true")] {
         assert_eq!(app.get(key), value);
     }
-    app.press("Escape");
-    assert!(app.exit().success());
+    app.quit();
 }

@@ -47,14 +47,25 @@ impl Block {
         }
     }
 
-    /// Sets the positions (m) and the velocities (m/s) of the points of a pair.
-    pub fn set(&mut self, lane: usize, points: [u32; 4], x: &[Vector3<f64>], v: &[Vector3<f64>]) {
+    /// Sets the positions (m) of the points of a pair, and their velocities (m/s) if they move.
+    pub fn set(
+        &mut self,
+        lane: usize,
+        points: [u32; 4],
+        x: &[Vector3<f64>],
+        v: Option<&[Vector3<f64>]>,
+    ) {
         let origin = x[points[0] as usize];
         for (k, i) in points.into_iter().enumerate() {
-            let (x, v) = (&x[i as usize], &v[i as usize]);
+            let x = &x[i as usize];
             for axis in 0..3 {
                 self.x[k][axis][lane] = x[axis] - origin[axis];
-                self.v[k][axis][lane] = v[axis];
+            }
+            if let Some(v) = v {
+                let v = &v[i as usize];
+                for axis in 0..3 {
+                    self.v[k][axis][lane] = v[axis];
+                }
             }
         }
     }
@@ -289,7 +300,7 @@ mod tests {
                 let points = |lane: usize| [0, 1, 2, 3].map(|k| (4 * lane + k) as u32);
                 let mut block = Block::new();
                 for lane in 0..LANES {
-                    block.set(lane, points(lane), &all, &speeds);
+                    block.set(lane, points(lane), &all, Some(&speeds));
                 }
                 block.bound(kind);
                 for lane in 0..LANES {

@@ -1,10 +1,34 @@
-//! Courses of vertices, and trees of the boxes around items on them.
+//! Courses of vertices, and trees of the boxes around primitives on them.
+//!
+//! The leaves of a tree are blocks of sixteen boxes, which are compared with another box at once,
+//! in SIMD vectors. Boxes are kept in single precision, a little larger than they have to be.
+
+#![expect(
+    clippy::inline_always,
+    reason = "what is inlined into pulp's dispatch is compiled for the vectors that it found, and nothing else"
+)]
 
 use nalgebra::Vector3;
+use pulp::{Arch, Simd, WithSimd};
 
-use super::items::Items;
 use super::surface::Surface;
-use crate::geometry::bvh::{Aabb, Bvh, least, most};
+use crate::geometry::bvh::{Aabb, Bvh};
+
+/// Number of boxes in a block, a multiple of the lengths of all SIMD vectors.
+const LANES: usize = 16;
+
+/// One bit for each box of a block.
+const BITS: [f32; LANES] = [
+    1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0, 128.0, 256.0, 512.0, 1024.0, 2048.0, 4096.0, 8192.0,
+    16384.0, 32768.0,
+];
+
+/// Largest magnitude of a coordinate of a box (m), whose square is a number. What is farther out is
+/// moved to there, which brings nothing apart.
+const FARTHEST: f64 = 1e18;
+
+/// Factor by which squared distances in single precision may be too large.
+const ROUNDING: f64 = 1.0 + 1e-6;
 
 /// Straight courses of all vertices, from which they may stray by half of the reach.
 pub(super) struct Courses<'a> {
@@ -14,129 +38,362 @@ pub(super) struct Courses<'a> {
     pub speeds: &'a [Vector3<f64>],
     /// Mean velocity (m/s).
     pub mean: Vector3<f64>,
+    /// Position that boxes are relative to (m).
+    pub origin: Vector3<f64>,
     /// Duration of the courses (s).
     pub horizon: f64,
     /// Gap below which pairs are listed (m).
     pub reach: f64,
 }
 
-/// Axis-aligned boxes at the beginning and at the end of the courses.
+impl Courses<'_> {
+    /// Box around the course of a vertex.
+    pub fn around(&self, surface: &Surface, i: usize) -> Bounds {
+        let begin = self.base[i] - self.origin;
+        let end = begin + (self.speeds[i] - self.mean) * self.horizon;
+        let radius = surface.radius(i as u32);
+        let (mut low, mut high) = ([[0.0; 3]; 2], [[0.0; 3]; 2]);
+        for (t, x) in [begin, end].into_iter().enumerate() {
+            for k in 0..3 {
+                low[t][k] = single(x[k] - radius).next_down();
+                high[t][k] = single(x[k] + radius).next_up();
+            }
+        }
+        Bounds { low, high }
+    }
+}
+
+fn single(x: f64) -> f32 {
+    x.clamp(-FARTHEST, FARTHEST) as f32
+}
+
+/// Axis-aligned boxes at the beginning and at the end of the courses (m).
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Bounds {
-    low: [[f64; 3]; 2],
-    high: [[f64; 3]; 2],
+    low: [[f32; 3]; 2],
+    high: [[f32; 3]; 2],
 }
 
 impl Bounds {
     fn with(mut self, other: &Self) -> Self {
         for t in 0..2 {
             for k in 0..3 {
-                self.low[t][k] = self.low[t][k].min(other.low[t][k]);
-                self.high[t][k] = self.high[t][k].max(other.high[t][k]);
+                self.low[t][k] = least(self.low[t][k], other.low[t][k]);
+                self.high[t][k] = most(self.high[t][k], other.high[t][k]);
             }
         }
         self
     }
 
-    /// Lower bound of the squared distance of contents of two boxes: along an axis, the gap between
-    /// points on straight courses is smallest at an end.
-    pub fn apart(&self, other: &Self) -> f64 {
-        let mut squared = 0.0;
-        for k in 0..3 {
-            let after = least(
-                other.low[0][k] - self.high[0][k],
-                other.low[1][k] - self.high[1][k],
-            );
-            let before = least(
-                self.low[0][k] - other.high[0][k],
-                self.low[1][k] - other.high[1][k],
-            );
-            let gap = most(0.0, most(after, before));
-            squared += gap * gap;
-        }
-        squared
+    /// Box around the boxes at both ends.
+    fn hull(&self) -> Aabb {
+        let ([a, b], [c, d]) = (self.low, self.high);
+        Aabb::around([a, b, c, d].map(|x| Vector3::from(x.map(f64::from))))
     }
 }
 
-/// Tree of the boxes of items, with the boxes of their vertices and edges.
+/// The smaller of two numbers, as one instruction.
+fn least(a: f32, b: f32) -> f32 {
+    if a < b { a } else { b }
+}
+
+/// The larger of two numbers, as one instruction.
+fn most(a: f32, b: f32) -> f32 {
+    if a > b { a } else { b }
+}
+
+/// Boxes of up to sixteen primitives.
+#[derive(Clone, Debug)]
+struct Block {
+    /// Lowest and highest coordinates (m): end of the courses, axis, box. Those of boxes that are
+    /// missing are infinite, so that nothing is near them.
+    low: [[[f32; LANES]; 3]; 2],
+    high: [[[f32; LANES]; 3]; 2],
+}
+
+impl Block {
+    fn new() -> Self {
+        Self {
+            low: [[[f32::INFINITY; LANES]; 3]; 2],
+            high: [[[f32::NEG_INFINITY; LANES]; 3]; 2],
+        }
+    }
+
+    #[inline(always)]
+    fn get(&self, lane: usize) -> Bounds {
+        let (mut low, mut high) = ([[0.0; 3]; 2], [[0.0; 3]; 2]);
+        for t in 0..2 {
+            for k in 0..3 {
+                low[t][k] = self.low[t][k][lane];
+                high[t][k] = self.high[t][k][lane];
+            }
+        }
+        Bounds { low, high }
+    }
+
+    fn set(&mut self, lane: usize, bounds: &Bounds) {
+        for t in 0..2 {
+            for k in 0..3 {
+                self.low[t][k][lane] = bounds.low[t][k];
+                self.high[t][k][lane] = bounds.high[t][k];
+            }
+        }
+    }
+
+    /// The box around all.
+    fn whole(&self) -> Bounds {
+        let mut whole = self.get(0);
+        for t in 0..2 {
+            for k in 0..3 {
+                for lane in 1..LANES {
+                    whole.low[t][k] = least(whole.low[t][k], self.low[t][k][lane]);
+                    whole.high[t][k] = most(whole.high[t][k], self.high[t][k][lane]);
+                }
+            }
+        }
+        whole
+    }
+
+    /// Finds the boxes of the block whose contents may come nearer to those of a box than a squared
+    /// distance (m2), as bits: along an axis, the gap between points on straight courses is
+    /// smallest at an end.
+    #[inline(always)]
+    fn near<S: Simd>(&self, simd: S, other: &Bounds, squared: f32) -> u32 {
+        let (zero, squared) = (simd.splat_f32s(0.0), simd.splat_f32s(squared));
+        let mut bits = 0.0;
+        for part in 0..LANES / S::F32_LANES {
+            let mut sum = zero;
+            // Closures would not be inlined.
+            for k in 0..3 {
+                let gap = simd.max_f32s(
+                    simd.min_f32s(
+                        simd.sub_f32s(
+                            load(simd, &self.low[0][k], part),
+                            simd.splat_f32s(other.high[0][k]),
+                        ),
+                        simd.sub_f32s(
+                            load(simd, &self.low[1][k], part),
+                            simd.splat_f32s(other.high[1][k]),
+                        ),
+                    ),
+                    simd.min_f32s(
+                        simd.sub_f32s(
+                            simd.splat_f32s(other.low[0][k]),
+                            load(simd, &self.high[0][k], part),
+                        ),
+                        simd.sub_f32s(
+                            simd.splat_f32s(other.low[1][k]),
+                            load(simd, &self.high[1][k], part),
+                        ),
+                    ),
+                );
+                let gap = simd.max_f32s(gap, zero);
+                sum = simd.add_f32s(sum, simd.mul_f32s(gap, gap));
+            }
+            let is_near = simd.less_than_f32s(sum, squared);
+            bits += simd.reduce_sum_f32s(simd.select_f32s(is_near, load(simd, &BITS, part), zero));
+        }
+        bits as u32
+    }
+}
+
+/// Reads SIMD vector number `part` of these numbers.
+#[inline(always)]
+fn load<S: Simd>(simd: S, numbers: &[f32; LANES], part: usize) -> S::f32s {
+    let _ = simd;
+    S::as_simd_f32s(numbers).0[part]
+}
+
+/// Tree of the boxes of primitives of one kind. Its topology is that of the first positions.
 #[derive(Debug, Default)]
 pub(super) struct Tree {
-    pub bvh: Bvh,
-    /// Half of the reach of the list (m).
+    /// Tree of the blocks.
+    bvh: Bvh,
+    blocks: Vec<Block>,
+    /// Boxes around all boxes of each block.
+    wholes: Vec<Bounds>,
+    /// Primitives, block by block, and the place of each in that order.
+    order: Vec<u32>,
+    places: Vec<u32>,
+    /// Boxes of each block that the last update changed, as bits.
+    changed: Vec<u32>,
+    /// Half of the distance up to which boxes are near (m).
     half: f64,
-    pub items: Vec<Bounds>,
-    pub vertices: Vec<Bounds>,
-    pub edges: Vec<Bounds>,
 }
 
 impl Tree {
-    /// Updates the boxes of the items whose courses are new.
-    pub fn take(
+    /// Updates the boxes of those primitives, given by their points, whose courses are new:
+    /// `around` has the boxes of all vertices. Boxes are near within a `reach` (m).
+    pub fn take<const N: usize>(
         &mut self,
-        items: &Items,
-        surface: &Surface,
-        course: &Courses,
+        primitives: impl ExactSizeIterator<Item = [u32; N]> + Clone,
+        around: &[Bounds],
+        reach: f64,
         is_new: &impl Fn(&[u32]) -> bool,
     ) {
-        let around = |i: u32| {
-            let begin = course.base[i as usize];
-            let end = begin + (course.speeds[i as usize] - course.mean) * course.horizon;
-            let radius = surface.radius(i);
-            Bounds {
-                low: [begin, end].map(|x| x.add_scalar(-radius).into()),
-                high: [begin, end].map(|x| x.add_scalar(radius).into()),
+        self.half = 0.5 * reach;
+        let bounds = |points: [u32; N]| {
+            let mut bounds = around[points[0] as usize];
+            for i in &points[1..] {
+                bounds = bounds.with(&around[*i as usize]);
             }
+            bounds
         };
-        let first = self.items.len() != items.corners.len();
-        self.half = 0.5 * (course.reach + surface.thickest());
-        let triangle = |[i, j, k]: &[u32; 3]| around(*i).with(&around(*j)).with(&around(*k));
+        let first = self.order.len() != primitives.len();
         if first {
-            self.vertices = items.vertices.iter().map(|i| around(*i)).collect();
-            let edges = items.edges.iter();
-            self.edges = edges.map(|[i, j]| around(*i).with(&around(*j))).collect();
-            self.items = items.corners.iter().map(triangle).collect();
-            let leaves: Vec<_> = self.items.iter().map(|item| self.leaf(item)).collect();
-            self.bvh = Bvh::new(&leaves);
-            return;
+            self.plant(primitives.clone(), around);
         }
-        for (i, bounds) in items.vertices.iter().zip(&mut self.vertices) {
-            if is_new(&[*i]) {
-                *bounds = around(*i);
+        self.changed.clear();
+        self.changed.resize(self.blocks.len(), 0);
+        for (points, place) in primitives.zip(&self.places) {
+            if first || is_new(&points) {
+                let place = *place as usize;
+                self.blocks[place / LANES].set(place % LANES, &bounds(points));
+                self.changed[place / LANES] |= 1 << (place % LANES);
             }
         }
-        for (edge, bounds) in items.edges.iter().zip(&mut self.edges) {
-            if is_new(edge) {
-                *bounds = around(edge[0]).with(&around(edge[1]));
-            }
-        }
-        for (k, corners) in items.corners.iter().enumerate() {
-            if is_new(corners) {
-                self.items[k] = triangle(corners);
-                let leaf = self.leaf(&self.items[k]);
-                self.bvh.set(k, leaf);
+        for number in 0..self.blocks.len() {
+            if self.changed[number] != 0 {
+                self.wholes[number] = self.blocks[number].whole();
+                self.bvh.set(number, self.leaf(number));
             }
         }
         self.bvh.refit();
     }
 
-    /// Box of an item in the tree: around its boxes at both ends, enlarged by half of the reach.
-    fn leaf(&self, item: &Bounds) -> Aabb {
-        let ([a, b], [c, d]) = (item.low, item.high);
-        Aabb::around([a, b, c, d].map(Vector3::from)).grown(self.half)
+    /// Makes a tree of primitives, with the boxes of all vertices: in the order of a curve through
+    /// their first vertices.
+    fn plant<const N: usize>(
+        &mut self,
+        primitives: impl Iterator<Item = [u32; N]>,
+        around: &[Bounds],
+    ) {
+        let hulls: Vec<_> = primitives
+            .map(|points| around[points[0] as usize].hull())
+            .collect();
+        let whole = hulls.iter().copied().reduce(|a, b| a.with(&b));
+        let along = |hull: &Aabb| whole.as_ref().map_or(0, |whole| whole.place_of(hull));
+        let keys: Vec<u64> = hulls.iter().map(along).collect();
+        self.order = (0..keys.len() as u32).collect();
+        self.order.sort_by_key(|k| keys[*k as usize]);
+        self.places = vec![0; self.order.len()];
+        for (place, k) in self.order.iter().enumerate() {
+            self.places[*k as usize] = place as u32;
+        }
+        // The boxes of the blocks, which are set later, lie where those of their first primitives
+        // do.
+        let firsts = self.order.iter().step_by(LANES);
+        let hulls: Vec<_> = firsts.map(|k| hulls[*k as usize]).collect();
+        self.blocks = vec![Block::new(); hulls.len()];
+        self.wholes = self.blocks.iter().map(Block::whole).collect();
+        self.bvh = Bvh::new(&hulls);
     }
 
-    /// Visits the pairs of an item with a new course and an item of another tree whose boxes meet.
-    pub fn meet(
-        &self,
-        other: &Self,
-        items: &Items,
-        is_new: &impl Fn(&[u32]) -> bool,
-        mut visit: impl FnMut(u32, u32),
-    ) {
-        for (k, corners) in items.corners.iter().enumerate() {
-            if is_new(corners) {
-                let leaf = self.leaf(&self.items[k]);
-                other.bvh.meeting(&leaf, |l| visit(k as u32, l));
+    /// Box of a block in the tree: around its boxes at both ends, enlarged by half of the reach.
+    fn leaf(&self, number: usize) -> Aabb {
+        self.wholes[number].hull().grown(self.half)
+    }
+
+    /// Primitives of a block.
+    fn members(&self, block: u32) -> &[u32] {
+        let first = block as usize * LANES;
+        &self.order[first..self.order.len().min(first + LANES)]
+    }
+
+    /// Finds the pairs of blocks that may hold near boxes, of this tree and another, or of one tree
+    /// alone, where each pair is found once: all, or only those with a box that changed.
+    pub fn blocks_near(&self, other: &Self, changed: bool, pairs: &mut Vec<[u32; 2]>) {
+        let is_one = std::ptr::eq(self, other);
+        pairs.clear();
+        if changed {
+            for s in self.changed_blocks() {
+                other.bvh.meeting(&self.leaf(s as usize), |t| {
+                    if !is_one || s <= t || self.changed[t as usize] == 0 {
+                        pairs.push([s, t]);
+                    }
+                });
+            }
+            for t in other.changed_blocks().filter(|_| !is_one) {
+                self.bvh.meeting(&other.leaf(t as usize), |s| {
+                    if self.changed[s as usize] == 0 {
+                        pairs.push([s, t]);
+                    }
+                });
+            }
+        } else if is_one {
+            pairs.extend((0..self.blocks.len() as u32).map(|s| [s; 2]));
+            self.bvh.pairs(|s, t| {
+                pairs.push([s, t]);
+                true
+            });
+        } else {
+            self.bvh.pairs_with(&other.bvh, |s, t| pairs.push([s, t]));
+        }
+    }
+
+    fn changed_blocks(&self) -> impl Iterator<Item = u32> {
+        let all = self.changed.iter().enumerate();
+        all.filter(|(_, changed)| **changed != 0)
+            .map(|(s, _)| s as u32)
+    }
+}
+
+/// Search for the pairs of primitives whose boxes are near, in pairs of blocks of two trees. Of
+/// one tree, each pair is found once.
+pub(super) struct Meeting<'a> {
+    pub trees: [&'a Tree; 2],
+    /// Whether only pairs with a box that changed are searched for.
+    pub changed: bool,
+    pub blocks: &'a [[u32; 2]],
+    pub found: &'a mut Vec<[u32; 2]>,
+}
+
+impl Meeting<'_> {
+    /// Adds the pairs to `found`.
+    pub fn find(self) {
+        Arch::new().dispatch(self);
+    }
+}
+
+impl WithSimd for Meeting<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        let [first, second] = self.trees;
+        let is_one = std::ptr::eq(first, second);
+        let squared = ((2.0 * first.half).powi(2) * ROUNDING) as f32;
+        for [s, t] in self.blocks {
+            let (own, other) = (&first.blocks[*s as usize], &second.blocks[*t as usize]);
+            let [own_members, members] = [first.members(*s), second.members(*t)];
+            let [own_changed, changed] = if self.changed {
+                [first.changed[*s as usize], second.changed[*t as usize]]
+            } else {
+                [u32::MAX; 2]
+            };
+            // Most boxes are far from all boxes of the other block.
+            let mut left = own.near(simd, &second.wholes[*t as usize], squared);
+            while left != 0 {
+                let lane = left.trailing_zeros();
+                left &= left - 1;
+                let is_changed = own_changed >> lane & 1 != 0;
+                if !is_changed && changed == 0 {
+                    continue;
+                }
+                let mut near = other.near(simd, &own.get(lane as usize), squared);
+                if !is_changed {
+                    near &= changed;
+                }
+                if is_one && s == t {
+                    // Those after this one.
+                    near &= !1 << lane;
+                }
+                let k = own_members[lane as usize];
+                while near != 0 {
+                    let l = members[near.trailing_zeros() as usize];
+                    near &= near - 1;
+                    self.found.push([k, l]);
+                }
             }
         }
     }

@@ -10,9 +10,11 @@
 use nalgebra::Vector3;
 use rayon::prelude::*;
 
+use super::bounds::{Block, LANES};
 use super::boxes::Courses;
 use super::listing::{CHUNK, Candidate, Listed, Listing};
 use super::surface::Surface;
+use crate::geometry::PairKind;
 use crate::threads::threads;
 
 /// Largest distance of a vertex from its course, as a share of the largest thickness.
@@ -20,7 +22,7 @@ const MARGIN_SHARE: f64 = 0.4;
 
 /// Length of the course of the fastest vertex, relative to the mean, as a share of the largest
 /// thickness.
-const LENGTH_SHARE: f64 = 4.0;
+const LENGTH_SHARE: f64 = 3.0;
 
 /// Duration of a list, as a multiple of the time for which the previous one was valid.
 const HORIZON_RATIO: f64 = 1.5;
@@ -30,7 +32,7 @@ const HORIZON_RATIO: f64 = 1.5;
 const VERTICES_PER_RENEWED: usize = 8;
 
 /// Distance, as a share of the margin, from which on a vertex then gets a new course.
-const STRAY_SHARE: f64 = 0.5;
+const STRAY_SHARE: f64 = 0.25;
 
 /// Longest duration of a list (s).
 const MAX_HORIZON: f64 = 1.0;
@@ -71,6 +73,8 @@ pub(super) struct Candidates {
     speeds: Vec<Vector3<f64>>,
     /// Mean velocity when all courses were new (m/s).
     mean: Vector3<f64>,
+    /// Mean position at the beginning then (m).
+    origin: Vector3<f64>,
     /// Whether a vertex has a new course.
     renewed: Vec<bool>,
     /// Duration of the courses (s).
@@ -102,6 +106,7 @@ impl Default for Candidates {
             base: vec![],
             speeds: vec![],
             mean: Vector3::zeros(),
+            origin: Vector3::zeros(),
             renewed: vec![],
             shared: Vector3::zeros(),
             horizon: 0.0,
@@ -218,7 +223,9 @@ impl Candidates {
         self.base.clear();
         let starts = from.iter().zip(&self.speeds).map(|(x, v)| x - v * before);
         self.base.extend(starts);
-        self.mean = self.speeds.iter().sum::<Vector3<f64>>() / from.len().max(1) as f64;
+        let mean =
+            |all: &[Vector3<f64>]| all.iter().sum::<Vector3<f64>>() / all.len().max(1) as f64;
+        (self.mean, self.origin) = (mean(&self.speeds), mean(&self.base));
         let speeds = self.speeds.iter().map(|v| (v - self.mean).norm_squared());
         let fastest = speeds.fold(0.0, f64::max).sqrt();
         let thickest = surface.thickest();
@@ -236,6 +243,7 @@ impl Candidates {
             base: &self.base,
             speeds: &self.speeds,
             mean: self.mean,
+            origin: self.origin,
             horizon: self.horizon,
             reach: 2.0 * self.margin,
         };
@@ -260,25 +268,85 @@ impl Candidates {
         near.map(|pair| &pair.candidate)
     }
 
-    /// Calls `find` for these pairs, and `visit` for its results in their order. With many
+    /// Calls `find` for those of these pairs that may come nearer than a distance (m) in a motion,
+    /// and `visit` for its results in their order. Pairs without a distance are left out. With many
     /// vertices, several threads call `find`.
     pub fn each<R: Send>(
         &self,
         gap: f64,
+        motion: &Linear,
+        distance: impl Fn(&Candidate) -> Option<f64> + Sync,
         find: impl Fn(&Candidate) -> Option<R> + Sync,
-        visit: impl FnMut(R),
+        mut visit: impl FnMut(R),
     ) {
+        let search = |pairs: &[Listed], visit: &mut dyn FnMut(R)| {
+            let near = pairs.iter().filter(|pair| self.is_near(pair, gap));
+            motion.nearing(near.map(|pair| &pair.candidate), &distance, |candidate| {
+                find(candidate).into_iter().for_each(&mut *visit);
+            });
+        };
         if self.parallel {
             let chunks = self.pairs.par_chunks(CHUNK);
-            let found: Vec<R> = chunks
-                .flat_map_iter(|pairs| {
-                    let near = pairs.iter().filter(|pair| self.is_near(pair, gap));
-                    near.filter_map(|pair| find(&pair.candidate))
+            let found: Vec<Vec<R>> = chunks
+                .map(|pairs| {
+                    let mut found = vec![];
+                    search(pairs, &mut |result| found.push(result));
+                    found
                 })
                 .collect();
-            found.into_iter().for_each(visit);
+            found.into_iter().flatten().for_each(visit);
         } else {
-            self.near(gap).filter_map(find).for_each(visit);
+            search(&self.pairs, &mut visit);
+        }
+    }
+}
+
+/// Linear motion of vertices.
+pub(super) struct Linear<'a> {
+    /// Positions at its beginning (m).
+    pub x: &'a [Vector3<f64>],
+    /// Displacements (m); none at an instant.
+    pub moves: Option<&'a [Vector3<f64>]>,
+    /// Bound of rounding errors of distances (m).
+    pub rounding: f64,
+}
+
+impl Linear<'_> {
+    /// Visits those of some pairs, in their order, that may come nearer than their distance (m).
+    fn nearing<'a>(
+        &self,
+        pairs: impl Iterator<Item = &'a Candidate>,
+        distance: &impl Fn(&Candidate) -> Option<f64>,
+        mut visit: impl FnMut(&Candidate),
+    ) {
+        let mut block = Block::new();
+        let mut members: [Option<(&Candidate, f64)>; LANES] = [None; LANES];
+        let mut count = 0;
+        let wanted = pairs.filter_map(|pair| Some((pair, distance(pair)?)));
+        let mut wanted = wanted.peekable();
+        while let Some((pair, distance)) = wanted.next() {
+            if pair.kind == PairKind::VertexFloor {
+                visit(pair);
+                continue;
+            }
+            block.set(count, pair.points, self.x, self.moves);
+            members[count] = Some((pair, distance));
+            count += 1;
+            if count < LANES
+                && wanted
+                    .peek()
+                    .is_some_and(|(next, _)| next.kind == pair.kind)
+            {
+                continue;
+            }
+            block.bound(pair.kind);
+            for (lane, (pair, distance)) in members[..count].iter().flatten().enumerate() {
+                let nearest = block.distance[lane] - block.closing[lane].max(0.0);
+                if !nearest.is_finite() || nearest - self.rounding < *distance {
+                    visit(pair);
+                }
+            }
+            count = 0;
         }
     }
 }

@@ -4,16 +4,15 @@ use std::collections::BTreeMap;
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::candidates::Candidates;
+use super::candidates::{Candidates, Linear};
 use super::listing::Candidate;
 use super::motion::{Guarded, Motion};
+use super::passes;
 use super::repulsion::Pair;
-use super::solids::{Arm, Field, SAME_TOLERANCE, Solid};
-use super::surface::{Law, Surface};
+use super::skin::Law;
+use super::solids::{Arm, Field, Masses, SAME_TOLERANCE, Solid};
+use super::surface::Surface;
 use crate::geometry::{PairKind, weighted};
-
-/// Largest number of passes of friction between surfaces that the contact force keeps apart.
-const MAX_PASSES: usize = 20;
 
 /// Share of the largest change of velocity by friction below which a slip counts as zero, so that
 /// passes may end early. Only its displacement is undone: the velocity stays, and grows if a slide
@@ -29,15 +28,6 @@ const RESTORED_SHARE: f64 = 0.1;
 
 /// Number of most recent contacts of two bodies among which one at the same point is searched for.
 const SEARCHED_CONTACTS: usize = 32;
-
-/// Masses on which impulses act.
-#[derive(Clone, Copy)]
-pub(super) struct Masses<'a> {
-    /// Inverse mass of each vertex (1/kg).
-    pub inverse: &'a [f64],
-    /// Rigid bodies.
-    pub solids: &'a [Solid],
-}
 
 /// Contact of a pair: the weights of its closest points, the normal from the second primitive to
 /// the first, and the sum of the weighted inverse masses (1/kg).
@@ -135,6 +125,15 @@ impl ContactPair {
     /// Numbers of the rigid bodies that touch.
     pub fn solids(&self) -> impl Iterator<Item = usize> {
         self.arms().map(|arm| arm.solid)
+    }
+
+    /// Numbers of the vertices that an impulse moves, and of the rigid bodies, which are counted
+    /// after all vertices.
+    fn parts_from(&self, vertices: usize) -> impl Iterator<Item = usize> {
+        let points = self.points.into_iter().zip(self.weights);
+        let moved = points.filter(|(_, weight)| *weight != 0.0);
+        let solids = self.solids().map(move |solid| vertices + solid);
+        moved.map(|(i, _)| i as usize).chain(solids)
     }
 
     /// The arms, if both sides are rigid bodies.
@@ -286,7 +285,15 @@ pub(super) fn apply_friction(
         (contact.inverse_mass > 0.0).then_some((contact, law.skin.friction * force * h))
     };
     let mut pressed = Pressed::default();
-    candidates.each(0.0, find, |(contact, most)| pressed.add(contact, most));
+    let ended = Linear {
+        x: motion.ends(),
+        moves: None,
+        rounding: surface.rounding(),
+    };
+    let reach = |pair: &Candidate| Some(surface.reach(pair.kind, &pair.points));
+    candidates.each(0.0, &ended, reach, find, |(contact, most)| {
+        pressed.add(contact, most);
+    });
     if pressed.contacts.is_empty() {
         return false;
     }
@@ -316,19 +323,6 @@ impl Pressed {
             known.push(self.contacts.len());
         }
         self.contacts.push((contact, most));
-    }
-}
-
-/// Repeats passes over the contacts until a pass changes nothing, or their number reaches a limit.
-fn pass_until_still<T>(contacts: &[T], mut leaves: impl FnMut(usize, &T) -> bool) {
-    for _ in 0..MAX_PASSES {
-        let mut still = true;
-        for (k, contact) in contacts.iter().enumerate() {
-            still &= leaves(k, contact);
-        }
-        if still {
-            break;
-        }
     }
 }
 
@@ -364,7 +358,10 @@ fn solve(pressed: &[(ContactPair, f64)], h: f64, motion: &mut Motion, guarded: &
     let delays: Vec<f64> = pressed.iter().map(|(contact, _)| delay(contact)).collect();
     // Impulse of friction of each contact so far, which a later pass may reduce.
     let mut all = vec![Vector3::zeros(); pressed.len()];
-    pass_until_still(pressed, |k, (contact, most)| {
+    let vertices = v.points.len();
+    let parts = |k: usize| pressed[k].0.parts_from(vertices);
+    passes::run(pressed.len(), vertices + solids.len(), parts, |k| {
+        let (contact, most) = &pressed[k];
         let slip = contact.slip(v);
         let held = limited_to(all[k] - slip / contact.mobility(slip), *most);
         let change = held - all[k];
@@ -382,7 +379,9 @@ fn solve(pressed: &[(ContactPair, f64)], h: f64, motion: &mut Motion, guarded: &
         slip.norm() <= STUCK_TOLERANCE * limit(contact, *most, slip)
     };
     let stuck: Vec<_> = pressed.iter().filter(sticks).collect();
-    pass_until_still(&stuck, |_, (contact, most)| {
+    let parts = |k: usize| stuck[k].0.parts_from(vertices);
+    passes::run(stuck.len(), vertices + solids.len(), parts, |k| {
+        let (contact, most) = stuck[k];
         let displaced = contact.slip(moves);
         let most = h * limit(contact, *most, displaced);
         contact.apply(-limited_to(displaced, most), masses, moves);

@@ -9,12 +9,13 @@
 
 use super::candidates::Candidates;
 use super::cut::Pinched;
-use super::friction::{ContactPair, Masses, apply_friction};
+use super::friction::{ContactPair, apply_friction};
 use super::hits::find;
 use super::impulses::Impulses;
 use super::layer::{Buffers, ContactLayer};
 use super::listing::Candidate;
 use super::motion::{Guarded, Motion};
+use super::solids::Masses;
 use super::strike::strike;
 use super::surface::Surface;
 use crate::geometry::{Closest, closest};

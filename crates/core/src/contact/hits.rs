@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::candidates::Candidates;
+use super::candidates::{Candidates, Linear};
 use super::listing::Candidate;
 use super::motion::Motion;
 use super::surface::Surface;
@@ -67,13 +67,20 @@ pub(super) fn find(
     motion: &Motion,
     moved: Option<&[bool]>,
 ) -> Vec<(Candidate, f64)> {
+    let whole = Linear {
+        x: &motion.x0,
+        moves: Some(&motion.moves.points),
+        rounding: surface.rounding(),
+    };
     let has_moved =
         |pair: &Candidate| moved.is_none_or(|moved| pair.points.iter().any(|i| moved[*i as usize]));
-    let hit = |pair: &Candidate| {
-        let time = has_moved(pair).then(|| motion.impact(surface, pair))?;
-        Some((*pair, time?))
+    let distance = |pair: &Candidate| {
+        has_moved(pair).then(|| 2.0 * surface.law(pair.kind, &pair.points).max_kept())
     };
+    let hit = |pair: &Candidate| Some((*pair, motion.impact(surface, pair)?));
     let mut hits = vec![];
-    candidates.each(surface.nearest(), hit, |hit| hits.push(hit));
+    candidates.each(surface.nearest(), &whole, distance, hit, |hit| {
+        hits.push(hit);
+    });
     hits
 }

@@ -1,30 +1,31 @@
-//! Primitives of surfaces, in the order of a tree of boxes.
+//! Primitives of surfaces: vertices, edges and triangles, each listed once.
 
 use std::collections::BTreeSet;
-use std::ops::Range;
 
-/// Primitives of one tree of boxes. Each vertex and each edge belongs to one item, so that no pair
-/// is found twice (Curtis et al., *Fast collision detection for deformable models using
-/// representative-triangles*, 2008).
+/// Vertices, edges and triangles of bodies or of obstacles.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Items {
-    /// Corners of the items. The last two corners of an edge are equal, and all three of a point.
+    /// Corners of the triangles, and then of those edges and points that are in none of them. The
+    /// last two corners of an edge are equal, and all three of a point.
     pub corners: Vec<[u32; 3]>,
-    /// Rank of each item by its corners, among those of bodies and then of obstacles.
+    /// Number of triangles.
+    triangles: usize,
+    /// Rank of each of these by its corners, among those of bodies and then of obstacles.
     pub ranks: Vec<u32>,
-    /// Vertices, item by item.
+    /// Vertices.
     pub vertices: Vec<u32>,
-    vertex_ends: Vec<u32>,
-    /// Edges, item by item, the lower end of each first.
+    /// Edges, the lower end of each first: those of triangles, and then the others. The ends of a
+    /// point are equal.
     pub edges: Vec<[u32; 2]>,
+    /// Number of edges of triangles.
+    sides: usize,
     /// Rank of each edge by its ends, among those of bodies and then of obstacles.
     pub edge_ranks: Vec<u32>,
-    edge_ends: Vec<u32>,
 }
 
 impl Items {
-    /// Items of these triangles, and of those edges and points that are in none of them. They rank
-    /// after the items of `others`.
+    /// The vertices, edges and sides of these triangles, and those edges and points that are in
+    /// none of them. They rank after the items of `others`.
     pub fn new(
         triangles: impl IntoIterator<Item = [u32; 3]>,
         edges: impl IntoIterator<Item = [u32; 2]>,
@@ -32,48 +33,37 @@ impl Items {
     ) -> Self {
         let mut items = Self::default();
         let (mut seen_vertices, mut seen_edges) = (BTreeSet::new(), BTreeSet::new());
-        let lone = edges
-            .into_iter()
-            .map(|[a, b]| [a.min(b), a.max(b), a.max(b)]);
-        for corners in triangles.into_iter().chain(lone) {
-            let [a, b, c] = corners;
-            if b == c && seen_edges.contains(&[a, b]) {
-                continue;
-            }
-            items.corners.push(corners);
-            let new = corners.into_iter().filter(|i| seen_vertices.insert(*i));
-            items.vertices.extend(new);
-            items.vertex_ends.push(items.vertices.len() as u32);
-            let sides: &[[u32; 2]] = if b == c {
-                &[[a, b]]
-            } else {
-                &[[a, b], [b, c], [c, a]]
-            };
-            let sides = sides.iter().map(|[i, j]| [*i.min(j), *i.max(j)]);
-            items
-                .edges
-                .extend(sides.filter(|side| seen_edges.insert(*side)));
-            items.edge_ends.push(items.edges.len() as u32);
+        items.corners.extend(triangles);
+        items.triangles = items.corners.len();
+        for [a, b, c] in &items.corners {
+            let sides = [[a, b], [b, c], [c, a]].map(|[i, j]| [*i.min(j), *i.max(j)]);
+            let new = sides.into_iter().filter(|side| seen_edges.insert(*side));
+            items.edges.extend(new);
         }
+        items.sides = items.edges.len();
+        for [a, b] in edges {
+            let [a, b] = [a.min(b), a.max(b)];
+            if seen_edges.insert([a, b]) {
+                items.corners.push([a, b, b]);
+                items.edges.push([a, b]);
+            }
+        }
+        let all = items.corners.iter().flatten();
+        let new = all.filter(|i| seen_vertices.insert(**i));
+        items.vertices.extend(new);
         items.ranks = ranks(&items.corners, others.corners.len());
         items.edge_ranks = ranks(&items.edges, others.edges.len());
         items
     }
 
-    /// Whether item k is a triangle.
-    pub fn is_triangle(&self, k: usize) -> bool {
-        let [_, b, c] = self.corners[k];
-        b != c
+    /// Corners of the triangles.
+    pub fn triangles(&self) -> &[[u32; 3]] {
+        &self.corners[..self.triangles]
     }
 
-    /// Indices of the vertices that belong to item k.
-    pub fn vertices_of(&self, k: usize) -> Range<usize> {
-        range(&self.vertex_ends, k)
-    }
-
-    /// Indices of the edges that belong to item k.
-    pub fn edges_of(&self, k: usize) -> Range<usize> {
-        range(&self.edge_ends, k)
+    /// Whether edge k is a side of a triangle.
+    pub fn is_side(&self, k: usize) -> bool {
+        k < self.sides
     }
 }
 
@@ -86,9 +76,4 @@ fn ranks<T: Ord>(values: &[T], first: usize) -> Vec<u32> {
         ranks[k] = (first + rank) as u32;
     }
     ranks
-}
-
-fn range(ends: &[u32], k: usize) -> Range<usize> {
-    let start = if k == 0 { 0 } else { ends[k - 1] };
-    start as usize..ends[k] as usize
 }

@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use super::candidates::{Candidates, Stretch};
+use super::candidates::{Candidates, Linear, Stretch};
 use super::cut::Cuts;
 use super::listing::Candidate;
 use super::motion::Motion;
@@ -109,7 +109,13 @@ impl ContactLayer {
             };
             find(candidate, &pair)
         };
-        candidates.each(0.0, find, visit);
+        let still = Linear {
+            x: places,
+            moves: None,
+            rounding: self.surface.rounding(),
+        };
+        let reach = |pair: &Candidate| Some(self.surface.reach(pair.kind, &pair.points));
+        candidates.each(0.0, &still, reach, find, visit);
     }
 
     /// Adds the forces (N) at time t (s) in the state (x, v) to f.

@@ -5,16 +5,13 @@ use nalgebra::Vector3;
 use rayon::prelude::*;
 
 use super::bounds::{Block, LANES};
-use super::boxes::{Courses, Tree};
+use super::boxes::{Bounds, Courses, Meeting, Tree};
 use super::items::Items;
 use super::surface::Surface;
 use crate::geometry::{PairKind, closest};
 
-/// Share of the largest thickness that is subtracted from gaps to allow for rounding.
-const ROUNDING: f64 = 1e-9;
-
-/// Number of overlapping boxes, or of pairs, in a task of a thread.
-pub(super) const CHUNK: usize = 1024;
+/// Number of pairs of blocks, or of listed pairs, in a task of a thread.
+pub(super) const CHUNK: usize = 512;
 
 /// Pair that may touch.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -59,12 +56,39 @@ impl Listed {
     }
 }
 
+/// Trees of the boxes of vertices, triangles and edges.
+#[derive(Debug, Default)]
+struct Trees {
+    vertices: Tree,
+    triangles: Tree,
+    edges: Tree,
+}
+
+impl Trees {
+    /// Updates the boxes with new courses: `around` has those of all vertices.
+    fn take(
+        &mut self,
+        items: &Items,
+        around: &[Bounds],
+        reach: f64,
+        is_new: &impl Fn(&[u32]) -> bool,
+    ) {
+        let vertices = items.vertices.iter().map(|i| [*i]);
+        self.vertices.take(vertices, around, reach, is_new);
+        let triangles = items.triangles().iter().copied();
+        self.triangles.take(triangles, around, reach, is_new);
+        let edges = items.edges.iter().copied();
+        self.edges.take(edges, around, reach, is_new);
+    }
+}
+
 /// Trees and scratch to make lists.
 #[derive(Debug, Default)]
 pub(super) struct Listing {
-    bodies: Tree,
-    obstacles: Tree,
-    overlaps: Vec<[u32; 2]>,
+    bodies: Trees,
+    obstacles: Trees,
+    around: Vec<Bounds>,
+    blocks: Vec<[u32; 2]>,
 }
 
 impl Listing {
@@ -83,45 +107,35 @@ impl Listing {
             surface,
             course,
             renewed,
+            parallel,
         };
         let is_new = |points: &[u32]| query.is_new(points);
         pairs.retain(|pair| !is_new(&pair.candidate.points));
         let kept = pairs.len();
-        self.bodies.take(bodies, surface, course, &is_new);
-        self.obstacles.take(obstacles, surface, course, &is_new);
-        let overlaps = &mut self.overlaps;
-        if surface.touches_itself {
-            overlaps.clear();
-            if renewed.is_none() {
-                self.bodies.bvh.pairs(|s, t| {
-                    overlaps.push([s, t]);
-                    true
-                });
-            } else {
-                self.bodies.meet(&self.bodies, bodies, &is_new, |s, t| {
-                    if s < t || s > t && !is_new(&bodies.corners[t as usize]) {
-                        overlaps.push([s, t]);
-                    }
-                });
+        let reach = course.reach + surface.thickest();
+        let vertices = 0..course.base.len();
+        if let Some(renewed) = renewed {
+            for i in vertices.filter(|i| renewed[*i]) {
+                self.around[i] = course.around(surface, i);
             }
-            query.list([(bodies, &self.bodies); 2], overlaps, parallel, pairs);
+        } else {
+            self.around.clear();
+            let around = vertices.map(|i| course.around(surface, i));
+            self.around.extend(around);
         }
-        if !obstacles.corners.is_empty() && !bodies.corners.is_empty() {
-            overlaps.clear();
-            let mut add = |s, t| overlaps.push([s, t]);
-            if renewed.is_none() {
-                self.bodies.bvh.pairs_with(&self.obstacles.bvh, add);
-            } else {
-                self.bodies.meet(&self.obstacles, bodies, &is_new, &mut add);
-                self.obstacles
-                    .meet(&self.bodies, obstacles, &is_new, |t, s| {
-                        if !is_new(&bodies.corners[s as usize]) {
-                            add(s, t);
-                        }
-                    });
-            }
-            let both = [(bodies, &self.bodies), (obstacles, &self.obstacles)];
-            query.list(both, overlaps, parallel, pairs);
+        self.bodies.take(bodies, &self.around, reach, &is_new);
+        self.obstacles.take(obstacles, &self.around, reach, &is_new);
+        let own = (bodies, &self.bodies);
+        let others = (obstacles, &self.obstacles);
+        let blocks = &mut self.blocks;
+        if surface.touches_itself {
+            query.touching([own; 2], blocks, pairs);
+            query.crossing([own; 2], blocks, pairs);
+        }
+        if !obstacles.vertices.is_empty() && !bodies.vertices.is_empty() {
+            query.touching([own, others], blocks, pairs);
+            query.touching([others, own], blocks, pairs);
+            query.crossing([own, others], blocks, pairs);
         }
         for &floor in &surface.floors {
             for &i in &bodies.vertices {
@@ -146,15 +160,8 @@ impl Listing {
 /// Ranks of two primitives, and their points.
 type Primitives = ([u32; 2], [u32; 4]);
 
-/// Pairs of primitives whose boxes come within reach.
-#[derive(Default)]
-struct Near {
-    vertex_triangle: Vec<Primitives>,
-    edge_edge: Vec<Primitives>,
-}
-
-/// Items with their tree.
-type Side<'a> = (&'a Items, &'a Tree);
+/// Items with their trees.
+type Side<'a> = (&'a Items, &'a Trees);
 
 /// Surface and courses that a list is made for.
 struct Query<'a> {
@@ -162,6 +169,7 @@ struct Query<'a> {
     course: &'a Courses<'a>,
     /// Whether each vertex has a new course, if only such vertices' pairs are listed.
     renewed: Option<&'a [bool]>,
+    parallel: bool,
 }
 
 impl Query<'_> {
@@ -171,116 +179,119 @@ impl Query<'_> {
             .is_none_or(|renewed| points.iter().any(|i| renewed[*i as usize]))
     }
 
-    /// Adds the pairs of items whose boxes overlap.
-    fn list(
+    /// Adds the pairs of vertices of the first side and triangles of the second.
+    fn touching(
         &self,
-        sides: [Side; 2],
-        overlaps: &[[u32; 2]],
-        parallel: bool,
+        [(first, first_trees), (second, second_trees)]: [Side; 2],
+        blocks: &mut Vec<[u32; 2]>,
         pairs: &mut Vec<Listed>,
     ) {
-        if parallel {
-            pairs.par_extend(overlaps.par_chunks(CHUNK).flat_map_iter(|overlaps| {
+        let trees = [&first_trees.vertices, &second_trees.triangles];
+        let primitives = |[k, l]: [u32; 2]| {
+            let (v, [a, b, c]) = (first.vertices[k as usize], second.triangles()[l as usize]);
+            let is_corner = v == a || v == b || v == c;
+            (!is_corner && !self.surface.is_one_solid(v, a))
+                .then(|| ([v, second.ranks[l as usize]], [v, a, b, c]))
+        };
+        self.search(PairKind::VertexTriangle, trees, primitives, blocks, pairs);
+    }
+
+    /// Adds the pairs of edges of both sides, which may be the same.
+    fn crossing(
+        &self,
+        [(first, first_trees), (second, second_trees)]: [Side; 2],
+        blocks: &mut Vec<[u32; 2]>,
+        pairs: &mut Vec<Listed>,
+    ) {
+        let trees = [&first_trees.edges, &second_trees.edges];
+        let primitives = |[k, l]: [u32; 2]| {
+            let (k, l) = (k as usize, l as usize);
+            let (e, f) = (first.edges[k], second.edges[l]);
+            if e[0] == f[0] || e[0] == f[1] || e[1] == f[0] || e[1] == f[1] {
+                return None;
+            }
+            // A point and an edge of a triangle: the point and its corners are a pair already.
+            let is_point = e[0] == e[1] && second.is_side(l) || f[0] == f[1] && first.is_side(k);
+            if is_point || self.surface.is_one_solid(e[0], f[0]) {
+                return None;
+            }
+            let [mut e, mut f] = [(first.edge_ranks[k], e), (second.edge_ranks[l], f)];
+            if f.0 < e.0 {
+                std::mem::swap(&mut e, &mut f);
+            }
+            let ((m, [a, b]), (n, [c, d])) = (e, f);
+            Some(([m, n], [a, b, c, d]))
+        };
+        self.search(PairKind::EdgeEdge, trees, primitives, blocks, pairs);
+    }
+
+    /// Adds the pairs of one kind of the primitives of two trees, or of one. `blocks` is scratch.
+    fn search(
+        &self,
+        kind: PairKind,
+        trees: [&Tree; 2],
+        primitives: impl Fn([u32; 2]) -> Option<Primitives> + Sync,
+        blocks: &mut Vec<[u32; 2]>,
+        pairs: &mut Vec<Listed>,
+    ) {
+        trees[0].blocks_near(trees[1], self.renewed.is_some(), blocks);
+        let find = |blocks: &[[u32; 2]], near: &mut Vec<[u32; 2]>, pairs: &mut Vec<Listed>| {
+            near.clear();
+            let found = &mut *near;
+            Meeting {
+                trees,
+                changed: self.renewed.is_some(),
+                blocks,
+                found,
+            }
+            .find();
+            self.bound(
+                kind,
+                near.iter().filter_map(|pair| primitives(*pair)),
+                pairs,
+            );
+        };
+        if self.parallel {
+            pairs.par_extend(blocks.par_chunks(CHUNK).flat_map_iter(|blocks| {
                 let mut found = vec![];
-                self.list_some(sides, overlaps, &mut Near::default(), &mut found);
+                find(blocks, &mut vec![], &mut found);
                 found
             }));
         } else {
-            let mut near = Near::default();
-            for overlaps in overlaps.chunks(CHUNK) {
-                self.list_some(sides, overlaps, &mut near, pairs);
+            let mut near = vec![];
+            for blocks in blocks.chunks(CHUNK) {
+                find(blocks, &mut near, pairs);
             }
         }
     }
 
-    /// Adds the pairs of some items whose boxes overlap. `near` is scratch.
-    fn list_some(
+    /// Adds those of these pairs of primitives of one kind that come within reach.
+    fn bound(
         &self,
-        sides: [Side; 2],
-        overlaps: &[[u32; 2]],
-        near: &mut Near,
+        kind: PairKind,
+        mut near: impl Iterator<Item = Primitives>,
         pairs: &mut Vec<Listed>,
     ) {
-        for items in overlaps {
-            self.find(sides, items.map(|k| k as usize), near);
-        }
-        self.bound(PairKind::VertexTriangle, &mut near.vertex_triangle, pairs);
-        self.bound(PairKind::EdgeEdge, &mut near.edge_edge, pairs);
-    }
-
-    /// Adds those of these pairs of one kind that come within reach, and clears them.
-    fn bound(&self, kind: PairKind, near: &mut Vec<Primitives>, pairs: &mut Vec<Listed>) {
         let mut block = Block::new();
-        for near in near.chunks(LANES) {
-            for (lane, (_, points)) in near.iter().enumerate() {
-                block.set(lane, *points, self.course.base, self.course.speeds);
+        let mut members = [([0; 2], [0; 4]); LANES];
+        loop {
+            let mut count = 0;
+            for (lane, found) in near.by_ref().take(LANES).enumerate() {
+                members[lane] = found;
+                block.set(lane, found.1, self.course.base, Some(self.course.speeds));
+                count += 1;
             }
             block.bound(kind);
-            let bounds = block.distance.iter().zip(&block.closing);
-            for (&(ranks, points), (distance, closing)) in near.iter().zip(bounds) {
-                if distance.is_finite() {
-                    pairs.extend(self.listed(kind, ranks, points, [*distance, *closing]));
+            for (lane, (ranks, points)) in members[..count].iter().enumerate() {
+                let bounds = [block.distance[lane], block.closing[lane]];
+                pairs.extend(if bounds[0].is_finite() {
+                    self.listed(kind, *ranks, *points, bounds)
                 } else {
-                    pairs.extend(self.pair(kind, ranks, points));
-                }
+                    self.pair(kind, *ranks, *points)
+                });
             }
-        }
-        near.clear();
-    }
-
-    /// Finds the pairs of primitives of two items whose boxes come within reach.
-    fn find(&self, sides: [Side; 2], [s, t]: [usize; 2], near: &mut Near) {
-        let reach = self.course.reach + self.surface.thickest();
-        let squared = reach * reach;
-        let [(first, first_tree), (second, second_tree)] = sides;
-        let [a, b] = [first.corners[s][0], second.corners[t][0]];
-        if first_tree.items[s].apart(&second_tree.items[t]) >= squared
-            || self.surface.is_one_solid(a, b)
-        {
-            return;
-        }
-        for ([(a, at), (b, bt)], [k, l]) in [(sides, [s, t]), ([sides[1], sides[0]], [t, s])] {
-            if !b.is_triangle(l) {
-                continue;
-            }
-            let corners = b.corners[l];
-            for i in a.vertices_of(k) {
-                let v = a.vertices[i];
-                if !corners.contains(&v) && at.vertices[i].apart(&bt.items[l]) < squared {
-                    let [p, q, r] = corners;
-                    let ranks = [v, b.ranks[l]];
-                    let points = [v, p, q, r];
-                    if self.is_new(&points) {
-                        near.vertex_triangle.push((ranks, points));
-                    }
-                }
-            }
-        }
-        for i in first.edges_of(s) {
-            let (e, around) = (first.edges[i], &first_tree.edges[i]);
-            if around.apart(&second_tree.items[t]) >= squared {
-                continue;
-            }
-            for j in second.edges_of(t) {
-                let f = second.edges[j];
-                // A point and an edge of a triangle: the point and its corners are a pair already.
-                let point =
-                    e[0] == e[1] && second.is_triangle(t) || f[0] == f[1] && first.is_triangle(s);
-                if point
-                    || e.iter().any(|i| f.contains(i))
-                    || around.apart(&second_tree.edges[j]) >= squared
-                {
-                    continue;
-                }
-                let [mut e, mut f] = [(first.edge_ranks[i], e), (second.edge_ranks[j], f)];
-                if f.0 < e.0 {
-                    std::mem::swap(&mut e, &mut f);
-                }
-                let ((m, [a, b]), (n, [c, d])) = (e, f);
-                let points = [a, b, c, d];
-                if self.is_new(&points) {
-                    near.edge_edge.push(([m, n], points));
-                }
+            if count < LANES {
+                return;
             }
         }
     }
@@ -325,9 +336,7 @@ impl Query<'_> {
         [distance, closing]: [f64; 2],
     ) -> Option<Listed> {
         let course = self.course;
-        let thickness = self.surface.thickness(kind, &points);
-        let rounding = ROUNDING * self.surface.thickest();
-        let gap = distance - self.surface.radii(kind, &points) - thickness - rounding;
+        let gap = distance - self.surface.reach(kind, &points) - self.surface.rounding();
         let listed = gap - closing.max(0.0) * course.horizon < course.reach;
         listed.then(|| Listed {
             key: (kind as u64) << 62 | u64::from(ranks[0]) << 31 | u64::from(ranks[1]),

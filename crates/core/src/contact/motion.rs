@@ -102,6 +102,11 @@ impl Motion {
         candidates.cover(surface, &stretch);
     }
 
+    /// Positions at the end of the step (m), as they were covered last.
+    pub fn ends(&self) -> &[Vector3<f64>] {
+        &self.ends
+    }
+
     /// Reads the rigid bodies of a surface in a step between two states, and adds their turns to
     /// the displacements and velocities, which those of the vertices are in already.
     pub fn read_solids(&mut self, surface: &Surface, states: [&[f64]; 2]) {

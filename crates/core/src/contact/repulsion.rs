@@ -24,7 +24,7 @@
 
 use nalgebra::Vector3;
 
-use super::surface::{Law, Skin};
+use super::skin::{Law, Skin};
 use crate::geometry::{PairKind, closest, weighted};
 
 /// Squared sine of the angle from which on two edges, four thicknesses long, repel each other

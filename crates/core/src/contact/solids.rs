@@ -56,6 +56,15 @@ impl DerefMut for Field {
     }
 }
 
+/// Masses on which impulses act.
+#[derive(Clone, Copy)]
+pub(super) struct Masses<'a> {
+    /// Inverse mass of each vertex (1/kg).
+    pub inverse: &'a [f64],
+    /// Rigid bodies.
+    pub solids: &'a [Solid],
+}
+
 /// Rigid body at the end of a step.
 #[derive(Clone, Debug)]
 pub(super) struct Solid {

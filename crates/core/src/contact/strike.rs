@@ -15,8 +15,9 @@ use super::hits::{find, first_hits, parties};
 use super::listing::Candidate;
 use super::motion::{Guarded, Motion};
 use super::rebound::rebound_speed;
+use super::skin::Law;
 use super::solids::SAME_TOLERANCE;
-use super::surface::{Law, Surface};
+use super::surface::Surface;
 use crate::geometry::{Closest, PairKind, closest, weighted};
 
 /// Largest number of times in a step at which a body has impacts.

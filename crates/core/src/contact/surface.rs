@@ -4,76 +4,19 @@ use nalgebra::Vector3;
 
 use super::items::Items;
 use super::obstacle::Obstacle;
-use crate::error::{Error, Vertex, at_least, share};
+use super::skin::{KEPT_SHARE, Law, Skin};
+use crate::error::Vertex;
 use crate::geometry::PairKind;
 use crate::geometry::Shape;
 use crate::path::Place;
 use crate::rigid::Body;
 
-/// Least gap that is kept between two surfaces, as a share of their thickness.
-const KEPT_SHARE: f64 = 1e-3;
+/// Bound of rounding errors of distances, as a share of the largest thickness.
+const ROUNDING_SHARE: f64 = 1e-9;
 
 /// Range of speeds over which the force of an elastic pair changes from approach to separation,
 /// over the speed that its repulsion alone would give.
 const TURN_SHARE: f64 = 0.1;
-
-/// Contact material of a surface. Where two surfaces meet, the thickness and the damping are the
-/// means of theirs, the stiffness is the smaller one, and the friction and the restitution are the
-/// larger ones.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Skin {
-    /// Distance up to which two such surfaces repel each other (m).
-    pub thickness: f64,
-    /// Stiffness k of their repulsion (N/m).
-    pub stiffness: f64,
-    /// Damping coefficient of their repulsion: one over the speed at which damping is fully
-    /// effective (s/m).
-    pub damping: f64,
-    /// Coefficient mu of Coulomb friction.
-    pub friction: f64,
-    /// Coefficient e of restitution, from 0 to 1. If it is above 0, it replaces damping.
-    pub restitution: f64,
-    /// Effective mass of one of its points in an impact (kg), if it is rigid or has a restitution.
-    pub mass: f64,
-}
-
-impl Skin {
-    /// # Errors
-    /// A number is negative or not finite, or the restitution is above 1.
-    pub(crate) fn check(&self) -> Result<(), Error> {
-        at_least(0.0, "a thickness", self.thickness)?;
-        at_least(0.0, "the stiffness of contact", self.stiffness)?;
-        at_least(0.0, "the damping of contact", self.damping)?;
-        at_least(0.0, "a friction", self.friction)?;
-        share("a restitution", self.restitution)?;
-        at_least(0.0, "the mass of a point of a surface", self.mass)
-    }
-}
-
-/// Contact law between the two primitives of a pair.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Law {
-    /// Their skin.
-    pub skin: Skin,
-    /// Sum of the radii of round obstacles and bodies, whose interior is solid (m).
-    pub radius: f64,
-    /// Speed of an approach that the repulsion stops at gap 0 (m/s), if a side is rigid or elastic.
-    pub stopped: f64,
-}
-
-impl Law {
-    /// Largest distance that the pair keeps (m).
-    pub fn max_kept(&self) -> f64 {
-        self.radius + KEPT_SHARE * self.skin.thickness
-    }
-
-    /// Distance that the pair keeps (m), which is less than its distance at first; a pair within a
-    /// round body keeps the distance that it has.
-    pub fn kept(&self, distance: f64) -> f64 {
-        let room = distance - self.radius;
-        self.radius + (KEPT_SHARE * self.skin.thickness).min(0.9 * room).min(room)
-    }
-}
 
 /// Vertices, edges and triangles of bodies and obstacles. Vertices are the particles, followed by
 /// the points of obstacles.
@@ -233,8 +176,8 @@ impl Surface {
 
     /// Triangles of bodies and of obstacles.
     pub fn triangles(&self) -> impl Iterator<Item = [u32; 3]> {
-        let all = self.bodies.corners.iter().chain(&self.obstacles.corners);
-        all.filter(|[_, b, c]| b != c).copied()
+        let obstacles = self.obstacles.triangles();
+        self.bodies.triangles().iter().chain(obstacles).copied()
     }
 
     /// Edges of bodies and of obstacles, the lower end first.
@@ -348,6 +291,16 @@ impl Surface {
     pub(super) fn thickness(&self, kind: PairKind, points: &[u32; 4]) -> f64 {
         let [a, b] = [points[0], points[kind.first()]].map(|i| self.skins[i as usize].thickness);
         0.5 * (a + b)
+    }
+
+    /// Distance (m) up to which a pair touches.
+    pub(super) fn reach(&self, kind: PairKind, points: &[u32; 4]) -> f64 {
+        self.thickness(kind, points) + self.radii(kind, points)
+    }
+
+    /// Bound of rounding errors of distances (m).
+    pub(super) fn rounding(&self) -> f64 {
+        ROUNDING_SHARE * self.thickest
     }
 
     /// Sum of the radii of a pair (m).

@@ -13,6 +13,21 @@ pub(crate) fn most(a: f64, b: f64) -> f64 {
     if a > b { a } else { b }
 }
 
+/// Number of cells along each axis, from 0, into which a curve divides a box.
+const CELLS: u32 = (1 << 21) - 1;
+
+/// Moves the first 21 bits of a number three places apart.
+fn spread(x: u64) -> u64 {
+    let masks = [
+        (32, 0x001f_0000_0000_ffff),
+        (16, 0x001f_0000_ff00_00ff),
+        (8, 0x100f_00f0_0f00_f00f),
+        (4, 0x10c3_0c30_c30c_30c3),
+        (2, 0x1249_2492_4924_9249),
+    ];
+    masks.iter().fold(x, |x, (by, mask)| (x | x << by) & mask)
+}
+
 /// Axis-aligned box.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Aabb {
@@ -41,8 +56,22 @@ impl Aabb {
         }
     }
 
+    /// Place of the centre of another box along a curve through this box that keeps near places
+    /// near each other (Morton, *A computer oriented geodetic data base*, 1966).
+    pub fn place_of(&self, other: &Self) -> u64 {
+        let (all, center) = (self.center(), other.center());
+        let width = |k: usize| self.high[k] - self.low[k];
+        let longest = width(0).max(width(1)).max(width(2));
+        let cells = f64::from(CELLS);
+        // From 0 to CELLS along the longest axis: a number that is not finite counts as 0.
+        let cell = |k: usize| (cells * (0.5 + 0.5 * (center[k] - all[k]) / longest)) as u64;
+        [0, 1, 2]
+            .iter()
+            .fold(0, |place, k| place | spread(cell(*k)) << k)
+    }
+
     /// The smallest box around two boxes.
-    fn with(&self, other: &Self) -> Self {
+    pub fn with(&self, other: &Self) -> Self {
         Self {
             low: [0, 1, 2].map(|k| least(self.low[k], other.low[k])),
             high: [0, 1, 2].map(|k| most(self.high[k], other.high[k])),

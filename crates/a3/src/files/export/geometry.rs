@@ -7,6 +7,7 @@ use std::io;
 use a3_core::{Network, Simulation};
 use a3_scenes::Surface;
 
+use crate::base::rounding::{DIGITS, short};
 use crate::draw::surfaces::{tessellation, whole_triangles};
 
 /// The connections between particles, which stay the same from frame to frame until something
@@ -122,7 +123,7 @@ pub fn positions(simulation: &Simulation) -> io::Result<Vec<[f32; 3]>> {
         }
         Err(io::Error::other(format!(
             "the position of particle {i} at t = {} s is too large for single precision",
-            simulation.time()
+            short(simulation.time(), DIGITS)
         )))
     };
     let mut all = (0..n).map(position).collect::<io::Result<Vec<_>>>()?;

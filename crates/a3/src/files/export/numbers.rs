@@ -5,6 +5,7 @@ use std::io::{self, Write};
 use a3_core::Simulation;
 
 use crate::base::failure::Failure;
+use crate::base::rounding::{DIGITS, short};
 
 /// Returns the velocities of all particles (m/s); a failure if a number of the state is not finite.
 pub fn velocities(simulation: &Simulation) -> Result<Vec<f64>, Failure> {
@@ -15,7 +16,7 @@ pub fn velocities(simulation: &Simulation) -> Result<Vec<f64>, Failure> {
     }
     Err(Failure::run(format!(
         "the state at t = {} s has numbers that are not finite",
-        simulation.time()
+        short(simulation.time(), DIGITS)
     )))
 }
 

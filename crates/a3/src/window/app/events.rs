@@ -10,7 +10,6 @@ use winit::window::{Fullscreen, WindowId};
 
 use super::platform::{self, Event};
 use super::state::App;
-use crate::window::hud::panel;
 
 impl ApplicationHandler<Event> for App {
     fn resumed(&mut self, event_loop: &ActiveEventLoop) {
@@ -87,8 +86,10 @@ impl ApplicationHandler<Event> for App {
         // All keys belong to the table of keys, none to egui.
         let is_key = matches!(event, WindowEvent::KeyboardInput { .. });
         let taken = !is_key && (graphics.on_event(&event) || self.session.list.is_some())
-            || panel::picture_size(&self.session, graphics.size(), graphics.scale()).0 as f32
-                <= self.mouse.pointer.position[0];
+            || !self
+                .mouse
+                .pointer
+                .is_in_picture(&self.session, graphics.size(), graphics.scale());
         if let WindowEvent::MouseInput { state, .. } = event {
             self.session
                 .history

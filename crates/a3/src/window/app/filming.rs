@@ -8,7 +8,7 @@ use a3_render::Gpu;
 use super::graphics::Graphics;
 use crate::base::failure::Failure;
 use crate::base::terminal;
-use crate::window::hud::panel;
+use crate::window::hud::layout;
 use crate::window::recorder::{Format, Recorder};
 use crate::window::session::Session;
 
@@ -49,7 +49,7 @@ impl Films {
         let scale = graphics.scale();
         let format = Format {
             ending: session.panel.film,
-            size: panel::picture_size(session, graphics.size(), scale),
+            size: layout::picture_size(session, graphics.size(), scale),
             scale,
         };
         match begin(graphics.gpu(), session, format) {

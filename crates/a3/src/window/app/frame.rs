@@ -8,6 +8,7 @@ use winit::event_loop::ActiveEventLoop;
 use super::graphics::FrameOutcome;
 use super::state::App;
 use crate::window::hud::panel::{self, Request};
+use crate::window::session::{Action, RunAction};
 
 /// Delay after which a skipped frame is drawn again.
 const RETRY_DELAY: Duration = Duration::from_millis(50);
@@ -48,7 +49,12 @@ impl App {
                     again
                 };
                 match request {
-                    Some(Request::Act(action)) => self.act(event_loop, action),
+                    Some(Request::Act(action)) => {
+                        if action != Action::Run(RunAction::Help) {
+                            session.readings.help = false;
+                        }
+                        self.act(event_loop, action);
+                    }
                     Some(Request::Change(change)) if panel::apply(session, change) => {
                         self.scene_changed();
                     }

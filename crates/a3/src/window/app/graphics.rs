@@ -11,7 +11,8 @@ use winit::window::Window;
 
 use super::adapter::{choose_format, clamped, transfer, window_samples};
 use super::layer::Layer;
-use crate::window::hud::panel::{self, Request};
+use super::thumbnails::Thumbnails;
+use crate::window::hud::panel::Request;
 use crate::window::hud::{self, Overlay, layout};
 use crate::window::session::Session;
 
@@ -40,6 +41,8 @@ pub struct Graphics {
     drawn: Vec<[usize; 2]>,
     overlay: Overlay,
     egui_winit: egui_winit::State,
+    /// Pictures of scenes, once their list was opened.
+    thumbnails: Option<Thumbnails>,
     /// Scale factor of text and panel, on top of the screen's own.
     zoom: f32,
     /// Whether the surface must be resized to the window.
@@ -86,6 +89,7 @@ impl Graphics {
             surface,
             config,
             format,
+            thumbnails: None,
             zoom: 1.0,
             stale: false,
             gpu,
@@ -100,7 +104,7 @@ impl Graphics {
 
     /// Returns the parts of the window that the panes fill.
     pub fn tiles(&self, session: &Session) -> Vec<Tile> {
-        let size = panel::picture_size(session, self.size(), self.scale());
+        let size = layout::picture_size(session, self.size(), self.scale());
         layout::tiles(session.runs.panes.len(), size, self.scale())
     }
 
@@ -256,7 +260,9 @@ impl Graphics {
         }
         // egui's renderer panics on a device that has just been lost.
         self.gpu.check()?;
+        let more = self.draw_thumbnail(session);
         let (before, again, request) = self.draw_text(&mut encoder, &text_view, session, cursor);
+        let again = if more { Some(Duration::ZERO) } else { again };
         self.gpu
             .queue
             .submit(before.into_iter().chain([encoder.finish()]));
@@ -264,6 +270,23 @@ impl Graphics {
         self.gpu.queue.present(frame);
         self.gpu.check()?;
         Ok(FrameOutcome::Drawn(again, request))
+    }
+
+    /// Draws the next missing picture of the list of scenes, if that is open, and returns whether
+    /// there was one.
+    fn draw_thumbnail(&mut self, session: &Session) -> bool {
+        if session.list.is_none() {
+            return false;
+        }
+        let gpu = &self.gpu;
+        let thumbnails = self
+            .thumbnails
+            .get_or_insert_with(|| Thumbnails::new(gpu, session));
+        let more = thumbnails.draw_next(gpu, session, &mut self.overlay);
+        if more {
+            self.invalidate_text();
+        }
+        more
     }
 
     /// Draws the text over the picture, by way of its layer if it has one. Returns the commands to
@@ -306,18 +329,17 @@ impl Graphics {
         cursor: CursorIcon,
     ) -> (Vec<wgpu::CommandBuffer>, Option<Duration>, Option<Request>) {
         let mut input = self.egui_winit.take_egui_input(&self.window);
-        let right = panel::inset(session, self.size(), self.scale());
+        let [right, bottom] = layout::insets(session, self.size(), self.scale());
         input.safe_area_insets = Some(egui::SafeAreaInsets(egui::epaint::MarginF32 {
             right,
+            bottom,
             ..Default::default()
         }));
         let mut request = None;
+        let pictures = self.thumbnails.as_ref().map(Thumbnails::pictures);
+        let pictures = pictures.unwrap_or_default();
         let mut output = self.overlay.lay_out(&self.gpu, input, |ctx| {
-            hud::show(ctx, &session.runs.panes, &session.readings);
-            request = panel::show(ctx, session).or(request);
-            request = hud::show_list(ctx, session)
-                .map(Request::Change)
-                .or(request);
+            request = hud::show_all(ctx, session, &pictures).or(request);
         });
         let mut answer = std::mem::take(&mut output.platform_output);
         if answer.cursor_icon == CursorIcon::Default {

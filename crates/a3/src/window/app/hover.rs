@@ -4,7 +4,6 @@
 use egui::CursorIcon;
 
 use super::mouse::{Drag, Mouse};
-use super::pointer::MAX_CLICK_DISTANCE;
 use super::screen::Screen;
 use crate::draw::show::Target;
 use crate::window::session::Session;
@@ -19,16 +18,8 @@ impl Mouse {
             Drag::Pull(_) => (CursorIcon::Grabbing, None),
             Drag::Orbit => (CursorIcon::AllScroll, None),
             Drag::Pan => (CursorIcon::Move, None),
-            Drag::Scrub => (CursorIcon::ResizeHorizontal, None),
             Drag::Select { .. } => (CursorIcon::Crosshair, None),
             Drag::None if !pointer.is_over_picture(session, screen) => (CursorIcon::Default, None),
-            Drag::None
-                if pointer
-                    .timeline_share(session, screen, MAX_CLICK_DISTANCE)
-                    .is_some() =>
-            {
-                (CursorIcon::ResizeHorizontal, None)
-            }
             Drag::None if shift => (CursorIcon::Crosshair, None),
             Drag::None => match pointer.hit(session, screen, at).map(|(target, _)| target) {
                 Some(target @ Target::Particle(_)) => (CursorIcon::Grab, Some(target)),

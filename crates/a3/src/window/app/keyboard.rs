@@ -4,7 +4,7 @@ use winit::event::KeyEvent;
 use winit::keyboard::{Key, NamedKey};
 
 use crate::window::hud::panel::PanelKey;
-use crate::window::session::{self, Action, TextKey};
+use crate::window::session::{self, Action, TextKey, WindowAction};
 
 /// Returns the action of a key, if it has one.
 pub fn action(key: &Key) -> Option<Action> {
@@ -32,6 +32,20 @@ pub fn zoom(key: &Key) -> Option<isize> {
         Key::Character(text) if text == "0" => Some(0),
         _ => None,
     }
+}
+
+/// Returns the action of a key that is pressed with Ctrl, if it has one.
+pub fn control_action(key: &Key) -> Option<Action> {
+    let Key::Character(text) = key else {
+        return None;
+    };
+    let action = match text.to_lowercase().as_str() {
+        "z" => WindowAction::Undo,
+        "y" => WindowAction::Redo,
+        "q" => WindowAction::Close,
+        _ => return None,
+    };
+    Some(Action::Window(action))
 }
 
 /// Returns the meaning of a key in the panel, if it has one.
@@ -66,11 +80,11 @@ pub fn text_key(event: &KeyEvent) -> Option<TextKey> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::window::session::{KEYS, RunAction};
+    use crate::window::session::{RunAction, bindings};
 
     #[test]
     fn every_key_of_the_table_can_be_typed() {
-        for binding in KEYS {
+        for binding in bindings() {
             for &key in binding.keys {
                 let typed = match key {
                     "Space" => Key::Named(NamedKey::Space),
@@ -93,5 +107,18 @@ mod tests {
         assert_eq!(action(&Key::Character("10".into())), None);
         assert_eq!(action(&Key::Character("Tab".into())), None);
         assert_eq!(action(&Key::Named(NamedKey::F2)), None);
+    }
+
+    #[test]
+    fn with_ctrl_few_letters_do_anything_and_none_what_it_does_alone() {
+        let mut acting = String::new();
+        for letter in 'a'..='z' {
+            let key = Key::Character(letter.to_string().into());
+            if let Some(with) = control_action(&key) {
+                acting.push(letter);
+                assert!(letter == 'z' || Some(with) != action(&key), "{letter}");
+            }
+        }
+        assert_eq!(acting, "qyz");
     }
 }

@@ -22,6 +22,7 @@ mod screen;
 mod start;
 mod state;
 mod status;
+mod thumbnails;
 #[cfg(not(target_arch = "wasm32"))]
 mod watch;
 

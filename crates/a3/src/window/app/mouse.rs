@@ -1,5 +1,4 @@
-//! Actions of the mouse: pulling, turning and moving the camera, pinning, and dragging the
-//! timeline.
+//! Actions of the mouse: pulling, turning and moving the camera, and pinning.
 
 use a3_core::Vector3;
 use egui::CursorIcon;
@@ -7,7 +6,7 @@ use winit::dpi::PhysicalPosition;
 use winit::event::{MouseButton, MouseScrollDelta};
 
 use super::pick::Grip;
-use super::pointer::{MAX_CLICK_DISTANCE, Pointer};
+use super::pointer::Pointer;
 use super::screen::Screen;
 use crate::draw::show::{self, Target};
 use crate::window::session::{Selection, Session, looks};
@@ -28,8 +27,6 @@ pub enum Drag {
     Orbit,
     /// Move the camera.
     Pan,
-    /// Drag the timeline.
-    Scrub,
     /// Pin or free the particles in a box between the corner `from` (px) and the pointer.
     Select { from: [f32; 2], pinned: bool },
 }
@@ -73,9 +70,6 @@ impl Mouse {
         }
         let pane = self.pointer.pane(session, screen);
         let double = self.pointer.press();
-        let share = self
-            .pointer
-            .timeline_share(session, screen, MAX_CLICK_DISTANCE);
         let hit = self.pointer.hit(session, screen, pane);
         let select = |pinned| Drag::Select {
             from: self.pointer.position,
@@ -83,10 +77,6 @@ impl Mouse {
         };
         let drag = match button {
             MouseButton::Left | MouseButton::Right if shift => select(button == MouseButton::Left),
-            MouseButton::Left if share.is_some() => {
-                session.scrub_to(share.unwrap_or(1.0));
-                Drag::Scrub
-            }
             MouseButton::Left => {
                 if double {
                     let particle = hit.and_then(|(target, _)| target.particle());
@@ -103,6 +93,7 @@ impl Mouse {
             MouseButton::Right | MouseButton::Middle => Drag::Pan,
             _ => return,
         };
+        session.pulled |= matches!(drag, Drag::Pull(_));
         (self.drag, self.pane, self.button) = (drag, pane, Some(button));
     }
 
@@ -200,12 +191,10 @@ impl Mouse {
     ) {
         let position = [position.x as f32, position.y as f32];
         self.pointer.inside = true;
-        if session.panel.open {
-            let under = screen.pane_at(session, position);
-            session.panel.pane = under.unwrap_or(session.panel.pane);
-            // The panel highlights the row under the pointer.
-            screen.redraw();
-        }
+        let under = screen.pane_at(session, position);
+        session.panel.pane = under.unwrap_or(session.panel.pane);
+        // Panel, bar, lists and help highlight what is under the pointer, and follow its drags.
+        screen.redraw();
         let tile = screen.tile(session, self.pane);
         // Do not move the camera until the pointer is too far for a click.
         self.pointer.update_click(position, screen.scale());
@@ -219,16 +208,9 @@ impl Mouse {
         match self.drag {
             Drag::Orbit => camera.orbit(-ORBIT_ANGLE * dx * aspect, ORBIT_ANGLE * dy),
             Drag::Pan => camera.pan(-dx * aspect, dy),
-            Drag::Scrub => {
-                let share = self.pointer.timeline_share(session, screen, f32::INFINITY);
-                if let Some(share) = share {
-                    session.scrub_to(share);
-                }
-            }
             Drag::Select { .. } => self.show_selection(session, screen),
-            Drag::Pull(_) | Drag::None => return,
+            Drag::Pull(_) | Drag::None => {}
         }
-        screen.redraw();
     }
 
     /// Zooms towards the pointer by the notches of the wheel.

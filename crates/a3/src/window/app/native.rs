@@ -7,7 +7,6 @@ use std::time::Instant;
 use a3_render::{GpuError, Offscreen};
 use arboard::Clipboard;
 use winit::dpi::LogicalSize;
-use winit::event_loop::ActiveEventLoop;
 #[cfg(target_os = "linux")]
 use winit::platform::wayland::WindowAttributesExtWayland;
 use winit::window::{Window, WindowAttributes};
@@ -34,6 +33,9 @@ pub fn attributes() -> WindowAttributes {
     let attributes = WindowAttributesExtWayland::with_name(attributes, "a3", "a3");
     attributes
 }
+
+/// Whether the program closes its window; a page is closed by the browser.
+pub const CAN_QUIT: bool = true;
 
 /// Events from outside the window: none.
 pub type Event = ();
@@ -77,7 +79,7 @@ impl Platform {
     #[expect(clippy::unused_self, reason = "a page saves the next frame")]
     pub fn save_picture(&mut self, session: &mut Session, graphics: Option<&Graphics>) -> String {
         match write_picture(session, graphics) {
-            Ok(name) => format!("saved {name}"),
+            Ok(name) => format!("Saved {name}."),
             Err(failure) => failure.to_string(),
         }
     }
@@ -91,8 +93,8 @@ impl Platform {
         }
         let copied = self.clipboard.as_mut().map(|board| board.set_text(line));
         match copied {
-            Some(Ok(())) => format!("copied: {line}"),
-            _ => format!("on the terminal: {line}"),
+            Some(Ok(())) => format!("Copied: {line}"),
+            _ => format!("Written to the terminal: {line}"),
         }
     }
 
@@ -105,12 +107,6 @@ impl Platform {
     pub fn next_check(&self) -> Option<Instant> {
         self.watch.as_ref().map(Watch::next)
     }
-}
-
-/// Closes the window, or returns the reason why it stays open.
-pub fn quit(event_loop: &ActiveEventLoop) -> Option<&'static str> {
-    event_loop.exit();
-    None
 }
 
 /// Opens the lessons, and returns a message.

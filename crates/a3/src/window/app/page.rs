@@ -6,7 +6,7 @@ use std::path::PathBuf;
 
 use a3_render::{Gpu, GpuError};
 use web_time::Instant;
-use winit::event_loop::{ActiveEventLoop, EventLoopProxy};
+use winit::event_loop::EventLoopProxy;
 use winit::platform::web::WindowAttributesExtWebSys;
 use winit::window::{Window, WindowAttributes};
 
@@ -26,6 +26,9 @@ thread_local! {
 pub fn attributes() -> WindowAttributes {
     Window::default_attributes().with_canvas(browser::canvas())
 }
+
+/// Whether the program closes its window; a page is closed by the browser.
+pub const CAN_QUIT: bool = false;
 
 /// Events from the page.
 pub enum Event {
@@ -115,7 +118,7 @@ impl Platform {
         let link = browser::address(words);
         browser::copy(&link);
         let _ = terminal::say(line);
-        format!("copied: {link}")
+        format!("Copied: {link}")
     }
 
     /// Returns false: a page watches no files.
@@ -162,11 +165,6 @@ impl Films {
     pub fn time_to_advance(&self, _: &Session, real: f64) -> f64 {
         real
     }
-}
-
-/// Returns the reason why the page stays open: only the browser closes it.
-pub fn quit(_: &ActiveEventLoop) -> Option<&'static str> {
-    Some("The browser closes the page.")
 }
 
 /// Opens the lessons, which are beside the page, and returns a message.

@@ -5,13 +5,13 @@ use web_time::{Duration, Instant};
 use super::pick::{self, Grip};
 use super::screen::Screen;
 use crate::draw::show::Target;
-use crate::window::hud::{layout, panel};
+use crate::window::hud::layout;
 use crate::window::session::Session;
 
 /// Distance from the pointer within which a particle is picked (points).
 const PICK_DISTANCE: f32 = 18.0;
 /// Largest motion of the pointer during a click (points).
-pub const MAX_CLICK_DISTANCE: f32 = 4.0;
+const MAX_CLICK_DISTANCE: f32 = 4.0;
 /// Longest time between the two presses of a double click.
 const MAX_DOUBLE_CLICK_TIME: Duration = Duration::from_millis(400);
 
@@ -60,9 +60,10 @@ impl Pointer {
         self.still
     }
 
-    /// Returns the pane under the pointer, or else the first.
+    /// Returns the pane under the pointer, or else the last that was.
     pub fn pane(&self, session: &Session, screen: &Screen) -> usize {
-        screen.pane_at(session, self.position).unwrap_or(0)
+        let last = session.panel.pane.min(session.runs.panes.len() - 1);
+        screen.pane_at(session, self.position).unwrap_or(last)
     }
 
     /// Returns the particle or obstacle under the pointer in a pane; `None` in a diverged run.
@@ -74,21 +75,11 @@ impl Pointer {
         pick::pick(run, &session.view.camera, place, tile.aspect(), reach)
     }
 
-    /// Returns the pointer's position as a share of the timeline, if that is shown and at most
-    /// `margin` (points) away.
-    pub fn timeline_share(&self, session: &Session, screen: &Screen, margin: f32) -> Option<f32> {
-        let graphics = screen.graphics.as_ref()?;
-        session.readings.rewound?;
-        let (scale, size) = (graphics.scale(), graphics.size());
-        let size = [size.0, size.1].map(|side| side as f32 / scale);
-        let [x, y] = self.position.map(|px| px / scale);
-        let [left, top, width, height] = layout::timeline(size);
-        let (from, to) = layout::track(left, width);
-        let inside = x > left - margin
-            && x < left + width + margin
-            && y > top - margin
-            && y < top + height + margin;
-        inside.then_some(((x - from) / (to - from)).clamp(0.0, 1.0))
+    /// Returns whether the position is in the picture, in a window of `size` (px) at `scale` pixels
+    /// per point.
+    pub fn is_in_picture(&self, session: &Session, size: (u32, u32), scale: f32) -> bool {
+        let ([x, y], free) = (self.position, layout::picture_size(session, size, scale));
+        (0.0..free.0 as f32).contains(&x) && (0.0..free.1 as f32).contains(&y)
     }
 
     /// Returns whether the pointer is over the picture, where presses act on the scene.
@@ -96,9 +87,7 @@ impl Pointer {
         let Some(graphics) = &screen.graphics else {
             return false;
         };
-        let (size, [x, y]) = (graphics.size(), self.position);
-        let free = panel::picture_size(session, size, graphics.scale());
-        let inside = (0.0..free.0 as f32).contains(&x) && (0.0..free.1 as f32).contains(&y);
+        let inside = self.is_in_picture(session, graphics.size(), graphics.scale());
         inside && self.inside && session.list.is_none() && !session.readings.help
     }
 }

@@ -10,8 +10,9 @@ pub fn remember(before: &Settings, session: &Session, screen: &Screen) {
     let mut now = Settings {
         interface_scale: screen.zoom,
         full_screen: screen.is_full_screen(),
-        dark: session.runs.panes[0].show.dark,
+        dark: session.panel.dark.unwrap_or(before.dark),
         panel: session.panel.open,
+        pulled: session.pulled,
         frame_limit: session.panel.frame_limit,
         film: session.panel.film,
         film_seconds: session.panel.film_seconds,

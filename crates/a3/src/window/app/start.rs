@@ -8,6 +8,7 @@ use winit::event_loop::EventLoop;
 use super::platform::{Event, Platform};
 use super::state::App;
 use crate::base::failure::Failure;
+use crate::cli::Look;
 use crate::window::session::{Session, looks};
 use crate::window::settings::Settings;
 
@@ -20,13 +21,12 @@ pub enum End {
     NoWindow(String, Box<Session>),
 }
 
-/// Opens the window, and returns when it closes. With `status`, writes status lines to stderr.
-/// Reloads the scene when one of `files` changes. Writes the `settings` back at the end. Fails with
-/// the failure that closed the window.
+/// Opens the window, and returns when it closes. Reloads the scene when one of `files` changes.
+/// Writes the `settings` back at the end. Fails with the failure that closed the window.
 #[cfg(not(target_arch = "wasm32"))]
 pub fn open(
     mut session: Session,
-    status: bool,
+    look: &Look,
     files: Vec<PathBuf>,
     settings: Option<Settings>,
 ) -> Result<End, Failure> {
@@ -34,9 +34,10 @@ pub fn open(
         Ok(event_loop) => event_loop,
         Err(why) => return Ok(End::NoWindow(why, Box::new(session))),
     };
-    prepare(&mut session, settings.as_ref());
+    prepare(&mut session, look, settings.as_ref());
     let display = event_loop.owned_display_handle();
-    let mut app = App::new(session, display, status, Platform::new(files), settings);
+    let platform = Platform::new(files);
+    let mut app = App::new(session, display, look.status, platform, settings);
     event_loop.run_app(&mut app).map_err(Failure::run)?;
     match app.failure {
         None => Ok(End::Closed),
@@ -48,36 +49,33 @@ pub fn open(
     }
 }
 
-/// Opens the window in a page, and returns at once. With `status`, writes status lines to the
-/// console. Fails if there is no event loop.
+/// Opens the window in a page, and returns at once. Fails if there is no event loop.
 #[cfg(target_arch = "wasm32")]
-pub fn spawn(
-    mut session: Session,
-    status: bool,
-    settings: Option<Settings>,
-) -> Result<(), Failure> {
+pub fn spawn(mut session: Session, look: &Look, settings: Option<Settings>) -> Result<(), Failure> {
     use winit::platform::web::EventLoopExtWebSys;
     let event_loop = EventLoop::<Event>::with_user_event().build();
     let event_loop = event_loop.map_err(Failure::run)?;
     super::platform::connect(event_loop.create_proxy());
-    prepare(&mut session, settings.as_ref());
+    prepare(&mut session, look, settings.as_ref());
     let display = event_loop.owned_display_handle();
     event_loop.spawn_app(App::new(
         session,
         display,
-        status,
+        look.status,
         Platform::default(),
         settings,
     ));
     Ok(())
 }
 
-/// Applies the saved settings to a session, and marks it as being in a window.
-fn prepare(session: &mut Session, settings: Option<&Settings>) {
+/// Applies the saved settings to a session, as far as its `look` does not say otherwise, and marks
+/// it as being in a window.
+fn prepare(session: &mut Session, look: &Look, settings: Option<&Settings>) {
     session.readings.in_window = true;
     if let Some(settings) = settings {
         session.panel.open = settings.panel;
-        if settings.dark {
+        session.pulled = settings.pulled;
+        if settings.dark && !look.manner.light {
             looks::set_dark(&mut session.runs.panes, true);
         }
         session.panel.film = settings.film;

@@ -22,6 +22,9 @@ use crate::window::session::{Action, RunAction, Session, WindowAction};
 use crate::window::settings::Settings;
 use crate::window::{command_line, keep};
 
+/// The action that closes the window.
+const CLOSE: Action = Action::Window(WindowAction::Close);
+
 /// The window application.
 pub struct App {
     /// The session.
@@ -102,29 +105,34 @@ impl App {
             graphics.lose_device();
             self.screen.redraw();
         }
-        if let (true, Some(by)) = (
-            self.modifiers.control_key(),
-            keyboard::zoom(&event.logical_key),
-        ) {
-            let said = self.screen.scale_interface(by);
-            return self.session.readings.say(said);
+        self.screen.redraw();
+        if self.session.readings.asks_to_quit {
+            self.session.readings.asks_to_quit = false;
+            match event.logical_key {
+                Key::Named(NamedKey::Enter) => return self.act(event_loop, CLOSE),
+                Key::Named(NamedKey::Escape) => return,
+                _ => {}
+            }
+        }
+        if self.modifiers.control_key() || self.modifiers.super_key() {
+            return self.press_with_control(event_loop, &event.logical_key);
+        }
+        if self.modifiers.alt_key() {
+            return;
         }
         let typed = keyboard::text_key(event);
         if self.session.list.is_some() {
             if typed.is_some_and(|key| self.session.press_list(key)) {
                 self.scene_changed();
             }
-            self.screen.redraw();
             return;
         }
         if typed.is_some_and(|key| panel::press_text(&mut self.session, key)) {
-            self.screen.redraw();
             return;
         }
         let key = keyboard::panel_key(&event.logical_key);
         let shift = self.modifiers.shift_key();
         if key.is_some_and(|key| panel::press(&mut self.session, key, shift)) {
-            self.screen.redraw();
             return;
         }
         let Some(action) = keyboard::action(&event.logical_key) else {
@@ -140,6 +148,16 @@ impl App {
             )
         );
         if !event.repeat || repeats {
+            self.act(event_loop, action);
+        }
+    }
+
+    /// Handles a key that is pressed with Ctrl, which never has the effect of the key alone.
+    fn press_with_control(&mut self, event_loop: &ActiveEventLoop, key: &Key) {
+        if let Some(by) = keyboard::zoom(key) {
+            let said = self.screen.scale_interface(by);
+            self.session.readings.say(said);
+        } else if let Some(action) = keyboard::control_action(key) {
             self.act(event_loop, action);
         }
     }
@@ -166,12 +184,22 @@ impl App {
     fn act_in_window(&mut self, event_loop: &ActiveEventLoop, action: WindowAction, pane: usize) {
         let (session, graphics) = (&mut self.session, self.screen.graphics.as_ref());
         let message = match action {
+            WindowAction::Quit if std::mem::take(&mut session.readings.help) => None,
+            WindowAction::Quit if platform::CAN_QUIT => {
+                session.readings.asks_to_quit = true;
+                None
+            }
             WindowAction::Quit => {
-                let stays = platform::quit(event_loop);
-                if stays.is_some() {
-                    self.remember();
-                }
-                stays.map(Into::into)
+                self.remember();
+                Some("The browser closes the page.".into())
+            }
+            WindowAction::Close => {
+                event_loop.exit();
+                None
+            }
+            WindowAction::Stay => {
+                session.readings.asks_to_quit = false;
+                None
             }
             WindowAction::Picture => Some(self.platform.save_picture(session, graphics)),
             WindowAction::FullScreen => {
@@ -189,7 +217,7 @@ impl App {
                 let panes = &session.runs.panes;
                 Some(session.view.follow(panes, pane, particle))
             }
-            WindowAction::WritePlots => Some(said("wrote", write_plots(session))),
+            WindowAction::WritePlots => Some(said("Wrote", write_plots(session))),
             WindowAction::Record => {
                 self.platform.films.record(session, graphics);
                 None
@@ -202,13 +230,13 @@ impl App {
                 Ok(line) => self.platform.copy(&line),
                 Err(failure) => failure.to_string(),
             }),
-            WindowAction::SaveRun => Some(said("saved", keep::save(session, pane))),
+            WindowAction::SaveRun => Some(said("Saved", keep::save(session, pane))),
             WindowAction::LoadRun => {
                 let loaded = match session.scenes.checkpoint.clone() {
                     None => "No run was saved yet: key k saves one.".into(),
                     Some(path) => {
                         let taken = keep::load(session, &path);
-                        said("loaded", taken.map(|()| path))
+                        said("Loaded", taken.map(|()| path))
                     }
                 };
                 session.readings.say(loaded);
@@ -240,7 +268,7 @@ impl App {
 /// Returns a message about a file that was written or read, or about the failure.
 fn said(done: &str, file: Result<PathBuf, Failure>) -> String {
     match file {
-        Ok(path) => format!("{done} {}", path.display()),
+        Ok(path) => format!("{done} {}.", path.display()),
         Err(failure) => failure.to_string(),
     }
 }

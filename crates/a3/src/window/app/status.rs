@@ -50,7 +50,7 @@ impl Status {
             values.join(",")
         };
         let state = format!(
-            "scene={} solver={} step={} style={:?} wind={} swing={} paused={} help={} panel={} list={} film={} cursor={cursor:?} followed={} parallel={} scale={} dark={} blown={} grabbed={grabbed} \
+            "scene={} solver={} step={} style={:?} wind={} swing={} paused={} help={} asks={} hint={} panel={} list={} film={} cursor={cursor:?} followed={} parallel={} scale={} dark={} blown={} grabbed={grabbed} \
              colour={} arrows={} slowness={} scrubbed={} pins={} springs_of={} size={}x{} visible={} devices={}",
             run.scene().name,
             run.method().name,
@@ -60,6 +60,8 @@ impl Status {
             run.swinging(),
             readings.paused,
             readings.help,
+            readings.asks_to_quit,
+            !session.pulled,
             session.panel.open,
             session.list.is_some(),
             readings.film.is_some(),
@@ -74,7 +76,7 @@ impl Status {
             panes[0].show.colouring.quantity.map_or("-", Quantity::name),
             panes[0].show.field.arrows.map_or("-", Arrows::name),
             readings.slowness,
-            readings.rewound.is_some(),
+            readings.rewound(),
             run.model().network().map_or(0, |n| n.pins().count()),
             panes[0]
                 .show

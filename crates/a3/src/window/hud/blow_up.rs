@@ -4,7 +4,7 @@ use a3_core::{BlowUp, Cause, Control};
 use egui::Ui;
 
 use super::style::{ALARM, text};
-use super::words::digits;
+use super::words::{digits, seconds};
 use crate::window::session::Pane;
 
 /// Writes when the run blew up, which limit the step exceeded, and which step would have been
@@ -15,25 +15,38 @@ pub fn explain(ui: &mut Ui, pane: &Pane, blow_up: &BlowUp) {
     let same = method == pane.simulation.method().title;
     let limit = pane.limit.limit().map(|limit| limit.step);
     ui.label(text(match (blow_up.control, pane.limit.would_hold()) {
-        _ if blow_up.cause == Cause::ReadsVelocity => format!("{method} cannot integrate forces that depend on velocity."),
+        _ if blow_up.cause == Cause::ReadsVelocity => {
+            format!("{method} cannot integrate forces that depend on velocity.")
+        }
         _ if no_step_is_stable(blow_up) => "A shorter step does not help.".into(),
-        (Control::Tolerance(tolerance), _) if matches!(blow_up.cause, Cause::StepTooSmall { .. }) => {
-            format!("{method} found no step that meets a tolerance of {tolerance:e}. Try a larger one.")
+        (Control::Tolerance(tolerance), _)
+            if matches!(blow_up.cause, Cause::StepTooSmall { .. }) =>
+        {
+            format!(
+                "{method} found no step that meets a tolerance of {tolerance:e}. Try a larger one."
+            )
         }
         (Control::Tolerance(tolerance), _) => {
             format!("A tolerance of {tolerance:e} was too large for {method}.")
         }
         (Control::Step(step), Some(would_hold)) if same => {
-            let past = limit.filter(|limit| step > *limit).map(|limit| {
-                format!(": past its limit here of {} ms", digits(1e3 * limit))
-            });
+            let past = limit
+                .filter(|limit| step > *limit)
+                .map(|limit| format!(": past its limit here of {} ms", digits(1e3 * limit)));
             let past = past.unwrap_or_default();
-            format!("A step of {step} s was too long for {method}{past}. {would_hold} s would have held.")
+            format!(
+                "A step of {} s was too long for {method}{past}. {} s would have held.",
+                seconds(step),
+                seconds(would_hold)
+            )
         }
         (Control::Step(step), None) if same => format!(
-            "A step of {step} s was too long for {method}, and no shorter one was found to hold."
+            "A step of {} s was too long for {method}, and no shorter one was found to hold.",
+            seconds(step)
         ),
-        (Control::Step(step), _) => format!("A step of {step} s was too long for {method}."),
+        (Control::Step(step), _) => {
+            format!("A step of {} s was too long for {method}.", seconds(step))
+        }
     }));
 }
 
@@ -52,7 +65,8 @@ pub fn advice(blow_up: &BlowUp) -> String {
     if is_pinched(blow_up) {
         return "Press , to go back, or x to let surfaces pass through one another, then r.".into();
     }
-    "Press < to go back, - for a shorter step, or a digit for another solver; or r to start again."
+    "Press , or drag the timeline to see how, - for a shorter step, or a digit for another solver; or r to \
+     start again."
         .into()
 }
 
@@ -62,7 +76,7 @@ mod tests {
 
     use crate::draw::show::{Manner, Show};
     use crate::window::hud::{pane, read};
-    use crate::window::session::{Pane, Readings};
+    use crate::window::session::{Pane, Readings, RunAction, session, times};
 
     #[test]
     fn a_blow_up_says_which_limit_was_passed() {
@@ -139,5 +153,56 @@ mod tests {
                 );
             }
         }
+    }
+
+    /// Each of the last steps before the blow-up is a moment, up to the last valid state.
+    #[test]
+    fn a_blow_up_can_be_seen_step_by_step() {
+        for (words, step) in [
+            (["r", "0.05", "--scene", "mit"], 0.05),
+            (["e", "0.002", "--scene", "mit"], 0.002),
+        ] {
+            let mut session = session(&words);
+            session.readings.in_window = true;
+            while session.runs.panes[0].alive() {
+                session.tick(1.0 / 60.0);
+            }
+            let end = session.runs.first().blow_up().unwrap().step;
+            assert!(session.readings.timeline.unwrap().blew_up);
+            let (mut energies, mut steps) = (vec![], vec![]);
+            let count = 40.min(end - 1);
+            for _ in 0..count {
+                session.act(RunAction::Scrub(-1), 0);
+                energies.push(session.runs.first().energy().unwrap().total());
+                steps.push(session.runs.first().steps());
+            }
+            // The newest moment is the state before the step that failed.
+            let expected: Vec<_> = (0..count).map(|k| end - 2 - k).collect();
+            assert_eq!(steps, expected, "{words:?}");
+            // The motion grows, and faster and faster.
+            let third = energies.len() / 3;
+            let [late, middle, early] = [0, third, 2 * third].map(|k| energies[k]);
+            assert!(late - middle > middle - early, "{energies:?}");
+            assert!(session.readings.timeline.unwrap().back < 45.0 * step);
+            // It blows up again at the same step.
+            session.act(RunAction::Pause, 0);
+            while session.runs.panes[0].alive() {
+                session.tick(1.0 / 60.0);
+            }
+            assert_eq!(session.runs.first().blow_up().unwrap().step, end);
+        }
+    }
+
+    #[test]
+    fn in_a_comparison_all_runs_go_back_to_the_steps_before_a_blow_up() {
+        let mut session = session(&["compare", "e:0.002", "r:0.01", "--scene", "mit"]);
+        session.readings.in_window = true;
+        while session.runs.panes[0].alive() {
+            session.tick(1.0 / 60.0);
+        }
+        session.act(RunAction::Scrub(-10), 0);
+        let times = times(&session);
+        assert!(session.runs.panes[0].alive());
+        assert!((times[0] - times[1]).abs() < 0.0101, "{times:?}");
     }
 }

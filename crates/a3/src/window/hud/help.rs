@@ -1,18 +1,30 @@
-//! The help: keys, mouse and solvers.
+//! The help: all that a user can do, by its purpose. A click on a row does it.
 
 use a3_core::integrators;
-use egui::{Align2, Area, Context, Id, ScrollArea, Ui, vec2};
+use egui::{
+    Align2, Area, Color32, Context, CursorIcon, FontId, Id, ScrollArea, Sense, Ui, pos2, vec2,
+};
 
-use super::style::{MARGIN, sheet, text, title};
-use crate::window::session::{KEYS, MOUSE};
+use super::list::pressed_at;
+use super::panel::Request;
+use super::style::{MARGIN, TEXT, sheet, title};
+use crate::window::session::{Action, Binding, GROUPS, Group, MOUSE, RunAction, WindowAction};
 
 /// Width of a window above which the help has three columns (points).
-const THREE_COLUMN_WIDTH: f32 = 800.0;
+const THREE_COLUMN_WIDTH: f32 = 900.0;
+/// Colour of keys and gestures.
+const KEY: Color32 = Color32::from_rgb(38, 84, 132);
+/// Height of a row (points).
+const ROW_HEIGHT: f32 = 21.0;
+/// Widths of a key, of a gesture of the mouse, and of what follows (points).
+const WIDTHS: [f32; 3] = [58.0, 128.0, 190.0];
 
-/// Shows the help, for one pane or `several`. In a small window it scrolls by the wheel.
-pub fn help(ctx: &Context, several: bool) {
+/// Shows the help, for one pane or `several`, and returns the request of the mouse. In a small
+/// window it scrolls by the wheel.
+pub fn help(ctx: &Context, several: bool) -> Option<Request> {
     let window = ctx.content_rect().shrink(MARGIN);
-    Area::new(Id::unique("help"))
+    let mut request = None;
+    let area = Area::new(Id::unique("help"))
         .anchor(Align2::CENTER_CENTER, [0.0, 0.0])
         .show(ctx, |ui| {
             ui.style_mut().interaction.selectable_labels = false;
@@ -24,72 +36,127 @@ pub fn help(ctx: &Context, several: bool) {
                     .max_height(room.y.max(40.0))
                     .min_scrolled_height(room.y.max(40.0))
                     .show(ui, |ui| {
-                        columns(ui, several, window.width() > THREE_COLUMN_WIDTH);
+                        request = columns(ui, several, window.width() > THREE_COLUMN_WIDTH);
                     });
             });
         });
+    // A click beside the help closes it, except on the bar.
+    let pressed = pressed_at(ctx).is_some_and(|at| ctx.content_rect().contains(at));
+    if pressed && !area.response.contains_pointer() {
+        request = Some(Request::Act(Action::Run(RunAction::Help)));
+    }
+    request
 }
 
-/// Writes keys, solvers and mouse side by side, or below one another in a narrow window.
-fn columns(ui: &mut Ui, several: bool, wide: bool) {
-    let rows = |ui: &mut Ui, heading: &str, rows: &[(String, &str)]| {
+/// Writes all groups in three columns, or below one another in a narrow window. Returns the request
+/// of the mouse.
+fn columns(ui: &mut Ui, several: bool, wide: bool) -> Option<Request> {
+    let [running, choose, change, show, look, keep, window] = &GROUPS;
+    let mut request = None;
+    let mut column = |ui: &mut Ui, groups: &[&Group], mouse: bool, numbered: bool| {
         ui.vertical(|ui| {
-            ui.label(title(heading));
-            egui::Grid::new(heading)
-                .num_columns(2)
-                .spacing([16.0, 4.0])
-                .show(ui, |ui| {
-                    for (key, does) in rows {
-                        ui.label(text(key).strong());
-                        ui.label(text(*does));
-                        ui.end_row();
-                    }
-                });
+            ui.spacing_mut().item_spacing.y = 0.0;
+            if mouse {
+                gestures(ui);
+            }
+            for group in groups {
+                request = bindings(ui, group).or(request);
+            }
+            if numbered {
+                request = solvers(ui, several).or(request);
+            }
         });
-    };
-    let keys: Vec<_> = KEYS
-        .iter()
-        .map(|binding| (binding.keys.join("  "), binding.help))
-        .collect();
-    let solvers = integrators::METHODS.iter().enumerate();
-    let solvers: Vec<_> = solvers
-        .map(|(i, method)| (((i + 1) % 10).to_string(), method.title))
-        .take(10)
-        .collect();
-    let mouse: Vec<_> = MOUSE
-        .iter()
-        .map(|(what, does)| ((*what).to_owned(), *does))
-        .collect();
-    let heading = if several {
-        "Solvers, under the pointer"
-    } else {
-        "Solvers"
     };
     if !wide {
-        rows(ui, "Keys", &keys);
-        ui.add_space(10.0);
-        rows(ui, "Mouse", &mouse);
-        ui.add_space(10.0);
-        return rows(ui, heading, &solvers);
+        let all: Vec<_> = GROUPS.iter().collect();
+        column(ui, &all, true, true);
+        return request;
     }
-    let (first, second) = keys.split_at(keys.len().div_ceil(2));
     ui.horizontal_top(|ui| {
-        ui.spacing_mut().item_spacing.x = 28.0;
-        rows(ui, "Keys", first);
-        rows(ui, "More keys", second);
-        ui.vertical(|ui| {
-            rows(ui, heading, &solvers);
-            ui.add_space(10.0);
-            rows(ui, "Mouse", &mouse);
-        });
+        ui.spacing_mut().item_spacing.x = 26.0;
+        column(ui, &[change, choose, show], true, false);
+        column(ui, &[running, look, window], false, false);
+        column(ui, &[keep], false, true);
     });
+    request
+}
+
+/// Writes a heading.
+fn heading(ui: &mut Ui, words: &str) {
+    ui.add_space(4.0);
+    ui.label(title(words).size(15.0));
+    ui.add_space(2.0);
+}
+
+/// Writes what the mouse does.
+fn gestures(ui: &mut Ui) {
+    heading(ui, "Mouse");
+    for (gesture, does) in MOUSE {
+        row(ui, [gesture, does], WIDTHS[1], None);
+    }
+}
+
+/// Writes the keys of a purpose, and returns the request of the mouse.
+fn bindings(ui: &mut Ui, group: &Group) -> Option<Request> {
+    heading(ui, group.purpose);
+    let mut request = None;
+    for Binding { keys, action, help } in group.bindings {
+        // A click cannot point at a particle too.
+        let clicked = Some(*action).filter(|it| *it != Action::Window(WindowAction::Follow));
+        request = row(ui, [&keys.join("  "), help], WIDTHS[0], clicked).or(request);
+    }
+    request
+}
+
+/// Writes the solvers that digits choose, and returns the request of the mouse.
+fn solvers(ui: &mut Ui, several: bool) -> Option<Request> {
+    heading(
+        ui,
+        if several {
+            "Solvers, under the pointer"
+        } else {
+            "Solvers"
+        },
+    );
+    let mut request = None;
+    for (i, method) in integrators::METHODS.iter().enumerate().take(10) {
+        let key = ((i + 1) % 10).to_string();
+        let action = Action::Run(RunAction::Solver(i));
+        request = row(ui, [&key, method.title], WIDTHS[0], Some(action)).or(request);
+    }
+    request
+}
+
+/// Writes a key and its effect, and returns its action if the row was clicked.
+fn row(ui: &mut Ui, words: [&str; 2], width: f32, action: Option<Action>) -> Option<Request> {
+    let sense = if action.is_some() {
+        Sense::click()
+    } else {
+        Sense::hover()
+    };
+    let size = vec2(width + WIDTHS[2], ROW_HEIGHT);
+    let (rect, response) = ui.allocate_exact_size(size, sense);
+    if action.is_some() && response.hovered() {
+        let place = rect.expand2(vec2(6.0, 0.0));
+        ui.painter()
+            .rect_filled(place, 4.0, TEXT.gamma_multiply(0.1));
+        ui.set_cursor_icon(CursorIcon::PointingHand);
+    }
+    let y = rect.center().y;
+    for (words, x, colour) in [(words[0], 0.0, KEY), (words[1], width, TEXT)] {
+        let at = pos2(rect.left() + x, y);
+        let font = FontId::proportional(13.0);
+        ui.painter()
+            .text(at, Align2::LEFT_CENTER, words, font, colour);
+    }
+    action.filter(|_| response.clicked()).map(Request::Act)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::window::hud::{pane, read};
-    use crate::window::session::Readings;
+    use crate::window::session::{Readings, bindings};
 
     #[test]
     fn the_help_lists_every_key() {
@@ -98,7 +165,7 @@ mod tests {
             ..Readings::default()
         };
         let (words, sheets) = read(&[pane("chain", "r", 0.01)], &readings, [1280.0, 720.0]);
-        for binding in KEYS {
+        for binding in bindings() {
             assert!(
                 words.contains(binding.help) && words.contains(&binding.keys.join("  ")),
                 "{words}"
@@ -135,7 +202,9 @@ mod tests {
                         events,
                         ..Default::default()
                     };
-                    let mut output = ctx.run_ui(input, |ui| help(ui.ctx(), false));
+                    let mut output = ctx.run_ui(input, |ui| {
+                        let _ = help(ui.ctx(), false);
+                    });
                     output.textures_delta.set.clear();
                     output.textures_delta.free.clear();
                     words.clear();
@@ -152,12 +221,8 @@ mod tests {
                 }
                 words
             };
-            let last = if size[0] > THREE_COLUMN_WIDTH {
-                KEYS[KEYS.len() - 1].help
-            } else {
-                integrators::METHODS[9].title
-            };
-            let first = "next scene";
+            let last = integrators::METHODS[9].title;
+            let first = "pull or push";
             let above = seen(0.0);
             assert!(
                 above.contains(first) && !above.contains(last),

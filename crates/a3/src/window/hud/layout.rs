@@ -1,9 +1,40 @@
-//! Layout of the window: panes, bar and timeline.
+//! Layout of the window: picture, panes and bars.
 
 use a3_render::Tile;
 
+use super::panel;
+use crate::window::session::Session;
+
 /// Distance between panes (points).
 const PANE_GAP: f32 = 3.0;
+
+/// Height of the bar below the picture (points).
+const BAR_HEIGHT: f32 = 40.0;
+
+/// Returns the height of the bar below the picture, in a window of a size (points). A small window
+/// has none.
+pub fn bar_height([width, height]: [f32; 2]) -> f32 {
+    if width < 280.0 || height < 240.0 {
+        0.0
+    } else {
+        BAR_HEIGHT
+    }
+}
+
+/// Returns the size (px) of the picture beside the panel and above the bar, in a window of `size`
+/// (px) at `scale` pixels per point.
+pub fn picture_size(session: &Session, size: (u32, u32), scale: f32) -> (u32, u32) {
+    let (width, height) = panel::picture_size(session, size, scale);
+    let bar = bar_height([size.0, size.1].map(|side| side as f32 / scale));
+    let bar = (bar * scale).round() as u32;
+    (width, height.saturating_sub(bar).max(1))
+}
+
+/// Returns the width on the right and the height below that are not available to text (points).
+pub fn insets(session: &Session, size: (u32, u32), scale: f32) -> [f32; 2] {
+    let picture = picture_size(session, size, scale);
+    [size.0 - picture.0, size.1 - picture.1].map(|side| side as f32 / scale)
+}
 
 /// Returns the height of the bar above several panes, in a window of a width (points). In a narrow
 /// window it has two lines.
@@ -54,18 +85,6 @@ pub fn tiles(panes: usize, size: (u32, u32), scale: f32) -> Vec<Tile> {
             }
         })
         .collect()
-}
-
-/// Returns left, top, width and height of the timeline in a window of a size (points).
-pub fn timeline([width, height]: [f32; 2]) -> [f32; 4] {
-    let wide = (width - 24.0).clamp(40.0, 560.0);
-    let high = 42.0;
-    [0.5 * (width - wide), height - 12.0 - high, wide, high]
-}
-
-/// Returns start and end of the timeline's track (points from the left of the window).
-pub fn track(left: f32, width: f32) -> (f32, f32) {
-    (left + 18.0, left + width - 18.0)
 }
 
 #[cfg(test)]

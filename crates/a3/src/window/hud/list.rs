@@ -1,8 +1,11 @@
 //! The open list, drawn over the picture.
 
+use std::collections::HashMap;
+
+use egui::text::LayoutJob;
 use egui::{
-    Align, Align2, Area, Context, CornerRadius, FontId, Frame, Id, Margin, Order, ScrollArea,
-    Sense, Ui, vec2,
+    Align, Align2, Area, Color32, Context, CornerRadius, FontId, Frame, Id, Margin, Order, Pos2,
+    Rect, ScrollArea, Sense, TextureId, Ui, vec2,
 };
 
 use super::panel::PanelRequest;
@@ -11,19 +14,37 @@ use crate::window::session::{Entry, Session, Topic};
 
 /// Largest width of the list (points).
 const MAX_WIDTH: f32 = 560.0;
-/// Height of an entry (points).
-const ENTRY_HEIGHT: f32 = 22.0;
+/// Largest width of the list of scenes (points), which has two columns if it is wide.
+const MAX_SCENES_WIDTH: f32 = 780.0;
+/// Width above which the list of scenes has two columns (points).
+const TWO_COLUMN_WIDTH: f32 = 560.0;
+/// Heights of an entry, and of one with a picture (points).
+const ENTRY_HEIGHTS: [f32; 2] = [22.0, 62.0];
+/// Width and height of a picture (points).
+const PICTURE_SIZE: [f32; 2] = [88.0, 55.0];
 /// Smallest width of the names (points).
 const NAME_WIDTH: f32 = 136.0;
 
-/// Draws the open list, and returns the request of the mouse.
-pub fn show(ctx: &Context, session: &Session) -> Option<PanelRequest> {
+/// Draws the open list, with `pictures` of scenes by their names, and returns the request of the
+/// mouse.
+pub fn show(
+    ctx: &Context,
+    session: &Session,
+    pictures: &HashMap<String, TextureId>,
+) -> Option<PanelRequest> {
     let list = session.list.as_ref()?;
     let window = ctx.content_rect().shrink(MARGIN);
     let mut request = None;
-    let heading = match list.topic {
-        Topic::Scenes => "Scenes",
-        Topic::Solvers { .. } => "Solvers",
+    let (heading, scenes) = match list.topic {
+        Topic::Scenes => ("Scenes", true),
+        Topic::Solvers { .. } => ("Solvers", false),
+    };
+    let largest = if scenes { MAX_SCENES_WIDTH } else { MAX_WIDTH };
+    let width = largest.min(window.width() - 24.0);
+    let columns = if scenes && width > TWO_COLUMN_WIDTH {
+        2
+    } else {
+        1
     };
     let area = Area::new(Id::unique("list"))
         .order(Order::Foreground)
@@ -35,7 +56,7 @@ pub fn show(ctx: &Context, session: &Session) -> Option<PanelRequest> {
                 .inner_margin(Margin::symmetric(12, 10));
             ui.style_mut().interaction.selectable_labels = false;
             sheet.show(ui, |ui| {
-                ui.set_width(MAX_WIDTH.min(window.width() - 24.0));
+                ui.set_width(width);
                 ui.horizontal(|ui| {
                     ui.label(title(heading));
                     ui.with_layout(egui::Layout::right_to_left(Align::Center), |ui| {
@@ -49,49 +70,87 @@ pub fn show(ctx: &Context, session: &Session) -> Option<PanelRequest> {
                 };
                 ui.label(typed);
                 ui.add_space(4.0);
-                ui.spacing_mut().item_spacing.y = 0.0;
-                let room = (window.height() - 90.0).max(ENTRY_HEIGHT);
+                ui.spacing_mut().item_spacing = vec2(8.0, 0.0);
+                let entries: Vec<_> = list.entries().enumerate().collect();
+                let rows = entries.len().div_ceil(columns).max(1);
+                let row_height = ENTRY_HEIGHTS[usize::from(scenes)];
+                let room = (window.height() - 90.0).max(row_height);
                 ScrollArea::vertical()
                     .max_height(room)
-                    .min_scrolled_height(room.min(ENTRY_HEIGHT * list.entries().count() as f32))
+                    .min_scrolled_height(room.min(row_height * rows as f32))
                     .show(ui, |ui| {
-                        let mut count = 0;
-                        for (k, entry) in list.entries().enumerate() {
-                            count += 1;
-                            if row(ui, entry, k == list.chosen) {
-                                request = Some(PanelRequest::TakeEntry(entry.number));
-                            }
-                        }
-                        if count == 0 {
+                        if entries.is_empty() {
                             ui.label(faint("no entry has these words"));
                         }
+                        let side =
+                            (ui.available_width() - 8.0 * (columns - 1) as f32) / columns as f32;
+                        ui.horizontal_top(|ui| {
+                            for column in entries.chunks(rows) {
+                                ui.vertical(|ui| {
+                                    ui.set_width(side);
+                                    for (k, entry) in column {
+                                        let picture = scenes.then(|| pictures.get(&entry.name));
+                                        let dark = session.runs.panes[0].show.dark;
+                                        if row(ui, entry, *k == list.chosen, picture, dark) {
+                                            request = Some(PanelRequest::TakeEntry(entry.number));
+                                        }
+                                    }
+                                });
+                            }
+                        });
                     });
             });
         });
-    let outside = |ctx: &Context| ctx.input(|input| input.pointer.any_pressed());
-    if request.is_none() && outside(ctx) && !area.response.contains_pointer() {
+    // A click beside the list closes it, except on the bar, which may open another.
+    let outside = pressed_at(ctx).is_some_and(|at| ctx.content_rect().contains(at));
+    if request.is_none() && outside && !area.response.contains_pointer() {
         request = Some(PanelRequest::CloseList);
     }
     request
 }
 
-/// Draws an entry, and returns whether it was clicked.
-fn row(ui: &mut Ui, entry: &Entry, chosen: bool) -> bool {
+/// Returns the place of the pointer, if a button was pressed just now.
+pub fn pressed_at(ctx: &Context) -> Option<Pos2> {
+    ctx.input(|input| {
+        let pressed = input.pointer.any_pressed();
+        input.pointer.latest_pos().filter(|_| pressed)
+    })
+}
+
+/// Draws an entry, and returns whether it was clicked. An entry of a scene has room for its
+/// `picture`, which may be missing.
+fn row(
+    ui: &mut Ui,
+    entry: &Entry,
+    chosen: bool,
+    picture: Option<Option<&TextureId>>,
+    dark: bool,
+) -> bool {
+    let height = ENTRY_HEIGHTS[usize::from(picture.is_some())];
     let (rect, response) =
-        ui.allocate_exact_size(vec2(ui.available_width(), ENTRY_HEIGHT), Sense::click());
+        ui.allocate_exact_size(vec2(ui.available_width(), height), Sense::click());
     // Scroll to the chosen entry only when it changes, so that the wheel can scroll.
     let was = Id::unique("chosen entry");
     if chosen && ui.data(|data| data.get_temp(was)) != Some(entry.number) {
         ui.data_mut(|data| data.insert_temp(was, entry.number));
         response.scroll_to_me(None);
     }
-    let ink = TEXT;
     if chosen || response.hovered() {
         let alpha = if chosen { 0.16 } else { 0.07 };
         let colour = TEXT.gamma_multiply(alpha);
         ui.painter()
-            .rect_filled(rect, CornerRadius::same(4), colour);
+            .rect_filled(rect, CornerRadius::same(5), colour);
     }
+    if let Some(picture) = picture {
+        card(ui, rect, entry, picture.copied(), dark);
+    } else {
+        line(ui, rect, entry);
+    }
+    response.clicked()
+}
+
+/// Draws an entry of one line.
+fn line(ui: &Ui, rect: Rect, entry: &Entry) {
     if entry.current {
         let at = rect.left_center() + vec2(12.0, 0.0);
         ui.painter().circle_filled(at, 3.5, TEXT);
@@ -105,10 +164,39 @@ fn row(ui: &mut Ui, entry: &Entry, chosen: bool) -> bool {
         painter.text(at, Align2::LEFT_CENTER, words, font, colour)
     };
     write(8.0, mark, 11.0, FAINT);
-    let name = write(26.0, &entry.name, 13.5, ink);
+    let name = write(26.0, &entry.name, 13.5, TEXT);
     let about = (name.right() - rect.left() + 14.0).max(26.0 + NAME_WIDTH);
     write(about, &entry.about, 12.5, FAINT);
-    response.clicked()
+}
+
+/// Draws an entry with its picture, and its description below its name.
+fn card(ui: &Ui, rect: Rect, entry: &Entry, picture: Option<TextureId>, dark: bool) {
+    let [width, height] = PICTURE_SIZE;
+    let place = Rect::from_min_size(rect.min + vec2(4.0, 3.5), vec2(width, height));
+    let painter = ui.painter().with_clip_rect(rect.intersect(ui.clip_rect()));
+    match picture {
+        Some(id) => {
+            // The dark theme inverts every colour, but the picture is dark already.
+            let tint = if dark { Color32::BLACK } else { Color32::WHITE };
+            let whole = Rect::from_min_max(Pos2::ZERO, Pos2::new(1.0, 1.0));
+            painter.image(id, place, whole, tint);
+        }
+        None => {
+            painter.rect_filled(place, 4.0, TEXT.gamma_multiply(0.06));
+        }
+    }
+    let at = place.right_top() + vec2(10.0, 3.0);
+    let font = FontId::proportional(14.0);
+    let name = painter.text(at, Align2::LEFT_TOP, &entry.name, font, TEXT);
+    if entry.current {
+        let at = name.right_center() + vec2(10.0, 1.0);
+        painter.circle_filled(at, 3.5, TEXT);
+    }
+    let font = FontId::proportional(12.0);
+    let room = rect.right() - at.x - 6.0;
+    let about = LayoutJob::simple(entry.about.clone(), font, FAINT, room);
+    let about = painter.layout_job(about);
+    painter.galley(Pos2::new(at.x, name.bottom() + 1.0), about, FAINT);
 }
 
 #[cfg(test)]
@@ -139,7 +227,9 @@ mod tests {
             ..RawInput::default()
         };
         let mut request = None;
-        let mut output = ctx.run_ui(input, |ui| request = show(ui.ctx(), session).or(request));
+        let mut output = ctx.run_ui(input, |ui| {
+            request = show(ui.ctx(), session, &HashMap::new()).or(request)
+        });
         output.textures_delta.set.clear();
         output.textures_delta.free.clear();
         request
@@ -150,7 +240,7 @@ mod tests {
         let mut session = session(&["v", "0.005"]);
         session.act(RunAction::Scenes, 0);
         let ctx = crate::window::hud::style::context();
-        let middle = Pos2::new(320.0, 180.0);
+        let middle = Pos2::new(200.0, 180.0);
         for _ in 0..3 {
             assert_eq!(draw(&ctx, &session, middle, None), None);
         }

@@ -1,8 +1,11 @@
-//! Everything that egui draws: the text over the picture, the timeline, lists, and the panel of
+//! Everything that egui draws: the text over the picture, the bar below it, lists, and the panel of
 //! knobs and plots.
 
+mod all;
+mod bar;
 mod blow_up;
 mod help;
+mod hint;
 pub mod layout;
 mod legend;
 mod list;
@@ -10,6 +13,7 @@ mod overlay;
 pub mod panel;
 mod panes;
 mod picture;
+mod question;
 mod selection;
 mod single;
 mod style;
@@ -17,10 +21,9 @@ mod text;
 mod timeline;
 mod words;
 
-pub use list::show as show_list;
+pub use all::show_all;
 pub use overlay::Overlay;
 pub use picture::Studio;
-pub use text::show;
 pub use words::digits;
 
 #[cfg(test)]
@@ -32,8 +35,8 @@ mod tests {
 
     use a3_core::{Simulation, integrators};
 
-    use super::show;
     use super::style::PAPER;
+    use super::text::show;
     use crate::draw::show::{Manner, Show};
     use crate::window::session::{Pane, Readings};
 
@@ -62,7 +65,9 @@ mod tests {
             };
             output.textures_delta.set.clear();
             output.textures_delta.free.clear();
-            output = ctx.run_ui(input, |ui| show(ui.ctx(), panes, readings));
+            output = ctx.run_ui(input, |ui| {
+                let _ = show(ui.ctx(), panes, readings);
+            });
         }
         let (mut words, mut sheets) = (String::new(), vec![]);
         for clipped in &output.shapes {

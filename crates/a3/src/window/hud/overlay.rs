@@ -32,6 +32,18 @@ impl Overlay {
         }
     }
 
+    /// Makes a texture available to images, and returns its number.
+    pub fn register(&mut self, gpu: &Gpu, view: &wgpu::TextureView) -> egui::TextureId {
+        let filter = wgpu::FilterMode::Linear;
+        self.renderer
+            .register_native_texture(&gpu.device, view, filter)
+    }
+
+    /// Forgets a registered texture.
+    pub fn free(&mut self, id: egui::TextureId) {
+        self.renderer.free_texture(&id);
+    }
+
     /// Lays out `contents`, and uploads new textures.
     pub fn lay_out(
         &mut self,

@@ -133,7 +133,10 @@ fn caption(ui: &mut Ui, pane: &Pane, readings: &Readings, low: bool) {
     });
     let step = match words::steps(run) {
         Some(steps) => ("steps", text(format!("{},  {steps}", run.control()))),
-        None => ("step", text(format!("{} s", run.control().value()))),
+        None => (
+            "step",
+            text(format!("{} s", words::seconds(run.control().value()))),
+        ),
     };
     let limit = words::limit(pane).map(|(words, mark)| ("limit", mark.text(&words)));
     let time = ("time", text(time(run)));
@@ -185,7 +188,7 @@ fn error(pane: &Pane, readings: &Readings) -> String {
     let past = readings.predictable.filter(|until| time > *until);
     match (pane.error, readings.no_error) {
         (Some(error), _) => {
-            let past = past.map(|until| format!("  (past {until} s it says little)"));
+            let past = past.map(|until| format!("  (past {} s it says little)", digits(until)));
             format!("{} m{}", digits(error), past.unwrap_or_default())
         }
         (None, Some(why)) => format!("-  ({why})"),

@@ -70,7 +70,8 @@ impl Studio {
             let mut overlay = Overlay::new(gpu, TEXT_FORMAT);
             overlay.dark = panes[0].show.dark;
             overlay.write(gpu, encoder, view, (size, scale), |ctx| {
-                text::show(ctx, panes, readings);
+                // A picture has no mouse.
+                let _ = text::show(ctx, panes, readings);
             })
         };
         self.offscreen

@@ -14,7 +14,7 @@ use crate::window::session::{Pane, Readings};
 /// Largest number of springs that are listed.
 const MAX_LISTED_SPRINGS: usize = 12;
 
-/// Draws all sheets, and the hint at the key for help.
+/// Draws all sheets.
 pub fn show(ctx: &Context, pane: &Pane, readings: &Readings) {
     column(ctx, "run", Align2::LEFT_TOP, [MARGIN, MARGIN], |ui| {
         ui.set_max_width(ui.available_width().min(460.0));
@@ -37,13 +37,6 @@ pub fn show(ctx: &Context, pane: &Pane, readings: &Readings) {
             sheet(ui, |ui| springs(ui, &pane.simulation, i));
         }
     });
-    if ctx.content_rect().height() > 400.0 && readings.rewound.is_none() {
-        column(ctx, "hint", Align2::LEFT_BOTTOM, [MARGIN, -MARGIN], |ui| {
-            sheet(ui, |ui| {
-                ui.label(faint("h  help"));
-            });
-        });
-    }
 }
 
 /// Writes the readings of the run.
@@ -168,7 +161,6 @@ mod tests {
             "0.2 ms steps + 3.4 ms drawing",
             "wind   swing   pulling",
             "saved",
-            "h  help",
         ] {
             assert!(words.contains(said), "{said} in\n{words}");
         }

@@ -77,6 +77,14 @@ pub fn context() -> Context {
     }
     let context = Context::default();
     context.set_fonts(fonts);
+    // Tooltips are light like all else: the dark theme inverts every colour.
+    let mut visuals = egui::Visuals::light();
+    visuals.window_fill = PAPER.to_opaque();
+    visuals.window_stroke.color = FAINT.gamma_multiply(0.4);
+    visuals.override_text_color = Some(TEXT);
+    visuals.popup_shadow = egui::Shadow::NONE;
+    context.set_theme(egui::Theme::Light);
+    context.set_visuals(visuals);
     context
 }
 

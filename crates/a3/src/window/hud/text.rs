@@ -3,12 +3,13 @@
 use egui::Context;
 
 use super::help::help;
-use super::{panes, selection, single, timeline};
+use super::panel::Request;
+use super::{panes, question, selection, single};
 use crate::window::session::{Pane, Readings};
 
-/// Draws all text over the picture. Sheets are below one another, and the help hides them, so that
-/// nothing overlaps even in a small window.
-pub fn show(ctx: &Context, panes: &[Pane], readings: &Readings) {
+/// Draws all text over the picture, and returns the request of the mouse. Sheets are below one
+/// another, and the help hides them, so that nothing overlaps even in a small window.
+pub fn show(ctx: &Context, panes: &[Pane], readings: &Readings) -> Option<Request> {
     match panes {
         [pane] if !readings.help => single::show(ctx, pane, readings),
         [_] => {}
@@ -18,8 +19,7 @@ pub fn show(ctx: &Context, panes: &[Pane], readings: &Readings) {
         selection::show(ctx, selection);
     }
     if readings.help {
-        help(ctx, panes.len() > 1);
-    } else if let Some(position) = &readings.rewound {
-        timeline::show(ctx, position);
+        return help(ctx, panes.len() > 1);
     }
+    readings.asks_to_quit.then(|| question::show(ctx)).flatten()
 }

@@ -1,78 +1,65 @@
-//! The timeline at the bottom of the window.
+//! The timeline in the bar below the picture.
 
-use egui::{Align2, Area, Color32, Context, FontId, Id, Pos2, Rect, Sense, Stroke, vec2};
+use egui::{Align2, Color32, CursorIcon, FontId, Id, Rect, Sense, Stroke, Ui, pos2};
 
-use super::layout;
-use super::style::{FAINT, PAPER, TEXT};
+use super::panel::PanelRequest;
+use super::style::{ALARM, FAINT, PAPER, TEXT};
+use super::words::digits;
 use crate::window::session::TimelinePosition;
 
 /// Colour of the track up to the chosen moment.
-const ELAPSED: Color32 = Color32::from_rgb(158, 22, 34);
+const ELAPSED: Color32 = Color32::from_rgb(38, 84, 132);
 
-/// Draws the track, with a thumb at the chosen moment.
-pub fn show(ctx: &Context, position: &TimelinePosition) {
-    let window = ctx.content_rect();
-    let [left, top, width, height] = layout::timeline([window.width(), window.height()]);
-    let sheet = Rect::from_min_size(Pos2::new(left, top), vec2(width, height));
-    Area::new(Id::unique("timeline"))
-        .fixed_pos(sheet.min)
-        .constrain(false)
-        .interactable(false)
-        .show(ctx, |ui| {
-            ui.allocate_exact_size(sheet.size(), Sense::hover());
-            let painter = ui.painter();
-            painter.rect_filled(sheet, 7.0, PAPER);
-            let (from, to) = layout::track(left, width);
-            let y = top + height - 13.0;
-            let at = from + position.share * (to - from);
-            let line = |from, to, color| {
-                painter.hline(from..=to, y, Stroke::new(4.0, color));
-            };
-            line(from, to, FAINT.gamma_multiply(0.35));
-            line(from, at, ELAPSED);
-            painter.circle_filled(Pos2::new(at, y), 7.0, ELAPSED);
-            painter.circle_filled(Pos2::new(at, y), 2.5, PAPER);
-            let say = |x, align, words: String, color| {
-                let place = Pos2::new(x, top + 6.0);
-                painter.text(place, align, words, FontId::proportional(12.5), color);
-            };
-            let back = format!("{:.2} s back", position.back);
-            say(from, Align2::LEFT_TOP, back, TEXT);
-            let span = format!("{:.1} s kept", position.span);
-            say(to, Align2::RIGHT_TOP, span, FAINT);
-        });
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::window::hud::{pane, read};
-    use crate::window::session::Readings;
-
-    #[test]
-    fn slow_motion_and_the_position_in_time_are_shown() {
-        let position = TimelinePosition {
-            share: 0.25,
-            back: 1.5,
-            span: 2.0,
-        };
-        let readings = Readings {
-            factor: 0.12,
-            slowness: 3,
-            rewound: Some(position),
-            ..Readings::default()
-        };
-        for size in [[1280.0, 720.0], [500.0, 400.0], [260.0, 860.0]] {
-            let (words, sheets) = read(&[pane("chain", "r", 0.01)], &readings, size);
-            for said in [
-                "0.12 × real time",
-                "1/8 of real time",
-                "1.50 s back",
-                "2.0 s kept",
-            ] {
-                assert!(words.contains(said), "{said} in {words}");
-            }
-            assert!(!sheets[0].intersects(sheets[1]), "{sheets:?}");
+/// Draws the track in a room, with a thumb at the chosen moment, and a cross at the end if the run
+/// blew up there. Returns the request of the mouse.
+pub fn show(ui: &Ui, room: Rect, position: &TimelinePosition) -> Option<PanelRequest> {
+    let response = ui.interact(
+        room.expand2(egui::vec2(8.0, 0.0)),
+        Id::unique("timeline"),
+        Sense::click_and_drag(),
+    );
+    if response.hovered() || response.dragged() {
+        ui.set_cursor_icon(CursorIcon::ResizeHorizontal);
+    }
+    let (painter, y) = (ui.painter(), room.bottom() - 13.0);
+    let at = room.left() + position.share * room.width();
+    let line = |from, to, color| {
+        painter.hline(from..=to, y, Stroke::new(4.0, color));
+    };
+    line(room.left(), room.right(), FAINT.gamma_multiply(0.35));
+    line(room.left(), at, ELAPSED);
+    if position.blew_up {
+        let stroke = Stroke::new(2.0, ALARM.colour);
+        for way in [-4.0, 4.0] {
+            let end = room.right() + 8.0;
+            painter.line_segment([pos2(end - 4.0, y - way), pos2(end + 4.0, y + way)], stroke);
         }
     }
+    painter.circle_filled(pos2(at, y), 6.5, ELAPSED);
+    painter.circle_filled(pos2(at, y), 2.5, PAPER);
+    let say = |x, align, words: String, color| {
+        let place = pos2(x, room.top() + 5.0);
+        painter.text(place, align, words, FontId::proportional(12.0), color);
+    };
+    if position.share < 1.0 {
+        let back = format!("{} s back", digits(position.back));
+        say(room.left(), Align2::LEFT_TOP, back, TEXT);
+    }
+    if room.width() > 150.0 {
+        let words = if position.blew_up {
+            "✖ it blew up".into()
+        } else {
+            format!("{:.1} s kept", position.span)
+        };
+        let color = if position.blew_up {
+            ALARM.colour
+        } else {
+            FAINT
+        };
+        say(room.right(), Align2::RIGHT_TOP, words, color);
+    }
+    let held = response.dragged() || response.clicked();
+    let pointer = response.interact_pointer_pos().filter(|_| held)?;
+    let share = (pointer.x - room.left()) / room.width();
+    Some(PanelRequest::GoTo(share.clamp(0.0, 1.0)))
 }

@@ -1,11 +1,13 @@
 //! The readings of a run in words.
 
-use a3_core::stability::tenfold_time;
 use a3_core::{Control, Simulation};
 use egui::{RichText, Sense, Ui, vec2};
 
 use super::style::{ALARM, Mark, SAFE, WARNING, faint, text};
 use crate::window::session::{FilmProgress, Pane, Readings};
+
+/// A day (s).
+const DAY: f64 = 86_400.0;
 
 /// Formats a number that is not negative with three significant digits; without a fraction from 100
 /// on.
@@ -40,7 +42,7 @@ pub fn method(simulation: &Simulation) -> String {
 }
 
 /// Formats a step (s) as a user would type it: 1/60 instead of all its digits.
-fn seconds(step: f64) -> String {
+pub fn seconds(step: f64) -> String {
     let (decimal, rate) = (step.to_string(), 1.0 / step);
     if decimal.len() > 10 && (rate - rate.round()).abs() < 1e-9 * rate {
         return format!("1/{}", rate.round());
@@ -77,22 +79,26 @@ pub fn limit(pane: &Pane) -> Option<(String, Mark)> {
         _ if modes_tell_all => SAFE,
         _ => return None,
     };
-    let ms = |step: f64| digits(1e3 * step);
-    let time = tenfold_time(limit.step);
-    let tenfold = format!("tenfold in {time:.0} s at {} ms", ms(limit.step));
-    let bounded = |largest: f64| {
-        format!(
-            "{} ms (step at {:.0} %)",
-            ms(largest),
-            100.0 * step / largest
-        )
-    };
-    let words = if limit.bounded == 0.0 {
-        format!("always grows, {tenfold}")
-    } else if limit.is_sharp() {
-        bounded(limit.step)
+    let largest = if limit.is_sharp() {
+        limit.step
     } else {
-        format!("{}, {tenfold}", bounded(limit.bounded))
+        limit.bounded
+    };
+    let share = |largest: f64| {
+        let percent = 100.0 * step / largest;
+        format!("{} ms (step at {percent:.0} %)", digits(1e3 * largest))
+    };
+    let time = pane.limit.tenfold_time(pane.simulation.method(), step);
+    let tenfold = match time.filter(|time| *time < DAY) {
+        Some(time) => format!("tenfold in {} s", digits(time)),
+        None => "too slowly to see".into(),
+    };
+    let words = if largest == 0.0 {
+        format!("every step makes motion grow; this one, {tenfold}")
+    } else if step > largest {
+        format!("{}; motion grows {tenfold}", share(largest))
+    } else {
+        share(largest)
     };
     Some((words, mark))
 }
@@ -319,18 +325,24 @@ mod tests {
                 .0
                 .contains("none: every step is stable")
         );
-        for (step, mark) in [(0.01, WARNING), (0.1, ALARM)] {
+        for (step, mark, time) in [(0.01, WARNING, "461"), (0.1, ALARM, "46.3")] {
             let (words, found) = said("simple", "e", step);
-            assert!(
-                words.contains("always grows, tenfold in 68 s at 67.9 ms"),
-                "{words}"
-            );
+            // A step multiplies the radius by (1 + h^2)^1/2.
+            let tenfold = step * 10f64.ln() / (0.5 * (1.0 + step * step).ln());
+            assert_eq!(digits(tenfold), time);
+            let grows = format!("every step makes motion grow; this one, tenfold in {time} s");
+            assert!(words.contains(&grows), "{words}");
             assert_eq!(found, mark);
         }
         // With drag, the motion of the cloth grows for steps above 0.37 ms, slowly at first.
         for (step, mark) in [(0.000_2, SAFE), (0.000_4, WARNING), (0.000_6, ALARM)] {
             let (words, found) = said("mit", "e", step);
-            assert!(words.contains(" %), tenfold in 10 s at 0.4"), "{words}");
+            assert!(words.contains("0.37"), "{words}");
+            assert_eq!(
+                words.contains("; motion grows tenfold in"),
+                mark != SAFE,
+                "{words}"
+            );
             assert_eq!(found, mark);
         }
         let (words, _) = said("cloth", "a", 1e-4);

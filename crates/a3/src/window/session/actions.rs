@@ -74,5 +74,10 @@ pub enum WindowAction {
     LoadRun,
     FullScreen,
     Lessons,
+    /// Close the help; without it, ask whether to quit.
     Quit,
+    /// Close the window.
+    Close,
+    /// Close the question whether to quit.
+    Stay,
 }

@@ -62,7 +62,7 @@ impl Session {
                 self.readings.paused = !self.readings.paused;
                 self.restart_measuring();
             }
-            RunAction::Step if self.readings.rewound.is_some() => self.scrub(1),
+            RunAction::Step if self.readings.rewound() => self.scrub(1),
             RunAction::Scrub(by) => self.scrub(by),
             RunAction::Slower => {
                 self.readings.slowness = (self.readings.slowness + 1).min(MAX_SLOWNESS);
@@ -97,7 +97,7 @@ impl Session {
             RunAction::WriteScene => {
                 let pane = &self.runs.panes[at.min(self.runs.panes.len() - 1)];
                 let said = match save::write_scene(self, &pane.simulation) {
-                    Ok(name) => format!("wrote {name}"),
+                    Ok(name) => format!("Wrote {name}."),
                     Err(why) => why,
                 };
                 self.readings.say(said);
@@ -159,7 +159,7 @@ impl Session {
         let pinned = !self.runs.is_pinned(i);
         if self.pin(&[i], pinned) > 0 {
             let now = if pinned { "pinned" } else { "free" };
-            self.readings.say(format!("particle {i} is {now} now"));
+            self.readings.say(format!("Particle {i} is {now} now."));
         }
     }
 
@@ -179,10 +179,20 @@ impl Session {
     /// Pins or frees particles, records the change in the history, and returns how many particles
     /// changed in the first run.
     fn pin(&mut self, particles: &[usize], pinned: bool) -> usize {
+        self.runs.align();
+        let moments = self
+            .runs
+            .all()
+            .map(|run| run.blow_up().is_none().then(|| run.moment()));
+        let before = (!pinned).then(|| moments.collect());
         let particles = self.runs.pin(particles, pinned);
         let count = particles.len();
         if count > 0 {
-            self.history.record(Change::Pins { particles, pinned });
+            self.history.record(Change::Pins {
+                particles,
+                pinned,
+                before,
+            });
         }
         count
     }
@@ -248,7 +258,7 @@ impl Session {
                 let source = &self.scenes.shown.source;
                 let summary = source.description.summary.as_deref();
                 let what = summary.map_or(String::new(), |what| format!(": {what}"));
-                self.readings.say(format!("opened {}{what}", source.typed));
+                self.readings.say(format!("Opened {}{what}.", source.typed));
                 self.reset_camera(&setup);
                 self.set_scene(&setup);
                 true
@@ -276,7 +286,7 @@ impl Session {
             self.reset_camera(setup);
         }
         let typed = &self.scenes.shown.source.typed;
-        self.readings.say(format!("loaded {typed} again"));
+        self.readings.say(format!("Loaded {typed} again."));
         let before = self.runs.first();
         let (windy, swinging) = (before.windy(), before.swinging());
         let touching = before.touching();

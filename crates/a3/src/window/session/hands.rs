@@ -104,16 +104,22 @@ impl Runs {
     /// Grabs particle i in every run, and returns whether any run allowed it.
     pub fn grab(&mut self, i: usize) -> bool {
         self.align();
-        self.running()
-            .fold(false, |held, run| held | run.grab(i).is_ok())
+        let grabbed = self
+            .running()
+            .fold(false, |held, run| held | run.grab(i).is_ok());
+        self.touched |= grabbed;
+        grabbed
     }
 
     /// Grabs the sphere that is obstacle k in every run, and returns whether any run allowed it.
     pub fn grab_obstacle(&mut self, k: usize) -> bool {
         self.align();
         self.pushed = self.obstacle_path(k).map(|path| (k, path));
-        self.running()
-            .fold(false, |held, run| held | run.grab_obstacle(k).is_ok())
+        let grabbed = self
+            .running()
+            .fold(false, |held, run| held | run.grab_obstacle(k).is_ok());
+        self.touched |= grabbed;
+        grabbed
     }
 
     /// Pulls the grabbed particle or sphere towards the same point (m) in every run.
@@ -184,6 +190,7 @@ impl Runs {
     /// Pins particles at their positions in every run, or frees them.
     pub fn set_pins(&mut self, particles: &[usize], pinned: bool) {
         self.align();
+        self.touched = true;
         for run in self.all_mut() {
             let mut set = |i: usize| {
                 let network = run.model().network();
@@ -277,7 +284,7 @@ mod tests {
         session.act(RunAction::Touch, 0);
         let said = session.readings.message.clone().unwrap();
         assert!(
-            said.starts_with("surfaces that cross cannot begin to touch: "),
+            said.starts_with("Surfaces that cross cannot begin to touch: "),
             "{said}"
         );
         assert_eq!(touching(&session), [false; 3]);

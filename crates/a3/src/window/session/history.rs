@@ -1,19 +1,27 @@
 //! The history of the user's changes, for undo and redo.
 
+use std::sync::Arc;
 use web_time::{Duration, Instant};
 
-use a3_core::Path;
+use a3_core::{Checkpoint, Path};
 
 /// Largest number of changes in the history.
 const MAX_CHANGES: usize = 200;
+/// Largest number of the latest changes whose states are kept.
+const MAX_STATES: usize = 8;
 /// Longest time between two turns of a knob by keys that count as one change.
 const MERGE_TIME: Duration = Duration::from_millis(800);
 
 /// A change that can be undone.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Change {
-    /// Particles were pinned or freed.
-    Pins { particles: Vec<usize>, pinned: bool },
+    /// Particles were pinned or freed. If they were freed, `before` are the states of all runs at
+    /// that time, while they are kept.
+    Pins {
+        particles: Vec<usize>,
+        pinned: bool,
+        before: Option<Arc<[Option<Checkpoint>]>>,
+    },
     /// An obstacle was pushed: its paths before and after.
     Push {
         obstacle: usize,
@@ -64,6 +72,7 @@ impl History {
             return;
         }
         self.done.push(change);
+        self.forget_states(MAX_STATES);
         if self.done.len() > MAX_CHANGES {
             self.done.remove(0);
         }
@@ -89,6 +98,17 @@ impl History {
         to.push(change.clone());
         self.last = None;
         Some(change)
+    }
+
+    /// Forgets the states before all but the last `latest` changes: undoing the others changes pins
+    /// alone.
+    pub fn forget_states(&mut self, latest: usize) {
+        let changes = self.undone.iter_mut().chain(self.done.iter_mut().rev());
+        for change in changes.skip(latest) {
+            if let Change::Pins { before, .. } = change {
+                *before = None;
+            }
+        }
     }
 
     /// Clears the history.
@@ -132,6 +152,7 @@ mod tests {
             history.record(Change::Pins {
                 particles: vec![k],
                 pinned: true,
+                before: None,
             });
         }
         assert_eq!(history.done.len(), MAX_CHANGES);
@@ -173,6 +194,36 @@ mod tests {
             session.readings.message.as_deref(),
             Some("There is nothing to undo.")
         );
+    }
+
+    #[test]
+    fn undoing_a_release_brings_the_cloth_back_where_it_was() {
+        let mut session = compared(&["t:0.01", "v:0.01", "--scene", "cloth"], 0.5);
+        session.readings.in_window = true;
+        let states = |session: &crate::window::session::Session| {
+            let runs = session.runs.panes.iter().map(|pane| &pane.simulation);
+            runs.map(|run| (run.time(), run.state().to_vec()))
+                .collect::<Vec<_>>()
+        };
+        session.runs.align();
+        let before = states(&session);
+        session.act(RunAction::FreeAll, 0);
+        frames(&mut session, 1.0);
+        let fallen = session.runs.first().position(0).y;
+        panel::undo(&mut session, false);
+        assert_eq!(states(&session), before);
+        assert!(session.runs.first().position(0).y > fallen + 1.0);
+        let pins = session.runs.first().model().network().unwrap().pins();
+        assert_eq!(pins.count(), 20);
+        // The run goes on from there, and is recorded.
+        frames(&mut session, 0.2);
+        assert!((session.runs.first().time() - before[0].0 - 0.2).abs() < 0.02);
+        assert!((session.readings.timeline.unwrap().span - 0.2).abs() < 0.03);
+        // After a reset, the state is another run's.
+        session.act(RunAction::FreeAll, 0);
+        session.act(RunAction::Reset, 0);
+        panel::undo(&mut session, false);
+        assert_eq!(session.runs.first().time(), 0.0);
     }
 
     #[test]

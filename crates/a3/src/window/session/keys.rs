@@ -1,4 +1,4 @@
-//! The table of keys, from which the help is made.
+//! The table of keys by their purpose, from which the help is made.
 
 use super::actions::{Action, RunAction, WindowAction};
 
@@ -23,53 +23,94 @@ const fn window(
     Binding { keys, action, help }
 }
 
+/// Keys that serve one purpose.
+pub struct Group {
+    pub purpose: &'static str,
+    pub bindings: &'static [Binding],
+}
+
 /// All keys except the digits, which choose solvers in the order of their table.
-pub static KEYS: &[Binding] = &[
-    run(&["t", "PgDn"], RunAction::NextScene, "next scene"),
-    run(&["PgUp"], RunAction::PreviousScene, "previous scene"),
-    run(&["o"], RunAction::Scenes, "list of scenes"),
-    run(&["e"], RunAction::Solvers, "list of solvers"),
-    run(&["r"], RunAction::Reset, "reset"),
-    run(&["s"], RunAction::Swing, "swing the pins"),
-    run(&["w"], RunAction::Wireframe, "surface, wires, springs"),
-    run(&["v"], RunAction::Colour, "colour by values"),
-    run(&["a"], RunAction::Arrows, "arrows"),
-    run(&["d"], RunAction::Wind, "wind"),
-    run(&["x"], RunAction::Touch, "self-collision"),
-    run(&["Space"], RunAction::Pause, "pause"),
-    run(&["."], RunAction::Step, "one step, or one frame on"),
-    run(&[","], RunAction::Scrub(-1), "one frame back"),
-    run(&["<"], RunAction::Scrub(-10), "ten frames back"),
-    run(&[">"], RunAction::Scrub(10), "ten frames on"),
-    run(&["[", "("], RunAction::Slower, "slow motion"),
-    run(&["]", ")"], RunAction::Faster, "faster again"),
-    run(&["+", "="], RunAction::LongerStep, "longer step"),
-    run(&["-"], RunAction::ShorterStep, "shorter step"),
-    run(&["c"], RunAction::Camera, "reset the camera"),
-    run(&["g"], RunAction::SeeAll, "see all"),
-    run(&["b"], RunAction::NextView, "front, side, top"),
-    window(&["z"], WindowAction::Undo, "undo; with Shift, redo"),
-    run(&["Del"], RunAction::FreeAll, "release all pins"),
-    run(&["i"], RunAction::Projection, "perspective or parallel"),
-    window(&["j"], WindowAction::Follow, "follow a particle"),
-    window(&["p"], WindowAction::Picture, "save a picture"),
-    run(&["Tab"], RunAction::Panel, "tune and plot"),
-    run(&["f"], RunAction::WriteScene, "write a scene file"),
-    window(&["u"], WindowAction::WritePlots, "write the plots as CSV"),
-    window(&["m"], WindowAction::Record, "record, or stop"),
-    window(&["n"], WindowAction::FilmLast, "film the last seconds"),
-    window(&["y"], WindowAction::CommandLine, "copy the command line"),
-    window(&["k"], WindowAction::SaveRun, "save the run"),
-    window(&["l"], WindowAction::LoadRun, "load the saved run"),
-    window(&["F11"], WindowAction::FullScreen, "full screen"),
-    run(&["h", "?"], RunAction::Help, "this help"),
-    window(&["F1"], WindowAction::Lessons, "lessons"),
-    window(&["Esc"], WindowAction::Quit, "quit"),
+pub static GROUPS: [Group; 7] = [
+    Group {
+        purpose: "Run",
+        bindings: &[
+            run(&["Space"], RunAction::Pause, "play, or pause"),
+            run(&["."], RunAction::Step, "one step, or one frame on"),
+            run(&[","], RunAction::Scrub(-1), "one frame back"),
+            run(&["<"], RunAction::Scrub(-10), "ten frames back"),
+            run(&[">"], RunAction::Scrub(10), "ten frames on"),
+            run(&["[", "("], RunAction::Slower, "slow motion"),
+            run(&["]", ")"], RunAction::Faster, "faster again"),
+            run(&["+", "="], RunAction::LongerStep, "longer step"),
+            run(&["-"], RunAction::ShorterStep, "shorter step"),
+            run(&["r"], RunAction::Reset, "start again"),
+        ],
+    },
+    Group {
+        purpose: "Choose",
+        bindings: &[
+            run(&["o"], RunAction::Scenes, "a scene, from a list"),
+            run(&["t", "PgDn"], RunAction::NextScene, "next scene"),
+            run(&["PgUp"], RunAction::PreviousScene, "previous scene"),
+            run(&["e"], RunAction::Solvers, "a solver, from a list"),
+        ],
+    },
+    Group {
+        purpose: "Change",
+        bindings: &[
+            run(&["Tab"], RunAction::Panel, "tune and plot"),
+            run(&["d"], RunAction::Wind, "wind"),
+            run(&["s"], RunAction::Swing, "swing the pins"),
+            run(&["x"], RunAction::Touch, "self-collision"),
+            run(&["Del"], RunAction::FreeAll, "release all pins"),
+            window(&["z"], WindowAction::Undo, "undo; with Shift, redo"),
+        ],
+    },
+    Group {
+        purpose: "Show",
+        bindings: &[
+            run(&["w"], RunAction::Wireframe, "surface, wires, springs"),
+            run(&["v"], RunAction::Colour, "colour by values"),
+            run(&["a"], RunAction::Arrows, "arrows"),
+        ],
+    },
+    Group {
+        purpose: "Look",
+        bindings: &[
+            run(&["c"], RunAction::Camera, "reset the camera"),
+            run(&["g"], RunAction::SeeAll, "see all"),
+            run(&["b"], RunAction::NextView, "front, side, top"),
+            run(&["i"], RunAction::Projection, "perspective or parallel"),
+            window(&["j"], WindowAction::Follow, "follow a particle"),
+        ],
+    },
+    Group {
+        purpose: "Keep",
+        bindings: &[
+            window(&["p"], WindowAction::Picture, "save a picture"),
+            window(&["m"], WindowAction::Record, "film, or stop"),
+            window(&["n"], WindowAction::FilmLast, "film the last seconds"),
+            run(&["f"], RunAction::WriteScene, "write a scene file"),
+            window(&["u"], WindowAction::WritePlots, "write the plots as CSV"),
+            window(&["y"], WindowAction::CommandLine, "copy the command line"),
+            window(&["k"], WindowAction::SaveRun, "save the run"),
+            window(&["l"], WindowAction::LoadRun, "load the saved run"),
+        ],
+    },
+    Group {
+        purpose: "Window",
+        bindings: &[
+            window(&["F11"], WindowAction::FullScreen, "full screen"),
+            window(&["F1"], WindowAction::Lessons, "lessons"),
+            run(&["h", "?"], RunAction::Help, "this help"),
+            window(&["Esc"], WindowAction::Quit, "close the help; quit"),
+        ],
+    },
 ];
 
 /// Actions of the mouse, for the help: a gesture, and its effect.
 pub static MOUSE: &[(&str, &str)] = &[
-    ("left, on the scene", "pull"),
+    ("left, on the scene", "pull or push"),
     ("left, elsewhere", "turn"),
     ("right or middle", "move"),
     ("right click", "pin, or release"),
@@ -78,6 +119,11 @@ pub static MOUSE: &[(&str, &str)] = &[
     ("double click", "list springs"),
     ("wheel", "zoom to the pointer"),
 ];
+
+/// Returns all keys except the digits.
+pub fn bindings() -> impl Iterator<Item = &'static Binding> {
+    GROUPS.iter().flat_map(|group| group.bindings)
+}
 
 /// Returns the action of a key by its name. Upper and lower case are the same.
 pub fn action(name: &str) -> Option<Action> {
@@ -90,7 +136,7 @@ pub fn action(name: &str) -> Option<Action> {
     if let Ok(digit @ 0..=9) = name.parse::<usize>() {
         return Some(Action::Run(RunAction::Solver((digit + 9) % 10)));
     }
-    KEYS.iter()
+    bindings()
         .find(|binding| binding.keys.contains(&name.as_str()))
         .map(|binding| binding.action)
 }
@@ -103,7 +149,7 @@ mod tests {
     #[test]
     fn no_key_does_two_things_and_every_key_is_found() {
         let mut seen = HashSet::new();
-        for binding in KEYS {
+        for binding in bindings() {
             for &key in binding.keys {
                 assert!(seen.insert(key), "{key} twice");
                 assert_eq!(action(key), Some(binding.action));

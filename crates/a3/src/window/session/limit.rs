@@ -2,7 +2,7 @@
 
 use web_time::{Duration, Instant};
 
-use a3_core::stability::{LargestMode, Limit, Mode, largest_step, spectrum};
+use a3_core::stability::{Growth, LargestMode, Limit, Mode, largest_step, spectrum};
 use a3_core::{Mechanics, Method, Simulation};
 
 use crate::base::holding::would_hold;
@@ -39,6 +39,15 @@ impl LimitWatch {
     /// Returns a step (s) with which the diverged run would have been stable, if one was found.
     pub fn would_hold(&self) -> Option<f64> {
         self.would_hold
+    }
+
+    /// Returns the time (s) in which the motion of the mode that sets the limit grows tenfold in
+    /// steps of h (s) of a method; `None` if it does not grow.
+    pub fn tenfold_time(&self, method: &Method, h: f64) -> Option<f64> {
+        let mode = self.modes.get(self.limit?.mode)?;
+        let growth = Growth::new(method, *mode).ok()?.of_step(h);
+        let time = h * 10f64.ln() / growth.ln();
+        (time > 0.0).then_some(time)
     }
 
     /// Updates the estimate if it is old enough, or if the run has just diverged.

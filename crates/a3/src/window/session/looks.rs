@@ -38,8 +38,8 @@ pub fn next_colour(panes: &mut [Pane]) -> String {
     let next = next_after(&all, panes[0].show.colouring.quantity);
     set_colour(panes, next);
     match next {
-        Some(quantity) => format!("colours show the {}", quantity.name()),
-        None => "colours are those of the scene".into(),
+        Some(quantity) => format!("Colours show the {}.", quantity.name()),
+        None => "Colours are those of the scene.".into(),
     }
 }
 
@@ -51,8 +51,8 @@ pub fn next_arrows(panes: &mut [Pane]) -> String {
     let next = next_after(&all, panes[0].show.field.arrows);
     set_arrows(panes, next);
     match next {
-        Some(arrows) => format!("arrows show the {}", arrows.name()),
-        None => "arrows are off".into(),
+        Some(arrows) => format!("Arrows show the {}.", arrows.name()),
+        None => "Arrows are off.".into(),
     }
 }
 

@@ -30,7 +30,7 @@ mod view;
 pub use actions::{Action, RunAction, WindowAction};
 pub use effects::{Deviation, Effect, Job, Situation};
 pub use history::Change;
-pub use keys::{KEYS, MOUSE, action};
+pub use keys::{Binding, GROUPS, Group, MOUSE, action};
 pub use list::{Entry, TextKey, Topic};
 pub use origin::Origin;
 pub use pane::Pane;
@@ -41,6 +41,8 @@ pub use state::{Beginning, Session};
 pub use timeline::TimelinePosition;
 pub use tuning::{DEFAULT_FILM_SECONDS, Tuning};
 
+#[cfg(test)]
+pub use keys::bindings;
 #[cfg(test)]
 pub use pane::Cost;
 #[cfg(test)]

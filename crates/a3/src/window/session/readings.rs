@@ -35,6 +35,8 @@ pub struct Readings {
     pub paused: bool,
     /// Whether the help is shown.
     pub help: bool,
+    /// Whether the window asks if it should close.
+    pub asks_to_quit: bool,
     /// Simulated time over real time.
     pub factor: f32,
     /// Frames per second.
@@ -61,20 +63,20 @@ pub struct Readings {
     pub slowness: i32,
     /// Names of the parts that are left out of the scene.
     pub left_out: Vec<String>,
-    /// Position on the timeline; `None` at the newest moment.
-    pub rewound: Option<TimelinePosition>,
+    /// Position on the timeline; `None` before there are two moments.
+    pub timeline: Option<TimelinePosition>,
 }
 
 impl Readings {
-    /// Shows a message for a few seconds.
+    /// Shows a message, as a sentence, for a few seconds.
     pub fn say(&mut self, message: impl Into<String>) {
-        self.message = Some(message.into());
+        self.message = Some(sentence(message.into()));
         self.message_ends = Some(Instant::now() + MESSAGE_DURATION);
     }
 
-    /// Shows a message until the next one.
+    /// Shows a message, as a sentence, until the next one.
     pub fn warn(&mut self, message: impl Into<String>) {
-        self.message = Some(message.into());
+        self.message = Some(sentence(message.into()));
         self.message_ends = None;
     }
 
@@ -87,9 +89,49 @@ impl Readings {
         self.message_ends
     }
 
+    /// Returns whether the runs are at an earlier moment of the timeline than the newest.
+    pub fn rewound(&self) -> bool {
+        self.timeline.is_some_and(|position| position.share < 1.0)
+    }
+
     /// Updates what is known about the errors from the reference, if there is one.
     pub(super) fn read_reference(&mut self, reference: Option<&ReferenceRun>) {
         self.no_error = reference.and_then(ReferenceRun::stopped);
         self.predictable = reference.and_then(ReferenceRun::predictable);
+    }
+}
+
+/// Makes a sentence of a message: with a capital, unless it begins with a file or another name, and
+/// with a full stop.
+fn sentence(mut message: String) -> String {
+    let first = message.split(' ').next().unwrap_or_default();
+    let first = first.trim_end_matches([':', ',']);
+    if !first.is_empty() && first.chars().all(|c| c.is_ascii_lowercase()) {
+        message[..1].make_ascii_uppercase();
+    }
+    if !message.ends_with(['.', '!', '?']) {
+        message.push('.');
+    }
+    message
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn messages_are_sentences_and_names_stay_as_they_are() {
+        for (message, said) in [
+            ("wrote a3-cloth-1.png", "Wrote a3-cloth-1.png."),
+            ("own.toml:3: no such key", "own.toml:3: no such key."),
+            ("undone: 20 pins", "Undone: 20 pins."),
+            ("dopri5 fits no rods", "dopri5 fits no rods."),
+            ("There is no wind here.", "There is no wind here."),
+            ("3 pins", "3 pins."),
+        ] {
+            let mut readings = Readings::default();
+            readings.say(message);
+            assert_eq!(readings.message.as_deref(), Some(said));
+        }
     }
 }

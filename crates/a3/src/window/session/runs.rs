@@ -28,6 +28,8 @@ pub struct Runs {
     /// Number of steps and real time when the states were last read; `None` if they must be read
     /// again.
     pub(super) read: Option<(u64, Instant)>,
+    /// Whether a hand has changed the motion since the beginning: a pull, a push or a pin.
+    pub touched: bool,
     /// Index of the obstacle that is being pushed, and its path before the push.
     pub(super) pushed: Option<(usize, Path)>,
 }
@@ -40,6 +42,7 @@ impl Runs {
             panes,
             clock: 0.0,
             read: None,
+            touched: false,
             pushed: None,
         })
     }
@@ -47,6 +50,11 @@ impl Runs {
     /// Returns the first run, for what all of them share.
     pub fn first(&self) -> &Simulation {
         &self.panes[0].simulation
+    }
+
+    /// Returns the number of panes that have not diverged.
+    pub(super) fn count_alive(&self) -> usize {
+        self.panes.iter().filter(|pane| pane.alive()).count()
     }
 
     /// Returns whether any pane has not diverged.
@@ -160,6 +168,7 @@ impl Runs {
             }
             pane.set_simulation(simulation, setup.presentation.clone());
         }
+        self.touched = false;
         // The reference does not fail where the panes did not.
         self.reference = ReferenceRun::new(&self.panes).ok().flatten();
         Ok(said)
@@ -168,6 +177,7 @@ impl Runs {
     /// Resets the runs to the initial state of their scene.
     pub(super) fn reset(&mut self) {
         self.panes.iter_mut().for_each(Pane::reset);
+        self.touched = false;
         if let Some(reference) = &mut self.reference {
             reference.reset();
         }

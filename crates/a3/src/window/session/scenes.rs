@@ -148,6 +148,16 @@ impl Scenes {
         Ok(setup)
     }
 
+    /// Builds the scene of this number, as [`show`](Self::show) does, without showing it; `None` if
+    /// it cannot be built.
+    pub fn setup(&self, number: usize) -> Option<Setup> {
+        let names = self.names();
+        let name = names.get(number)?;
+        let asked = self.asked(name).cloned();
+        let origin = asked.map_or_else(|| Source::find(name).map(Origin::of), Ok);
+        origin.ok()?.build().ok()
+    }
+
     /// Builds the scene of a file, and makes it the present one. Fails if the file cannot be read
     /// or built.
     pub fn open(&mut self, file: &Path) -> Result<Setup, InputError> {

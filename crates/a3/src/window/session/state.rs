@@ -12,7 +12,7 @@ use super::meter::Meter;
 use super::origin::Origin;
 use super::pane::Pane;
 use super::readings::Readings;
-use super::runs::Runs;
+use super::runs::{KEY_BUDGET, Runs};
 use super::scenes::Scenes;
 use super::timeline::Timeline;
 use super::tuning::{PanelState, Tuning};
@@ -34,6 +34,11 @@ const REFERENCE_BUDGET: (Duration, f64) =
     (Duration::from_millis(if cfg!(test) { 400 } else { 4 }), 0.1);
 /// Longest real time (s) that a frame simulates, even if the last one took longer.
 const MAX_FRAME_TIME: f64 = 0.3;
+
+/// Number of steps before a blow-up that are on the timeline, each as a moment.
+const STEPS_BEFORE_BLOW_UP: f64 = 60.0;
+/// Longest real time in which these steps are taken again to record them.
+const MAX_TIME_AGAIN: Duration = Duration::from_secs(1);
 
 /// Initial settings of a session.
 #[derive(Clone, Copy, Default)]
@@ -68,6 +73,10 @@ pub struct Session {
     pub readings: Readings,
     /// Frames and times since the last reading of rates.
     meter: Meter,
+    /// Whether the user has ever pulled or pushed something.
+    pub pulled: bool,
+    /// Time (s) of the blow-up whose last steps were taken again.
+    taken_again: Option<f64>,
 }
 
 impl Session {
@@ -102,6 +111,8 @@ impl Session {
                 ..Readings::default()
             },
             meter: Meter::new(),
+            pulled: false,
+            taken_again: None,
         })
     }
 
@@ -130,22 +141,51 @@ impl Session {
     pub(super) fn advance(&mut self, simulated: f64, budget: Duration, reference_budget: Duration) {
         self.record(false);
         let (begun, start) = (Instant::now(), self.runs.clock);
+        let alive = self.runs.count_alive();
         self.runs
             .advance(start + simulated, budget, reference_budget);
+        if self.readings.in_window && self.runs.count_alive() < alive {
+            self.record_blow_up();
+        }
         self.meter
             .count_steps(self.runs.clock - start, begun.elapsed());
         self.readings.read_reference(self.runs.reference.as_ref());
         self.record(false);
     }
 
+    /// Goes back to before the last steps that ended in a blow-up, and takes them again one by one,
+    /// so that each is on the timeline. If that takes too long, the runs continue on the way there.
+    fn record_blow_up(&mut self) {
+        let diverged = self.runs.panes.iter().filter(|pane| !pane.alive());
+        let latest = diverged.max_by(|a, b| a.simulation.time().total_cmp(&b.simulation.time()));
+        let Some((time, step)) = latest.map(|pane| (pane.simulation.time(), pane.slice())) else {
+            return;
+        };
+        if self.taken_again.replace(time) == Some(time) {
+            return self.timeline.mark_blow_up();
+        }
+        let (begun, alive) = (Instant::now(), self.runs.count_alive());
+        let from = time - STEPS_BEFORE_BLOW_UP * step;
+        self.return_to(&self.timeline.before(from));
+        self.runs.advance(from, KEY_BUDGET, KEY_BUDGET);
+        while self.runs.count_alive() > alive && begun.elapsed() < MAX_TIME_AGAIN {
+            self.record(true);
+            let next = self.runs.clock + step;
+            self.runs.advance(next, KEY_BUDGET, KEY_BUDGET);
+        }
+        if self.runs.count_alive() == alive {
+            self.timeline.mark_blow_up();
+        }
+    }
+
     /// Records the states on the timeline if the last moment is old enough, or with `now` if it is
     /// older at all.
     fn record(&mut self, now: bool) {
-        if self.readings.in_window {
+        if self.readings.in_window && self.runs.any_alive() {
             let runs = &self.runs;
             self.timeline.record(runs.clock, now, runs.all());
         }
-        self.readings.rewound = self.timeline.position();
+        self.readings.timeline = self.timeline.position();
     }
 
     /// Advances all runs to exactly `time` (s), however long that takes.
@@ -205,7 +245,8 @@ impl Session {
     /// Pauses, and records the newest states so that the user can return to them.
     fn pause_to_scrub(&mut self) {
         self.readings.paused = true;
-        if self.readings.rewound.is_none() {
+        self.taken_again = None;
+        if !self.readings.rewound() {
             self.runs.drop_due_steps();
             self.record(true);
         }
@@ -214,8 +255,24 @@ impl Session {
     /// Restores all runs to the chosen moment of the timeline.
     fn show_moment(&mut self) {
         self.timeline.show(self.runs.all_mut());
+        self.continue_from_here();
+    }
+
+    /// Goes back to earlier states of the runs that have one, from which they then continue.
+    pub fn return_to(&mut self, moments: &[Option<Checkpoint>]) {
+        for (run, moment) in self.runs.all_mut().zip(moments) {
+            // The state is of this run, so it fits.
+            let _ = moment.as_ref().map(|moment| run.rewind(moment));
+        }
+        self.runs.drop_due_steps();
+        self.timeline.forget_after(self.runs.clock);
+        self.continue_from_here();
+    }
+
+    /// Restarts all measurements, because the states of the runs were replaced.
+    fn continue_from_here(&mut self) {
         self.runs.states_changed();
-        self.readings.rewound = self.timeline.position();
+        self.readings.timeline = self.timeline.position();
         self.runs.hide_hand();
         self.restart_measuring();
     }
@@ -224,6 +281,7 @@ impl Session {
     /// if the checkpoint is of another scene.
     pub fn restore(&mut self, checkpoint: &Checkpoint) -> Result<(), Error> {
         self.runs.panes[0].restore(checkpoint)?;
+        self.runs.touched = true;
         self.begin_new_run();
         Ok(())
     }
@@ -231,7 +289,9 @@ impl Session {
     /// Clears the timeline and restarts all measurements, because a new run begins.
     pub(super) fn begin_new_run(&mut self) {
         self.timeline.clear();
-        self.readings.rewound = None;
+        self.taken_again = None;
+        self.history.forget_states(0);
+        self.readings.timeline = None;
         self.runs.hide_hand();
         self.restart_measuring();
     }

@@ -17,6 +17,8 @@ pub struct Timeline {
     moments: VecDeque<Entry>,
     /// Index of the chosen moment; `None` for the newest.
     shown: Option<usize>,
+    /// Whether a run blew up after the newest moment.
+    blew_up: bool,
 }
 
 /// A moment: the states of all runs at one time.
@@ -43,13 +45,34 @@ pub struct TimelinePosition {
     pub back: f64,
     /// Time from the oldest to the newest moment (s).
     pub span: f64,
+    /// Whether a run blew up after the newest moment.
+    pub blew_up: bool,
 }
 
 impl Timeline {
     /// Clears the timeline.
     pub fn clear(&mut self) {
-        self.moments.clear();
-        self.shown = None;
+        *self = Self::default();
+    }
+
+    /// Drops the moments after a time (s), and chooses the newest of the others.
+    pub fn forget_after(&mut self, clock: f64) {
+        let others = self.moments.partition_point(|entry| entry.clock <= clock);
+        self.moments.truncate(others);
+        (self.shown, self.blew_up) = (None, false);
+    }
+
+    /// Notes that a run blew up after the newest moment.
+    pub fn mark_blow_up(&mut self) {
+        self.blew_up = true;
+    }
+
+    /// Returns the states of all runs at the last moment before a time (s), or else at the oldest;
+    /// `None` for a run that had diverged, and no states if there is no moment.
+    pub fn before(&self, clock: f64) -> Vec<Option<Checkpoint>> {
+        let later = self.moments.partition_point(|entry| entry.clock <= clock);
+        let entry = self.moments.get(later.saturating_sub(1));
+        entry.map_or(vec![], |entry| entry.moments.clone())
     }
 
     /// Records the states at `clock` (s) if the last moment is old enough, or with `now` if it is
@@ -62,6 +85,7 @@ impl Timeline {
     ) {
         if let Some(k) = self.shown.take() {
             self.moments.truncate(k + 1);
+            self.blew_up = false;
         }
         let last = self.moments.back().map(|moment| moment.clock);
         let due = INTERVAL * (1.0 - 1e-6);
@@ -148,14 +172,16 @@ impl Timeline {
         }
     }
 
-    /// Returns the position of the chosen moment; `None` for the newest.
+    /// Returns the position of the chosen moment; `None` before there are two.
     pub fn position(&self) -> Option<TimelinePosition> {
-        let (k, newest) = (self.shown?, self.moments.len() - 1);
+        let newest = self.moments.len().checked_sub(1).filter(|k| *k > 0)?;
+        let k = self.shown.unwrap_or(newest);
         let clock = |k: usize| self.moments[k].clock;
         Some(TimelinePosition {
             share: k as f32 / newest as f32,
             back: clock(newest) - clock(k),
             span: clock(newest) - clock(0),
+            blew_up: self.blew_up,
         })
     }
 }
@@ -266,7 +292,9 @@ mod tests {
         );
         assert!(timeline.go_to(0.5));
         assert_eq!(timeline.position().unwrap().back, 2.0);
-        assert!(timeline.go(10) && timeline.position().is_none());
+        assert!(timeline.go(10));
+        let position = timeline.position().unwrap();
+        assert_eq!((position.share, position.back), (1.0, 0.0));
     }
 
     /// Goes back and forward again, then back and on by simulating: the states are equal to the
@@ -281,7 +309,7 @@ mod tests {
             session.runs.first().state().to_vec(),
         );
         session.act(RunAction::Scrub(-10), 0);
-        let place = session.readings.rewound.unwrap();
+        let place = session.readings.timeline.unwrap();
         assert!(
             session.readings.paused && (place.back - 1.0 / 6.0).abs() < 0.02,
             "{place:?}"
@@ -294,7 +322,7 @@ mod tests {
         assert_eq!(session.runs.first().state(), then);
         session.act(RunAction::Step, 0);
         session.act(RunAction::Scrub(10), 0);
-        assert_eq!(session.readings.rewound, None);
+        assert!(!session.readings.rewound());
         assert_eq!(
             (session.runs.first().time(), session.runs.first().state()),
             (newest.0, &newest.1[..])
@@ -306,14 +334,14 @@ mod tests {
             session.tick(0.01);
         }
         assert_eq!(
-            (session.runs.first().state(), session.readings.rewound),
-            (&newest.1[..], None)
+            (session.runs.first().state(), session.readings.rewound()),
+            (&newest.1[..], false)
         );
         session.act(RunAction::Reset, 0);
         session.act(RunAction::Scrub(-1), 0);
         assert_eq!(
-            (session.runs.first().time(), session.readings.rewound),
-            (0.0, None)
+            (session.runs.first().time(), session.readings.rewound()),
+            (0.0, false)
         );
     }
 
@@ -325,6 +353,6 @@ mod tests {
             session.tick(1.0 / 60.0);
         }
         session.act(RunAction::Scrub(-10), 0);
-        assert!(session.runs.panes[0].alive() && session.readings.rewound.is_some());
+        assert!(session.runs.panes[0].alive() && session.readings.rewound());
     }
 }

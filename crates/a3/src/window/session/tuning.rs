@@ -59,6 +59,8 @@ pub struct PanelState {
     pub open: bool,
     /// Number of the chosen row in the table of knobs, which keys turn.
     pub row: usize,
+    /// Whether the dark theme is on, if the panel chose it.
+    pub dark: Option<bool>,
     /// Text typed so far for the value of the chosen row; `None` while none is typed.
     pub typed: Option<String>,
     /// Largest frame rate (1/s), or 0 for that of the screen.
@@ -76,6 +78,7 @@ impl Default for PanelState {
         Self {
             open: false,
             row: 0,
+            dark: None,
             typed: None,
             frame_limit: 0,
             film: Ending::default(),

@@ -7,12 +7,12 @@ use a3_render::Camera;
 use super::pane::Pane;
 use crate::draw::show;
 
-/// Yaw and pitch (rad) of the views that a key cycles through, and their names.
+/// Yaw and pitch (rad) of the views that a key cycles through, and messages.
 const VIEWS: [([f32; 2], &str); 3] = [
-    ([0.0, 0.0], "from the front"),
-    ([FRAC_PI_2, 0.0], "from the right"),
+    ([0.0, 0.0], "The view is from the front."),
+    ([FRAC_PI_2, 0.0], "The view is from the right."),
     // The camera stops just before the pole.
-    ([0.0, FRAC_PI_2], "from above"),
+    ([0.0, FRAC_PI_2], "The view is from above."),
 ];
 
 /// The camera, which all panes share, and the particle that it follows.
@@ -116,7 +116,7 @@ impl View {
     }
 
     /// Turns the camera to the next view (from the front, from the right, or from above), and
-    /// returns the view's name.
+    /// returns a message.
     pub fn next_view(&mut self) -> &'static str {
         let seen = |[yaw, pitch]: [f32; 2]| {
             let mut turned = self.camera;

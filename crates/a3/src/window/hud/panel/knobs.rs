@@ -294,7 +294,10 @@ pub static KNOBS: &[Knob] = &[
         "dark",
         "Whether the dark theme is on.",
         |session, _| Some(switch(session.runs.panes[0].show.dark, false)),
-        |session, _, on| looks::set_dark(&mut session.runs.panes, on != 0.0),
+        |session, _, on| {
+            session.panel.dark = Some(on != 0.0);
+            looks::set_dark(&mut session.runs.panes, on != 0.0);
+        },
     )),
     knob(
         "frames",

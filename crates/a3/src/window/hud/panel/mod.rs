@@ -16,10 +16,11 @@ mod view;
 
 pub use measure::update;
 pub use plots::csv;
-pub use request::{PanelKey, PanelRequest, Request, apply, press, press_text};
+pub use request::{PanelKey, PanelRequest, Request, apply, is_shown, press, press_text};
+pub use row::button;
 pub use tune::{tune, tuned};
 pub use undo::undo;
-pub use view::{inset, picture_size, show};
+pub use view::{picture_size, show};
 
 #[cfg(test)]
 mod tests;

@@ -11,11 +11,11 @@ use crate::window::session::{Action, Session, TextKey};
 pub enum Request {
     /// Perform the action of a key.
     Act(Action),
-    /// Change the panel, a knob, or the open list.
+    /// Change the panel, a knob, the open list, or the moment.
     Change(PanelRequest),
 }
 
-/// A request of the mouse to the panel or to the open list.
+/// A request of the mouse to the panel, the open list or the timeline.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum PanelRequest {
     /// Choose a row, by its number in the table of knobs.
@@ -28,6 +28,8 @@ pub enum PanelRequest {
     TakeEntry(usize),
     /// Close the list.
     CloseList,
+    /// Go to a share of the timeline.
+    GoTo(f32),
 }
 
 /// A key of the panel.
@@ -139,6 +141,7 @@ pub fn apply(session: &mut Session, request: PanelRequest) -> bool {
         }
         PanelRequest::TakeEntry(number) => return session.take_entry(number),
         PanelRequest::CloseList => session.list = None,
+        PanelRequest::GoTo(share) => session.scrub_to(share),
     }
     false
 }

@@ -11,8 +11,15 @@ pub fn undo(session: &mut Session, redo: bool) {
         return session.readings.say(format!("There is nothing to {what}."));
     };
     let what = match change {
-        Change::Pins { particles, pinned } => {
+        Change::Pins {
+            particles,
+            pinned,
+            before,
+        } => {
             session.runs.set_pins(&particles, pinned == redo);
+            if let (Some(before), false) = (before, redo) {
+                session.return_to(&before);
+            }
             match (particles.len(), pinned) {
                 (1, true) => format!("pin of particle {}", particles[0]),
                 (1, false) => format!("release of particle {}", particles[0]),
@@ -53,6 +60,6 @@ pub fn undo(session: &mut Session, redo: bool) {
             format!("{} {words}", KNOBS[row].name)
         }
     };
-    let did = if redo { "redone" } else { "undone" };
-    session.readings.say(format!("{did}: {what}"));
+    let did = if redo { "Redone" } else { "Undone" };
+    session.readings.say(format!("{did}: {what}."));
 }

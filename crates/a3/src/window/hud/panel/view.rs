@@ -50,11 +50,6 @@ pub fn picture_size(session: &Session, size: (u32, u32), scale: f32) -> (u32, u3
     (size.0.saturating_sub(taken).max(1), size.1)
 }
 
-/// Returns the width on the right that is not available to text (points).
-pub fn inset(session: &Session, size: (u32, u32), scale: f32) -> f32 {
-    (size.0 - picture_size(session, size, scale).0) as f32 / scale
-}
-
 /// Draws the panel, if it is visible, and returns the request of the mouse.
 pub fn show(ctx: &Context, session: &Session) -> Option<Request> {
     if !is_shown(session) {

@@ -196,7 +196,7 @@ fn pins_hands_and_tuning_stay() {
     );
     assert_eq!(network(&session).gravity(), None);
     let said = session.readings.message.clone().unwrap();
-    assert!(said.starts_with("gravity is left out"), "{said}");
+    assert!(said.starts_with("Gravity is left out"), "{said}");
     toggle(&mut session, "gravity");
     assert_eq!(tuned(&session), before);
     assert!(forces(&session, &now) == forced);

@@ -3,7 +3,9 @@
 use egui::{Context, Event, PointerButton, Pos2, RawInput, Rect, Shape, pos2};
 
 use crate::window::hud::panel::request::{Request, apply};
-use crate::window::hud::panel::view::{MARGIN, inset, show, width};
+
+use crate::window::hud::layout::insets;
+use crate::window::hud::panel::view::{MARGIN, show, width};
 use crate::window::hud::{style, text};
 use crate::window::session::Session;
 
@@ -31,7 +33,7 @@ impl Screen {
     ) -> (egui::FullOutput, Option<Request>) {
         self.time += 0.05;
         let px = self.size.map(|side| side as u32);
-        let right = inset(session, px.into(), 1.0);
+        let [right, _] = insets(session, px.into(), 1.0);
         let input = RawInput {
             screen_rect: Some(Rect::from_min_size(Pos2::ZERO, self.size.into())),
             safe_area_insets: Some(egui::SafeAreaInsets(egui::epaint::MarginF32 {

@@ -247,11 +247,11 @@ fn values_are_typed() {
     assert_eq!(session.runs.first().control(), Control::Step(1.0 / 120.0));
     // Invalid values are refused, and can be corrected.
     for (words, why) in [
-        ("1,5", "stiffness: use a decimal point: 1.5"),
-        ("much", "stiffness: must be a number from 0.1 to 10"),
-        ("11", "stiffness: must be a number from 0.1 to 10"),
-        ("", "stiffness: must be a number from 0.1 to 10"),
-        ("nan", "stiffness: must be a number from 0.1 to 10"),
+        ("1,5", "Stiffness: use a decimal point: 1.5."),
+        ("much", "Stiffness: must be a number from 0.1 to 10."),
+        ("11", "Stiffness: must be a number from 0.1 to 10."),
+        ("", "Stiffness: must be a number from 0.1 to 10."),
+        ("nan", "Stiffness: must be a number from 0.1 to 10."),
     ] {
         assert!(type_value(&mut session, "stiffness", words), "{words}");
         assert_eq!(session.readings.message.as_deref(), Some(why));

@@ -1,0 +1,24 @@
+//! All that a window draws over and around its picture.
+
+use std::collections::HashMap;
+
+use egui::{Context, TextureId};
+
+use super::panel::{self, Request};
+use super::{bar, hint, list, text};
+use crate::window::session::Session;
+
+/// Draws text, panel, bar and the open list, with `pictures` of scenes by their names. Returns the
+/// request of the mouse.
+pub fn show_all(
+    ctx: &Context,
+    session: &Session,
+    pictures: &HashMap<String, TextureId>,
+) -> Option<Request> {
+    hint::show(ctx, session);
+    let on_text = text::show(ctx, &session.runs.panes, &session.readings);
+    let on_panel = panel::show(ctx, session);
+    let on_bar = bar::show(ctx, session);
+    let on_list = list::show(ctx, session, pictures).map(Request::Change);
+    on_list.or(on_bar).or(on_panel).or(on_text)
+}
