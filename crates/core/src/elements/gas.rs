@@ -1,8 +1,8 @@
 //! Gas in a closed surface, at constant pressure or at constant temperature. With the volume V =
 //! sum of a . (b x c) / 6 over the triangles (a, b, c), anticlockwise from outside, it pushes a
 //! particle at x by p dV/dx, where p is the pressure above that outside (Pa). Its energy is -p V at
-//! constant p. A fixed amount of ideal gas has p = P (w / V - 1) under the outer pressure P, where w
-//! is the volume that it takes at P, and the energy P (V - w - w ln(V / w)).
+//! constant p. A fixed amount of ideal gas has p = P (w / V - 1) under the outer pressure P, where
+//! w is the volume that it takes at P, and the energy P (V - w - w ln(V / w)).
 
 use super::force::{At, Cost, Force, check_particle};
 use crate::coupling::{Coupling, GeneralCoupling};

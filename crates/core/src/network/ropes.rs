@@ -12,7 +12,10 @@ use crate::system::{Mechanics, ParticleSystem};
 /// Largest number of impacts at one time: an impact may tighten further ropes.
 const MAX_IMPACTS: usize = 100;
 
-/// Heights (m) and times (s) that are too small for a rebound.
+/// Largest number of impacts at one time with rebounds, which may follow one another without end.
+const MAX_REBOUNDS: usize = 10;
+
+/// Conditions for a rebound: heights (m) and times (s) that are too small for one.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Least {
     /// Distance from its length that counts as zero.
@@ -21,6 +24,8 @@ pub(crate) struct Least {
     pub height: f64,
     /// Time up to which a rebound is left out.
     pub time: f64,
+    /// Whether there are rebounds at all.
+    pub rebounds: bool,
 }
 
 /// Whether there are ropes.
@@ -64,7 +69,8 @@ pub(crate) fn ropes_of(network: &Network, i: usize) -> impl Iterator<Item = (usi
 /// there were any.
 pub(crate) fn tighten(network: &mut Network, t: f64, y: &mut [f64], least: Least) -> bool {
     let mut struck = false;
-    for _ in 0..MAX_IMPACTS {
+    for number in 0..MAX_IMPACTS {
+        let may_rebound = least.rebounds && number < MAX_REBOUNDS;
         let mut ropes = beyond(&network.constraints, halves(network, y), least.none);
         ropes.retain(|rope| rope.rate > 0.0);
         if ropes.is_empty() {
@@ -72,13 +78,13 @@ pub(crate) fn tighten(network: &mut Network, t: f64, y: &mut [f64], least: Least
         }
         struck = true;
         let mut rates = vec![];
-        if ropes.iter().any(|rope| rope.restitution > 0.0) {
+        if may_rebound && ropes.iter().any(|rope| rope.restitution > 0.0) {
             rates.resize(y.len(), 0.0);
             network.eval_f(t, y, &mut rates);
         }
         let speeds = ropes.iter().map(|rope| {
             let speed = rope.restitution * rope.rate;
-            let rebounds = speed > 0.0 && {
+            let rebounds = may_rebound && speed > 0.0 && {
                 let press = parting(network, rope.number, y, &rates);
                 speed * speed > 2.0 * press * least.height && 2.0 * speed > press * least.time
             };
@@ -90,8 +96,8 @@ pub(crate) fn tighten(network: &mut Network, t: f64, y: &mut [f64], least: Least
     struck
 }
 
-/// Decides which ropes are taut in the state y at time t (s): those that pull. Returns the number of
-/// evaluations.
+/// Decides which ropes are taut in the state y at time t (s): those that pull. Returns the number
+/// of evaluations.
 pub(crate) fn settle(network: &mut Network, t: f64, y: &[f64], none: f64) -> u64 {
     if !has_ropes(network) {
         return 0;

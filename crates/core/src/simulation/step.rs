@@ -36,6 +36,12 @@ const SWEEP_PRICE: f64 = 2.0;
 /// Cost of a separating plane between two surfaces, in evaluations of one particle on springs.
 const PLANE_PRICE: f64 = 7.0;
 
+/// Number of parts of a fixed step after which ropes tighten in it without rebounds.
+const MAX_REBOUNDING_PARTS: usize = 100;
+
+/// Largest number of parts of a fixed step: events within the last one are not located.
+const MAX_PARTS: usize = 1000;
+
 /// Plan of a step.
 #[derive(Clone, Copy)]
 struct Plan {
@@ -89,17 +95,20 @@ impl Pipeline {
         let mut begin = state.end();
         let whole = state.control.step();
         let target = whole.map(|h| state.since + (state.taken + 1) as f64 * h);
-        loop {
+        for number in 1.. {
+            let rebounds = number <= MAX_REBOUNDING_PARTS;
             if let Model::Network(network) = model {
                 network.list_strained();
             }
-            self.tighten(model, state, begin);
+            self.tighten(model, state, begin, rebounds);
             self.choose_taut(model, state, begin);
             self.watch.begin_step(model, begin, &state.y);
-            let (cause, part) = match self.integrate_and_settle(model, state, begin, target)? {
+            let splits = number < MAX_PARTS;
+            let taken = self.integrate_and_settle(model, state, (begin, target), splits)?;
+            let (cause, part) = match taken {
                 Err(cause) => (Some(cause), Part::of(begin, whole.unwrap_or(0.0))),
                 Ok((part, settled)) => {
-                    self.tighten(model, state, part.end);
+                    self.tighten(model, state, part.end, rebounds);
                     (self.end_part(model, state, part.end, &settled), part)
                 }
             };
@@ -116,22 +125,24 @@ impl Pipeline {
                 state.taken += 1;
             }
             if is_last {
-                return Ok(());
+                break;
             }
             self.tear(model, state);
             begin = part.end;
         }
+        Ok(())
     }
 
     /// Takes a step from time t (s), and settles its end; an adaptive method may have to take it
-    /// again with a shorter length. If events are located, the step ends at the first one, and a
-    /// fixed step ends at `target` (s) at the latest. Returns the step, or the cause of a blow-up.
+    /// again with a shorter length. If events are located, the step ends at the first one if it
+    /// `splits`, and a fixed step ends at `target` (s) at the latest. Returns the step, or the cause
+    /// of a blow-up.
     fn integrate_and_settle(
         &mut self,
         model: &Model,
         state: &mut RunState,
-        t: f64,
-        target: Option<f64>,
+        (t, target): (f64, Option<f64>),
+        splits: bool,
     ) -> Result<Result<(Part, Settled), Cause>, Error> {
         let (stepper, limits) = (&mut self.stepper, self.limits);
         let depths = Depths::new(self.bounds.radius, limits, state.control);
@@ -146,7 +157,7 @@ impl Pipeline {
             t,
             reach,
             depths,
-            locates,
+            locates: locates && splits,
         };
         loop {
             match self.attempt(model, state, plan) {
@@ -303,9 +314,9 @@ impl Pipeline {
         self.watch.end_step(model, balance, end, &settled.met, lost)
     }
 
-    /// Applies the impacts of ropes that tighten at time t (s), and accounts for the energy that is
-    /// lost in them.
-    fn tighten(&mut self, model: &mut Model, state: &mut RunState, t: f64) {
+    /// Applies the impacts of ropes that tighten at time t (s), with or without rebounds, and
+    /// accounts for the energy that is lost in them.
+    fn tighten(&mut self, model: &mut Model, state: &mut RunState, t: f64, rebounds: bool) {
         let Model::Network(network) = model else {
             return;
         };
@@ -317,6 +328,7 @@ impl Pipeline {
             none: depths.none,
             height: depths.none.max(depths.shallow),
             time: state.control.step().unwrap_or(0.0),
+            rebounds,
         };
         let before = energy_of(network, t, &state.y).total();
         if tighten(network, t, &mut state.y, least) {

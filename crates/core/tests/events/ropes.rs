@@ -188,3 +188,39 @@ fn a_run_on_a_rope_continues_from_a_checkpoint_bit_for_bit() {
         }
     }
 }
+
+/// A particle on two ropes flies to and fro between them, at a triangle wave; where there are too
+/// many rebounds for a fixed step, or for one time, it comes to rest.
+#[test]
+fn rebounds_between_two_ropes_end() {
+    let speed: f64 = 0.5;
+    let between = |gap: f64| {
+        let length = 1.0 + gap;
+        described(&format!(
+            "particles = {{ positions = [[-1, 0, 0], [1, 0, 0], [0, 0, 0]], velocities = [[0, 0, 0], \
+             [0, 0, 0], [{speed}, 0, 0]], mass = 2, pin = [{{ particles = [0, 1] }}] }}\n\
+             [[constraint]]\nrope = [0, 2]\nlength = {length}\nrestitution = 1\n\
+             [[constraint]]\nrope = [1, 2]\nlength = {length}\nrestitution = 1\n"
+        ))
+    };
+    let (gap, until) = (1.03e-3, 1.0);
+    let phase = (speed * until / gap + 1.0).rem_euclid(4.0);
+    let expected = gap * (1.0 - (phase - 2.0).abs());
+    for (name, value) in [("verlet", 0.01), ("rk4", 0.01), ("dopri5", 1e-6)] {
+        let x = run(&between(gap), name, value, until).position(2).x;
+        assert!((x - expected).abs() < 1e-6, "{name}: {x} {expected}");
+    }
+    for (gap, name, value) in [
+        (1e-7, "verlet", 0.01),
+        (1e-7, "rk4", 0.01),
+        (0.0, "verlet", 0.01),
+        (0.0, "dopri5", 1e-6),
+    ] {
+        let run = run(&between(gap), name, value, 1.0);
+        let (x, v) = (run.position(2).x, run.state()[11]);
+        assert!(
+            x.abs() < 1e-6 && v.abs() < 1e-6,
+            "{name} {gap}: {x:e} {v:e}"
+        );
+    }
+}

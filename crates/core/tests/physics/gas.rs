@@ -75,7 +75,7 @@ fn rest(pressure: impl Fn(f64) -> f64) -> f64 {
 fn a_balloon_rests_where_springs_and_gas_balance() {
     let amount = 1.002 * volume(EDGE);
     let laws = [
-        (GasLaw::Pressure(200.0), rest(|_| 200.0)),
+        (GasLaw::Pressure(100.0), rest(|_| 100.0)),
         (GasLaw::Pressure(-100.0), rest(|_| -100.0)),
         (
             GasLaw::Amount(amount),

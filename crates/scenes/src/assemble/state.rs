@@ -14,7 +14,8 @@ pub(super) fn of(positions: &[Vector3<f64>], velocities: &[Vector3<f64>]) -> Vec
         .collect()
 }
 
-/// Sets a state to the given one: without positions, those of the bodies stay. A first-order system has positions only.
+/// Sets a state to the given one: without positions, those of the bodies stay. A first-order system
+/// has positions only.
 pub(super) fn write(given: &State, particles: usize, state: &mut [f64]) -> Result<(), Fault> {
     let parts = [
         ("state.positions", &given.positions),

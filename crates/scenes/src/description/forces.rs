@@ -19,8 +19,8 @@ pub struct BucklingSpec {
     pub compression: f64,
 }
 
-/// Wind, in gusts that are repeatable by their seed. It pushes each particle by `force` or by `force_per_mass`,
-/// or it is air that streams with a `velocity` past the triangles of surfaces.
+/// Wind, in gusts that are repeatable by their seed. It pushes each particle by `force` or by
+/// `force_per_mass`, or it is air that streams with a `velocity` past the triangles of surfaces.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct WindSpec {
