@@ -281,6 +281,12 @@ impl Pipeline {
         }
         let part = Part::of(t, share * h);
         state.y.copy_from_slice(self.locator.state());
+        if let Stepper::Adaptive(adaptive) = &mut self.stepper
+            && model.network().is_some_and(has_ropes)
+        {
+            // Between the impacts of ropes, steps would otherwise become ever longer.
+            adaptive.try_at_most(h);
+        }
         if let (EventKind::Touch { .. }, Some(network)) = (kind, model.network()) {
             let times = (part.end, part.h);
             self.phases.strike(network, times, depths, &mut state.y);
