@@ -8,6 +8,10 @@ use crate::error::{Error, positive};
 /// is undefined.
 const CENTER_SHARE: f64 = 1e-12;
 
+/// Share of its length by which a taut rope may be shorter, because of the errors of a method: one
+/// that is shorter is slack.
+pub(super) const SLACK_SHARE: f64 = 1e-3;
+
 /// A constraint on the positions of one or two particles.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Constraint {
@@ -81,6 +85,11 @@ impl Constraint {
             | Self::Sphere { particle, .. } => (particle, None),
             Self::Rod { i, j, .. } | Self::Rope { i, j, .. } => (i, Some(j)),
         }
+    }
+
+    /// Whether it is a rope that is clearly shorter than its length.
+    pub(super) fn is_slack(&self, equation: &Equation) -> bool {
+        matches!(self, Self::Rope { length, .. } if equation.value < -SLACK_SHARE * length)
     }
 
     /// Whether it is a rope, which holds only while it is taut.

@@ -7,21 +7,10 @@
 
 use nalgebra::Vector3;
 
-use super::constraint::{Constraint, Equation};
+use super::constraint::{Constraint, SLACK_SHARE};
 use super::set::{Constraints, Moved, vector};
 use super::solve::System;
 use super::turning::Turning;
-
-/// Share of its length by which a taut rope may be shorter, because of the errors of a method: one
-/// that is shorter is slack.
-const SLACK_SHARE: f64 = 1e-3;
-
-impl Constraint {
-    /// Whether it is a rope that is clearly shorter than its length.
-    pub(super) fn is_slack(&self, equation: &Equation) -> bool {
-        matches!(self, Self::Rope { length, .. } if equation.value < -SLACK_SHARE * length)
-    }
-}
 
 /// Rope that is as long as it can be, and whose ends part.
 #[derive(Clone, Copy, Debug)]

@@ -21,8 +21,8 @@ const LEAST_VOLUME: f64 = 1e-3;
 pub enum GasLaw {
     /// Constant pressure above that outside (Pa).
     Pressure(f64),
-    /// Amount of gas at constant temperature under the pressure of the [`ATMOSPHERE`], as the volume
-    /// that it takes at that pressure (m3).
+    /// Amount of gas at constant temperature under the pressure of the [`ATMOSPHERE`], as the
+    /// volume that it takes at that pressure (m3).
     Amount(f64),
 }
 

@@ -135,8 +135,8 @@ impl Pipeline {
 
     /// Takes a step from time t (s), and settles its end; an adaptive method may have to take it
     /// again with a shorter length. If events are located, the step ends at the first one if it
-    /// `splits`, and a fixed step ends at `target` (s) at the latest. Returns the step, or the cause
-    /// of a blow-up.
+    /// `splits`, and a fixed step ends at `target` (s) at the latest. Returns the step, or the
+    /// cause of a blow-up.
     fn integrate_and_settle(
         &mut self,
         model: &Model,

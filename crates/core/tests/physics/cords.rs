@@ -1,5 +1,7 @@
 //! Springs that only pull.
 
+use std::fmt::Write;
+
 use a3_core::{Linearized, Mechanics, Simulation};
 
 use crate::common::{described, method, state_random};
@@ -47,12 +49,13 @@ fn the_differential_is_the_slope_of_the_forces() {
     let mut text = String::from("[particles]\nmass = 1\ntension_only = true\npositions = [");
     let places = state_random(24, 3);
     for i in 0..8 {
-        text += &format!("[{}, {}, {}], ", places[i], places[8 + i], places[16 + i]);
+        let [x, y, z] = [0, 8, 16].map(|axis| places[axis + i]);
+        write!(text, "[{x}, {y}, {z}], ").unwrap();
     }
     text += "]\nsprings = [";
     for i in 0..8 {
         for j in i + 1..8 {
-            text += &format!("[{i}, {j}, 20, 1.1, 0.5], ");
+            write!(text, "[{i}, {j}, 20, 1.1, 0.5], ").unwrap();
         }
     }
     let scene = described(&(text + "]\n"));

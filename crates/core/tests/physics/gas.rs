@@ -148,16 +148,16 @@ fn energy_forces_differential_and_couplings_agree() {
         if !network.lists_all_couplings() {
             continue;
         }
-        let mut sum = vec![0.0; 18];
+        let mut sum = [0.0; 18];
         network.couplings(0.0, &x, false, &mut |coupling| {
             let a3_core::Coupling::General(it) = coupling else {
                 panic!("{coupling:?}");
             };
             let dd = [0, 6, 12].map(|axis| d[axis + it.i] - d[axis + it.j]);
             for a in 0..3 {
-                for b in 0..3 {
-                    sum[6 * a + it.i] -= it.stiffness[3 * a + b] * dd[b];
-                    sum[6 * a + it.j] += it.stiffness[3 * b + a] * dd[b];
+                for (b, dd) in dd.iter().enumerate() {
+                    sum[6 * a + it.i] -= it.stiffness[3 * a + b] * dd;
+                    sum[6 * a + it.j] += it.stiffness[3 * b + a] * dd;
                 }
             }
         });

@@ -66,7 +66,7 @@ pub(super) fn wind(spec: &WindSpec, network: &Network) -> Result<Wind, Fault> {
         } else {
             mean(network.masses())
         };
-        return Ok(blown(spec, Wind::new(spec.seed, mean_wind * factor)));
+        return Ok(blown(spec, &Wind::new(spec.seed, mean_wind * factor)));
     }
     let mut air = AIR.map(|(_, usual)| usual);
     for (((key, _), given), number) in AIR.iter().zip(coefficients).zip(&mut air) {
@@ -75,11 +75,11 @@ pub(super) fn wind(spec: &WindSpec, network: &Network) -> Result<Wind, Fault> {
     }
     let [density, drag, lift] = air;
     let air = at("", Air::new(density, drag, lift))?;
-    Ok(blown(spec, Wind::on_triangles(spec.seed, mean_wind, air)))
+    Ok(blown(spec, &Wind::on_triangles(spec.seed, mean_wind, air)))
 }
 
 /// Shifts the gusts of a wind in time, or leaves them out.
-fn blown(spec: &WindSpec, wind: Wind) -> Wind {
+fn blown(spec: &WindSpec, wind: &Wind) -> Wind {
     if spec.steady {
         wind.steady()
     } else {
