@@ -233,8 +233,8 @@ impl fmt::Display for Refusal {
                 f.write_str("does not support constraints: use an explicit solver")
             }
             Self::HidesCouplings => f.write_str(
-                "does not support fluids, each of whose particles acts on its neighbours' \
-                 neighbours: use an explicit solver",
+                "does not support fluids and amounts of gas, whose particles act on others than \
+                 their neighbours: use an explicit solver",
             ),
             Self::LacksSprings => f.write_str(
                 "solves spring by spring, but some forces between particles are not those of \

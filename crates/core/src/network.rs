@@ -16,6 +16,7 @@ mod particles;
 mod parts;
 mod reading;
 mod rigid;
+mod ropes;
 mod springs;
 mod strain;
 mod surfaces;
@@ -27,4 +28,7 @@ pub use element::Element;
 pub(crate) use energies::{add_wind, energy_of_errors, is_conservative};
 pub(crate) use holding::{contradiction, is_nearly_singular};
 pub use parts::Network;
+pub(crate) use ropes::{
+    Least, has_ropes, least_tension, ropes_of, set_taut, settle, slack, taut, tighten,
+};
 pub use surfaces::Touch;

@@ -10,7 +10,7 @@ use crate::error::Error;
 use crate::geometry::Shape;
 use crate::grid::Grid;
 use crate::integrators::Tolerance;
-use crate::network::{Network, Touch};
+use crate::network::{Network, Touch, settle};
 use crate::system::ParticleSystem;
 
 /// Cost of an evaluation where surfaces touch, with the collision safeguard after a step, over the
@@ -199,9 +199,12 @@ impl Scene {
     /// alone.
     #[must_use]
     pub fn new(name: impl Into<String>, model: impl Into<Model>, mut state: Vec<f64>) -> Self {
-        let model = model.into();
+        let mut model = model.into();
         if state.len() == model.system().dim() {
             model.system().hold(0.0, &mut state);
+            if let Model::Network(network) = &mut model {
+                settle(network, 0.0, &state, 0.0);
+            }
         }
         Self {
             name: name.into(),

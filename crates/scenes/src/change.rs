@@ -15,12 +15,20 @@ pub enum Change {
     Buckling,
     /// Limit of strain.
     StrainLimit,
+    /// Springs that only pull, replaced by springs that also push.
+    TensionOnly,
+    /// Ropes.
+    Ropes,
+    /// Gas in closed meshes.
+    Gas,
     /// Tearing.
     Tear,
     /// Viscosity of fluids.
     Viscosity,
     /// Wind.
     Wind,
+    /// Gusts of the wind.
+    Gusts,
     /// Wind that blows on triangles, replaced by forces on particles.
     WindByParticles,
     /// Friction.

@@ -62,7 +62,9 @@ pub fn parse_json(text: &str) -> Result<(Description, Places), Fault> {
             mass: None,
             masses: listed.mass,
             springs: listed.springs,
+            tension_only: false,
             thickness: None,
+            contact_stiffness: None,
             friction: 0.0,
             restitution: 0.0,
             pin: if pin.particles.is_empty() {

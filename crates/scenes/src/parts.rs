@@ -47,10 +47,14 @@ pub fn parts(scene: &Description) -> Vec<Part> {
     all.extend([
         named(Change::Buckling, "buckling of bend springs"),
         named(Change::StrainLimit, "limit of strain"),
+        named(Change::TensionOnly, "springs that only pull: that push too"),
+        named(Change::Ropes, "ropes"),
+        named(Change::Gas, "gas in meshes"),
         named(Change::Tear, "tearing"),
         named(Change::Viscosity, "viscosity"),
         named(Change::Gravity, "gravity"),
         named(Change::Wind, "wind"),
+        named(Change::Gusts, "gusts"),
         named(Change::WindByParticles, "wind on triangles: on particles"),
         named(Change::Friction, "friction"),
         named(Change::Restitution, "restitution"),
@@ -136,6 +140,20 @@ fn leave_out(scene: &mut Description, change: Change) {
                 *strain_limit = None;
             }
         }
+        Change::TensionOnly => {
+            let meshes = scene.mesh.iter_mut().map(|it| &mut it.tension_only);
+            let chains = scene.chain.iter_mut().map(|it| &mut it.tension_only);
+            let particles = scene.particles.iter_mut().map(|it| &mut it.tension_only);
+            let all = meshes.chain(chains).chain(particles);
+            all.for_each(|only| *only = false);
+            scene.tension_only = false;
+        }
+        Change::Gas => {
+            for MeshCloth { pressure, fill, .. } in &mut scene.mesh {
+                (*pressure, *fill) = (None, None);
+            }
+        }
+        Change::Ropes => scene.constraint.retain(|it| it.rope.is_none()),
         Change::Tear => scene.tear = None,
         Change::Viscosity => {
             for fluid in &mut scene.fluid {
@@ -147,6 +165,11 @@ fn leave_out(scene: &mut Description, change: Change) {
                 wind.on = false;
             }
         }
+        Change::Gusts => {
+            if let Some(wind) = scene.wind.as_mut().filter(|wind| wind.on) {
+                wind.steady = true;
+            }
+        }
         Change::WindByParticles => simplify_wind(scene),
         Change::Friction => each_contact(scene, |[friction, _]| *friction = 0.0),
         Change::Restitution => each_contact(scene, |[_, restitution]| *restitution = 0.0),
@@ -155,7 +178,8 @@ fn leave_out(scene: &mut Description, change: Change) {
         Change::Obstacle(..) => {}
         Change::Rods => {
             for chain in &mut scene.chain {
-                chain.rigid |= chain.stiffness > 0.0 && chain.buckling.is_none();
+                let holds = chain.stiffness > 0.0 && !chain.tension_only;
+                chain.rigid |= holds && chain.buckling.is_none();
                 if chain.rigid {
                     (chain.stiffness, chain.damping) = (0.0, 0.0);
                 }
@@ -257,6 +281,9 @@ fn each_contact(scene: &mut Description, mut change: impl FnMut([&mut f64; 2])) 
     {
         change([friction, restitution]);
     }
+    for rope in &mut scene.constraint {
+        change([&mut 0.0, &mut rope.restitution]);
+    }
 }
 
 /// Replaces a wind on the triangles of cloths by forces on particles: the drag of a cloth that
@@ -290,6 +317,7 @@ fn simplify_wind(scene: &mut Description) {
     *wind = WindSpec {
         on: wind.on,
         seed: wind.seed,
+        steady: wind.steady,
         force_per_mass: Some(velocity.map(|v| each * v)),
         ahead: wind.ahead,
         ..WindSpec::default()

@@ -8,6 +8,10 @@ use crate::error::{Error, positive};
 /// is undefined.
 const CENTER_SHARE: f64 = 1e-12;
 
+/// Share of its length by which a taut rope may be shorter, because of the errors of a method: one
+/// that is shorter is slack.
+pub(super) const SLACK_SHARE: f64 = 1e-3;
+
 /// A constraint on the positions of one or two particles.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Constraint {
@@ -56,10 +60,22 @@ pub enum Constraint {
         /// Length (m).
         length: f64,
     },
+    /// Two particles are no farther apart than a length: a rope without mass.
+    Rope {
+        /// Particle at one end.
+        i: usize,
+        /// Particle at the other end.
+        j: usize,
+        /// Length (m).
+        length: f64,
+        /// Coefficient of restitution, from 0 to 1: the speed at which the ends approach after the
+        /// rope has tightened, over that at which they parted before.
+        restitution: f64,
+    },
 }
 
 impl Constraint {
-    /// Its particle, and the other one of a rod.
+    /// Its particle, and the other one of a rod or a rope.
     #[must_use]
     pub fn ends(&self) -> (usize, Option<usize>) {
         match *self {
@@ -67,8 +83,18 @@ impl Constraint {
             | Self::Line { particle, .. }
             | Self::Circle { particle, .. }
             | Self::Sphere { particle, .. } => (particle, None),
-            Self::Rod { i, j, .. } => (i, Some(j)),
+            Self::Rod { i, j, .. } | Self::Rope { i, j, .. } => (i, Some(j)),
         }
+    }
+
+    /// Whether it is a rope that is clearly shorter than its length.
+    pub(super) fn is_slack(&self, equation: &Equation) -> bool {
+        matches!(self, Self::Rope { length, .. } if equation.value < -SLACK_SHARE * length)
+    }
+
+    /// Whether it is a rope, which holds only while it is taut.
+    pub(super) fn is_rope(&self) -> bool {
+        matches!(self, Self::Rope { .. })
     }
 
     /// The same constraint with directions of length 1, or an error if its numbers are invalid.
@@ -86,9 +112,19 @@ impl Constraint {
             }
             Self::Rod { i, j, length } => {
                 positive("the length of a rod", length)?;
-                if i == j {
+                check_different("rod", i, j)?;
+            }
+            Self::Rope {
+                i,
+                j,
+                length,
+                restitution,
+            } => {
+                positive("the length of a rope", length)?;
+                check_different("rope", i, j)?;
+                if !(0.0..=1.0).contains(&restitution) {
                     return Err(Error::Invalid(format!(
-                        "a rod needs two different particles, not {i} twice"
+                        "the restitution of a rope must be from 0 to 1, not {restitution}"
                     )));
                 }
             }
@@ -103,7 +139,7 @@ impl Constraint {
     }
 
     /// Visits its equations, always the same number, where its first particle is at x with velocity
-    /// v; for a rod, relative to its second particle.
+    /// v; for a rod or a rope, relative to its second particle.
     pub(super) fn equations(
         &self,
         x: Vector3<f64>,
@@ -136,7 +172,9 @@ impl Constraint {
             Self::Sphere { center, radius, .. } => {
                 visit(Equation::distance(x - center, v, radius));
             }
-            Self::Rod { length, .. } => visit(Equation::distance(x, v, length)),
+            Self::Rod { length, .. } | Self::Rope { length, .. } => {
+                visit(Equation::distance(x, v, length));
+            }
         }
     }
 }
@@ -185,6 +223,15 @@ fn normals(direction: Vector3<f64>) -> [Vector3<f64>; 2] {
     axis[direction.iamin()] = 1.0;
     let first = direction.cross(&axis).normalize();
     [first, direction.cross(&first)]
+}
+
+fn check_different(kind: &str, i: usize, j: usize) -> Result<(), Error> {
+    if i != j {
+        return Ok(());
+    }
+    Err(Error::Invalid(format!(
+        "a {kind} needs two different particles, not {i} twice"
+    )))
 }
 
 fn finite(what: &str, a: Vector3<f64>) -> Result<(), Error> {

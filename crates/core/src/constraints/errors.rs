@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use nalgebra::Vector3;
 
-use super::constraint::Constraint;
+use super::constraint::{Constraint, Equation};
 use super::row::Row;
 use super::set::{Constraints, Moved, vector};
 use super::solve::System;
@@ -35,6 +35,7 @@ impl Constraint {
             Self::Circle { particle, .. } => ("circle", particle, None),
             Self::Sphere { particle, .. } => ("sphere", particle, None),
             Self::Rod { i, j, .. } => ("rod", i, Some(j)),
+            Self::Rope { i, j, .. } => ("rope", i, Some(j)),
         };
         ConstraintName {
             kind,
@@ -43,10 +44,19 @@ impl Constraint {
         }
     }
 
+    /// Error (m) of one of its equations: a rope may be shorter than its length.
+    pub(super) fn error(&self, equation: &Equation) -> f64 {
+        if self.is_rope() {
+            equation.value.max(0.0)
+        } else {
+            equation.value.abs()
+        }
+    }
+
     /// Its own length (m), if it has one.
     fn length(&self) -> Option<f64> {
         match *self {
-            Self::Rod { length, .. } => Some(length),
+            Self::Rod { length, .. } | Self::Rope { length, .. } => Some(length),
             Self::Circle { radius, .. } | Self::Sphere { radius, .. } => Some(radius),
             Self::Point { .. } | Self::Line { .. } => None,
         }
@@ -61,7 +71,7 @@ impl Constraints {
             let length = constraint.length().unwrap_or(radius);
             let mut error = 0.0_f64;
             constraint.equations(self.relative(number, x), Vector3::zeros(), |equation| {
-                error = error.max(equation.value.abs());
+                error = error.max(constraint.error(&equation));
             });
             let share = error / length;
             if worst.is_none_or(|worst| share > worst.share) {
@@ -147,9 +157,11 @@ impl Constraints {
             let relative = self.relative(number, x);
             constraint.equations(relative, Vector3::zeros(), |equation| {
                 let mut row = Row::default();
-                row.add(first.place, equation.gradient);
-                row.add(second.place, -equation.gradient);
-                row.set_target(-equation.value, &system.weights);
+                if constraint.error(&equation) > 0.0 || !constraint.is_rope() {
+                    row.add(first.place, equation.gradient);
+                    row.add(second.place, -equation.gradient);
+                    row.set_target(-equation.value, &system.weights);
+                }
                 system.rows.push(row);
             });
         }

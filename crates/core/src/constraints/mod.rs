@@ -10,15 +10,21 @@
 //! Each row of C is a distance (m). Each row of J is a unit vector, with its opposite at the other
 //! end of a rod. A force at a point of a rigid body moves and rotates the body: W then includes the
 //! body's inverse inertia, and J the lever r x g of the force along g.
+//!
+//! A rope has a row like a rod's while it is taut: see `ropes`.
 
 mod constraint;
 mod direct;
 mod errors;
+mod ropes;
 mod row;
 mod set;
 mod solve;
 mod turning;
 
 pub use constraint::Constraint;
-pub(crate) use set::Constraints;
+pub(crate) use ropes::{
+    beyond, has_ropes, least_tension, loosen, set_all_taut, set_taut, strike, taut,
+};
+pub(crate) use set::{Constraints, Moved};
 pub(crate) use turning::Turning;

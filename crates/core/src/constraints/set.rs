@@ -5,7 +5,7 @@ use std::sync::{Arc, OnceLock};
 
 use nalgebra::Vector3;
 
-use super::constraint::Constraint;
+use super::constraint::{Constraint, Equation};
 use super::direct::Pattern;
 use super::row::Row;
 use super::solve::System;
@@ -25,7 +25,7 @@ pub(super) struct Held {
 
 /// Unit of motion: a particle, or the rotation of a body. Place 0 stands for none.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Moved {
+pub(crate) enum Moved {
     Nothing,
     Particle(usize),
     Body(usize),
@@ -35,6 +35,8 @@ pub(super) enum Moved {
 #[derive(Clone, Debug)]
 pub(crate) struct Constraints {
     pub(super) all: Vec<Constraint>,
+    /// Whether each constraint holds: a rope does while it is taut, and all others always.
+    pub(super) holds: Vec<bool>,
     /// Particles and rotations that constraints move: the time of an evaluation is proportional to
     /// their number, not to that of all particles.
     pub(super) moved: Vec<Moved>,
@@ -56,6 +58,7 @@ impl Default for Constraints {
     fn default() -> Self {
         Self {
             all: vec![],
+            holds: vec![],
             moved: vec![Moved::Nothing],
             particles: BTreeMap::new(),
             rotations: BTreeMap::new(),
@@ -106,6 +109,7 @@ impl Constraints {
             owners.push((own, owners.len() - before));
         });
         self.all.push(constraint);
+        self.holds.push(!constraint.is_rope());
         self.pattern = OnceLock::new();
         Ok(())
     }
@@ -122,6 +126,7 @@ impl Constraints {
         for constraint in &self.all {
             constraints.add(*constraint, &carrier)?;
         }
+        constraints.holds.clone_from(&self.holds);
         Ok(constraints)
     }
 
@@ -147,7 +152,7 @@ impl Constraints {
         let mut largest = None;
         for (k, constraint) in self.all.iter().enumerate() {
             constraint.equations(self.relative(k, x), Vector3::zeros(), |equation| {
-                largest = Some(equation.value.abs().max(largest.unwrap_or(0.0)));
+                largest = Some(constraint.error(&equation).max(largest.unwrap_or(0.0)));
             });
         }
         largest
@@ -161,71 +166,11 @@ impl Constraints {
         &self,
         motion: impl Fn(usize, &[f64]) -> (f64, Vector3<f64>),
         turning: impl Fn(usize, &[f64]) -> Turning,
-        [x, v]: [&[f64]; 2],
+        state: [&[f64]; 2],
         f: &mut [f64],
     ) -> bool {
         self.scratch.lend(|system| {
-            system.clear();
-            for moved in &self.moved {
-                let (weight, vector, turning) = match *moved {
-                    Moved::Nothing => (Vector3::zeros(), Vector3::zeros(), None),
-                    Moved::Particle(i) => {
-                        let (weight, acceleration) = motion(i, f);
-                        (Vector3::repeat(weight), acceleration, None)
-                    }
-                    Moved::Body(k) => {
-                        let turning = turning(k, f);
-                        let own = turning.rotation.tr_mul(&turning.acceleration);
-                        (turning.inverse_inertia, own, Some(turning))
-                    }
-                };
-                system.weights.push(weight);
-                system.vectors.push(vector);
-                system.turnings.push(turning);
-            }
-            let w = self.baumgarte_frequency;
-            let (ks, kd) = (w * w, 2.0 * w);
-            let System {
-                weights,
-                vectors,
-                turnings,
-                rows,
-                ..
-            } = system;
-            rows.resize_with(self.owners.len(), Row::default);
-            each(rows, &|k, row| {
-                let (owner, number) = self.owners[k];
-                let (constraint, ends) = (self.all[owner], self.ends[owner]);
-                let relative = |a: &[f64]| match constraint.ends() {
-                    (i, Some(j)) => vector(a, i) - vector(a, j),
-                    (i, None) => vector(a, i),
-                };
-                let v_relative = relative(v);
-                let (mut count, mut own) = (0, None);
-                constraint.equations(relative(x), v_relative, |equation| {
-                    if count == number {
-                        own = Some(equation);
-                    }
-                    count += 1;
-                });
-                let Some(equation) = own else {
-                    return;
-                };
-                let (gradient, mut bend) = (equation.gradient, equation.bend);
-                *row = Row::default();
-                for (end, sign) in ends.iter().zip([1.0, -1.0]) {
-                    row.add(end.place, gradient * sign);
-                    if let Some(turning) = &turnings[end.turn] {
-                        let lever = Lever::new(turning, vector(x, end.particle));
-                        row.add(end.turn, lever.of(gradient) * sign);
-                        bend += gradient.dot(&lever.inwards) * sign;
-                    }
-                }
-                let a = row.product(vectors);
-                let back = ks * equation.value + kd * gradient.dot(&v_relative);
-                row.set_target(-bend - a - back, weights);
-            });
-            let soft = system.solve(|| self.pattern.get_or_init(|| Arc::new(self.find_pattern())));
+            let soft = self.find_multipliers(motion, turning, state, f, system);
             let n = f.len() / 3;
             for (row, (owner, _)) in system.rows.iter().zip(&self.owners) {
                 let ([first, second], force) = (self.ends[*owner], row.force());
@@ -238,6 +183,97 @@ impl Constraints {
             }
             soft
         })
+    }
+
+    /// Finds the multipliers under all other forces f (N), as [`add_forces`](Self::add_forces).
+    pub(super) fn find_multipliers(
+        &self,
+        motion: impl Fn(usize, &[f64]) -> (f64, Vector3<f64>),
+        turning: impl Fn(usize, &[f64]) -> Turning,
+        state: [&[f64]; 2],
+        f: &[f64],
+        system: &mut System,
+    ) -> bool {
+        system.clear();
+        for moved in &self.moved {
+            let (weight, vector, turning) = match *moved {
+                Moved::Nothing => (Vector3::zeros(), Vector3::zeros(), None),
+                Moved::Particle(i) => {
+                    let (weight, acceleration) = motion(i, f);
+                    (Vector3::repeat(weight), acceleration, None)
+                }
+                Moved::Body(k) => {
+                    let turning = turning(k, f);
+                    let own = turning.rotation.tr_mul(&turning.acceleration);
+                    (turning.inverse_inertia, own, Some(turning))
+                }
+            };
+            system.weights.push(weight);
+            system.vectors.push(vector);
+            system.turnings.push(turning);
+        }
+        let w = self.baumgarte_frequency;
+        let (ks, kd) = (w * w, 2.0 * w);
+        self.solve(state, system, |_, row, equation, rate, vectors| {
+            let a = row.product(vectors);
+            let back = ks * equation.value + kd * rate;
+            -equation.bend - a - back
+        })
+    }
+
+    /// Builds the rows at x and v, and solves for the multipliers. `target` returns the right-hand
+    /// side of a row of a constraint, with its equation, the rate of change of that (m/s), and the
+    /// vectors of the system.
+    pub(super) fn solve(
+        &self,
+        [x, v]: [&[f64]; 2],
+        system: &mut System,
+        target: impl Fn(usize, &Row, &Equation, f64, &[Vector3<f64>]) -> f64 + Sync,
+    ) -> bool {
+        let System {
+            weights,
+            vectors,
+            turnings,
+            rows,
+            ..
+        } = system;
+        rows.resize_with(self.owners.len(), Row::default);
+        each(rows, &|k, row| {
+            let (owner, number) = self.owners[k];
+            let (constraint, ends) = (self.all[owner], self.ends[owner]);
+            *row = Row::default();
+            if !self.holds[owner] {
+                return;
+            }
+            let relative = |a: &[f64]| match constraint.ends() {
+                (i, Some(j)) => vector(a, i) - vector(a, j),
+                (i, None) => vector(a, i),
+            };
+            let v_relative = relative(v);
+            let (mut count, mut own) = (0, None);
+            constraint.equations(relative(x), v_relative, |equation| {
+                if count == number {
+                    own = Some(equation);
+                }
+                count += 1;
+            });
+            let Some(mut equation) = own.filter(|own| !constraint.is_slack(own)) else {
+                return;
+            };
+            let gradient = equation.gradient;
+            for (end, sign) in ends.iter().zip([1.0, -1.0]) {
+                row.add(end.place, gradient * sign);
+                if let Some(turning) = &turnings[end.turn] {
+                    let lever = Lever::new(turning, vector(x, end.particle));
+                    row.add(end.turn, lever.of(gradient) * sign);
+                    equation.bend += gradient.dot(&lever.inwards) * sign;
+                }
+            }
+            let rate = gradient.dot(&v_relative);
+            let target = target(owner, row, &equation, rate, vectors);
+            row.set_target(target, weights);
+        });
+        system.solve(|| self.pattern.get_or_init(|| Arc::new(self.find_pattern())))
     }
 
     /// Pattern of what each equation moves.

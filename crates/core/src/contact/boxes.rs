@@ -23,8 +23,8 @@ const BITS: [f32; LANES] = [
     16384.0, 32768.0,
 ];
 
-/// Largest magnitude of a coordinate of a box (m), whose square is a number. What is farther out is
-/// moved to there, which brings nothing apart.
+/// Largest magnitude of a coordinate of a box (m), whose square is a number. What is farther out,
+/// or no number, is moved to there, which brings nothing apart.
 const FARTHEST: f64 = 1e18;
 
 /// Factor by which squared distances in single precision may be too large.
@@ -64,7 +64,7 @@ impl Courses<'_> {
 }
 
 fn single(x: f64) -> f32 {
-    x.clamp(-FARTHEST, FARTHEST) as f32
+    x.abs().min(FARTHEST).copysign(x) as f32
 }
 
 /// Axis-aligned boxes at the beginning and at the end of the courses (m).

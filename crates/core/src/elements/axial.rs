@@ -9,6 +9,9 @@ use crate::spring::Spring;
 
 /// A force between two particles along the line between them, as a function of their distance (m).
 pub(super) trait Elastic {
+    /// Whether damping cannot make it push.
+    const ONLY_PULLS: bool = false;
+
     /// Returns the particles at the ends.
     fn ends(&self) -> [usize; 2];
 
@@ -22,7 +25,7 @@ pub(super) trait Elastic {
     fn energy(&self, length: f64) -> f64;
 
     /// Returns the damping c along it (N s/m).
-    fn damping(&self) -> f64;
+    fn damping(&self, length: f64) -> f64;
 }
 
 impl Elastic for Spring {
@@ -46,13 +49,13 @@ impl Elastic for Spring {
     }
 
     #[inline]
-    fn damping(&self) -> f64 {
+    fn damping(&self, _: f64) -> f64 {
         self.law.damping
     }
 }
 
 /// Adds the forces of springs.
-pub(super) fn add_all(springs: &[impl Elastic], x: &[f64], v: &[f64], f: &mut [f64]) {
+pub(super) fn add_all<E: Elastic>(springs: &[E], x: &[f64], v: &[f64], f: &mut [f64]) {
     let n = x.len() / 3;
     let (x, y, z) = (&x[..n], &x[n..2 * n], &x[2 * n..]);
     let (u, v, w) = (&v[..n], &v[n..2 * n], &v[2 * n..]);
@@ -66,10 +69,13 @@ pub(super) fn add_all(springs: &[impl Elastic], x: &[f64], v: &[f64], f: &mut [f
             continue;
         }
         let mut pull = spring.pull(length);
-        let damping = spring.damping();
+        let damping = spring.damping(length);
         if damping > 0.0 {
             let rate = (u[i] - u[j]) * dx + (v[i] - v[j]) * dy + (w[i] - w[j]) * dz;
             pull += damping * rate / length;
+            if E::ONLY_PULLS {
+                pull = pull.max(0.0);
+            }
         }
         let s = pull / length;
         fx[i] -= s * dx;
@@ -83,8 +89,8 @@ pub(super) fn add_all(springs: &[impl Elastic], x: &[f64], v: &[f64], f: &mut [f
 
 /// Adds dF of a spring. With dd = dxi - dxj, dw = dvi - dvj and p = (dd - u (u . dd)) / L, it is
 /// -(across dd + (along - across) u (u . dd)) - c ((dw . u + w . p) u + (w . u) p).
-pub(super) fn add_differential(
-    spring: &impl Elastic,
+pub(super) fn add_differential<E: Elastic>(
+    spring: &E,
     at: &At,
     [dx, dv]: [&[f64]; 2],
     df: &mut [f64],
@@ -99,6 +105,12 @@ pub(super) fn add_differential(
     } = axial(spring, at.x);
     let dd = difference(dx, i, j);
     let share = dot(u, dd);
+    if E::ONLY_PULLS && c > 0.0 {
+        let length = norm(difference(at.x, i, j));
+        if spring.pull(length) + c * dot(difference(at.v, i, j), u) < 0.0 {
+            return;
+        }
+    }
     let mut force: [f64; 3] =
         std::array::from_fn(|a| across * dd[a] + (along - across) * share * u[a]);
     if c > 0.0 {
@@ -139,7 +151,7 @@ fn axial(spring: &impl Elastic, x: &[f64]) -> AxialCoupling {
         direction: d.map(|d| d * inverse),
         along,
         across,
-        damping: spring.damping(),
+        damping: spring.damping(length),
     }
 }
 

@@ -242,7 +242,7 @@ impl Elastic for Strip {
     }
 
     #[inline]
-    fn damping(&self) -> f64 {
+    fn damping(&self, _: f64) -> f64 {
         self.parameters.damping
     }
 }

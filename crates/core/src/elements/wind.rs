@@ -107,6 +107,21 @@ impl Wind {
         }
     }
 
+    /// Returns this wind without gusts.
+    #[must_use]
+    pub fn steady(&self) -> Self {
+        let still = Wave {
+            amplitude: Vector3::zeros(),
+            number: Vector3::zeros(),
+            rate: 0.0,
+            phase: 0.0,
+        };
+        Self {
+            waves: [still; WAVES],
+            ..*self
+        }
+    }
+
     /// Returns this wind, shifted so that its time t (s) becomes 0.
     #[must_use]
     pub fn ahead(&self, t: f64) -> Self {

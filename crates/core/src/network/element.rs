@@ -5,8 +5,8 @@ use std::any::Any;
 use crate::contact::ContactLayer;
 use crate::elements::force::{Force, Matter};
 use crate::elements::{
-    Airflow, Attraction, BucklingSprings, Drag, Fluid, Gravity, OwnForce, Sheet, Solid, Springs,
-    Wind,
+    Airflow, Attraction, BucklingSprings, Cords, Drag, Fluid, Gas, Gravity, OwnForce, Sheet, Solid,
+    Springs, Wind,
 };
 
 macro_rules! elements {
@@ -77,10 +77,14 @@ elements! {
     Springs,
     /// Bend springs that buckle.
     BucklingSprings,
+    /// Springs that only pull.
+    Cords,
     /// Fluid of smoothed particles.
     Fluid,
     /// Tetrahedra of an elastic material.
     Solid,
+    /// Gas in a closed surface.
+    Gas,
     /// Uniform gravity.
     Gravity,
     /// Viscous drag.

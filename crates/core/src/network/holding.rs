@@ -69,21 +69,31 @@ pub(super) fn hold(
     if !network.is_constrained() {
         return false;
     }
-    let particles = &network.particles;
-    let motion = |i: usize, f: &[f64]| {
-        let (n, w) = (particles.len(), particles.inverse_masses()[i]);
-        let centered = || network.bodies().iter().position(|body| body.center() == i);
-        let acceleration = if w == 0.0 {
-            let pin = particles.pins_of(i..i + 1).first();
-            pin.map_or_else(Vector3::zeros, |pin| pin.path.at(t).acceleration)
-        } else if let Some(k) = centered() {
-            bodies(k, f).1
-        } else {
-            Vector3::new(f[i], f[n + i], f[2 * n + i]) * w
-        };
-        (w, acceleration)
-    };
+    let motion = |i: usize, f: &[f64]| free_motion(network, t, &bodies, i, f);
     network
         .constraints
         .add_forces(motion, |k, f| bodies(k, f).0, [x, v], f)
+}
+
+/// Returns the inverse mass (1/kg) of particle i, 0 if it is pinned, and its acceleration (m/s2)
+/// under the forces f (N). `bodies` is that of [`hold`].
+pub(super) fn free_motion(
+    network: &Network,
+    t: f64,
+    bodies: &impl Fn(usize, &[f64]) -> (Turning, Vector3<f64>),
+    i: usize,
+    f: &[f64],
+) -> (f64, Vector3<f64>) {
+    let particles = &network.particles;
+    let (n, w) = (particles.len(), particles.inverse_masses()[i]);
+    let centered = || network.bodies().iter().position(|body| body.center() == i);
+    let acceleration = if w == 0.0 {
+        let pin = particles.pins_of(i..i + 1).first();
+        pin.map_or_else(Vector3::zeros, |pin| pin.path.at(t).acceleration)
+    } else if let Some(k) = centered() {
+        bodies(k, f).1
+    } else {
+        Vector3::new(f[i], f[n + i], f[2 * n + i]) * w
+    };
+    (w, acceleration)
 }

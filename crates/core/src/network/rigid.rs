@@ -6,9 +6,9 @@ use std::ops::Range;
 use nalgebra::Vector3;
 
 use super::evaluation::{at, is_split};
-use super::holding::hold;
+use super::holding::{free_motion, hold};
 use super::parts::Network;
-use crate::constraints::Turning;
+use crate::constraints::{self, Turning};
 use crate::elements::Finish;
 use crate::elements::force::DriftForces;
 use crate::measure::Measure;
@@ -32,6 +32,23 @@ fn with_forces<T>(
     y: &[f64],
     run: impl FnOnce(&[f64], &[f64], &[f64]) -> T,
 ) -> T {
+    with_other_forces(network, t, terms, y, |x, v, f| {
+        if !is_split(network, terms) {
+            let bodies = |k: usize, f: &[f64]| turning(network, k, y, terms, x, f);
+            hold(network, t, [x, v], bodies, f);
+        }
+        run(x, v, f)
+    })
+}
+
+/// Evaluates all forces except those of constraints, as [`with_forces`].
+fn with_other_forces<T>(
+    network: &Network,
+    t: f64,
+    terms: Terms,
+    y: &[f64],
+    run: impl FnOnce(&[f64], &[f64], &mut [f64]) -> T,
+) -> T {
     network.bodies.scratch.lend(|[x, v, f]| {
         let (own_x, own_v) = network.halves(y);
         own_x.clone_into(x);
@@ -47,10 +64,25 @@ fn with_forces<T>(
                 let mass = network.masses()[k % n];
                 *f += mass * gravity[k / n] - if mass > 0.0 { drag * v } else { 0.0 };
             }
-            let bodies = |k: usize, f: &[f64]| turning(network, k, y, terms, x, f);
-            hold(network, t, [x, v], bodies, f);
         }
         run(x, v, f)
+    })
+}
+
+/// Returns the taut rope with the least tension in the state y at time t (s); see
+/// [`least_tension`](crate::constraints::least_tension).
+pub(super) fn least_tension(network: &Network, t: f64, y: &[f64]) -> Option<(usize, f64)> {
+    let terms = Terms::AllForces;
+    with_other_forces(network, t, terms, y, |x, v, f| {
+        let bodies = |k: usize, f: &[f64]| turning(network, k, y, terms, x, f);
+        let motion = |i: usize, f: &[f64]| free_motion(network, t, &bodies, i, f);
+        constraints::least_tension(
+            &network.constraints,
+            motion,
+            |k, f| bodies(k, f).0,
+            [x, v],
+            f,
+        )
     })
 }
 
@@ -82,7 +114,7 @@ fn wrench(
 
 /// Returns the rotation of body k and acceleration of its centre (m/s2) under the forces f, in the
 /// state y, with all points at x.
-fn turning(
+pub(super) fn turning(
     network: &Network,
     k: usize,
     y: &[f64],

@@ -3,7 +3,7 @@
 use super::element::Element;
 use super::elements::Elements;
 use crate::elements::force::{check_ends, distance, ends};
-use crate::elements::{Buckling, BucklingSprings, Sheet, Springs};
+use crate::elements::{Buckling, BucklingSprings, Cords, Sheet, Springs};
 use crate::error::Error;
 use crate::spring::{Spring, SpringKind};
 
@@ -50,9 +50,18 @@ impl Elements {
     }
 
     pub fn all_springs(&self) -> impl Iterator<Item = Spring> {
+        self.springs().chain(self.straight()).chain(self.cords())
+    }
+
+    /// Returns the springs that buckle, as they are while straight.
+    fn straight(&self) -> impl Iterator<Item = Spring> {
         let buckling = self.of::<BucklingSprings>();
-        let straight = buckling.flat_map(BucklingSprings::straight);
-        self.springs().chain(straight)
+        buckling.flat_map(BucklingSprings::straight)
+    }
+
+    /// Returns the springs that only pull.
+    pub fn cords(&self) -> impl Iterator<Item = Spring> {
+        self.of::<Cords>().flat_map(Cords::springs)
     }
 
     /// Checks that there is a spring between each of these pairs of particles.
@@ -88,8 +97,12 @@ impl Elements {
     /// Returns the strain at each particle at x (m).
     pub fn strains(&self, x: &[f64]) -> Vec<f64> {
         let mut strains = vec![f64::NAN; self.particles()];
-        for s in self.all_springs().filter(|s| s.law.rest_length > 0.0) {
-            let strain = (distance(x, s.i, s.j) / s.law.rest_length - 1.0).abs();
+        let stretch = |s: &Spring| distance(x, s.i, s.j) / s.law.rest_length - 1.0;
+        let others = self.springs().chain(self.straight());
+        let others = others.map(|s| (s, stretch(&s).abs()));
+        let cords = self.cords().map(|s| (s, stretch(&s).max(0.0)));
+        let all = others.chain(cords);
+        for (s, strain) in all.filter(|(s, _)| s.law.rest_length > 0.0) {
             for i in [s.i, s.j] {
                 strains[i] = strains[i].max(strain);
             }
@@ -106,7 +119,7 @@ impl Elements {
     /// a solid.
     pub fn largest_stretch(&self, x: &[f64]) -> Option<f64> {
         let structural = |s: &Spring| s.kind == SpringKind::Structural && s.law.rest_length > 0.0;
-        let of_springs = self.springs().filter(structural);
+        let of_springs = self.springs().chain(self.cords()).filter(structural);
         let of_springs = of_springs.map(|s| distance(x, s.i, s.j) / s.law.rest_length);
         let of_solids = self.solids().flat_map(|solid| solid.stretches(x));
         let of_solids = of_solids.map(|(_, stretches)| stretches.max());

@@ -8,7 +8,7 @@ use super::touching::{let_touch, touches_itself};
 use crate::contact::Shape;
 use crate::elements::Wind;
 use crate::error::Error;
-use crate::network::Network;
+use crate::network::{Network, set_taut, taut};
 use crate::path::Path;
 use crate::scene::{Model, Scene};
 
@@ -32,6 +32,8 @@ pub struct Checkpoint {
     pub touching: bool,
     /// Springs that have broken, by the particles at their ends, the lower number first, in order.
     pub torn: Vec<[usize; 2]>,
+    /// Ropes that are taut, by their numbers among the constraints, in order.
+    pub taut: Vec<usize>,
     /// Progress within a step, and of an adaptive method.
     pub progress: Progress,
 }
@@ -46,6 +48,7 @@ impl Checkpoint {
             wind: None,
             touching: false,
             torn: vec![],
+            taut: vec![],
             progress: Progress::default(),
         };
         moment.record_changes(state, model, driver);
@@ -63,6 +66,7 @@ impl Checkpoint {
         self.pins.clear();
         self.obstacles.clear();
         self.torn.clear();
+        self.taut.clear();
         let network = model.network();
         if let Some(network) = network {
             self.pins.extend(network.pins());
@@ -73,6 +77,7 @@ impl Checkpoint {
                     .map(|(k, obstacle)| (k, obstacle.path)),
             );
             self.torn.extend_from_slice(network.torn());
+            self.taut.extend(taut(network));
         }
         self.wind = network.and_then(Network::wind).copied();
         self.touching = touches_itself(model);
@@ -96,6 +101,7 @@ impl Checkpoint {
             + size_of_val(&self.pins[..])
             + size_of_val(&self.obstacles[..])
             + size_of_val(&self.torn[..])
+            + size_of_val(&self.taut[..])
     }
 
     /// Checks that the state is one of a system of this dimension, and finite.
@@ -142,6 +148,7 @@ impl Checkpoint {
         for (k, path) in &self.obstacles {
             network.lead_obstacle(*k, *path)?;
         }
+        set_taut(network, &self.taut);
         network.set_wind(self.wind);
         if let Some(grabbed) = &self.run.grabbed {
             network.check_particle(grabbed.particle)?;
@@ -160,6 +167,7 @@ impl Checkpoint {
         for (k, path) in &self.obstacles {
             network.lead_obstacle(*k, *path)?;
         }
+        set_taut(network, &self.taut);
         let torn = network.torn() != self.torn;
         if torn && let Some(whole) = scene.model.network() {
             network.mend(whole, &self.torn)?;

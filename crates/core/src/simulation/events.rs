@@ -1,5 +1,5 @@
-//! Events within a step: a particle touches an obstacle, or a spring is stretched so far that it
-//! breaks.
+//! Events within a step: a particle touches an obstacle, a spring is stretched so far that it
+//! breaks, or a rope tightens.
 //!
 //! They are found on the step's own polynomial. It is sampled at the ends of some pieces, and each
 //! piece is replaced by a cubic. On a piece, neither a first contact is missed, see
@@ -9,9 +9,12 @@
 use nalgebra::Vector3;
 
 use super::depths::Depths;
-use crate::contact::{Approach, Course, earliest};
-use crate::network::Network;
+use super::stretching::{first_beyond, first_longer};
+use crate::columns::row;
+use crate::contact::{Approach, Course};
+use crate::network::{Network, slack};
 use crate::scene::Model;
+use crate::spring::Spring;
 use crate::system::Mechanics;
 
 /// Number of pieces in which a step is searched.
@@ -26,9 +29,6 @@ const MAX_GRAZES: usize = 8;
 /// Distance after such a touch at which the search continues, as a share of the piece.
 const GAP_AFTER_GRAZE: f64 = 1e-5;
 
-/// Shortest interval in the search for a spring that is too long, as a share of the piece.
-const MIN_INTERVAL: f64 = 1e-4;
-
 /// Kind of an event.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum EventKind {
@@ -36,10 +36,10 @@ pub(super) enum EventKind {
     Touch { particle: usize, obstacle: usize },
     /// A particle that rests on an obstacle sank deeper into it than allowed.
     Sunk,
-    /// A particle ceases to stick or slide on an obstacle as it did.
+    /// A particle ceases to stick or slide on an obstacle as it did, or a rope slackens.
     Rested,
-    /// A spring between these ends reaches the length (m) at which it breaks.
-    Tear { ends: [usize; 2], longest: f64 },
+    /// A spring between these ends reaches the length (m) at which it breaks, or a rope its own.
+    Stretch { ends: [usize; 2], longest: f64 },
 }
 
 /// First event within a step.
@@ -71,11 +71,20 @@ struct Pair {
     touches: bool,
 }
 
+/// Spring that may become long enough to break, or slack rope that may tighten.
+#[derive(Clone, Copy, Debug)]
+struct Stretching {
+    ends: [usize; 2],
+    /// Length at which it does (m).
+    longest: f64,
+    is_rope: bool,
+}
+
 /// Search for events, with its scratch.
 #[derive(Default)]
 pub(super) struct Events {
     pairs: Vec<Pair>,
-    springs: Vec<([usize; 2], f64)>,
+    springs: Vec<Stretching>,
     pieces: [Vec<f64>; 2],
     /// State at the last event that was found.
     pub state: Vec<f64>,
@@ -176,18 +185,28 @@ impl Events {
                 }
             }
         }
-        for &(ends, longest) in springs.iter() {
+        for &Stretching {
+            ends,
+            longest,
+            is_rope,
+        } in springs.iter()
+        {
             let [a, b] = ends.map(|i| course(pieces, i, h, n));
             let apart = Course {
                 x: [b.x[0] - a.x[0], b.x[1] - a.x[1]],
                 v: [b.v[0] - a.v[0], b.v[1] - a.v[1]],
                 h,
             };
-            let Some(share) = first_longer(&apart, longest) else {
+            let found = if is_rope {
+                first_beyond(&apart, longest)
+            } else {
+                first_longer(&apart, longest)
+            };
+            let Some(share) = found else {
                 continue;
             };
             let guess = begin + share / PIECES as f64;
-            let kind = EventKind::Tear { ends, longest };
+            let kind = EventKind::Stretch { ends, longest };
             if first.is_none_or(|event| guess < event.share) {
                 let share = step.refine(guess, kind, state, state_at).unwrap_or(guess);
                 keep_first(&mut first, share, kind);
@@ -234,16 +253,26 @@ impl Events {
         }
     }
 
-    /// Lists the springs that may become long enough to break.
+    /// Lists the springs that may become long enough to break, and the ropes that may tighten. A
+    /// rope that has just rebounded begins at its length, and one that is too long is tightened
+    /// after the step.
     fn list_springs(&mut self, step: &Searched) {
         self.springs.clear();
-        let Some(limit) = step.network.tear_limit() else {
-            return;
-        };
-        let n = step.network.particles();
-        for spring in step.network.all_springs() {
-            let longest = limit * spring.law.rest_length;
-            let ends = [spring.i, spring.j];
+        let (network, none) = (step.network, step.depths.none);
+        let breaking = network.tear_limit().into_iter().flat_map(|limit| {
+            let longest = move |s: Spring| ([s.i, s.j], limit * s.law.rest_length, false);
+            network.all_springs().map(longest)
+        });
+        let n = network.particles();
+        let tightening = slack(network).map(|(ends, length)| {
+            let [a, b] = ends.map(|i| row(step.ends[0], n, i));
+            let missing = length - (a - b).norm();
+            // Where it begins at its length or beyond, a little more than it has then.
+            let beyond = (length + none).max(length - missing + 1e-3 * none);
+            let longest = if missing > none { length } else { beyond };
+            (ends, longest, true)
+        });
+        for (ends, longest, is_rope) in breaking.chain(tightening) {
             let [a, b] = ends.map(|i| course(&step.ends, i, step.h, n));
             let farthest = (0..2).map(|k| (a.x[k] - b.x[k]).norm()).fold(0.0, f64::max);
             // Half of the most by which one end can leave its chord relative to the other.
@@ -252,7 +281,11 @@ impl Events {
                     .map(|k| (a.v[k] - b.v[k]).norm() * step.h)
                     .sum::<f64>();
             if longest > 0.0 && farthest + bulge > longest {
-                self.springs.push((ends, longest));
+                self.springs.push(Stretching {
+                    ends,
+                    longest,
+                    is_rope,
+                });
             }
         }
     }
@@ -320,7 +353,7 @@ impl Searched<'_> {
                 let own = pose.place.velocity + spin.unwrap_or_default();
                 (seen.distance, normal.dot(&(row(3 * n, particle) - own)))
             }
-            EventKind::Tear {
+            EventKind::Stretch {
                 ends: [i, j],
                 longest,
             } => {
@@ -357,13 +390,4 @@ fn course<Y: AsRef<[f64]>>(ends: &[Y; 2], i: usize, h: f64, n: usize) -> Course 
         v: [0, 1].map(|k| row(ends[k].as_ref(), 3 * n)),
         h,
     }
-}
-
-/// Share of a piece at which a vector is first longer than `longest` (m).
-fn first_longer(apart: &Course, longest: f64) -> Option<f64> {
-    let [speed, _] = apart.bounds();
-    earliest([0.0, 1.0], MIN_INTERVAL, |[a, b]| {
-        let middle = apart.position(0.5 * (a + b));
-        middle.norm() + speed * 0.5 * (b - a) >= longest
-    })
 }

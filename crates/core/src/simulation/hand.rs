@@ -7,7 +7,7 @@ use super::state::RunState;
 use crate::columns::row;
 use crate::contact::Shape;
 use crate::error::Error;
-use crate::network::Network;
+use crate::network::{Network, ropes_of};
 use crate::path::Path;
 use crate::scene::{Model, Scene};
 
@@ -67,7 +67,8 @@ impl<'a> Hand<'a> {
         })
     }
 
-    /// Pulls a particle towards `target` (m), as far as springs, rods and its own speed allow.
+    /// Pulls a particle towards `target` (m), as far as springs, rods, ropes and its own
+    /// speed allow.
     pub fn pull(&self, grabbed: Grabbed, target: Vector3<f64>) -> Grabbed {
         let i = grabbed.particle;
         let from = self.position(i);
@@ -122,8 +123,8 @@ impl<'a> Hand<'a> {
     }
 
     /// The farthest point towards `target` at which no spring of particle i and no edge of its
-    /// tetrahedra is too long, and no rod too long or too short. One that already is may not become
-    /// worse.
+    /// tetrahedra is too long, no rod too long or too short, and no rope too long. One that
+    /// already is may not become worse.
     fn within_reach(&self, i: usize, from: Vector3<f64>, target: Vector3<f64>) -> Vector3<f64> {
         let way = target - from;
         let springs = self.network.springs_of(i);
@@ -134,8 +135,10 @@ impl<'a> Hand<'a> {
         let rods = self.network.rods_of(i);
         let rods =
             rods.map(|(other, length)| (other, ROD_LENGTHS.0 * length, ROD_LENGTHS.1 * length));
+        let ropes = ropes_of(self.network, i).map(|(other, length)| (other, 0.0, length));
         let share = springs
             .chain(rods)
+            .chain(ropes)
             .map(|(other, shortest, longest)| {
                 share(from - self.position(other), way, shortest, longest)
             })

@@ -2,16 +2,18 @@
 //! on obstacles until then.
 
 use super::depths::Depths;
-use super::events::{Event, Events, Searched};
-use super::resting::{Resting, Rests, first_end, may_rest};
+use super::events::{Event, EventKind, Events, Searched};
+use super::resting::{Resting, Rests, first_end, first_negative, may_rest};
 use super::state::RunState;
 use super::stepper::Stepper;
 use crate::integrators::Work;
+use crate::network::{Network, has_ropes, least_tension, taut};
 use crate::scene::Model;
+use crate::system::ParticleSystem;
 
 /// Search for the first event of a step.
 pub(super) struct Locator {
-    /// Whether fixed steps are split at events too.
+    /// Whether fixed steps are split at events too: always in a network with ropes.
     pub splits_fixed_steps: bool,
     events: Events,
     /// Particles that rest on obstacles in the current step.
@@ -22,7 +24,7 @@ impl Locator {
     /// Search in a model, with room for all its particles.
     pub fn new(model: &Model) -> Self {
         Self {
-            splits_fixed_steps: false,
+            splits_fixed_steps: model.network().is_some_and(has_ropes),
             events: Events::new(model),
             rests: Rests::new(model),
         }
@@ -85,7 +87,8 @@ impl Locator {
         depths: Depths,
     ) -> Option<Event> {
         let network = model.network()?;
-        if network.obstacles().is_empty() && network.tear_limit().is_none() {
+        let has_ropes = has_ropes(network);
+        if network.obstacles().is_empty() && network.tear_limit().is_none() && !has_ropes {
             return None;
         }
         let RunState { y, work, .. } = state;
@@ -122,7 +125,43 @@ impl Locator {
                 state_at(share, out);
             },
         );
+        let slackens = if has_ropes {
+            let at = &mut |share: f64, out: &mut [f64]| {
+                evaluated += 1;
+                state_at(share, out);
+            };
+            first_slack(network, (t, h), before, state, at)
+        } else {
+            None
+        };
         *work += Work::of(evaluated);
-        end.or(event)
+        slackens.or(end).or(event)
     }
+}
+
+/// Finds where a taut rope slackens before the share `before` of a step of h (s) from t (s), on the
+/// step's polynomial. Writes the state there to `state`.
+fn first_slack(
+    network: &Network,
+    (t, h): (f64, f64),
+    before: f64,
+    state: &mut Vec<f64>,
+    state_at: &mut dyn FnMut(f64, &mut [f64]),
+) -> Option<Event> {
+    taut(network).next()?;
+    let mut found = vec![0.0; network.dim()];
+    let mut margin = |share: f64| {
+        state_at(share, &mut found);
+        least_tension(network, t + share * h, &found).map_or(0.0, |(_, tension)| tension)
+    };
+    if margin(before) >= 0.0 || margin(0.0) <= 0.0 {
+        return None;
+    }
+    let share = first_negative(before, &mut margin)?;
+    state.resize(network.dim(), 0.0);
+    state_at(share, state);
+    Some(Event {
+        share,
+        kind: EventKind::Rested,
+    })
 }

@@ -21,6 +21,7 @@ mod run;
 mod state;
 mod step;
 mod stepper;
+mod stretching;
 mod touching;
 mod watch;
 mod within;

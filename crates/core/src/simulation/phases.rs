@@ -8,7 +8,7 @@ use crate::contact::{
     resolve,
 };
 use crate::error::Cause;
-use crate::network::Network;
+use crate::network::{Network, has_ropes};
 use crate::scene::Model;
 use crate::system::{Mechanics, ParticleSystem};
 
@@ -50,7 +50,7 @@ impl Phases {
         if let Some(limit) = limit {
             self.excess = limit.excess(network.halves(y0).0);
         }
-        let tears = retry && network.tear_limit().is_some();
+        let tears = retry && (network.tear_limit().is_some() || has_ropes(network));
         if limit.is_some() || tears || network.contact_layer().is_some() {
             self.contact.remember(y0);
         } else {

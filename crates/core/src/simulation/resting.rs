@@ -252,28 +252,35 @@ pub(super) fn first_end(
             .map(|rest| rest.margin(network, found, free, none));
         margins.fold(f64::INFINITY, f64::min)
     };
-    let mut high = (before, margin(before, found));
-    if high.1 >= 0.0 {
-        return None;
-    }
-    let mut low = (0.0, margin(0.0, found));
-    while low.1 > 0.0 && high.0 - low.0 > MIN_INTERVAL {
-        // The secant's step, at some distance from the ends.
-        let secant = low.0 + (high.0 - low.0) * low.1 / (low.1 - high.1);
-        let edge = 0.01 * (high.0 - low.0);
-        let share = secant.clamp(low.0 + edge, high.0 - edge);
-        let at = margin(share, found);
-        *(if at >= 0.0 { &mut low } else { &mut high }) = (share, at);
-    }
-    margin(high.0, found);
+    let share = first_negative(before, |share| margin(share, found))?;
+    margin(share, found);
     state.clone_from(found);
     for rest in rests {
         rest.stop(network, state);
     }
     Some(Event {
-        share: high.0,
+        share,
         kind: EventKind::Rested,
     })
+}
+
+/// Returns a share of the step, up to `before`, just after which a margin becomes negative; `None`
+/// if it is not negative there. If it is from the beginning, the result is `before`.
+pub(super) fn first_negative(before: f64, mut margin: impl FnMut(f64) -> f64) -> Option<f64> {
+    let mut high = (before, margin(before));
+    if high.1 >= 0.0 {
+        return None;
+    }
+    let mut low = (0.0, margin(0.0));
+    while low.1 > 0.0 && high.0 - low.0 > MIN_INTERVAL {
+        // The secant's step, at some distance from the ends.
+        let secant = low.0 + (high.0 - low.0) * low.1 / (low.1 - high.1);
+        let edge = 0.01 * (high.0 - low.0);
+        let share = secant.clamp(low.0 + edge, high.0 - edge);
+        let at = margin(share);
+        *(if at >= 0.0 { &mut low } else { &mut high }) = (share, at);
+    }
+    Some(high.0)
 }
 
 impl Rest {

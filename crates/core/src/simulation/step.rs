@@ -21,6 +21,8 @@ use super::stepper::Stepper;
 use super::watch::Watch;
 use crate::control::Control;
 use crate::error::{Cause, Error};
+use crate::integrators::Work;
+use crate::network::{Least, has_ropes, settle, taut, tighten};
 use crate::scene::{Model, Scene, StepLimits};
 use crate::system::ParticleSystem;
 
@@ -33,6 +35,12 @@ const SWEEP_PRICE: f64 = 2.0;
 
 /// Cost of a separating plane between two surfaces, in evaluations of one particle on springs.
 const PLANE_PRICE: f64 = 7.0;
+
+/// Number of parts of a fixed step after which ropes tighten in it without rebounds.
+const MAX_REBOUNDING_PARTS: usize = 100;
+
+/// Largest number of parts of a fixed step: events within the last one are not located.
+const MAX_PARTS: usize = 1000;
 
 /// Plan of a step.
 #[derive(Clone, Copy)]
@@ -87,14 +95,22 @@ impl Pipeline {
         let mut begin = state.end();
         let whole = state.control.step();
         let target = whole.map(|h| state.since + (state.taken + 1) as f64 * h);
-        loop {
+        for number in 1.. {
+            let rebounds = number <= MAX_REBOUNDING_PARTS;
             if let Model::Network(network) = model {
                 network.list_strained();
             }
+            self.tighten(model, state, begin, rebounds);
+            self.choose_taut(model, state, begin);
             self.watch.begin_step(model, begin, &state.y);
-            let (cause, part) = match self.integrate_and_settle(model, state, begin, target)? {
+            let splits = number < MAX_PARTS;
+            let taken = self.integrate_and_settle(model, state, (begin, target), splits)?;
+            let (cause, part) = match taken {
                 Err(cause) => (Some(cause), Part::of(begin, whole.unwrap_or(0.0))),
-                Ok((part, settled)) => (self.end_part(model, state, part.end, &settled), part),
+                Ok((part, settled)) => {
+                    self.tighten(model, state, part.end, rebounds);
+                    (self.end_part(model, state, part.end, &settled), part)
+                }
             };
             let is_last =
                 cause.is_some() || !self.locator.splits(&self.stepper) || target == Some(part.end);
@@ -109,22 +125,24 @@ impl Pipeline {
                 state.taken += 1;
             }
             if is_last {
-                return Ok(());
+                break;
             }
             self.tear(model, state);
             begin = part.end;
         }
+        Ok(())
     }
 
     /// Takes a step from time t (s), and settles its end; an adaptive method may have to take it
-    /// again with a shorter length. If events are located, the step ends at the first one, and a
-    /// fixed step ends at `target` (s) at the latest. Returns the step, or the cause of a blow-up.
+    /// again with a shorter length. If events are located, the step ends at the first one if it
+    /// `splits`, and a fixed step ends at `target` (s) at the latest. Returns the step, or the
+    /// cause of a blow-up.
     fn integrate_and_settle(
         &mut self,
         model: &Model,
         state: &mut RunState,
-        t: f64,
-        target: Option<f64>,
+        (t, target): (f64, Option<f64>),
+        splits: bool,
     ) -> Result<Result<(Part, Settled), Cause>, Error> {
         let (stepper, limits) = (&mut self.stepper, self.limits);
         let depths = Depths::new(self.bounds.radius, limits, state.control);
@@ -139,7 +157,7 @@ impl Pipeline {
             t,
             reach,
             depths,
-            locates,
+            locates: locates && splits,
         };
         loop {
             match self.attempt(model, state, plan) {
@@ -263,6 +281,12 @@ impl Pipeline {
         }
         let part = Part::of(t, share * h);
         state.y.copy_from_slice(self.locator.state());
+        if let Stepper::Adaptive(adaptive) = &mut self.stepper
+            && model.network().is_some_and(has_ropes)
+        {
+            // Between the impacts of ropes, steps would otherwise become ever longer.
+            adaptive.try_at_most(h);
+        }
         if let (EventKind::Touch { .. }, Some(network)) = (kind, model.network()) {
             let times = (part.end, part.h);
             self.phases.strike(network, times, depths, &mut state.y);
@@ -294,6 +318,44 @@ impl Pipeline {
         let order = state.method.order;
         let end = End { order, t, y };
         self.watch.end_step(model, balance, end, &settled.met, lost)
+    }
+
+    /// Applies the impacts of ropes that tighten at time t (s), with or without rebounds, and
+    /// accounts for the energy that is lost in them.
+    fn tighten(&mut self, model: &mut Model, state: &mut RunState, t: f64, rebounds: bool) {
+        let Model::Network(network) = model else {
+            return;
+        };
+        if !has_ropes(network) || state.y.iter().any(|y| !y.is_finite()) {
+            return;
+        }
+        let depths = Depths::new(self.bounds.radius, self.limits, state.control);
+        let least = Least {
+            none: depths.none,
+            height: depths.none.max(depths.shallow),
+            time: state.control.step().unwrap_or(0.0),
+            rebounds,
+        };
+        let before = energy_of(network, t, &state.y).total();
+        if tighten(network, t, &mut state.y, least) {
+            let after = energy_of(network, t, &state.y).total();
+            state.balance.allow(after - before);
+            self.watch.forget_power();
+            self.stepper.forget();
+        }
+    }
+
+    /// Decides which ropes are taut from time t (s) on.
+    fn choose_taut(&mut self, model: &mut Model, state: &mut RunState, t: f64) {
+        let Model::Network(network) = model else {
+            return;
+        };
+        let before: Vec<_> = taut(network).collect();
+        let none = Depths::new(self.bounds.radius, self.limits, state.control).none;
+        state.work += Work::of(settle(network, t, &state.y, none));
+        if !taut(network).eq(before) {
+            self.stepper.forget();
+        }
     }
 
     /// Breaks springs that are stretched too far at the end of a step, or were located to be there,

@@ -17,6 +17,16 @@ pub fn scene(name: &str) -> Scene {
     a3_scenes::find(name).unwrap().build(None).unwrap().scene
 }
 
+/// Numbers from -1 to 1, by a linear congruential generator.
+pub fn state_random(count: usize, seed: u64) -> Vec<f64> {
+    let mut bits = seed;
+    let mut next = || {
+        bits = bits.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+        (bits >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+    };
+    (0..count).map(|_| next()).collect()
+}
+
 /// Does the work for each item, on as many threads as there are cores.
 pub fn on_all_cores<T: Send>(items: impl IntoIterator<Item = T>, work: impl Fn(T) + Sync) {
     let items = Mutex::new(items.into_iter().collect::<Vec<_>>());

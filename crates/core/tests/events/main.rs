@@ -7,6 +7,7 @@ mod frames;
 mod known_times;
 mod rebounds;
 mod resting;
+mod ropes;
 mod tears;
 mod thin;
 mod touches;

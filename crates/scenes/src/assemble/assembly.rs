@@ -4,7 +4,7 @@
 use std::ops::Range;
 
 use a3_core::contact::Skin;
-use a3_core::elements::{Buckling, FluidLaw, Sheet, Solid};
+use a3_core::elements::{Buckling, FluidLaw, Gas, Sheet, Solid};
 use a3_core::rigid::{self, Rotation};
 use a3_core::{Constraint, Path, Spring, Vector3};
 
@@ -69,6 +69,10 @@ pub(super) struct Assembly {
     pub solids: Vec<Solid>,
     pub surface: Surface,
     pub springs: Vec<Spring>,
+    /// Gas in closed meshes.
+    pub gases: Vec<Gas>,
+    /// Springs that only pull.
+    pub cords: Vec<Spring>,
     pub strips: Vec<Buckling>,
     pub rods: Vec<Constraint>,
     /// Rigid bodies with their orientations and angular momenta.
@@ -95,9 +99,19 @@ impl Assembly {
         }
     }
 
-    /// Adds springs whose particles are counted from `first`.
-    pub fn add_springs(&mut self, first: usize, springs: impl IntoIterator<Item = Spring>) {
-        self.springs.extend(springs.into_iter().map(|s| Spring {
+    /// Adds springs whose particles are counted from `first`, and which may only pull.
+    pub fn add_springs(
+        &mut self,
+        first: usize,
+        springs: impl IntoIterator<Item = Spring>,
+        only_pull: bool,
+    ) {
+        let all = if only_pull {
+            &mut self.cords
+        } else {
+            &mut self.springs
+        };
+        all.extend(springs.into_iter().map(|s| Spring {
             i: s.i + first,
             j: s.j + first,
             ..s

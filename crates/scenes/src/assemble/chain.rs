@@ -58,6 +58,7 @@ impl Body for Chain {
         }
         let skin = SkinSpec {
             thickness: self.thickness,
+            contact_stiffness: self.contact_stiffness,
             friction: self.friction,
             restitution: self.restitution,
             stiffness: self.stiffness,
@@ -75,6 +76,10 @@ impl Body for Chain {
         assembly.edges.extend(edges);
         assembly.masses.extend(masses);
         let links = (0..n - 1).map(|i| [i, i + 1]);
+        if self.rigid && self.tension_only {
+            let why = "a rigid chain has rods, which also push; leave out one of `rigid` and `tension_only`";
+            return Err(Fault::new("tension_only", why));
+        }
         if self.rigid {
             at("rest_length", positive("the length of a rod", rest_length))?;
             assembly.rods.extend(links.map(|[i, j]| Constraint::Rod {
@@ -84,7 +89,8 @@ impl Body for Chain {
             }));
         } else {
             let kind = SpringKind::Structural;
-            assembly.add_springs(first, links.map(|[i, j]| Spring { kind, i, j, law }));
+            let springs = links.map(|[i, j]| Spring { kind, i, j, law });
+            assembly.add_springs(first, springs, self.tension_only);
         }
         if let Some(law) = &self.buckling {
             let strip = |i| strip(law, [i, i + 2], 2.0 * rest_length, [0.0, 0.0]);
@@ -162,6 +168,7 @@ impl Body for Particles {
         let stiffest = springs.iter().map(|s| s.law.stiffness).fold(0.0, f64::max);
         let skin = SkinSpec {
             thickness: self.thickness,
+            contact_stiffness: self.contact_stiffness,
             friction: self.friction,
             restitution: self.restitution,
             stiffness: stiffest,
@@ -175,7 +182,7 @@ impl Body for Particles {
             .edges
             .extend((first..first + n).map(|i| [i as u32; 2]));
         assembly.masses.extend(masses);
-        assembly.add_springs(first, springs);
+        assembly.add_springs(first, springs, self.tension_only);
         Ok(())
     }
 

@@ -116,6 +116,7 @@ impl Body for Cloth {
         }
         let skin = SkinSpec {
             thickness: self.thickness,
+            contact_stiffness: self.contact_stiffness,
             friction: self.friction,
             restitution: self.restitution,
             stiffness: structural,

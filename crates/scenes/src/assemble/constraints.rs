@@ -1,8 +1,8 @@
-//! Rods and wires.
+//! Rods, ropes and wires.
 
 use a3_core::{Constraint, Network, Scene, Vector3};
 
-use crate::check::{at, key_of};
+use crate::check::{at, key_of, share};
 use crate::description::{ConstraintSpec, Description};
 use crate::fault::Fault;
 
@@ -34,8 +34,8 @@ pub(super) fn check(description: &Description, scene: &Scene) -> Result<(), Faul
     Err(Fault::new(key, why))
 }
 
-/// Adds the constraints of the description. A rod without a length has the distance of its
-/// particles in the initial state.
+/// Adds the constraints of the description. A rod or a rope without a length has the
+/// distance of its particles in the initial state.
 pub(super) fn add(
     description: &Description,
     network: &mut Network,
@@ -60,27 +60,45 @@ fn constraint(
 ) -> Result<Constraint, Fault> {
     match spec {
         ConstraintSpec {
-            rod: Some([i, j]),
+            rod,
+            rope,
             length,
+            restitution,
             particle: None,
             point: None,
             line: None,
             circle: None,
             sphere: None,
-        } => {
+        } if rod.is_some() != rope.is_some() => {
+            let (key, [i, j]) = match (rod, rope) {
+                (Some(ends), _) => ("rod", *ends),
+                (None, ends) => ("rope", ends.unwrap_or_default()),
+            };
             for end in [i, j] {
-                at("rod", network.check_particle(*end))?;
+                at(key, network.check_particle(end))?;
             }
             let n = network.particles();
             let point = |i: usize| Vector3::new(state[i], state[n + i], state[2 * n + i]);
-            Ok(Constraint::Rod {
-                i: *i,
-                j: *j,
-                length: length.unwrap_or((point(*i) - point(*j)).norm()),
-            })
+            let length = length.unwrap_or((point(i) - point(j)).norm());
+            let restitution = *restitution;
+            if rope.is_some() {
+                at("restitution", share("it", restitution))?;
+                return Ok(Constraint::Rope {
+                    i,
+                    j,
+                    length,
+                    restitution,
+                });
+            }
+            if restitution != 0.0 {
+                return Err(Fault::new("restitution", "only a rope has this key"));
+            }
+            Ok(Constraint::Rod { i, j, length })
         }
         ConstraintSpec {
             rod: None,
+            rope: None,
+            restitution: 0.0,
             length: None,
             particle: Some(particle),
             ..
@@ -90,7 +108,7 @@ fn constraint(
         }
         _ => Err(Fault::new(
             "",
-            "give either `rod` with two particles, or `particle` with one of `point`, `line`, `circle` and `sphere`",
+            "give either `rod` or `rope` with two particles, or `particle` with one of `point`, `line`, `circle` and `sphere`",
         )),
     }
 }

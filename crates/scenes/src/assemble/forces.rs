@@ -66,7 +66,7 @@ pub(super) fn wind(spec: &WindSpec, network: &Network) -> Result<Wind, Fault> {
         } else {
             mean(network.masses())
         };
-        return Ok(Wind::new(spec.seed, mean_wind * factor).ahead(spec.ahead));
+        return Ok(blown(spec, &Wind::new(spec.seed, mean_wind * factor)));
     }
     let mut air = AIR.map(|(_, usual)| usual);
     for (((key, _), given), number) in AIR.iter().zip(coefficients).zip(&mut air) {
@@ -75,7 +75,16 @@ pub(super) fn wind(spec: &WindSpec, network: &Network) -> Result<Wind, Fault> {
     }
     let [density, drag, lift] = air;
     let air = at("", Air::new(density, drag, lift))?;
-    Ok(Wind::on_triangles(spec.seed, mean_wind, air).ahead(spec.ahead))
+    Ok(blown(spec, &Wind::on_triangles(spec.seed, mean_wind, air)))
+}
+
+/// Shifts the gusts of a wind in time, or leaves them out.
+fn blown(spec: &WindSpec, wind: &Wind) -> Wind {
+    if spec.steady {
+        wind.steady()
+    } else {
+        wind.ahead(spec.ahead)
+    }
 }
 
 fn mean(masses: &[f64]) -> f64 {

@@ -76,6 +76,7 @@ impl Body for Jelly {
         }
         let skin = SkinSpec {
             thickness: self.thickness,
+            contact_stiffness: self.contact_stiffness,
             friction: self.friction,
             restitution: self.restitution,
             stiffness: structural,
@@ -86,7 +87,7 @@ impl Body for Jelly {
         assembly.skins.extend(skin.uniform(&masses, nearest)?);
         assembly.masses.extend(masses);
         assembly.add_surface(first, lattice.triangles());
-        assembly.add_springs(first, lattice.springs(spacing, law));
+        assembly.add_springs(first, lattice.springs(spacing, law), false);
         Ok(())
     }
 

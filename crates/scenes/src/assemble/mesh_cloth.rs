@@ -1,5 +1,6 @@
 //! Cloths from files of triangles.
 
+use a3_core::elements::{Gas, GasLaw};
 use a3_core::{SpringKind, SpringLaw, Vector3};
 use nalgebra::Rotation3;
 
@@ -16,6 +17,16 @@ use crate::mesh::Mesh;
 pub(super) struct LoadedMesh<'a> {
     pub cloth: &'a MeshCloth,
     pub mesh: Mesh,
+}
+
+/// Returns the volume (m3) that triangles between these positions (m) enclose; it is negative if
+/// they are clockwise from outside.
+fn volume(positions: &[[f64; 3]], triangles: &[[u32; 3]]) -> f64 {
+    let of_one = |t: &[u32; 3]| {
+        let [a, b, c] = t.map(|i| Vector3::from(positions[i as usize]));
+        a.dot(&b.cross(&c)) / 6.0
+    };
+    triangles.iter().map(of_one).sum()
 }
 
 impl Body for LoadedMesh<'_> {
@@ -70,8 +81,32 @@ impl Body for LoadedMesh<'_> {
                 .push(origin + rotation * Vector3::from(*p));
             assembly.velocities.push(velocity);
         }
+        let law = match (cloth.pressure, cloth.fill) {
+            (Some(_), Some(_)) => return Err(Fault::not_both("pressure", "fill")),
+            (Some(pressure), None) => Some(("pressure", GasLaw::Pressure(pressure))),
+            (None, Some(fill)) => {
+                at("fill", positive("it", fill))?;
+                let volume = volume(&scaled.positions, &mesh.triangles).abs();
+                at("fill", positive("the volume of the mesh", volume))?;
+                Some(("fill", GasLaw::Amount(fill * volume)))
+            }
+            (None, None) => None,
+        };
+        if let Some((key, law)) = law {
+            let mut triangles = mesh.triangles.clone();
+            if volume(&scaled.positions, &triangles) < 0.0 {
+                for triangle in &mut triangles {
+                    triangle.swap(1, 2);
+                }
+            }
+            for i in triangles.iter_mut().flatten() {
+                *i += first as u32;
+            }
+            assembly.gases.push(at(key, Gas::new(law, triangles))?);
+        }
         let skin = SkinSpec {
             thickness: cloth.thickness,
+            contact_stiffness: cloth.contact_stiffness,
             friction: cloth.friction,
             restitution: cloth.restitution,
             stiffness: structural,
@@ -82,7 +117,7 @@ impl Body for LoadedMesh<'_> {
             .extend(skin.fitted(&masses, &scaled.heights())?);
         assembly.masses.extend(masses);
         assembly.add_surface(first, mesh.triangles.iter().copied());
-        assembly.add_springs(first, springs);
+        assembly.add_springs(first, springs, cloth.tension_only);
         Ok(())
     }
 

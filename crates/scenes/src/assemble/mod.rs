@@ -124,7 +124,8 @@ impl Description {
         scene.limits.max_step = self.max_step;
         scene.touch = touch;
         // A given state comes from a run, which reports the errors of its constraints.
-        if self.state.is_none() {
+        let given = self.state.as_ref();
+        if given.is_none_or(|given| given.positions.is_empty()) {
             constraints::check(self, &scene)?;
         }
         let presentation = Presentation {

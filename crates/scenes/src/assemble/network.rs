@@ -3,6 +3,7 @@
 use std::ops::Range;
 use std::sync::Arc;
 
+use a3_core::elements::Cords;
 use a3_core::rigid::ROTATION;
 use a3_core::{Network, ParticleSystem, Touch, Vector3};
 
@@ -53,9 +54,8 @@ pub(super) fn build(
     let mut assembly = assembled(description, budget, mesh)?;
     let n = assembly.masses.len();
     budget.spend("springs", description.springs.len(), SPRINGS)?;
-    assembly
-        .springs
-        .extend(laws::springs(&description.springs, n)?);
+    let between = laws::springs(&description.springs, n)?;
+    assembly.add_springs(0, between, description.tension_only);
     let given = description.state.as_ref().map(|state| &state.positions);
     let given = given.filter(|positions| positions.len() == n);
     let given = given.map(|all| all.iter().map(|p| Vector3::from(*p)).collect::<Vec<_>>());
@@ -70,7 +70,13 @@ pub(super) fn build(
     for solid in assembly.solids {
         at("", network.add(solid))?;
     }
+    for gas in assembly.gases {
+        at("", network.add(gas))?;
+    }
     at("", network.add_springs(assembly.springs))?;
+    if !assembly.cords.is_empty() {
+        at("", network.add(Cords::new(assembly.cords)))?;
+    }
     for (k, strip) in assembly.strips.into_iter().enumerate() {
         let added = network.add_buckling(strip);
         let added = added.map_err(|e| format!("bend spring {k}, counted from 0: {e}"));

@@ -124,6 +124,7 @@ impl Body for LoadedBody<'_> {
         let skin = rigid_skin(
             properties.mass,
             thickness,
+            body.contact_stiffness,
             [body.friction, body.restitution],
         )?;
         assembly.skins.extend(vec![skin; count]);

@@ -27,6 +27,7 @@ const RIGID_DAMPING: f64 = 1.5;
 /// Material of a body and the keys that describe its skin.
 pub(super) struct SkinSpec {
     pub thickness: Option<f64>,
+    pub contact_stiffness: Option<f64>,
     pub friction: f64,
     pub restitution: f64,
     /// Stiffness of its springs (N/m).
@@ -40,7 +41,9 @@ impl SkinSpec {
     fn skin(&self, mass: f64, thickness: f64) -> Skin {
         Skin {
             thickness,
-            stiffness: self.stiffness.max(mass * ACCELERATION / thickness),
+            stiffness: self
+                .contact_stiffness
+                .unwrap_or_else(|| self.stiffness.max(mass * ACCELERATION / thickness)),
             // Damping counts fully where the gap would close within four times the springs' own
             // time: bounces die away as fast as the springs' oscillations.
             damping: DAMPING * self.time / thickness,
@@ -84,6 +87,9 @@ impl SkinSpec {
         if let Some(thickness) = self.thickness {
             at("thickness", positive("it", thickness))?;
         }
+        if let Some(stiffness) = self.contact_stiffness {
+            at("contact_stiffness", positive("it", stiffness))?;
+        }
         at("friction", at_least(0.0, "it", self.friction))?;
         at("restitution", share("it", self.restitution))
     }
@@ -93,10 +99,12 @@ impl SkinSpec {
 pub(super) fn rigid_skin(
     mass: f64,
     thickness: f64,
+    contact_stiffness: Option<f64>,
     [friction, restitution]: [f64; 2],
 ) -> Result<Skin, Fault> {
     let spec = SkinSpec {
         thickness: Some(thickness),
+        contact_stiffness,
         friction,
         restitution,
         stiffness: 0.0,

@@ -174,6 +174,7 @@ impl Body for LoadedSolid<'_> {
         let mean = spacings.iter().sum::<f64>() / spacings.len() as f64;
         let skin = SkinSpec {
             thickness: self.solid.thickness,
+            contact_stiffness: self.solid.contact_stiffness,
             friction: self.solid.friction,
             restitution: self.solid.restitution,
             stiffness: material.young * mean,

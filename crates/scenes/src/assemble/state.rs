@@ -14,7 +14,8 @@ pub(super) fn of(positions: &[Vector3<f64>], velocities: &[Vector3<f64>]) -> Vec
         .collect()
 }
 
-/// Sets a state to the given one. A first-order system has positions only.
+/// Sets a state to the given one: without positions, those of the bodies stay. A first-order system
+/// has positions only.
 pub(super) fn write(given: &State, particles: usize, state: &mut [f64]) -> Result<(), Fault> {
     let parts = [
         ("state.positions", &given.positions),
@@ -25,7 +26,7 @@ pub(super) fn write(given: &State, particles: usize, state: &mut [f64]) -> Resul
     write_rotations(given, rotations)?;
     halves[positions..].fill(0.0);
     for ((key, rows), out) in parts.into_iter().zip(halves.chunks_exact_mut(positions)) {
-        if key == "state.velocities" && rows.is_empty() {
+        if rows.is_empty() {
             continue;
         }
         if rows.len() != particles {

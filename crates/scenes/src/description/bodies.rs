@@ -62,6 +62,10 @@ pub struct Cloth {
     /// Distance up to which its surface repels others where surfaces touch (m).
     #[serde(default)]
     pub thickness: Option<f64>,
+    /// Stiffness of its surface where surfaces touch (N/m); if not given, that of its springs, or
+    /// more if its mass needs that.
+    #[serde(default)]
+    pub contact_stiffness: Option<f64>,
     /// Coefficient of Coulomb friction where surfaces touch; 0 if not given.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub friction: f64,
@@ -104,6 +108,10 @@ pub struct Jelly {
     /// Distance up to which its surface repels others where surfaces touch (m).
     #[serde(default)]
     pub thickness: Option<f64>,
+    /// Stiffness of its surface where surfaces touch (N/m); if not given, that of its springs, or
+    /// more if its mass needs that.
+    #[serde(default)]
+    pub contact_stiffness: Option<f64>,
     /// Coefficient of Coulomb friction where surfaces touch; 0 if not given.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub friction: f64,
@@ -137,14 +145,26 @@ pub struct MeshCloth {
     /// Damping over the critical damping of a particle of mean mass on a structural spring. An
     /// alternative is `damping`.
     pub damping_ratio: Option<f64>,
+    /// Whether its springs only pull, and hang slack if they are shorter than their rest length.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub tension_only: bool,
     /// Largest length over rest length of structural springs, above 1, such as 1.1: after each
     /// step, longer ones are shortened. If it is not given, there is no limit.
     pub strain_limit: Option<f64>,
+    /// Pressure above that outside in a closed mesh (Pa). An alternative is `fill`.
+    pub pressure: Option<f64>,
+    /// Amount of air at constant temperature in a closed mesh, over the amount that fills the mesh
+    /// of the file at the pressure outside, 101325 Pa. An alternative is `pressure`.
+    pub fill: Option<f64>,
     /// Velocity (m/s).
     pub velocity: Option<Triple>,
     /// Distance up to which its surface repels others where surfaces touch (m).
     #[serde(default)]
     pub thickness: Option<f64>,
+    /// Stiffness of its surface where surfaces touch (N/m); if not given, that of its springs, or
+    /// more if its mass needs that.
+    #[serde(default)]
+    pub contact_stiffness: Option<f64>,
     /// Coefficient of Coulomb friction where surfaces touch; 0 if not given.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub friction: f64,
@@ -202,6 +222,10 @@ pub struct Solid {
     /// Distance up to which its surface repels others where surfaces touch (m).
     #[serde(default)]
     pub thickness: Option<f64>,
+    /// Stiffness of its surface where surfaces touch (N/m); if not given, that of its springs, or
+    /// more if its mass needs that.
+    #[serde(default)]
+    pub contact_stiffness: Option<f64>,
     /// Coefficient of Coulomb friction where surfaces touch; 0 if not given.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub friction: f64,
@@ -237,6 +261,9 @@ pub struct Chain {
     /// Damping of each spring (N s/m).
     #[serde(default)]
     pub damping: f64,
+    /// Whether its springs only pull, and hang slack if they are shorter than their rest length.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub tension_only: bool,
     /// Law of buckling bend springs that hold the chain straight, each over two of its links.
     pub buckling: Option<BucklingSpec>,
     /// Velocity (m/s).
@@ -244,6 +271,10 @@ pub struct Chain {
     /// Distance up to which its surface repels others where surfaces touch (m).
     #[serde(default)]
     pub thickness: Option<f64>,
+    /// Stiffness of its surface where surfaces touch (N/m); if not given, that of its springs, or
+    /// more if its mass needs that.
+    #[serde(default)]
+    pub contact_stiffness: Option<f64>,
     /// Coefficient of Coulomb friction where surfaces touch; 0 if not given.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub friction: f64,
@@ -273,9 +304,16 @@ pub struct Particles {
     /// numbered from 0 among these.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub springs: Vec<SpringSpec>,
+    /// Whether its springs only pull, and hang slack if they are shorter than their rest length.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub tension_only: bool,
     /// Distance up to which its surface repels others where surfaces touch (m).
     #[serde(default)]
     pub thickness: Option<f64>,
+    /// Stiffness of its surface where surfaces touch (N/m); if not given, that of its springs, or
+    /// more if its mass needs that.
+    #[serde(default)]
+    pub contact_stiffness: Option<f64>,
     /// Coefficient of Coulomb friction where surfaces touch; 0 if not given.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub friction: f64,

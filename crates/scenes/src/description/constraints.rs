@@ -1,19 +1,25 @@
-//! Constraints: rods and wires.
+//! Constraints: rods, ropes and wires.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::motion::Triple;
+use super::obstacles::is_zero;
 
-/// Constraint: either a `rod` between two particles, or a `point`, a `line`, a `circle` or a
-/// `sphere` that one `particle` stays on.
+/// Constraint: either a `rod` or a `rope` between two particles, or a `point`, a `line`, a
+/// `circle` or a `sphere` that one `particle` stays on.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct ConstraintSpec {
     /// The two particles that a rod joins.
     pub rod: Option<[usize; 2]>,
-    /// Length of the rod (m); if not given, the initial distance of its particles.
+    /// The two particles that a rope joins: they are no farther apart than its length.
+    pub rope: Option<[usize; 2]>,
+    /// Length of the rod or the rope (m); if not given, the initial distance of its particles.
     pub length: Option<f64>,
+    /// Coefficient of restitution of a rope that tightens; 0 if not given.
+    #[serde(skip_serializing_if = "is_zero")]
+    pub restitution: f64,
     /// The particle that stays on a point, a line, a circle or a sphere.
     pub particle: Option<usize>,
     /// Point that the particle stays at (m).

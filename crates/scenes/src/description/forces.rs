@@ -19,8 +19,8 @@ pub struct BucklingSpec {
     pub compression: f64,
 }
 
-/// Gusty wind, repeatable by its seed. It pushes each particle by `force` or by `force_per_mass`,
-/// or it is air that streams with a `velocity` past the triangles of surfaces.
+/// Wind, in gusts that are repeatable by their seed. It pushes each particle by `force` or by
+/// `force_per_mass`, or it is air that streams with a `velocity` past the triangles of surfaces.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct WindSpec {
@@ -29,6 +29,9 @@ pub struct WindSpec {
     pub on: bool,
     /// Seed of the gusts.
     pub seed: u64,
+    /// Whether the wind has no gusts.
+    #[serde(skip_serializing_if = "is_default")]
+    pub steady: bool,
     /// Mean force on each particle (N).
     pub force: Option<Triple>,
     /// Mean force on each particle over the mean mass of a particle (m/s2).

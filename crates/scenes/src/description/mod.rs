@@ -98,7 +98,10 @@ pub struct Description {
     /// Springs between any particles: [i, j, stiffness (N/m), rest length (m), damping (N s/m)].
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub springs: Vec<SpringSpec>,
-    /// Rods and wires, which explicit solvers keep exactly.
+    /// Whether `springs` only pull, and hang slack if they are shorter than their rest length.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub tension_only: bool,
+    /// Rods, ropes and wires, which explicit solvers keep exactly.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub constraint: Vec<ConstraintSpec>,
     /// Rate at which a drift off a constraint is corrected (1/s); 10 if not given.
@@ -142,7 +145,8 @@ pub struct Camera {
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct State {
-    /// Positions (m).
+    /// Positions (m); if not given, those of the bodies.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub positions: Vec<Triple>,
     /// Velocities (m/s); if not given, all particles are at rest.
     #[serde(default)]

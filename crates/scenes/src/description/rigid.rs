@@ -32,6 +32,9 @@ pub struct RigidBody {
     /// given.
     #[serde(default)]
     pub thickness: Option<f64>,
+    /// Stiffness of its surface where surfaces touch (N/m); if not given, what its mass needs.
+    #[serde(default)]
+    pub contact_stiffness: Option<f64>,
     /// Coefficient of Coulomb friction; 0 if not given.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub friction: f64,

@@ -131,7 +131,7 @@ impl Writer<'_> {
             }
         }
         for (_, key, other) in NEEDS.iter().filter(|(table, ..)| *table == name) {
-            if !keys.contains(other) {
+            if !other.split(' ').any(|other| keys.contains(&other)) {
                 keys.retain(|k| k != key);
             }
         }

@@ -77,8 +77,11 @@ fn constraints(value: &mut Value, setup: &Setup, chance: &mut Chance) -> bool {
             return false;
         };
         let (at, other) = (place(setup, i), place(setup, j));
-        if row.contains_key("rod") {
-            row.insert("rod".into(), json!([i, j]));
+        if let Some(key) = ["rod", "rope"]
+            .into_iter()
+            .find(|key| row.contains_key(*key))
+        {
+            row.insert(key.into(), json!([i, j]));
             let squared: f64 = at.iter().zip(other).map(|(a, b)| (a - b).powi(2)).sum();
             if row.contains_key("length") {
                 row.insert("length".into(), json!(squared.sqrt()));

@@ -41,11 +41,13 @@ pub const NUMBERS: &[(&[&str], Range)] = &[
     (&["radius", "size", "ball", "box", "capsule"], LENGTH),
     (&["length", "rest_length", "width", "scale"], LENGTH),
     (&["thickness"], (1e-4, 0.01, true)),
+    (&["pressure"], (-100.0, 1000.0, false)),
+    (&["fill"], (0.9, 1.1, true)),
     (&["spacing"], (0.08, 0.3, true)),
     (&["mass", "masses"], MASS),
     (&["inertia"], (0.1, 0.19, true)),
     (&["density"], (0.1, 3000.0, true)),
-    (&["stiffness"], STIFFNESS),
+    (&["stiffness", "contact_stiffness"], STIFFNESS),
     (&["bending"], (1e-7, 1e-3, true)),
     (&["compression"], (10.0, 1e5, true)),
     (&["young"], (1e2, 1e8, true)),
@@ -75,7 +77,7 @@ pub const COUNTS: &[(&[&str], usize, usize)] = &[
     (&["Chain.particles"], 2, 6),
     (&["RigidBody.pin.particles"], 0, 0),
     (&["Fluid.dimensions"], 2, 3),
-    (&["particles", "particle", "rod"], 0, 1),
+    (&["particles", "particle", "rod", "rope"], 0, 1),
     (&["springs", "torn", "trail", "seed"], 0, 7),
 ];
 
@@ -102,7 +104,7 @@ pub const ONE: &[(&str, &[&str])] = &[
     ("PartSpec", &["box", "ball", "capsule", "file"]),
     (
         "ConstraintSpec",
-        &["rod", "point", "line", "circle", "sphere"],
+        &["rod", "rope", "point", "line", "circle", "sphere"],
     ),
 ];
 
@@ -111,6 +113,7 @@ pub const ALTERNATIVES: &[&[&str]] = &[
     &["damping", "damping_ratio"],
     &["drag", "drag_per_mass"],
     &["at", "foot"],
+    &["pressure", "fill"],
     &["sine", "shift"],
     &["sine", "turn"],
 ];
@@ -125,7 +128,8 @@ pub const TOGETHER: &[(&str, &str, &str)] = &[
 pub const NEEDS: &[(&str, &str, &str)] = &[
     ("Solid", "scale", "file"),
     ("PartSpec", "scale", "file"),
-    ("ConstraintSpec", "length", "rod"),
+    ("ConstraintSpec", "length", "rod rope"),
+    ("ConstraintSpec", "restitution", "rope"),
     ("WindSpec", "density", "velocity"),
     ("WindSpec", "drag", "velocity"),
     ("WindSpec", "lift", "velocity"),

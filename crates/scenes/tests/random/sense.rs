@@ -43,6 +43,11 @@ pub fn mend(owner: &str, name: &str, table: &mut Map<String, Value>, chance: &mu
         // Rods have their initial length.
         "Chain" if table.get("rigid") == Some(&json!(true)) => {
             table.remove("rest_length");
+            table.remove("tension_only");
+        }
+        // Gas needs a closed mesh.
+        "MeshCloth" if table.contains_key("pressure") || table.contains_key("fill") => {
+            table.insert("file".into(), json!("solid.obj"));
         }
         "Particles" => particles(table, chance),
         "" => scene(table, chance),

@@ -1,4 +1,4 @@
-//! Constraints as lines: rods, and the wires that particles slide on.
+//! Constraints as lines: rods, ropes, and the wires that particles slide on.
 
 use a3_core::{Constraint, Network, Vector3};
 use a3_render::Line;
@@ -7,6 +7,8 @@ use super::vectors::{perpendicular, to_f32};
 
 /// Number of straight pieces of a circle.
 const PIECES: usize = 96;
+/// Number of straight pieces of a rope that hangs slack.
+const ROPE_PIECES: usize = 32;
 /// Length of a straight wire to either side of its point, in units of length of the scene.
 const HALF_LENGTH: f64 = 20.0;
 
@@ -25,6 +27,10 @@ pub fn lines(
         .flat_map(move |constraint| match *constraint {
             Constraint::Rod { i, j, .. } => {
                 vec![Line::new(at(i), at(j), 4.0, color).with_shadow()]
+            }
+            Constraint::Rope { i, j, length, .. } => {
+                let down = network.gravity().unwrap_or_else(|| -Vector3::y());
+                rope([at(i), at(j)], length as f32, down.normalize(), color)
             }
             Constraint::Line {
                 point, direction, ..
@@ -49,6 +55,26 @@ pub fn lines(
         })
 }
 
+/// Returns the lines of a rope of a length (m) between two points. It hangs in a parabola, whose
+/// sag is exact for a rope that is almost straight and for one whose ends meet.
+fn rope(ends: [[f32; 3]; 2], length: f32, down: Vector3<f64>, color: [f32; 4]) -> Vec<Line> {
+    let [a, b] = ends.map(Vector3::from);
+    let distance = (b - a).norm();
+    let slack = (length - distance).max(0.0);
+    let line = |a: Vector3<f32>, b: Vector3<f32>| Line::new(a.into(), b.into(), 2.4, color);
+    if slack <= 1e-3 * length {
+        return vec![line(a, b).with_shadow()];
+    }
+    let sag = (0.375 * distance * slack + 0.25 * slack * slack).sqrt();
+    let place = |k: usize| {
+        let u = k as f32 / ROPE_PIECES as f32;
+        a + (b - a) * u + down.cast::<f32>() * (4.0 * sag * u * (1.0 - u))
+    };
+    (0..ROPE_PIECES)
+        .map(|k| line(place(k), place(k + 1)).with_shadow())
+        .collect()
+}
+
 /// Returns the lines of a circle.
 fn circle(center: Vector3<f64>, normal: Vector3<f64>, radius: f64, color: [f32; 4]) -> Vec<Line> {
     let side = perpendicular(normal);
@@ -65,6 +91,25 @@ fn circle(center: Vector3<f64>, normal: Vector3<f64>, radius: f64, color: [f32; 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_rope_keeps_about_its_length_where_it_hangs() {
+        let mut network = Network::new(vec![1.0; 2]).unwrap();
+        let rope = Constraint::Rope {
+            i: 0,
+            j: 1,
+            length: 1.2,
+            restitution: 0.0,
+        };
+        network.add_constraint(rope).unwrap();
+        for (distance, error) in [(1.1, 0.01), (1e-4, 1e-3), (0.6, 0.15), (1.2, 1e-6)] {
+            let at = |i: usize| [i as f32 * distance, 0.0, 0.0];
+            let lines = lines(&network, at, 1.0, [0.0; 4]);
+            let of_line = |line: Line| (Vector3::from(line.to) - Vector3::from(line.from)).norm();
+            let length: f32 = lines.map(of_line).sum();
+            assert!((length - 1.2).abs() < error, "{distance}: {length}");
+        }
+    }
 
     #[test]
     fn rods_join_their_particles_and_wires_lie_where_they_are() {
