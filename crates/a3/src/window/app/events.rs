@@ -85,7 +85,8 @@ impl ApplicationHandler<Event> for App {
         }
         // All keys belong to the table of keys, none to egui.
         let is_key = matches!(event, WindowEvent::KeyboardInput { .. });
-        let taken = !is_key && (graphics.on_event(&event) || self.session.list.is_some())
+        let position = self.mouse.pointer.position;
+        let taken = !is_key && (graphics.on_event(&event, position) || self.session.list.is_some())
             || !self
                 .mouse
                 .pointer

@@ -7,6 +7,7 @@ use std::time::Duration;
 use a3_render::{Gpu, GpuError, Renderer, Targets, Tile, Transfer};
 use egui::CursorIcon;
 use wgpu::CurrentSurfaceTexture;
+use winit::event::WindowEvent;
 use winit::window::Window;
 
 use super::adapter::{choose_format, clamped, transfer, window_samples};
@@ -138,11 +139,21 @@ impl Graphics {
         self.gpu.name()
     }
 
-    /// Passes an event to egui, and returns whether egui consumed it.
-    pub fn on_event(&mut self, event: &winit::event::WindowEvent) -> bool {
-        self.egui_winit
+    /// Passes an event to egui, and returns whether egui takes it. The pointer is at a `position`
+    /// (px), which egui knows only since its next layout.
+    pub fn on_event(&mut self, event: &WindowEvent, position: [f32; 2]) -> bool {
+        let consumed = self
+            .egui_winit
             .on_window_event(&self.window, event)
-            .consumed
+            .consumed;
+        let is_press = matches!(event, WindowEvent::MouseInput { state, .. } if state.is_pressed());
+        if !is_press && !matches!(event, WindowEvent::MouseWheel { .. }) {
+            return consumed;
+        }
+        let (context, scale) = (&self.overlay.context, self.scale());
+        let layer = context.layer_id_at(position.map(|px| px / scale).into());
+        let is_over = layer.is_some_and(|layer| layer.order != egui::Order::Background);
+        is_over || context.egui_is_using_pointer()
     }
 
     /// Has the text drawn again in the next frame, because it may have changed.

@@ -89,6 +89,7 @@ pub fn show(ctx: &Context, session: &Session) -> Option<Request> {
     Area::new(Id::unique("controls"))
         .fixed_pos(rect.min)
         // An area that was moved would grow to reach from there to the bar, for good.
+        .constrain_to(window)
         .constrain(false)
         .fade_in(false)
         .show(ctx, |ui| {
