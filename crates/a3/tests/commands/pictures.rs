@@ -70,7 +70,7 @@ fn coloured_pictures_have_their_scale() {
         let corner = image::imageops::crop_imm(&picture, 0, 620, 300, 100).to_image();
         // The brightest colour of the scale is a yellow that nothing else has.
         let is_end = |p: &image::Rgba<u8>| p.0[0] > 200 && p.0[1] > 190 && p.0[2] < 90;
-        let dark = |p: &image::Rgba<u8>| p.0[..3].iter().all(|c| *c < 120) && p.0[3] > 200;
+        let dark = |p: &image::Rgba<u8>| p.0[..3].iter().all(|c| *c < 150) && p.0[3] > 200;
         let count =
             |is: &dyn Fn(&image::Rgba<u8>) -> bool| corner.pixels().filter(|p| is(p)).count();
         Some((count(&is_end), count(&dark)))
