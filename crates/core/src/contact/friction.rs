@@ -7,12 +7,14 @@ use nalgebra::{Matrix3, Vector3};
 use super::candidates::{Candidates, Linear};
 use super::listing::Candidate;
 use super::motion::{Guarded, Motion};
-use super::passes;
 use super::repulsion::Pair;
 use super::skin::Law;
 use super::solids::{Arm, Field, Masses, SAME_TOLERANCE, Solid};
 use super::surface::Surface;
 use crate::geometry::{PairKind, weighted};
+
+/// Largest number of passes of friction between surfaces that the contact force keeps apart.
+const MAX_PASSES: usize = 20;
 
 /// Share of the largest change of velocity by friction below which a slip counts as zero, so that
 /// passes may end early. Only its displacement is undone: the velocity stays, and grows if a slide
@@ -125,15 +127,6 @@ impl ContactPair {
     /// Numbers of the rigid bodies that touch.
     pub fn solids(&self) -> impl Iterator<Item = usize> {
         self.arms().map(|arm| arm.solid)
-    }
-
-    /// Numbers of the vertices that an impulse moves, and of the rigid bodies, which are counted
-    /// after all vertices.
-    fn parts_from(&self, vertices: usize) -> impl Iterator<Item = usize> {
-        let points = self.points.into_iter().zip(self.weights);
-        let moved = points.filter(|(_, weight)| *weight != 0.0);
-        let solids = self.solids().map(move |solid| vertices + solid);
-        moved.map(|(i, _)| i as usize).chain(solids)
     }
 
     /// The arms, if both sides are rigid bodies.
@@ -326,6 +319,19 @@ impl Pressed {
     }
 }
 
+/// Repeats passes over the contacts until a pass changes nothing, or their number reaches a limit.
+fn pass_until_still<T>(contacts: &[T], mut leaves: impl FnMut(usize, &T) -> bool) {
+    for _ in 0..MAX_PASSES {
+        let mut still = true;
+        for (k, contact) in contacts.iter().enumerate() {
+            still &= leaves(k, contact);
+        }
+        if still {
+            break;
+        }
+    }
+}
+
 /// Finds the friction of contacts, each with its largest impulse (N s): of velocities first.
 /// Displacements follow the velocities, and vanish where these do.
 fn solve(pressed: &[(ContactPair, f64)], h: f64, motion: &mut Motion, guarded: &mut Guarded) {
@@ -358,10 +364,7 @@ fn solve(pressed: &[(ContactPair, f64)], h: f64, motion: &mut Motion, guarded: &
     let delays: Vec<f64> = pressed.iter().map(|(contact, _)| delay(contact)).collect();
     // Impulse of friction of each contact so far, which a later pass may reduce.
     let mut all = vec![Vector3::zeros(); pressed.len()];
-    let vertices = v.points.len();
-    let parts = |k: usize| pressed[k].0.parts_from(vertices);
-    passes::run(pressed.len(), vertices + solids.len(), parts, |k| {
-        let (contact, most) = &pressed[k];
+    pass_until_still(pressed, |k, (contact, most)| {
         let slip = contact.slip(v);
         let held = limited_to(all[k] - slip / contact.mobility(slip), *most);
         let change = held - all[k];
@@ -379,9 +382,7 @@ fn solve(pressed: &[(ContactPair, f64)], h: f64, motion: &mut Motion, guarded: &
         slip.norm() <= STUCK_TOLERANCE * limit(contact, *most, slip)
     };
     let stuck: Vec<_> = pressed.iter().filter(sticks).collect();
-    let parts = |k: usize| stuck[k].0.parts_from(vertices);
-    passes::run(stuck.len(), vertices + solids.len(), parts, |k| {
-        let (contact, most) = stuck[k];
+    pass_until_still(&stuck, |_, (contact, most)| {
         let displaced = contact.slip(moves);
         let most = h * limit(contact, *most, displaced);
         contact.apply(-limited_to(displaced, most), masses, moves);

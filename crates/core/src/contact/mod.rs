@@ -31,7 +31,6 @@ mod listing;
 mod met;
 mod motion;
 mod obstacle;
-mod passes;
 mod rebound;
 mod repulsion;
 mod resolve;
