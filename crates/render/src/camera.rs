@@ -66,8 +66,8 @@ impl Camera {
         self.unit
     }
 
-    /// Chooses the part of the picture that shows what a whole picture would: its left, top, width
-    /// and height, as shares of the picture. The rest of the picture shows what is around.
+    /// Chooses the part of the picture in which the view is centred and into which it fits: its
+    /// left, top, width and height, as shares of the picture. The rest shows the surroundings.
     ///
     /// # Panics
     /// Panics if the width or the height is not above 0.

@@ -167,7 +167,7 @@ pub struct Liquid<'a> {
 pub struct Floor {
     /// Height (m).
     pub height: f32,
-    /// Whether it hides what is below it, seen from above. One that does not only marks a height.
+    /// Whether it hides bodies below it from a camera above it. Otherwise, it only marks a height.
     pub solid: bool,
 }
 

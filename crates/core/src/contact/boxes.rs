@@ -23,8 +23,8 @@ const BITS: [f32; LANES] = [
     16384.0, 32768.0,
 ];
 
-/// Largest magnitude of a coordinate of a box (m), whose square is a number. What is farther out,
-/// or no number, is moved to there, which brings nothing apart.
+/// Largest magnitude of a coordinate of a box (m), whose square is finite in single precision.
+/// Other coordinates are clamped to it, which makes no distance larger.
 const FARTHEST: f64 = 1e18;
 
 /// Factor by which squared distances in single precision may be too large.

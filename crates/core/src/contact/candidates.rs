@@ -73,7 +73,7 @@ pub(super) struct Candidates {
     speeds: Vec<Vector3<f64>>,
     /// Mean velocity when all courses were new (m/s).
     mean: Vector3<f64>,
-    /// Mean position at the beginning then (m).
+    /// Mean position at the beginning, when all courses were new (m).
     origin: Vector3<f64>,
     /// Whether a vertex has a new course.
     renewed: Vec<bool>,

@@ -102,7 +102,7 @@ impl Motion {
         candidates.cover(surface, &stretch);
     }
 
-    /// Positions at the end of the step (m), as they were covered last.
+    /// Positions at the end of the step (m), as of the last call of [`cover`](Self::cover).
     pub fn ends(&self) -> &[Vector3<f64>] {
         &self.ends
     }

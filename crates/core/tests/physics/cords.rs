@@ -42,8 +42,8 @@ fn a_cord_lets_go_and_catches_again() {
     }
 }
 
-/// Random springs of which some are slack: the differential is the slope of the forces, and none
-/// pushes, however fast its ends approach.
+/// Springs at random places, some of them slack: the differential agrees with difference quotients
+/// of the forces, and no spring pushes, however fast its ends approach.
 #[test]
 fn the_differential_is_the_slope_of_the_forces() {
     let mut text = String::from("[particles]\nmass = 1\ntension_only = true\npositions = [");

@@ -193,7 +193,7 @@ impl Mouse {
         self.pointer.inside = true;
         let under = screen.pane_at(session, position);
         session.panel.pane = under.unwrap_or(session.panel.pane);
-        // Panel, bar, lists and help highlight what is under the pointer, and follow its drags.
+        // The panel, the bar, lists and the help highlight the row or button under the pointer.
         screen.redraw();
         let tile = screen.tile(session, self.pane);
         // Do not move the camera until the pointer is too far for a click.

@@ -60,7 +60,7 @@ impl Pointer {
         self.still
     }
 
-    /// Returns the pane under the pointer, or else the last that was.
+    /// Returns the pane under the pointer, or else the pane that it was over last.
     pub fn pane(&self, session: &Session, screen: &Screen) -> usize {
         let last = session.panel.pane.min(session.runs.panes.len() - 1);
         screen.pane_at(session, self.position).unwrap_or(last)
