@@ -8,8 +8,9 @@
 //! that these leave too long are [cut](super::cut).
 
 use super::candidates::Candidates;
+use super::contact_pair::ContactPair;
 use super::cut::Pinched;
-use super::friction::{ContactPair, apply_friction};
+use super::friction::apply_friction;
 use super::hits::find;
 use super::impulses::Impulses;
 use super::layer::{Buffers, ContactLayer};
