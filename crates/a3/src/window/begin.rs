@@ -3,14 +3,14 @@
 use a3_core::{Simulation, StepLimits};
 
 use crate::base::failure::Failure;
-use crate::cli::{Compare, Drawing, WindowOptions};
+use crate::cli::{Compare, Drawing, Look, What, WindowOptions};
 use crate::draw::show::{self, Quantity};
 use crate::files::setup::Request;
 use crate::window::session::{Beginning, Origin, Session};
 
 /// Creates the session of a window on one run. Fails if an option does not fit the scene.
 pub fn window(options: &WindowOptions) -> Result<Session, Failure> {
-    let request = Request::read(&options.what)?;
+    let request = read(&options.what)?;
     let source = &request.source;
     if options.watch && (source.path.is_none() || source.is_input()) {
         return Err(Failure::usage(
@@ -20,7 +20,10 @@ pub fn window(options: &WindowOptions) -> Result<Session, Failure> {
     let solver = source.solver_or(options.solver);
     let mut setup = request.build()?;
     setup.scene.limits = options.limits.given().or(setup.scene.limits);
-    let simulation = request.simulate(&setup, solver, options.step)?;
+    let simulation = begun(
+        request.simulate(&setup, solver, options.step)?,
+        &options.look,
+    )?;
     check_particle(&simulation, options.springs_of)?;
     check_drawing(&simulation, options.look.manner, false)?;
     let beginning = Beginning {
@@ -43,13 +46,13 @@ pub fn comparison(options: &Compare) -> Result<Session, Failure> {
             "compare takes 2 to 4 solvers, as in `a3 compare e:0.05 r:0.05`, not {count}"
         )));
     }
-    let request = Request::read(&options.what)?;
+    let request = read(&options.what)?;
     let mut setup = request.build()?;
     setup.scene.limits = options.limits.given().or(setup.scene.limits);
     let simulations = options
         .methods
         .iter()
-        .map(|(solver, step)| request.simulate(&setup, solver, *step))
+        .map(|(solver, step)| begun(request.simulate(&setup, solver, *step)?, &options.look))
         .collect::<Result<Vec<_>, Failure>>()?;
     check_drawing(&simulations[0], options.look.manner, true)?;
     let beginning = Beginning {
@@ -62,6 +65,23 @@ pub fn comparison(options: &Compare) -> Result<Session, Failure> {
         simulations,
         &beginning,
     )
+}
+
+/// Reads the scene that the options name, as a window begins it.
+fn read(options: &What) -> Result<Request, Failure> {
+    let request = Request::read(options)?;
+    Ok(Request {
+        source: request.source.in_window(),
+        ..request
+    })
+}
+
+/// Returns a run that begins with or without self-collision, as the options say.
+fn begun(mut run: Simulation, look: &Look) -> Result<Simulation, Failure> {
+    if look.no_self_collision {
+        run.set_touching(false).map_err(Failure::usage)?;
+    }
+    Ok(run)
 }
 
 fn origin(request: Request, limits: StepLimits) -> Origin {

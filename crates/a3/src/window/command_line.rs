@@ -48,6 +48,10 @@ fn arguments(session: &Session, at: usize) -> Vec<String> {
             run.touching() && !description.self_collision,
             "--self-collision",
         ),
+        (
+            !run.touching() && description.self_collision,
+            "--no-self-collision",
+        ),
     ] {
         words.extend(on.then(|| word.to_owned()));
     }
@@ -167,6 +171,7 @@ mod tests {
             "verlet 0.005 --scene cloth",
             "rk4 0.002 --scene cloth --grid 12x9 --wind --swing --colour strain",
             "dopri5 0.0001 --scene flag --arrows velocity --wireframe --orthographic --dark --paused",
+            "verlet 0.005 --scene cloth --no-self-collision",
             "verlet 0.005 --scene mit --self-collision --springs-of 7 --springs --colour contact",
             "compare euler:0.05 rk4:0.01 --scene chain --colour force --paused",
         ] {

@@ -57,6 +57,10 @@ pub struct Description {
     /// through.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub self_collision: bool,
+    /// Whether they do so at first in the window, where hands fold and cross them, and not
+    /// elsewhere.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub window_self_collision: bool,
     /// Level floor: its height (m), or a table with `height` and `friction`.
     pub floor: Option<Floor>,
     /// Largest stretch, in rest lengths, to which a hand pulls the springs of the particle it
