@@ -3,14 +3,15 @@
 use a3_core::{Simulation, StepLimits};
 
 use crate::base::failure::Failure;
-use crate::cli::{Compare, Drawing, Look, What, WindowOptions};
+use crate::cli::{Compare, Drawing, Look, WindowOptions};
 use crate::draw::show::{self, Quantity};
 use crate::files::setup::Request;
 use crate::window::session::{Beginning, Origin, Session};
 
 /// Creates the session of a window on one run. Fails if an option does not fit the scene.
 pub fn window(options: &WindowOptions) -> Result<Session, Failure> {
-    let request = read(&options.what)?;
+    let mut request = Request::read(&options.what)?;
+    request.source = request.source.in_window();
     let source = &request.source;
     if options.watch && (source.path.is_none() || source.is_input()) {
         return Err(Failure::usage(
@@ -46,7 +47,7 @@ pub fn comparison(options: &Compare) -> Result<Session, Failure> {
             "compare takes 2 to 4 solvers, as in `a3 compare e:0.05 r:0.05`, not {count}"
         )));
     }
-    let request = read(&options.what)?;
+    let request = Request::read(&options.what)?;
     let mut setup = request.build()?;
     setup.scene.limits = options.limits.given().or(setup.scene.limits);
     let simulations = options
@@ -65,15 +66,6 @@ pub fn comparison(options: &Compare) -> Result<Session, Failure> {
         simulations,
         &beginning,
     )
-}
-
-/// Reads the scene that the options name, as a window begins it.
-fn read(options: &What) -> Result<Request, Failure> {
-    let request = Request::read(options)?;
-    Ok(Request {
-        source: request.source.in_window(),
-        ..request
-    })
 }
 
 /// Returns a run that begins with or without self-collision, as the options say.
