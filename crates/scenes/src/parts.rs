@@ -320,6 +320,7 @@ fn simplify_wind(scene: &mut Description) {
         steady: wind.steady,
         force_per_mass: Some(velocity.map(|v| each * v)),
         ahead: wind.ahead,
+        region: wind.region.take(),
         ..WindSpec::default()
     };
 }

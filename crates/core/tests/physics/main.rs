@@ -8,6 +8,7 @@ mod constraints;
 mod contact;
 mod cords;
 mod elements;
+mod fan;
 mod fluid;
 mod forces;
 mod friction;

@@ -20,7 +20,7 @@ pub use bodies::{Chain, Circle, Cloth, Jelly, MeshCloth, Particles, Solid, Solid
 pub use constraints::{BallSpec, CircleSpec, ConstraintSpec, LineSpec};
 pub use floor::{Floor, FloorSpec};
 pub use fluid::{Fluid, FluidShape, Tank};
-pub use forces::{BucklingSpec, SpringSpec, SwingSpec, WindSpec};
+pub use forces::{BucklingSpec, RegionSpec, SpringSpec, SwingSpec, WindSpec};
 pub use motion::{Pin, Shift, Sine, Spot, Triple, Turn};
 pub use obstacles::{BoxSpec, CapsuleSpec, ObstacleSpec, SphereSpec};
 pub use rigid::{PartSpec, RigidBody};
