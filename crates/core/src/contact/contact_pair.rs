@@ -7,6 +7,7 @@ use super::motion::Motion;
 use super::skin::Law;
 use super::solids::{Arm, Field, Masses, SAME_TOLERANCE, Solid};
 use super::surface::Surface;
+use crate::error::Vertex;
 use crate::geometry::{PairKind, weighted};
 
 /// Fraction of the missing separation of rigid bodies that is restored in a step.
@@ -32,6 +33,17 @@ struct RigidContact {
     /// Change of the relative velocity of the closest points by an impulse (1/kg), and the inverse.
     mobility: Matrix3<f64>,
     inverse: Matrix3<f64>,
+    rolling: Option<Rolling>,
+}
+
+/// Resistance of a contact to turns of one side relative to the other.
+struct Rolling {
+    /// Largest angular impulse (N m s).
+    most: f64,
+    /// Angular impulse that stops a relative angular velocity: a matrix (kg m2).
+    inertia: Matrix3<f64>,
+    /// Angular velocity of an obstacle, with the sign of its side (rad/s).
+    obstacle: Vector3<f64>,
 }
 
 impl ContactPair {
@@ -89,7 +101,57 @@ impl ContactPair {
             arms,
             mobility,
             inverse,
+            rolling: None,
         }));
+    }
+
+    /// Lets the contact resist turns by an angular impulse of at most `most` (N m s).
+    pub fn resist_turns(&mut self, most: f64, surface: &Surface, motion: &Motion) {
+        let Some(rigid) = self.rigid.as_mut().filter(|_| most > 0.0) else {
+            return;
+        };
+        let arms = rigid.arms.iter().flatten();
+        let yields = arms.fold(Matrix3::zeros(), |sum, arm| {
+            sum + arm.inverse_inertia(&motion.solids)
+        });
+        let spin = |i: u32| match surface.vertex(i) {
+            Vertex::Obstacle(k) => motion.spins[k],
+            _ => Vector3::zeros(),
+        };
+        rigid.rolling = Some(Rolling {
+            most,
+            inertia: yields.try_inverse().unwrap_or_default(),
+            obstacle: spin(self.points[0]) - spin(self.points[3]),
+        });
+    }
+
+    /// Adds the resistance to turns of a contact at the same point.
+    pub fn add_resistance(&mut self, other: &Self) {
+        let others = other
+            .rigid
+            .as_ref()
+            .and_then(|rigid| rigid.rolling.as_ref());
+        let own = self.rigid.as_mut().and_then(|rigid| rigid.rolling.as_mut());
+        if let (Some(own), Some(other)) = (own, others) {
+            own.most += other.most;
+        }
+    }
+
+    /// The angular impulse (N m s) that stops the relative turn in a span of time (s, or 1 for
+    /// velocities), and the largest one; none if the contact does not resist turns.
+    pub fn turning(&self, field: &Field, span: f64) -> Option<(Vector3<f64>, f64)> {
+        let rolling = self.rigid.as_ref()?.rolling.as_ref()?;
+        let turned = self
+            .arms()
+            .fold(rolling.obstacle * span, |sum, arm| sum + arm.turn(field));
+        Some((-(rolling.inertia * turned), rolling.most))
+    }
+
+    /// Gives the first side an angular impulse (N m s), and the opposite to the second.
+    pub fn spin(&self, impulse: Vector3<f64>, masses: Masses, field: &mut Field) {
+        for arm in self.arms() {
+            arm.spin(impulse, masses.solids, field);
+        }
     }
 
     /// The relative vector of the closest points.

@@ -10,7 +10,7 @@ use super::listing::Candidate;
 use super::motion::{Guarded, Motion};
 use super::passes::{STUCK_TOLERANCE, hold, pass_until_still};
 use super::repulsion::Pair;
-use super::solids::Masses;
+use super::solids::{Field, Masses};
 use super::surface::Surface;
 
 /// Share of the largest displacement that friction can undo below which a displacement counts as
@@ -36,14 +36,16 @@ pub(super) fn apply_friction(
         let law = surface.law(candidate.kind, &candidate.points);
         let (x0, moves) = (candidate.of(&motion.x0), candidate.of(&motion.moves));
         let x = std::array::from_fn(|k| x0[k] + moves[k]);
-        if law.skin.friction == 0.0 || surface.is_beside(candidate, &x) {
+        let skin = law.skin;
+        if skin.friction == 0.0 && skin.rolling == 0.0 || surface.is_beside(candidate, &x) {
             return None;
         }
         let (kind, v) = (candidate.kind, candidate.of(&motion.v));
         let pair = Pair { kind, law, x, v };
         let (force, weights, normal) = pair.force()?;
-        let contact = ContactPair::new(surface, candidate, weights, normal, motion);
-        (contact.inverse_mass > 0.0).then_some((contact, law.skin.friction * force * h))
+        let mut contact = ContactPair::new(surface, candidate, weights, normal, motion);
+        contact.resist_turns(skin.rolling * force * h, surface, motion);
+        (contact.inverse_mass > 0.0).then_some((contact, skin.friction * force * h))
     };
     let mut pressed = Pressed::default();
     let ended = Linear {
@@ -78,7 +80,9 @@ impl Pressed {
             let known = self.between.entry(arms.map(|arm| arm.solid)).or_default();
             let is_same = |k: &&usize| self.contacts[**k].0.is_at(&contact);
             if let Some(k) = known.iter().rev().take(SEARCHED_CONTACTS).find(is_same) {
-                self.contacts[*k].1 += most;
+                let (known, of_known) = &mut self.contacts[*k];
+                known.add_resistance(&contact);
+                *of_known += most;
                 return;
             }
             known.push(self.contacts.len());
@@ -106,9 +110,8 @@ fn solve(pressed: &[(ContactPair, f64)], h: f64, motion: &mut Motion, guarded: &
     };
     // Displacement per change of velocity in the step: half of the step for most methods, all of it
     // for implicit Euler.
-    let delay = |contact: &ContactPair| {
-        let begun = contact.slip(v0);
-        let (change, way) = (contact.slip(v) - begun, contact.slip(moves) - begun * h);
+    let delay = |begun: Vector3<f64>, end: Vector3<f64>, way: Vector3<f64>| {
+        let (change, way) = (end - begun, way - begun * h);
         let squared = change.norm_squared();
         if squared > 0.0 {
             (way.dot(&change) / squared).clamp(0.0, h)
@@ -116,11 +119,22 @@ fn solve(pressed: &[(ContactPair, f64)], h: f64, motion: &mut Motion, guarded: &
             0.5 * h
         }
     };
-    let delays: Vec<f64> = pressed.iter().map(|(contact, _)| delay(contact)).collect();
-    let all = hold(pressed, masses, v);
-    for ((contact, _), (impulse, delay)) in pressed.iter().zip(all.iter().zip(&delays)) {
-        contact.push(impulse * *delay, masses, moves);
-        impulses.share(contact.points, contact.weights, *impulse);
+    let turn = |contact: &ContactPair, field: &Field, span: f64| {
+        let turning = contact.turning(field, span);
+        turning.map_or_else(Vector3::zeros, |(impulse, _)| impulse)
+    };
+    let delays = |(contact, _): &(ContactPair, f64)| {
+        let slips = [&*v0, v, moves].map(|field| contact.slip(field));
+        let turns =
+            [(&*v0, 1.0), (v, 1.0), (moves, h)].map(|(field, span)| turn(contact, field, span));
+        [slips, turns].map(|[begun, end, way]| delay(begun, end, way))
+    };
+    let delays: Vec<[f64; 2]> = pressed.iter().map(delays).collect();
+    let (all, turned) = hold(pressed, masses, v);
+    for (k, (contact, _)) in pressed.iter().enumerate() {
+        contact.push(all[k] * delays[k][0], masses, moves);
+        contact.spin(turned[k] * delays[k][1], masses, moves);
+        impulses.share(contact.points, contact.weights, all[k]);
     }
     let limit = |contact: &ContactPair, most: f64, slip| most * contact.mobility(slip);
     let sticks = |(contact, most): &&(ContactPair, f64)| {
@@ -128,8 +142,24 @@ fn solve(pressed: &[(ContactPair, f64)], h: f64, motion: &mut Motion, guarded: &
         slip.norm() <= STUCK_TOLERANCE * limit(contact, *most, slip)
     };
     let stuck: Vec<_> = pressed.iter().filter(sticks).collect();
+    let rests = |contact: &&ContactPair| {
+        let turning = contact.turning(v, 1.0);
+        turning.is_some_and(|(impulse, most)| impulse.norm() <= STUCK_TOLERANCE * most)
+    };
+    let resting: Vec<_> = pressed
+        .iter()
+        .map(|(contact, _)| contact)
+        .filter(rests)
+        .collect();
     pass_until_still(|| {
         let mut still = true;
+        for contact in &resting {
+            let Some((impulse, most)) = contact.turning(moves, h) else {
+                continue;
+            };
+            contact.spin(limited_to(impulse, h * most), masses, moves);
+            still &= impulse.norm() <= STILL_TOLERANCE * h * most;
+        }
         for (contact, most) in &stuck {
             let displaced = contact.slip(moves);
             let most = h * limit(contact, *most, displaced);

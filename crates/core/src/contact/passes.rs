@@ -37,15 +37,16 @@ pub(super) fn pass_until_still(mut pass: impl FnMut() -> bool) {
 }
 
 /// Lets friction stop the slip of contacts, each with its largest impulse (N s), by changes of the
-/// velocities v (m/s). Returns the impulse of each (N s). The points of rigid bodies must be
-/// settled afterwards.
+/// velocities v (m/s), and the turns of those that resist them. Returns the impulse (N s) and the
+/// angular impulse (N m s) of each. The points of rigid bodies must be settled afterwards.
 pub(super) fn hold(
     contacts: &[(ContactPair, f64)],
     masses: Masses,
     v: &mut Field,
-) -> Vec<Vector3<f64>> {
-    // Impulse of each contact so far, which a later pass may reduce.
+) -> (Vec<Vector3<f64>>, Vec<Vector3<f64>>) {
+    // Impulses of each contact so far, which a later pass may reduce.
     let mut all = vec![Vector3::zeros(); contacts.len()];
+    let mut turned = all.clone();
     let numbers = in_order(contacts, masses.inverse);
     let mut soft: Vec<_> = numbers
         .iter()
@@ -69,13 +70,20 @@ pub(super) fn hold(
             contact.push(change, masses, v);
             all[*k] = held;
             still &= change.norm() <= STUCK_TOLERANCE * most;
+            if let Some((stopping, most)) = contact.turning(v, 1.0) {
+                let held = limited_to(turned[*k] + stopping, most);
+                let change = held - turned[*k];
+                contact.spin(change, masses, v);
+                turned[*k] = held;
+                still &= change.norm() <= STUCK_TOLERANCE * most;
+            }
         }
         still
     });
     for (number, contact) in numbers.iter().zip(&soft) {
         all[*number] = contact.held;
     }
-    all
+    (all, turned)
 }
 
 /// Numbers of the contacts without rigid bodies, in the order of their colours.

@@ -63,7 +63,6 @@ pub struct Wind {
     air: Option<Air>,
     /// Region in which it blows, if it does not blow everywhere, and the time by which that is ahead
     /// (s).
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     region: Option<(Region, f64)>,
 }
 

@@ -16,6 +16,7 @@ mod gas;
 mod networks;
 mod restitution;
 mod rigid;
+mod rolling;
 mod solids;
 mod sweeps;
 mod tearing;
