@@ -105,3 +105,28 @@ fn a_turntable_takes_a_ball_along() {
         assert!(error < 1e-2, "{pair:?}: {error}");
     }
 }
+
+/// The repulsion k d s3 of a stiffness k and a thickness d bears the weight at the gap d (1 - s).
+#[test]
+fn a_ball_rests_where_its_stiffness_bears_it() {
+    let thickness = 0.002;
+    for stiffness in [3e4, 5e5] {
+        let toml = format!(
+            "
+            gravity = [0, {}, 0]
+            floor = {{ height = 0, thickness = {thickness} }}
+            [[body]]
+            at = [0, 0.1012, 0]
+            mass = {MASS}
+            thickness = {thickness}
+            contact_stiffness = {stiffness}
+            parts = [{{ ball = {RADIUS} }}]
+            ",
+            -G
+        );
+        let height = run(&toml, ("verlet", 2e-4), 3.0).position(0).y;
+        let share = (MASS * G / (stiffness * thickness)).cbrt();
+        let expected = RADIUS + thickness * (1.0 - share);
+        assert!((height - expected).abs() < 1e-6, "{height} {expected}");
+    }
+}
