@@ -173,9 +173,7 @@ fn leave_out(scene: &mut Description, change: Change) {
         Change::WindByParticles => simplify_wind(scene),
         Change::Friction => {
             each_contact(scene, |[friction, _]| *friction = 0.0);
-            for body in &mut scene.body {
-                body.rolling_friction = 0.0;
-            }
+            (scene.body.iter_mut()).for_each(|body| body.rolling_friction = 0.0);
         }
         Change::Restitution => each_contact(scene, |[_, restitution]| *restitution = 0.0),
         Change::SelfCollision => scene.self_collision = false,

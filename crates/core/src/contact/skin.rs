@@ -19,8 +19,8 @@ pub struct Skin {
     pub damping: f64,
     /// Coefficient mu of Coulomb friction.
     pub friction: f64,
-    /// Coefficient of rolling friction of a rigid body (m): the largest torque that resists its turn
-    /// where it touches, over the force along the normal.
+    /// Coefficient of rolling friction of a rigid body (m): the largest torque that resists its
+    /// turn where it touches, over the force along the normal.
     pub rolling: f64,
     /// Coefficient e of restitution, from 0 to 1. If it is above 0, it replaces damping.
     pub restitution: f64,

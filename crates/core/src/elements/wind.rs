@@ -61,8 +61,7 @@ pub struct Wind {
     waves: [Wave; WAVES],
     /// Air, if the wind blows on triangles.
     air: Option<Air>,
-    /// Region in which it blows, if it does not blow everywhere, and the time by which that is ahead
-    /// (s).
+    /// Region outside of which it is calm, if it has one, and the time by which that is ahead (s).
     region: Option<(Region, f64)>,
 }
 

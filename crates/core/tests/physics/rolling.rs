@@ -71,7 +71,11 @@ fn the_tangent_of_the_slope_decides_whether_a_ball_rolls() {
     // It rests up to the tangent 0.05.
     for pair in METHODS {
         let rests = run(&ball(0.0, 0.045, "floor = 0"), pair, 4.0);
-        assert!(rests.position(0).x < 1e-4, "{pair:?}: {}", rests.position(0));
+        assert!(
+            rests.position(0).x < 1e-4,
+            "{pair:?}: {}",
+            rests.position(0)
+        );
         let slope = 0.15_f64;
         let rolls = run(&ball(0.0, slope, "floor = 0"), pair, 2.0);
         let along = 5.0 / 7.0 * G * (slope.sin() - slope.cos() * ROLLING / RADIUS);
