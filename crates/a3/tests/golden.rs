@@ -132,7 +132,7 @@ fn runs() -> Vec<Run> {
                 || std::fs::read_to_string(&scene).unwrap(),
                 |built_in| built_in.text.to_owned(),
             );
-            let check = toml.contains("self_collision = true");
+            let check = toml.lines().any(|line| line == "self_collision = true");
             let rigid = toml.contains("[[body]]") && toml.contains("gravity");
             let (step, steps) = match (check, rigid) {
                 (true, _) => TOUCHING,

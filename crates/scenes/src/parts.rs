@@ -171,7 +171,10 @@ fn leave_out(scene: &mut Description, change: Change) {
             }
         }
         Change::WindByParticles => simplify_wind(scene),
-        Change::Friction => each_contact(scene, |[friction, _]| *friction = 0.0),
+        Change::Friction => {
+            each_contact(scene, |[friction, _]| *friction = 0.0);
+            (scene.body.iter_mut()).for_each(|body| body.rolling_friction = 0.0);
+        }
         Change::Restitution => each_contact(scene, |[_, restitution]| *restitution = 0.0),
         Change::SelfCollision => scene.self_collision = false,
         Change::Floor => scene.floor = None,
@@ -320,6 +323,7 @@ fn simplify_wind(scene: &mut Description) {
         steady: wind.steady,
         force_per_mass: Some(velocity.map(|v| each * v)),
         ahead: wind.ahead,
+        region: wind.region.take(),
         ..WindSpec::default()
     };
 }

@@ -44,6 +44,9 @@ pub struct Look {
     /// Neither read nor write the settings that the window remembers
     #[arg(long)]
     pub no_config: bool,
+    /// Let surfaces pass through one another and themselves
+    #[arg(long, conflicts_with = "self_collision")]
+    pub no_self_collision: bool,
     /// Begin paused
     #[arg(long)]
     pub paused: bool,

@@ -3,14 +3,15 @@
 use a3_core::{Simulation, StepLimits};
 
 use crate::base::failure::Failure;
-use crate::cli::{Compare, Drawing, WindowOptions};
+use crate::cli::{Compare, Drawing, Look, WindowOptions};
 use crate::draw::show::{self, Quantity};
 use crate::files::setup::Request;
 use crate::window::session::{Beginning, Origin, Session};
 
 /// Creates the session of a window on one run. Fails if an option does not fit the scene.
 pub fn window(options: &WindowOptions) -> Result<Session, Failure> {
-    let request = Request::read(&options.what)?;
+    let mut request = Request::read(&options.what)?;
+    request.source = request.source.in_window();
     let source = &request.source;
     if options.watch && (source.path.is_none() || source.is_input()) {
         return Err(Failure::usage(
@@ -20,7 +21,10 @@ pub fn window(options: &WindowOptions) -> Result<Session, Failure> {
     let solver = source.solver_or(options.solver);
     let mut setup = request.build()?;
     setup.scene.limits = options.limits.given().or(setup.scene.limits);
-    let simulation = request.simulate(&setup, solver, options.step)?;
+    let simulation = begun(
+        request.simulate(&setup, solver, options.step)?,
+        &options.look,
+    )?;
     check_particle(&simulation, options.springs_of)?;
     check_drawing(&simulation, options.look.manner, false)?;
     let beginning = Beginning {
@@ -49,7 +53,7 @@ pub fn comparison(options: &Compare) -> Result<Session, Failure> {
     let simulations = options
         .methods
         .iter()
-        .map(|(solver, step)| request.simulate(&setup, solver, *step))
+        .map(|(solver, step)| begun(request.simulate(&setup, solver, *step)?, &options.look))
         .collect::<Result<Vec<_>, Failure>>()?;
     check_drawing(&simulations[0], options.look.manner, true)?;
     let beginning = Beginning {
@@ -62,6 +66,14 @@ pub fn comparison(options: &Compare) -> Result<Session, Failure> {
         simulations,
         &beginning,
     )
+}
+
+/// Returns a run that begins with or without self-collision, as the options say.
+fn begun(mut run: Simulation, look: &Look) -> Result<Simulation, Failure> {
+    if look.no_self_collision {
+        run.set_touching(false).map_err(Failure::usage)?;
+    }
+    Ok(run)
 }
 
 fn origin(request: Request, limits: StepLimits) -> Origin {

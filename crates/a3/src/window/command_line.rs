@@ -37,6 +37,9 @@ fn arguments(session: &Session, at: usize) -> Vec<String> {
     let (origin, run) = (&session.scenes.shown, session.runs.first());
     let description = &origin.source.description;
     let begins_windy = description.wind.as_ref().is_some_and(|wind| wind.on);
+    // A comparison begins as its scene says everywhere.
+    let is_alone = session.runs.panes.len() == 1;
+    let touches = description.self_collision && (is_alone || !description.window_self_collision);
     let mut words = arguments_with_scene(session, at, &origin.source.typed);
     if let Some(grid) = origin.grid {
         words.extend(["--grid".into(), format!("{}x{}", grid.rows(), grid.cols())]);
@@ -44,10 +47,8 @@ fn arguments(session: &Session, at: usize) -> Vec<String> {
     for (on, word) in [
         (run.windy() && !begins_windy, "--wind"),
         (run.swinging(), "--swing"),
-        (
-            run.touching() && !description.self_collision,
-            "--self-collision",
-        ),
+        (run.touching() && !touches, "--self-collision"),
+        (!run.touching() && touches, "--no-self-collision"),
     ] {
         words.extend(on.then(|| word.to_owned()));
     }
@@ -167,6 +168,7 @@ mod tests {
             "verlet 0.005 --scene cloth",
             "rk4 0.002 --scene cloth --grid 12x9 --wind --swing --colour strain",
             "dopri5 0.0001 --scene flag --arrows velocity --wireframe --orthographic --dark --paused",
+            "verlet 0.005 --scene cloth --no-self-collision",
             "verlet 0.005 --scene mit --self-collision --springs-of 7 --springs --colour contact",
             "compare euler:0.05 rk4:0.01 --scene chain --colour force --paused",
         ] {

@@ -7,9 +7,12 @@
 //! treatment of collisions, contact and friction for cloth animation*, 2002). The displacements
 //! that these leave too long are [cut](super::cut).
 
+use nalgebra::Vector3;
+
 use super::candidates::Candidates;
+use super::contact_pair::ContactPair;
 use super::cut::Pinched;
-use super::friction::{ContactPair, apply_friction};
+use super::friction::apply_friction;
 use super::hits::find;
 use super::impulses::Impulses;
 use super::layer::{Buffers, ContactLayer};
@@ -96,6 +99,11 @@ fn guard_with(
     motion.inverse_masses.extend_from_slice(inverse_masses);
     motion.inverse_masses.resize(motion.x0.len(), 0.0);
     motion.read_solids(surface, [y0, y1]);
+    motion.spins.clear();
+    let turns = layer.obstacles().iter().map(|obstacle| obstacle.turn);
+    let spins =
+        turns.map(|turn| turn.map_or_else(Vector3::zeros, |turn| turn.orientation(t + h).spin));
+    motion.spins.extend(spins);
     motion.take_planes();
     let mut guarded = Guarded::default();
     motion.cover(surface, candidates);

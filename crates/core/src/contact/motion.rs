@@ -77,6 +77,8 @@ pub(super) struct Motion {
     pub inverse_masses: Vec<f64>,
     /// Rigid bodies.
     pub solids: Vec<Solid>,
+    /// Angular velocity of each obstacle at the end (rad/s), if there are rigid bodies.
+    pub spins: Vec<Vector3<f64>>,
     /// Impulses of the safeguard.
     pub impulses: Impulses,
     ends: Vec<Vector3<f64>>,

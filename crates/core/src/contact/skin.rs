@@ -6,7 +6,7 @@ use crate::error::{Error, at_least, share};
 pub(super) const KEPT_SHARE: f64 = 1e-3;
 
 /// Contact material of a surface. Where two surfaces meet, the thickness and the damping are the
-/// means of theirs, the stiffness is the smaller one, and the friction and the restitution are the
+/// means of theirs, the stiffness is the smaller one, and the frictions and the restitution are the
 /// larger ones.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Skin {
@@ -19,6 +19,9 @@ pub struct Skin {
     pub damping: f64,
     /// Coefficient mu of Coulomb friction.
     pub friction: f64,
+    /// Coefficient of rolling friction of a rigid body (m): the largest torque that resists its
+    /// turn where it touches, over the force along the normal.
+    pub rolling: f64,
     /// Coefficient e of restitution, from 0 to 1. If it is above 0, it replaces damping.
     pub restitution: f64,
     /// Effective mass of one of its points in an impact (kg), if it is rigid or has a restitution.
@@ -33,6 +36,7 @@ impl Skin {
         at_least(0.0, "the stiffness of contact", self.stiffness)?;
         at_least(0.0, "the damping of contact", self.damping)?;
         at_least(0.0, "a friction", self.friction)?;
+        at_least(0.0, "a rolling friction", self.rolling)?;
         share("a restitution", self.restitution)?;
         at_least(0.0, "the mass of a point of a surface", self.mass)
     }

@@ -35,6 +35,11 @@ impl Field {
         self.changes.clear();
     }
 
+    /// Turn of a body, with that by impulses that its points do not include yet.
+    fn turn(&self, solid: usize) -> Vector3<f64> {
+        self.turns[solid] + self.changes[solid].turned
+    }
+
     /// Adds a body with that turn.
     pub fn add_solid(&mut self, turn: Vector3<f64>) {
         self.turns.push(turn);
@@ -271,6 +276,22 @@ impl Solid {
 }
 
 impl Arm {
+    /// Turn of the body, with the sign of its side.
+    pub fn turn(&self, field: &Field) -> Vector3<f64> {
+        field.turn(self.solid) * self.sign
+    }
+
+    /// Gives the body an angular impulse (N m s), with the sign of its side.
+    pub fn spin(&self, impulse: Vector3<f64>, solids: &[Solid], field: &mut Field) {
+        let turned = solids[self.solid].inverse_inertia * impulse * self.sign;
+        field.changes[self.solid].turned += turned;
+    }
+
+    /// Change of the angular velocity of the body by an angular impulse: a matrix (1/(kg m2)).
+    pub fn inverse_inertia(&self, solids: &[Solid]) -> Matrix3<f64> {
+        solids[self.solid].inverse_inertia
+    }
+
     /// Whether another arm of the body ends at the same point.
     pub fn is_at(&self, other: &Self) -> bool {
         (self.lever - other.lever).norm() < SAME_TOLERANCE * self.lever.norm()

@@ -114,6 +114,7 @@ impl Surface {
                     stiffness: f64::INFINITY,
                     damping: 0.0,
                     friction: obstacle.friction,
+                    rolling: 0.0,
                     restitution: obstacle.restitution,
                     mass: f64::INFINITY,
                 });
@@ -233,7 +234,9 @@ impl Surface {
 
     /// Whether friction acts anywhere.
     pub(super) fn is_rough(&self) -> bool {
-        self.skins.iter().any(|skin| skin.friction > 0.0)
+        self.skins
+            .iter()
+            .any(|skin| skin.friction > 0.0 || skin.rolling > 0.0)
     }
 
     /// Whether anything is rigid or elastic.
@@ -268,6 +271,7 @@ impl Surface {
             stiffness: a.stiffness.min(b.stiffness),
             damping: a.damping.max(b.damping),
             friction: a.friction.max(b.friction),
+            rolling: a.rolling.max(b.rolling),
             restitution: a.restitution.max(b.restitution),
             mass: 1.0 / (a.mass.recip() + b.mass.recip()),
         };

@@ -14,7 +14,9 @@ use serde::{Deserialize, Serialize};
 
 use super::air::Air;
 use super::force::{At, ByParticle, Force};
+use super::region::{Region, Stream};
 use crate::columns::{columns, columns_mut};
+use crate::error::Error;
 use crate::fused::mul_add;
 use crate::random::SplitMix;
 use crate::sine::{sine, sines};
@@ -59,6 +61,8 @@ pub struct Wind {
     waves: [Wave; WAVES],
     /// Air, if the wind blows on triangles.
     air: Option<Air>,
+    /// Region outside of which it is calm, if it has one, and the time by which that is ahead (s).
+    region: Option<(Region, f64)>,
 }
 
 impl Wind {
@@ -81,6 +85,7 @@ impl Wind {
             breeze: force,
             waves,
             air: None,
+            region: None,
         }
     }
 
@@ -92,6 +97,18 @@ impl Wind {
             air: Some(air),
             ..Self::new(seed, velocity)
         }
+    }
+
+    /// Returns the same wind in a region alone.
+    ///
+    /// # Errors
+    /// A radius of the region is not above 0.
+    pub fn within(&self, region: Region) -> Result<Self, Error> {
+        region.check()?;
+        Ok(Self {
+            region: Some((region, 0.0)),
+            ..*self
+        })
     }
 
     /// Returns the same gusts, `factor` times as strong.
@@ -130,14 +147,31 @@ impl Wind {
                 phase: wave.phase - wave.rate * t,
                 ..wave
             }),
+            region: self.region.map(|(region, ahead)| (region, ahead + t)),
             ..*self
         }
     }
 
-    /// Returns a quarter of the shortest period of the gusts at a fixed position (s).
-    pub(crate) fn quarter_period(&self) -> f64 {
+    /// Returns a quarter of the shortest period of the gusts at a fixed position, and of the motion
+    /// of the region in an interval (s).
+    pub(crate) fn quarter_period(&self, times: [f64; 2]) -> f64 {
         let rates = self.waves.iter().map(|wave| wave.rate.abs());
-        0.5 * std::f64::consts::PI / rates.fold(0.0, f64::max)
+        let of_gusts = 0.5 * std::f64::consts::PI / rates.fold(0.0, f64::max);
+        self.region.map_or(of_gusts, |(region, ahead)| {
+            of_gusts.min(region.quarter_period(times.map(|t| t + ahead)))
+        })
+    }
+
+    /// Returns the times at which a motion of the region begins or ends (s).
+    pub(crate) fn known_times(&self) -> impl Iterator<Item = f64> {
+        let region = self.region.into_iter();
+        region.flat_map(|(region, ahead)| region.known_times().map(move |t| t - ahead))
+    }
+
+    /// Returns the region at time t (s), if there is one.
+    fn stream(&self, t: f64) -> Option<Stream> {
+        self.region
+            .map(|(region, ahead)| region.at(t + ahead, self.breeze))
     }
 
     /// Returns the air, if the wind blows on triangles.
@@ -150,6 +184,12 @@ impl Wind {
     /// there.
     #[must_use]
     pub fn at(&self, t: f64, x: [f64; 3]) -> Vector3<f64> {
+        let whole = self.everywhere(t, x);
+        self.stream(t).map_or(whole, |stream| stream.wind(x, whole))
+    }
+
+    /// Returns the same, if there were no region.
+    fn everywhere(&self, t: f64, x: [f64; 3]) -> Vector3<f64> {
         self.waves.iter().fold(self.breeze, |f, wave| {
             let sine = sine(wave.argument(t, x));
             f.zip_map(&wave.amplitude, |f, most| mul_add(most, sine, f))
@@ -172,13 +212,26 @@ impl Wind {
                 }
             }
         }
+        if let Some(stream) = self.stream(t) {
+            for m in 0..BLOCK {
+                let whole = Vector3::new(f[0][m], f[1][m], f[2][m]);
+                let wind = stream.wind([x[m], y[m], z[m]], whole);
+                for axis in 0..3 {
+                    f[axis][m] = wind[axis];
+                }
+            }
+        }
         f
     }
 
     /// Returns the differential of [`at`](Self::at) for a change `towards` of x.
     pub(super) fn differential(&self, t: f64, x: [f64; 3], towards: Vector3<f64>) -> Vector3<f64> {
-        self.waves.iter().fold(Vector3::zeros(), |df, wave| {
+        let change = self.waves.iter().fold(Vector3::zeros(), |df, wave| {
             df + wave.amplitude * (libm::cos(wave.argument(t, x)) * wave.number.dot(&towards))
+        });
+        self.stream(t).map_or(change, |stream| {
+            let whole = self.everywhere(t, x);
+            stream.differential((x, towards), [whole, change])
         })
     }
 }
@@ -263,6 +316,7 @@ impl Force for Wind {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::path::{Path, Turn};
 
     #[test]
     fn a_wind_is_its_seed() {
@@ -271,9 +325,49 @@ mod tests {
         assert_ne!(a, Wind::new(8, Vector3::z()));
     }
 
+    /// A wind in a region that swings and turns.
+    fn fan() -> Wind {
+        let region = Region {
+            path: Path::Sine {
+                center: Vector3::new(1.0, 0.0, 0.5),
+                amplitude: Vector3::y(),
+                rate: 2.0,
+                phase: 0.3,
+            },
+            turn: Some(Turn {
+                axis: Vector3::y(),
+                rate: 1.3,
+                start: 0.1,
+                end: None,
+            }),
+            radius: 9.0,
+            length: 14.0,
+        };
+        let wind = Wind::new(3, Vector3::new(1.0, -0.5, 2.0));
+        wind.within(region).unwrap()
+    }
+
+    #[test]
+    fn the_differential_is_that_of_the_wind() {
+        let step = 1e-6;
+        for wind in [fan(), Wind::new(3, Vector3::new(1.0, -0.5, 2.0))] {
+            for x in [[1.0, -0.4, 2.0], [5.0, 3.0, -6.0], [90.0, 0.0, 0.0]] {
+                let towards = Vector3::new(0.3, -0.7, 0.6);
+                let at = |share: f64| wind.at(0.7, (Vector3::from(x) + towards * share).into());
+                let quotient = (at(step) - at(-step)) / (2.0 * step);
+                let error = (wind.differential(0.7, x, towards) - quotient).norm();
+                assert!(error < 1e-8, "{x:?}: {error}");
+            }
+        }
+    }
+
     #[test]
     fn blocks_of_particles_feel_what_one_does() {
-        let wind = Wind::new(3, Vector3::new(1.0, -0.5, 2.0));
+        blocks_agree(&Wind::new(3, Vector3::new(1.0, -0.5, 2.0)));
+        blocks_agree(&fan());
+    }
+
+    fn blocks_agree(wind: &Wind) {
         // A whole block, a part of one, and a particle far away.
         let n = BLOCK + 5;
         let x = [1.7, -0.3, 0.9].map(|q| (0..n).map(|i| q * i as f64).collect::<Vec<_>>());

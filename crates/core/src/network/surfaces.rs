@@ -160,16 +160,17 @@ impl Prescribed<'_> {
     pub fn next_known_time(&self, t: f64) -> f64 {
         let of_paths = self.paths().flat_map(Path::known_times);
         let all = of_paths.chain(self.turns().flat_map(|turn| turn.known_times()));
+        let all = all.chain(self.wind.into_iter().flat_map(Wind::known_times));
         all.filter(|time| *time > t).fold(f64::INFINITY, f64::min)
     }
 
-    /// Returns A quarter of the shortest period from time t (s) to `end` (s).
+    /// Returns a quarter of the shortest period from time t (s) to `end` (s).
     pub fn quarter_period(&self, t: f64, end: f64) -> f64 {
         let times = [t, end];
         let of_paths = self.paths().map(|path| path.quarter_period(times));
         let of_turns = self.turns().filter(|turn| turn.is_on(times));
         let of_turns = of_turns.map(|turn| 0.5 * std::f64::consts::PI / turn.rate.abs());
-        let of_wind = self.wind.map(Wind::quarter_period);
+        let of_wind = self.wind.map(|wind| wind.quarter_period(times));
         let all = of_paths.chain(of_turns).chain(of_wind);
         all.fold(f64::INFINITY, f64::min)
     }

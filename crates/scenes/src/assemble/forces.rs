@@ -1,10 +1,11 @@
 //! Gravity, drag, tearing and wind.
 
-use a3_core::elements::{Air, Wind};
+use a3_core::elements::{Air, Region, Wind};
 use a3_core::{Network, Vector3};
 
-use crate::check::{at, at_least};
-use crate::description::{Description, WindSpec};
+use super::motion::motion;
+use crate::check::{at, at_least, positive};
+use crate::description::{Description, RegionSpec, WindSpec};
 use crate::fault::Fault;
 
 /// Density of air (kg/m3), drag coefficient and lift coefficient, where they are not given.
@@ -66,7 +67,7 @@ pub(super) fn wind(spec: &WindSpec, network: &Network) -> Result<Wind, Fault> {
         } else {
             mean(network.masses())
         };
-        return Ok(blown(spec, &Wind::new(spec.seed, mean_wind * factor)));
+        return blown(spec, Wind::new(spec.seed, mean_wind * factor));
     }
     let mut air = AIR.map(|(_, usual)| usual);
     for (((key, _), given), number) in AIR.iter().zip(coefficients).zip(&mut air) {
@@ -75,16 +76,37 @@ pub(super) fn wind(spec: &WindSpec, network: &Network) -> Result<Wind, Fault> {
     }
     let [density, drag, lift] = air;
     let air = at("", Air::new(density, drag, lift))?;
-    Ok(blown(spec, &Wind::on_triangles(spec.seed, mean_wind, air)))
+    blown(spec, Wind::on_triangles(spec.seed, mean_wind, air))
 }
 
-/// Shifts the gusts of a wind in time, or leaves them out.
-fn blown(spec: &WindSpec, wind: &Wind) -> Wind {
-    if spec.steady {
-        wind.steady()
-    } else {
-        wind.ahead(spec.ahead)
+/// Sets the region of a wind, shifts it in time, and leaves out its gusts if it is steady.
+fn blown(spec: &WindSpec, mut wind: Wind) -> Result<Wind, Fault> {
+    if let Some(region) = &spec.region {
+        let region = self::region(region).map_err(|fault| fault.within("region"))?;
+        wind = at("region", wind.within(region))?;
     }
+    if spec.steady {
+        wind = wind.steady();
+    }
+    Ok(wind.ahead(spec.ahead))
+}
+
+fn region(spec: &RegionSpec) -> Result<Region, Fault> {
+    let length = spec.length.unwrap_or(spec.radius);
+    at("radius", positive("it", spec.radius))?;
+    at("length", positive("it", length))?;
+    let (path, turn) = motion(
+        spec.sine.as_ref(),
+        spec.shift.as_ref(),
+        spec.turn.as_ref(),
+        Vector3::from(spec.at),
+    )?;
+    Ok(Region {
+        path,
+        turn,
+        radius: spec.radius,
+        length,
+    })
 }
 
 fn mean(masses: &[f64]) -> f64 {

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use a3_core::contact::{ClosedMesh, Shape};
+use a3_core::contact::{ClosedMesh, Shape, Skin};
 use a3_core::rigid::{Body as Rigid, MassProperties, Part, Rotation};
 use a3_core::{Vector3, rotation};
 use nalgebra::{Matrix3, Rotation3, UnitQuaternion};
@@ -10,7 +10,7 @@ use nalgebra::{Matrix3, Rotation3, UnitQuaternion};
 use super::assembly::{Assembly, Body, Counts};
 use super::skins::rigid_skin;
 use crate::budget::{Budget, FACES, TRIANGLES};
-use crate::check::{at, key_of, one_of, positive};
+use crate::check::{at, at_least, key_of, one_of, positive};
 use crate::description::{PartSpec, Pin, RigidBody, Spot};
 use crate::fault::Fault;
 use crate::mesh::Mesh;
@@ -121,12 +121,17 @@ impl Body for LoadedBody<'_> {
         assembly.velocities.extend(vec![velocity; count]);
         assembly.masses.extend(vec![properties.mass; count]);
         let thickness = body.thickness.unwrap_or(THICKNESS * self.smallest);
-        let skin = rigid_skin(
-            properties.mass,
-            thickness,
-            body.contact_stiffness,
-            [body.friction, body.restitution],
-        )?;
+        let rolling = body.rolling_friction;
+        at("rolling_friction", at_least(0.0, "it", rolling))?;
+        let skin = Skin {
+            rolling,
+            ..rigid_skin(
+                properties.mass,
+                thickness,
+                body.contact_stiffness,
+                [body.friction, body.restitution],
+            )?
+        };
         assembly.skins.extend(vec![skin; count]);
         assembly.rigid.push((made, rotation));
         Ok(())

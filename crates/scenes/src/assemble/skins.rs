@@ -48,6 +48,7 @@ impl SkinSpec {
             // time: bounces die away as fast as the springs' oscillations.
             damping: DAMPING * self.time / thickness,
             friction: self.friction,
+            rolling: 0.0,
             restitution: self.restitution,
             mass,
         }

@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::motion::Triple;
+use super::motion::{Shift, Sine, Triple, Turn};
 
 /// Spring: [i, j, stiffness (N/m), rest length (m), damping (N s/m)].
 pub type SpringSpec = (usize, usize, f64, f64, f64);
@@ -44,9 +44,34 @@ pub struct WindSpec {
     pub drag: Option<f64>,
     /// Lift coefficient of triangles in the air; 0.6 if not given.
     pub lift: Option<f64>,
-    /// Time by which the gusts run ahead of the run (s).
+    /// Time by which the gusts and the motion of the region run ahead of the run (s).
     #[serde(skip_serializing_if = "is_default")]
     pub ahead: f64,
+    /// Region in which it blows, as that of a fan; everywhere if not given.
+    pub region: Option<RegionSpec>,
+}
+
+/// Ellipsoid in which a wind blows: as it says at the centre, and fading towards the surface. A
+/// region that turns turns the wind with it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct RegionSpec {
+    /// Its centre (m).
+    pub at: Triple,
+    /// Radius across the wind (m).
+    pub radius: f64,
+    /// Radius along the mean wind (m); if not given, the same.
+    #[serde(default)]
+    pub length: Option<f64>,
+    /// Oscillation.
+    #[serde(default)]
+    pub sine: Option<Sine>,
+    /// Displacement.
+    #[serde(default)]
+    pub shift: Option<Shift>,
+    /// Turn.
+    #[serde(default)]
+    pub turn: Option<Turn>,
 }
 
 /// Swing of all pins together: `amplitude sin(rate t)`.

@@ -20,7 +20,7 @@ pub use bodies::{Chain, Circle, Cloth, Jelly, MeshCloth, Particles, Solid, Solid
 pub use constraints::{BallSpec, CircleSpec, ConstraintSpec, LineSpec};
 pub use floor::{Floor, FloorSpec};
 pub use fluid::{Fluid, FluidShape, Tank};
-pub use forces::{BucklingSpec, SpringSpec, SwingSpec, WindSpec};
+pub use forces::{BucklingSpec, RegionSpec, SpringSpec, SwingSpec, WindSpec};
 pub use motion::{Pin, Shift, Sine, Spot, Triple, Turn};
 pub use obstacles::{BoxSpec, CapsuleSpec, ObstacleSpec, SphereSpec};
 pub use rigid::{PartSpec, RigidBody};
@@ -57,6 +57,10 @@ pub struct Description {
     /// through.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub self_collision: bool,
+    /// Whether they do so at first in the window, where hands fold and cross them, and not
+    /// elsewhere.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub window_self_collision: bool,
     /// Level floor: its height (m), or a table with `height` and `friction`.
     pub floor: Option<Floor>,
     /// Largest stretch, in rest lengths, to which a hand pulls the springs of the particle it

@@ -38,6 +38,10 @@ pub struct RigidBody {
     /// Coefficient of Coulomb friction; 0 if not given.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub friction: f64,
+    /// Coefficient of rolling friction (m): the largest torque that resists its turn where it
+    /// touches, over the force along the normal; 0 if not given.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub rolling_friction: f64,
     /// Coefficient of restitution, from 0 to 1; 0 if not given.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub restitution: f64,

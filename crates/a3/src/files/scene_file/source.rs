@@ -108,6 +108,15 @@ impl Source {
         })
     }
 
+    /// The same scene as a window begins it: surfaces also touch where a scene asks for that in the
+    /// window alone.
+    pub fn in_window(mut self) -> Self {
+        if self.description.window_self_collision && !self.description.self_collision {
+            Arc::make_mut(&mut self.description).self_collision = true;
+        }
+        self
+    }
+
     /// Reads a scene from a text in TOML.
     pub fn written(text: &str) -> Result<Self, InputError> {
         let (description, places) = parse_toml(text).map_err(in_text)?;

@@ -18,6 +18,11 @@ pub struct Origin {
 }
 
 impl Origin {
+    /// Finds a scene by its name or its file, unchanged.
+    pub fn find(typed: &str) -> Result<Self, InputError> {
+        Ok(Self::of(Source::find(typed)?.in_window()))
+    }
+
     /// Creates the origin of an unchanged scene.
     pub fn of(source: Source) -> Self {
         Self {

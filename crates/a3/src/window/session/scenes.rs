@@ -141,7 +141,7 @@ impl Scenes {
         let unknown = || InputError::Unknown("There is no such scene.".into());
         let name = names.get(number).ok_or_else(unknown)?;
         let asked = self.asked(name).cloned();
-        let origin = asked.map_or_else(|| Source::find(name).map(Origin::of), Ok)?;
+        let origin = asked.map_or_else(|| Origin::find(name), Ok)?;
         let setup = origin.build()?;
         self.shown = origin;
         self.number = number;
@@ -154,17 +154,18 @@ impl Scenes {
         let names = self.names();
         let name = names.get(number)?;
         let asked = self.asked(name).cloned();
-        let origin = asked.map_or_else(|| Source::find(name).map(Origin::of), Ok);
+        let origin = asked.map_or_else(|| Origin::find(name), Ok);
         origin.ok()?.build().ok()
     }
 
     /// Builds the scene of a file, and makes it the present one. Fails if the file cannot be read
     /// or built.
     pub fn open(&mut self, file: &Path) -> Result<Setup, InputError> {
-        let source = Source::find(&file.to_string_lossy())?;
-        let setup = source.build(None)?;
-        self.asked.retain(|it| it.source.typed != source.typed);
-        self.shown = Origin::of(source);
+        let origin = Origin::find(&file.to_string_lossy())?;
+        let setup = origin.build()?;
+        self.asked
+            .retain(|it| it.source.typed != origin.source.typed);
+        self.shown = origin;
         self.asked.insert(0, self.shown.clone());
         self.number = 0;
         Ok(setup)
@@ -179,7 +180,7 @@ impl Scenes {
         };
         let old = self.asked[number].clone();
         let origin = Origin {
-            source: Source::find(&old.source.typed)?,
+            source: Source::find(&old.source.typed)?.in_window(),
             ..old
         };
         let setup = origin.build()?;
