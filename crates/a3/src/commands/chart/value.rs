@@ -13,6 +13,7 @@ use super::words::Label;
 use super::{picture, table};
 use crate::base::failure::Failure;
 use crate::base::monitor::Monitor;
+use crate::base::report::Report;
 use crate::cli::ErrorScope;
 use crate::cli::values::{FACTORS, HORIZONS};
 use crate::files::rows::text;
@@ -210,7 +211,13 @@ impl Chart {
     /// Returns the tables as text: the cost of each method for each error, and the cheapest method.
     #[must_use]
     pub fn table(&self) -> String {
-        table::text(
+        let reports = self.reports();
+        reports.iter().map(Report::text).collect()
+    }
+
+    /// Returns the table of each study.
+    pub(super) fn reports(&self) -> Vec<Report> {
+        table::reports(
             &self.studies,
             &self.data,
             &self.methods,

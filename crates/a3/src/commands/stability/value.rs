@@ -47,7 +47,7 @@ impl Stability {
     /// Returns the table of all limits as text.
     #[must_use]
     pub fn table(&self) -> String {
-        table::text(self)
+        table::report(self).text()
     }
 
     /// Returns the limits as a JSON array of objects, in seconds, as `a3 stability --data` writes
