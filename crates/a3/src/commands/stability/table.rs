@@ -113,6 +113,66 @@ pub fn report(found: &Stability) -> Report {
     }
 }
 
+/// Creates the table of the largest stable step of each method with its reason, and of the largest
+/// accurate one.
+pub fn reasons(found: &Stability) -> Report {
+    let heading = [
+        "solver",
+        " stable up to (ms)",
+        " accurate up to (ms)",
+        "because",
+    ];
+    let mut rows = vec![heading.map(String::from).to_vec()];
+    let modes = found.at_rest.as_deref().unwrap_or(&found.at_start);
+    for row in &found.limits {
+        let (stable, why) = reason(row, modes);
+        rows.push(vec![
+            row.method.title.into(),
+            stable,
+            row.accurate.map_or("-".into(), step),
+            why,
+        ]);
+    }
+    let Report { head, .. } = report(found);
+    let head = head.lines().next().unwrap_or_default();
+    Report {
+        head: format!("{head}\nfixed steps, also for adaptive solvers\n"),
+        rows,
+        foot: format!(
+            "accurate: errors stay below a hundredth of the motion in the first {:.2} s\n",
+            found.predictable
+        ),
+    }
+}
+
+/// Returns the largest stable step of a method (ms), and what happens beyond it. `modes` are those
+/// by which its limit at rest was computed.
+fn reason(row: &MethodLimits, modes: &[Mode]) -> (String, String) {
+    let at_rest = row.rest.map_or(f64::INFINITY, |limit| limit.step);
+    let moving = row.bounded.filter(|seen| seen.held < at_rest);
+    if let Some(seen) = moving {
+        let why = if seen.is_open() {
+            "no longer step was tried"
+        } else {
+            "in motion, runs with longer steps blow up"
+        };
+        return (observation(row.bounded), why.into());
+    }
+    let Some(limit) = row.rest else {
+        return ("-".into(), "it was not measured".into());
+    };
+    let mode = modes.get(limit.mode).filter(|_| at_rest.is_finite());
+    let why = mode.map_or("nothing grows at any step".into(), |mode| {
+        let (frequency, damping) = (mode.frequency(), mode.drag + mode.damping);
+        if damping > 2.0 * frequency {
+            format!("at rest, a motion damped at {damping:.0} / s would overshoot and grow")
+        } else {
+            format!("at rest, an oscillation of {frequency:.0} rad/s would grow")
+        }
+    });
+    (step(at_rest), why)
+}
+
 /// Meaning of an interval where the table shows one instead of a limit.
 pub const INTERVAL: &str = "not sharp: the shortest step that failed and the longest that held, between which some do either";
 

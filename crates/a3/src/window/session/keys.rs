@@ -53,6 +53,7 @@ pub static GROUPS: [Group; 7] = [
             run(&["t", "PgDn"], RunAction::NextScene, "next scene"),
             run(&["PgUp"], RunAction::PreviousScene, "previous scene"),
             run(&["e"], RunAction::Solvers, "a solver, from a list"),
+            run(&["q"], RunAction::Measure, "measure: chart, limits..."),
         ],
     },
     Group {
