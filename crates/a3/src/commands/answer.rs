@@ -83,3 +83,98 @@ fn of_simplification(task: &Task, monitor: &dyn Monitor) -> Result<Answer, Failu
         ..Answer::default()
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use a3_core::accuracy::Metric;
+
+    use super::*;
+    use crate::base::report::Report;
+    use crate::commands::chart::unit;
+    use crate::window::session::asking::{MeasureRequest, apply, task};
+    use crate::window::session::session;
+
+    fn answered(question: Question, words: &[&str]) -> Answer {
+        let mut session = session(words);
+        apply(&mut session, MeasureRequest::Ask(question), 0);
+        apply(&mut session, MeasureRequest::FromStart(true), 0);
+        let (task, _) = task(&session, 0).unwrap();
+        answer(&task, &()).unwrap()
+    }
+
+    /// Each point of the diagram has the setting of its run: the point's label says it, and runs
+    /// with longer steps have larger errors.
+    #[test]
+    fn points_of_a_chart_have_the_settings_of_their_runs() {
+        let found = answered(Question::Chart, &["t", "0.01", "--scene", "pendulum"]);
+        let Diagram { chart, runs } = found.diagram.unwrap();
+        let curves = &chart.problems[0].curves;
+        assert!(found.complete && curves.len() > 4 && curves.len() == runs.len());
+        for (curve, runs) in curves.iter().zip(&runs) {
+            assert_eq!(curve.runs.len(), runs.len());
+            for (point, (method, control)) in curve.runs.iter().zip(runs) {
+                assert_eq!(method.title, curve.name);
+                let words = crate::commands::chart::table::words(*control);
+                assert_eq!(point.label.as_deref(), Some(&*words));
+            }
+        }
+        // Classical Runge-Kutta has order 4.
+        let rk4 = curves
+            .iter()
+            .zip(&runs)
+            .find(|(_, runs)| runs[0].0.name == "rk4");
+        let (curve, runs) = rk4.unwrap();
+        let last = runs.len() - 1;
+        let order = (curve.runs[last - 2].error / curve.runs[last].error).ln()
+            / (runs[last - 2].1.value() / runs[last].1.value()).ln();
+        assert!((order - 4.0).abs() < 0.3, "{order}");
+    }
+
+    /// The library's functions, which the commands call too, give the same words.
+    #[test]
+    fn answers_have_the_words_of_the_commands() {
+        let words = ["t", "0.01", "--scene", "chain"];
+        let found = answered(Question::Choose, &words);
+        let scene = crate::files::setup::scene("chain").unwrap();
+        let options = ChooseOptions::new(Goal::Error(1e-3));
+        let choice = choose::choose(&scene, &[], &options, &()).unwrap();
+        let best = choice.best();
+        assert_eq!(found.offers[0], (best.method, best.control));
+        let head = format!(
+            "chain for {} s, an error of 1e-3 m (all particles):\n",
+            choice.until
+        );
+        assert_eq!((found.report.head, unit(Metric::Position)), (head, "m"));
+        assert_eq!(found.report.rows.len(), found.offers.len() + 1);
+
+        let found = answered(Question::Simplify, &words);
+        let Report { head, rows, foot } = found.report;
+        assert!(head.starts_with("chain for ") && head.contains("an error of 1e-3 m"));
+        assert!(
+            rows.iter()
+                .any(|row| row[0] == "gravity" && row[4] == "needed")
+        );
+        assert!(found.complete && foot.contains("nothing can be left out") == found.lean.is_none());
+    }
+
+    /// Euler's explicit method fails first by a motion at rest.
+    #[test]
+    fn limits_have_their_reasons() {
+        let found = answered(
+            Question::Stability,
+            &["t", "0.01", "--scene", "cloth", "--grid", "5x5"],
+        );
+        let rows = &found.report.rows;
+        assert_eq!(rows[0].len(), 4);
+        assert!(rows.len() > 15 && found.complete);
+        let row = |name: &str| rows.iter().find(|row| row[0] == name).unwrap();
+        let stable = |name: &str| row(name)[1].trim_start_matches('>').parse::<f64>();
+        assert!(stable("euler").unwrap() < stable("rk4").unwrap());
+        assert!(rows[1..].iter().all(|row| !row[3].is_empty()));
+        assert!(
+            row("euler")[3].starts_with("at rest, a"),
+            "{:?}",
+            row("euler")
+        );
+    }
+}

@@ -3,8 +3,11 @@
 use crate::app::App;
 use crate::display::{Display, until};
 
-/// Colour of the classical Runge-Kutta method on charts.
-const RK4: [u8; 3] = [0x88, 0x22, 0x55];
+/// Whether a pixel has the colour of the classical Runge-Kutta method on charts.
+fn is_rk4(pixel: [u8; 3]) -> bool {
+    let near = |(a, b): (u8, u8)| a.abs_diff(b) <= 3;
+    pixel.into_iter().zip([0x88, 0x22, 0x55]).all(near)
+}
 
 /// A chart of the scene is measured while the run goes on; a click on a point of it adds a pane with
 /// that solver. Buttons on the panes close one, and choose a solver for another.
@@ -27,7 +30,7 @@ fn charting() {
     };
     let (left, top) = app.corner();
     let screen = app.still_screen();
-    let found = screen.block(left + 700..left + 1280, top..top + 720, 5, RK4);
+    let found = screen.block(left + 700..left + 1280, top..top + 720, 4, is_rk4);
     let (x, y) = found.expect("a point of the curve");
     click(x - left, y - top);
     app.expect("panes", "2");

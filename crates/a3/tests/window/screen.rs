@@ -60,19 +60,20 @@ impl Screen {
             .count()
     }
 
-    /// Returns the middle of the first square of a side (px) and a colour within these ranges.
+    /// Returns the middle of the first square of a side (px) within these ranges for all of whose
+    /// pixels `is` is true.
     pub fn block(
         &self,
         x: Range<i32>,
         y: Range<i32>,
         side: usize,
-        colour: [u8; 3],
+        is: impl Fn([u8; 3]) -> bool,
     ) -> Option<(i32, i32)> {
         let is_filled = |left: i32, top: i32| {
             let row = |k: usize| (top as usize + k) * self.width + left as usize;
             (0..side).all(|k| {
                 let pixels = self.pixels.get(row(k)..row(k) + side);
-                pixels.is_some_and(|pixels| pixels.iter().all(|pixel| *pixel == colour))
+                pixels.is_some_and(|pixels| pixels.iter().all(|pixel| is(*pixel)))
             })
         };
         let half = side as i32 / 2;

@@ -127,7 +127,7 @@ pub fn reasons(found: &Stability) -> Report {
     for row in &found.limits {
         let (stable, why) = reason(row, modes);
         rows.push(vec![
-            row.method.title.into(),
+            row.method.name.into(),
             stable,
             row.accurate.map_or("-".into(), step),
             why,
@@ -154,7 +154,7 @@ fn reason(row: &MethodLimits, modes: &[Mode]) -> (String, String) {
         let why = if seen.is_open() {
             "no longer step was tried"
         } else {
-            "in motion, runs with longer steps blow up"
+            "in motion, longer steps blow up"
         };
         return (observation(row.bounded), why.into());
     }
@@ -165,7 +165,7 @@ fn reason(row: &MethodLimits, modes: &[Mode]) -> (String, String) {
     let why = mode.map_or("nothing grows at any step".into(), |mode| {
         let (frequency, damping) = (mode.frequency(), mode.drag + mode.damping);
         if damping > 2.0 * frequency {
-            format!("at rest, a motion damped at {damping:.0} / s would overshoot and grow")
+            format!("at rest, a motion damped at {damping:.0} / s would grow")
         } else {
             format!("at rest, an oscillation of {frequency:.0} rad/s would grow")
         }

@@ -168,3 +168,132 @@ fn initial(run: &Simulation) -> Result<Simulation, a3_core::Error> {
     begun.reset();
     Ok(begun)
 }
+
+#[cfg(test)]
+mod tests {
+    use a3_core::{Control, integrators};
+
+    use super::*;
+    use crate::base::failure::Failure;
+    use crate::window::hud::panel::{PanelRequest, apply as turn};
+    use crate::window::session::question::{Answer, Diagram};
+    use crate::window::session::{RunAction, frames, session};
+
+    /// Returns the scene that would be measured.
+    fn asked(session: &Session) -> a3_core::Scene {
+        task(session, 0).unwrap().0.request.scene().unwrap()
+    }
+
+    fn forces(model: &a3_core::Model, state: &[f64]) -> Vec<f64> {
+        let mut f = vec![0.0; state.len()];
+        model.system().eval_f(0.0, state, &mut f);
+        f
+    }
+
+    #[test]
+    fn the_scene_is_measured_as_it_is_in_the_window() {
+        let mut session = session(&["r", "0.005", "--scene", "chain"]);
+        let own = session.runs.first().scene().state.clone();
+        session.tuning.stiffness = 3.0;
+        session.adjust(|network| network.scale_springs(3.0, 1.0).unwrap());
+        session.toggle_pin(3);
+        frames(&mut session, 0.5);
+        let run = session.runs.first();
+        let now = asked(&session);
+        assert!(now.state == run.state() && now.state != own);
+        assert!(now.model.network().unwrap().is_pinned(3));
+        // Nothing here depends on time, so the forces are the same up to rounding.
+        let (a, b) = (
+            forces(&now.model, &now.state),
+            forces(run.model(), &now.state),
+        );
+        for (a, b) in a.iter().zip(&b) {
+            assert!((a - b).abs() <= 1e-12 * b.abs().max(1.0), "{a} {b}");
+        }
+        // From the start, as after a reset: only a pin by hand is lost.
+        apply(&mut session, MeasureRequest::FromStart(true), 0);
+        let (task, of) = task(&session, 0).unwrap();
+        assert_eq!(of, "chain, from its beginning");
+        assert!(task.request.source.description.state.is_none());
+        let begun = task.request.scene().unwrap();
+        assert_eq!(begun.state, own);
+        session.act(RunAction::Reset, 0);
+        let run = session.runs.first();
+        let (a, b) = (forces(&begun.model, &own), forces(run.model(), &own));
+        assert!(
+            a.iter()
+                .zip(&b)
+                .all(|(a, b)| (a - b).abs() <= 1e-12 * b.abs().max(1.0))
+        );
+        assert_ne!(forces(&session.tuning.own.model, &own), b);
+    }
+
+    #[test]
+    fn a_run_that_blew_up_is_measured_from_its_beginning() {
+        let mut session = session(&["e", "2", "--scene", "simple"]);
+        while session.runs.first().blow_up().is_none() {
+            session.act(RunAction::Step, 0);
+        }
+        assert_eq!(asked(&session).state, session.runs.first().scene().state);
+    }
+
+    /// Answers with a choice and a point of a chart.
+    fn found(_: &Task, _: &dyn crate::base::monitor::Monitor) -> Result<Answer, Failure> {
+        let setting = |name, value| {
+            let method = integrators::find(name).unwrap();
+            (method, method.control(value))
+        };
+        Ok(Answer {
+            offers: vec![setting("dopri5", 1e-5)],
+            diagram: Some(Diagram {
+                chart: a3_plot::WorkPrecision::default(),
+                runs: vec![vec![], vec![setting("rk4", 0.02), setting("rk4", 0.03)]],
+            }),
+            ..Answer::default()
+        })
+    }
+
+    #[test]
+    fn answers_can_be_used_and_run_beside() {
+        let mut session = session(&["t", "0.01", "--scene", "chain"]);
+        session.act(RunAction::Measure, 0);
+        assert!(!session.measuring.open, "nothing can answer");
+        session.measuring.answerer = Some(found);
+        session.act(RunAction::Panel, 0);
+        session.act(RunAction::Measure, 0);
+        assert!(session.measuring.open && !session.panel.open);
+        let measure =
+            |session: &mut Session, request| turn(session, PanelRequest::Measure(request));
+        assert!(!measure(&mut session, MeasureRequest::RowBeside(0)));
+        measure(&mut session, MeasureRequest::Toggle);
+        while session.measuring.progress().is_some() {
+            std::thread::sleep(std::time::Duration::from_millis(2));
+            session.measuring.update();
+        }
+        assert!(!measure(&mut session, MeasureRequest::Use(0)));
+        assert!(measure(
+            &mut session,
+            MeasureRequest::RunBeside { curve: 1, run: 1 }
+        ));
+        assert!(!measure(
+            &mut session,
+            MeasureRequest::RunBeside { curve: 0, run: 0 }
+        ));
+        let panes = session.runs.panes.iter().map(|pane| &pane.simulation);
+        let runs: Vec<_> = panes
+            .map(|run| (run.method().name, run.control()))
+            .collect();
+        let expected = [
+            ("dopri5", Control::Tolerance(1e-5)),
+            ("rk4", Control::Step(0.03)),
+        ];
+        assert_eq!(runs, expected);
+        for finer in [true, true, false] {
+            measure(&mut session, MeasureRequest::Error { finer });
+        }
+        assert_eq!(session.measuring.error(), 1e-4);
+        // Another scene has other answers.
+        session.act(RunAction::NextScene, 0);
+        assert!(session.measuring.known().is_none());
+    }
+}

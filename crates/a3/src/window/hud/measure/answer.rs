@@ -1,44 +1,30 @@
 //! Drawing of an answer: its diagram, and its table as rows or as cards to choose from.
 
-use egui::{
-    Align, FontId, Label, Layout, Rect, RichText, ScrollArea, Sense, Ui, UiBuilder, pos2, vec2,
-};
+use egui::{FontId, Label, Rect, ScrollArea, Sense, Ui, UiBuilder, pos2, vec2};
 
-use super::super::panel::button;
 use super::super::style::{FAINT, PAPER, TEXT, WARNING, faint, text, title};
+use super::chip::chip;
 use super::diagram;
 use crate::base::report::Report;
 use crate::window::session::{Answer, MeasureRequest, MethodSetting};
 
-/// Share of the room that a diagram takes, and its largest height over its width.
-const DIAGRAM: (f32, f32) = (0.66, 0.85);
-/// Least height below a diagram for the table (points).
-const MIN_TABLE: f32 = 90.0;
+/// Share of the height of the room that a diagram takes, the height that it takes at least if there
+/// is room (points), and its largest height over its width.
+const DIAGRAM: (f32, f32, f32) = (0.66, 340.0, 0.85);
+/// Distance between columns, and least width of a last column of words (points).
+const COLUMN_GAP: f32 = 14.0;
+const MIN_LAST_WIDTH: f32 = 170.0;
 
-/// Draws an answer in a room. `shown` are the methods of the panes. Returns the request of the
-/// mouse.
+/// Draws an answer in a room, in which it scrolls. `shown` are the methods of the panes. Returns the
+/// request of the mouse.
 pub fn show(
     ui: &mut Ui,
-    mut room: Rect,
+    room: Rect,
     answer: &Answer,
     shown: &[MethodSetting],
 ) -> Option<MeasureRequest> {
     let mut request = None;
-    if let Some(diagram) = &answer.diagram {
-        let high = (DIAGRAM.0 * room.height()).min(DIAGRAM.1 * room.width());
-        // In a low room the diagram takes all of it.
-        let high = if room.height() - high < MIN_TABLE {
-            room.height()
-        } else {
-            high
-        };
-        let place = room.with_max_y(room.top() + high);
-        request = diagram::show(ui, place, diagram, shown);
-        room.min.y = place.bottom() + 8.0;
-    }
-    if room.height() < 30.0 {
-        return request;
-    }
+    let width = room.width() - 10.0;
     ui.scope_builder(UiBuilder::new().max_rect(room), |ui| {
         ScrollArea::both()
             .auto_shrink(false)
@@ -48,10 +34,17 @@ pub fn show(
                 if !answer.complete {
                     ui.label(WARNING.text("stopped: this is what was measured until then"));
                 }
-                let width = room.width() - 10.0;
+                if let Some(diagram) = &answer.diagram {
+                    let (share, least, ratio) = DIAGRAM;
+                    let high = (share * room.height()).max(least.min(room.height()));
+                    let size = vec2(width, high.min(ratio * width));
+                    let (place, _) = ui.allocate_exact_size(size, Sense::hover());
+                    request = diagram::show(ui, place, diagram, shown);
+                    ui.add_space(4.0);
+                }
                 lines(ui, &answer.report.head, width);
                 if answer.offers.is_empty() {
-                    table(ui, &answer.report);
+                    table(ui, &answer.report, width);
                 } else {
                     request = cards(ui, &answer.report, width).or(request);
                 }
@@ -61,7 +54,7 @@ pub fn show(
                 }
                 if answer.lean.is_some() {
                     ui.add_space(4.0);
-                    let pressed = press(ui, 250.0, "write the leanest scene and open it");
+                    let pressed = press(ui, 270.0, "write the leanest scene and open it");
                     request = pressed.then_some(MeasureRequest::OpenLean).or(request);
                 }
             });
@@ -79,36 +72,57 @@ fn lines(ui: &mut Ui, words: &str, width: f32) {
     }
 }
 
-/// Writes the table, with its headings.
-fn table(ui: &mut Ui, report: &Report) {
-    let Some((headings, rows)) = report.rows.split_first() else {
+/// Writes the table, with its headings. A last column of words wraps at a width.
+fn table(ui: &mut Ui, report: &Report, width: f32) {
+    let Some(headings) = report.rows.first() else {
         return;
     };
-    let is_right = |c: usize| headings[c].starts_with(' ');
-    let cell = |ui: &mut Ui, c: usize, words: RichText| {
-        let label = Label::new(words).extend();
-        if is_right(c) {
-            ui.with_layout(Layout::right_to_left(Align::Center), |ui| ui.add(label));
-        } else {
-            ui.add(label);
-        }
+    let lay = |ui: &Ui, words: &str, colour, wrap| {
+        let font = FontId::proportional(12.5);
+        ui.painter().layout(words.trim().into(), font, colour, wrap)
     };
-    egui::Grid::new("answer")
-        .num_columns(headings.len())
-        .spacing([14.0, 3.0])
-        .striped(true)
-        .show(ui, |ui| {
-            for (c, heading) in headings.iter().enumerate() {
-                cell(ui, c, faint(heading.trim()));
-            }
-            ui.end_row();
-            for row in rows {
-                for (c, words) in row.iter().enumerate() {
-                    cell(ui, c, text(words.trim()).size(12.5));
-                }
-                ui.end_row();
-            }
-        });
+    let natural = |c: usize| {
+        let cells = report
+            .rows
+            .iter()
+            .map(|row| lay(ui, &row[c], TEXT, f32::INFINITY));
+        cells.map(|cell| cell.size().x).fold(0.0, f32::max)
+    };
+    let mut widths: Vec<_> = (0..headings.len()).map(natural).collect();
+    let is_right = |c: usize| headings[c].starts_with(' ');
+    let last = widths.len() - 1;
+    if !is_right(last) {
+        let others: f32 = widths[..last].iter().map(|width| width + COLUMN_GAP).sum();
+        widths[last] = widths[last].min((width - others).max(MIN_LAST_WIDTH));
+    }
+    let spacing = std::mem::take(&mut ui.spacing_mut().item_spacing.y);
+    let all = widths.iter().sum::<f32>() + last as f32 * COLUMN_GAP;
+    for (r, row) in report.rows.iter().enumerate() {
+        let colour = if r == 0 { FAINT } else { TEXT };
+        let cells = row.iter().zip(&widths);
+        let cells: Vec<_> = cells
+            .map(|(words, width)| lay(ui, words, colour, width + 0.5))
+            .collect();
+        let height = cells.iter().map(|cell| cell.size().y).fold(0.0, f32::max);
+        let size = vec2(all.max(width), height + 5.0);
+        let (rect, _) = ui.allocate_exact_size(size, Sense::hover());
+        if r % 2 == 1 {
+            let shade = TEXT.gamma_multiply(0.05);
+            ui.painter().rect_filled(rect, 4.0, shade);
+        }
+        let mut left = rect.left() + 4.0;
+        for (c, cell) in cells.into_iter().enumerate() {
+            let slack = if is_right(c) {
+                widths[c] - cell.size().x
+            } else {
+                0.0
+            };
+            let at = pos2(left + slack, rect.top() + 2.5);
+            ui.painter().galley(at, cell, colour);
+            left += widths[c] + COLUMN_GAP;
+        }
+    }
+    ui.spacing_mut().item_spacing.y = spacing;
     ui.add_space(4.0);
 }
 
@@ -151,9 +165,9 @@ fn cards(ui: &mut Ui, report: &Report, width: f32) -> Option<MeasureRequest> {
 }
 
 /// Draws a button of a width, and returns whether it was clicked.
-pub fn press(ui: &mut Ui, width: f32, words: &str) -> bool {
+fn press(ui: &mut Ui, width: f32, words: &str) -> bool {
     let (rect, response) = ui.allocate_exact_size(vec2(width, 26.0), Sense::click());
-    button(ui, rect, &response, words, "");
+    chip(ui, rect, &response, words, false);
     response.clicked()
 }
 

@@ -38,7 +38,9 @@ pub fn show(
     let response = ui.interact(room, Id::unique("diagram"), Sense::click());
     let painter = ui.painter();
     let entries = entries(painter, &diagram.chart, room.width());
-    let lines = entries.last().map_or(0.0, |(at, ..)| at.y + LEGEND_LINE);
+    let lines = entries
+        .last()
+        .map_or(0.0, |(at, ..)| at.y + 2.0 * LEGEND_LINE);
     let legend = Rect::from_min_max(pos2(room.left(), room.bottom() - lines), room.max);
     let plot = Plot::new(&diagram.chart, room.with_max_y(legend.top() - 6.0))?;
     let pointer = response.hover_pos();
@@ -66,6 +68,7 @@ pub fn show(
             if faded { FADED } else { 1.0 },
         );
     }
+    signs(painter, &plot, legend);
     for place in &plot.points {
         let (method, control) = diagram.runs[place.curve][place.run];
         let is_shown = |(m, c): &MethodSetting| {
@@ -110,7 +113,7 @@ fn ground(painter: &Painter, plot: &Plot, chart: &WorkPrecision) {
                 let stroke = Stroke::new(if named { 1.0 } else { 0.5 }, GRID);
                 if gap > 30.0 {
                     painter.vline(at, area.y_range(), stroke);
-                    let below = pos2(at, area.bottom() + 3.0);
+                    let below = pos2(at, area.bottom() + 4.0);
                     number(painter, below, Align2::CENTER_TOP, &tick.label);
                 } else {
                     painter.hline(area.x_range(), at, stroke);
@@ -129,8 +132,10 @@ fn ground(painter: &Painter, plot: &Plot, chart: &WorkPrecision) {
     say(above, Align2::LEFT_BOTTOM, &chart.y_label);
     let below = pos2(area.right(), area.bottom() + 18.0);
     say(below, Align2::RIGHT_TOP, &chart.x_label);
-    let left = pos2(area.left() - 34.0, area.bottom() + 18.0);
-    say(left, Align2::LEFT_TOP, "← more accurate");
+    let left = pos2(area.left() - 20.0, area.bottom() + 18.0);
+    say(left, Align2::LEFT_TOP, "more accurate");
+    let tip = left + vec2(-3.0, 7.5);
+    painter.arrow(tip, vec2(-13.0, 0.0), Stroke::new(1.0, FAINT));
     if let Some(lost) = plot.points.iter().find(|point| point.lost) {
         let top = pos2(lost.at.x, area.top() - 4.0);
         say(top, Align2::CENTER_BOTTOM, "blew up");
@@ -232,6 +237,26 @@ fn entries(painter: &Painter, chart: &WorkPrecision, width: f32) -> Vec<(Pos2, e
         at.x += size.x + 14.0;
     }
     all
+}
+
+/// Draws the meaning of the front and of the shade on the last line of the legend.
+fn signs(painter: &Painter, plot: &Plot, legend: Rect) {
+    let y = legend.bottom() - 0.5 * LEGEND_LINE;
+    let is_shaded = plot.axes[0].is_inside(plot.problem.trusted());
+    let mut left = legend.left() + 2.0;
+    for (words, colour, high, there) in [
+        ("fastest for its error", FRONT, 8.0, true),
+        ("finer than the reference", SHADE, 12.0, is_shaded),
+    ] {
+        if there {
+            let sample = Rect::from_center_size(pos2(left + 12.0, y), vec2(24.0, high));
+            painter.rect_filled(sample, 0.0, colour);
+            let at = pos2(left + 30.0, y);
+            let font = FontId::proportional(12.0);
+            let said = painter.text(at, Align2::LEFT_CENTER, words, font, TEXT);
+            left = said.right() + 16.0;
+        }
+    }
 }
 
 /// Draws an entry of the legend.

@@ -1,6 +1,7 @@
 //! Questions about the scene and their answers, beside the picture (key q).
 
 mod answer;
+mod chip;
 mod diagram;
 mod plot;
 mod view;

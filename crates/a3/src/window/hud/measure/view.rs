@@ -1,13 +1,11 @@
 //! The pane of questions: a button for each, what it is asked about, and its answer.
 
-use egui::{
-    Align2, Area, Color32, Context, CursorIcon, FontId, Id, Rect, Response, Sense, Stroke,
-    StrokeKind, Ui, pos2, vec2,
-};
+use egui::{Align2, Area, Color32, Context, FontId, Id, Rect, Sense, Stroke, Ui, pos2, vec2};
 
 use super::super::panel::{PanelRequest, Request, button};
 use super::super::style::{FAINT, TEXT};
 use super::answer;
+use super::chip::{EDGE, INK, SHEET, chip};
 use crate::window::session::{MeasureRequest, Progress, Question, Session};
 
 /// Smallest and largest width of the pane (points), and its share of the window's width between
@@ -22,10 +20,7 @@ const MARGIN: f32 = 16.0;
 const HEIGHTS: [f32; 3] = [38.0, 28.0, 7.0];
 /// Width of the pane above which the questions are in one row (points).
 const ONE_ROW_WIDTH: f32 = 640.0;
-/// Colours of the pane, of its edge, of what is chosen, and of its text.
-const SHEET: Color32 = Color32::from_rgb(226, 226, 224);
-const EDGE: Color32 = Color32::from_rgb(188, 189, 192);
-const INK: Color32 = Color32::from_rgb(38, 84, 132);
+/// Colour of the track of a progress.
 const TRACK: Color32 = Color32::from_rgb(200, 202, 207);
 
 /// Returns whether the pane is visible: it is open, and the help does not hide it.
@@ -156,28 +151,18 @@ fn tabs(ui: &Ui, rect: Rect, session: &Session, of: &[Question]) -> Option<Measu
         let left = rect.left() + k as f32 * (width + gap);
         let place = Rect::from_min_size(pos2(left, rect.top()), vec2(width, rect.height()));
         let chosen = session.measuring.question == *question;
-        if chip(ui, place, question.words(), chosen).clicked() {
+        if choice(ui, place, question.words(), chosen) {
             request = Some(MeasureRequest::Ask(*question));
         }
     }
     request
 }
 
-/// Draws a button that is chosen or not.
-fn chip(ui: &Ui, rect: Rect, words: &str, chosen: bool) -> Response {
-    let response = ui.interact(rect, Id::unique(("chip", words)), Sense::click());
-    let response = response.on_hover_cursor(CursorIcon::PointingHand);
-    let (fill, colour) = match (chosen, response.hovered()) {
-        (true, _) => (INK, Color32::WHITE),
-        (false, true) => (Color32::from_rgb(207, 211, 218), TEXT),
-        (false, false) => (SHEET, TEXT),
-    };
-    let edge = Stroke::new(1.0, if chosen { INK } else { EDGE });
-    let painter = ui.painter();
-    painter.rect(rect, 6.0, fill, edge, StrokeKind::Inside);
-    let font = FontId::proportional(13.0);
-    painter.text(rect.center(), Align2::CENTER_CENTER, words, font, colour);
-    response
+/// Draws a button that is chosen or not, and returns whether it was clicked.
+fn choice(ui: &Ui, rect: Rect, words: &str, chosen: bool) -> bool {
+    let response = ui.interact(rect, Id::unique(("choice", words)), Sense::click());
+    chip(ui, rect, &response, words, chosen);
+    response.clicked()
 }
 
 /// Draws what the question depends on, and the button that measures or stops.
@@ -191,14 +176,12 @@ fn settings(ui: &Ui, rect: Rect, session: &Session) -> Option<MeasureRequest> {
         place
     };
     for (words, on) in [("from now", false), ("the start", true)] {
-        if chip(
+        if choice(
             ui,
-            place(78.0).shrink2(vec2(1.0, 1.0)),
+            place(78.0).shrink(1.0),
             words,
             measuring.from_start == on,
-        )
-        .clicked()
-        {
+        ) {
             request = Some(MeasureRequest::FromStart(on));
         }
     }
@@ -206,14 +189,7 @@ fn settings(ui: &Ui, rect: Rect, session: &Session) -> Option<MeasureRequest> {
     match measuring.question {
         Question::Chart => {
             for (words, on) in [("work", false), ("time", true)] {
-                if chip(
-                    ui,
-                    place(54.0).shrink2(vec2(1.0, 1.0)),
-                    words,
-                    measuring.timed == on,
-                )
-                .clicked()
-                {
+                if choice(ui, place(54.0).shrink(1.0), words, measuring.timed == on) {
                     request = Some(MeasureRequest::Timed(on));
                 }
             }
@@ -226,7 +202,7 @@ fn settings(ui: &Ui, rect: Rect, session: &Session) -> Option<MeasureRequest> {
                     ui.painter()
                         .text(at, Align2::LEFT_CENTER, "error", font, FAINT);
                 }
-                if chip(ui, place(26.0).shrink2(vec2(1.0, 1.0)), words, false).clicked() {
+                if choice(ui, place(26.0).shrink(1.0), words, false) {
                     request = Some(MeasureRequest::Error { finer });
                 }
                 if finer {
