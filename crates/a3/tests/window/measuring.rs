@@ -9,8 +9,8 @@ fn is_rk4(pixel: [u8; 3]) -> bool {
     pixel.into_iter().zip([0x88, 0x22, 0x55]).all(near)
 }
 
-/// A chart of the scene is measured while the run goes on; a click on a point of it adds a pane with
-/// that solver. Buttons on the panes close one, and choose a solver for another.
+/// A chart of the scene is measured while the run goes on; a click on a point of it adds a pane
+/// with that solver. Buttons on the panes close one, and choose a solver for another.
 #[test]
 fn charting() {
     let Some(display) = Display::open() else {
@@ -28,11 +28,12 @@ fn charting() {
         app.still_screen();
         display.xdotool(&["click", "1"]);
     };
-    let (left, top) = app.corner();
-    let screen = app.still_screen();
-    let found = screen.block(left + 700..left + 1280, top..top + 720, 4, is_rk4);
+    // The first point of the curve from above is on the right half of the screen.
+    let found = app.still_screen().block(800..1380, 0..880, 4, is_rk4);
     let (x, y) = found.expect("a point of the curve");
-    click(x - left, y - top);
+    display.xdotool(&["mousemove", &x.to_string(), &y.to_string()]);
+    app.still_screen();
+    display.xdotool(&["click", "1"]);
     app.expect("panes", "2");
     assert_eq!(app.get("solvers"), "trapezoid,rk4");
     assert_ne!(app.get("step_sizes"), "0.01,0.01");

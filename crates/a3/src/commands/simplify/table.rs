@@ -63,8 +63,8 @@ pub fn changing(quantity: Quantity) -> &'static str {
     }
 }
 
-/// Returns the rows of the table of all models, with a verdict on each. `motion` is the change in the run of the
-/// whole scene, with its unit, and `error` the error that is asked for.
+/// Returns the rows of the table of all models, with a verdict on each. `motion` is the change in
+/// the run of the whole scene, with its unit, and `error` the error that is asked for.
 fn rows(
     models: &[Model],
     (motion, unit): (f64, &str),

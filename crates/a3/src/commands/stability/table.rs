@@ -116,12 +116,7 @@ pub fn report(found: &Stability) -> Report {
 /// Creates the table of the largest stable step of each method with its reason, and of the largest
 /// accurate one.
 pub fn reasons(found: &Stability) -> Report {
-    let heading = [
-        "solver",
-        " stable up to (ms)",
-        " accurate up to (ms)",
-        "because",
-    ];
+    let heading = ["solver", " stable", " accurate", "with longer steps"];
     let mut rows = vec![heading.map(String::from).to_vec()];
     let modes = found.at_rest.as_deref().unwrap_or(&found.at_start);
     for row in &found.limits {
@@ -136,10 +131,10 @@ pub fn reasons(found: &Stability) -> Report {
     let Report { head, .. } = report(found);
     let head = head.lines().next().unwrap_or_default();
     Report {
-        head: format!("{head}\nfixed steps, also for adaptive solvers\n"),
+        head: format!("{head}\nlargest steps (ms), fixed ones also for adaptive solvers\n"),
         rows,
         foot: format!(
-            "accurate: errors stay below a hundredth of the motion in the first {:.2} s\n",
+            "stable: nothing grows without end; accurate: errors stay below a hundredth of the motion in the first {:.2} s\n",
             found.predictable
         ),
     }
@@ -152,9 +147,9 @@ fn reason(row: &MethodLimits, modes: &[Mode]) -> (String, String) {
     let moving = row.bounded.filter(|seen| seen.held < at_rest);
     if let Some(seen) = moving {
         let why = if seen.is_open() {
-            "no longer step was tried"
+            "none was tried"
         } else {
-            "in motion, longer steps blow up"
+            "it blows up in motion"
         };
         return (observation(row.bounded), why.into());
     }
@@ -162,12 +157,12 @@ fn reason(row: &MethodLimits, modes: &[Mode]) -> (String, String) {
         return ("-".into(), "it was not measured".into());
     };
     let mode = modes.get(limit.mode).filter(|_| at_rest.is_finite());
-    let why = mode.map_or("nothing grows at any step".into(), |mode| {
+    let why = mode.map_or("nothing grows".into(), |mode| {
         let (frequency, damping) = (mode.frequency(), mode.drag + mode.damping);
         if damping > 2.0 * frequency {
-            format!("at rest, a motion damped at {damping:.0} / s would grow")
+            format!("damping of {damping:.0} / s grows at rest")
         } else {
-            format!("at rest, an oscillation of {frequency:.0} rad/s would grow")
+            format!("{frequency:.0} rad/s grows at rest")
         }
     });
     (step(at_rest), why)

@@ -175,6 +175,7 @@ mod tests {
 
     use super::*;
     use crate::base::failure::Failure;
+    use crate::base::monitor::Monitor;
     use crate::window::hud::panel::{PanelRequest, apply as turn};
     use crate::window::session::question::{Answer, Diagram};
     use crate::window::session::{RunAction, frames, session};
@@ -238,7 +239,8 @@ mod tests {
     }
 
     /// Answers with a choice and a point of a chart.
-    fn found(_: &Task, _: &dyn crate::base::monitor::Monitor) -> Result<Answer, Failure> {
+    fn found(_: &Task, monitor: &dyn Monitor) -> Result<Answer, Failure> {
+        monitor.note("a remark")?;
         let setting = |name, value| {
             let method = integrators::find(name).unwrap();
             (method, method.control(value))

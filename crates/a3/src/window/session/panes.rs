@@ -50,7 +50,7 @@ pub fn add(
     session.begin_new_run();
     session
         .readings
-        .say(format!("{}, {control}, runs beside.", method.title));
+        .say(format!("{} runs beside.", method.title));
     Ok(())
 }
 
@@ -84,7 +84,7 @@ pub fn set(session: &mut Session, at: usize, (method, control): MethodSetting) {
     let set = session.runs.set_method(method, at, &defaults);
     let set = set.and_then(|()| session.runs.set_step_of(at, control.value()));
     session.readings.say(match set {
-        Ok(()) => format!("{}, {control}, is in use.", method.title),
+        Ok(()) => format!("{} is in use.", method.title),
         Err(why) => why.to_string(),
     });
 }

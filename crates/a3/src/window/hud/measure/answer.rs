@@ -13,10 +13,10 @@ use crate::window::session::{Answer, MeasureRequest, MethodSetting};
 const DIAGRAM: (f32, f32, f32) = (0.66, 340.0, 0.85);
 /// Distance between columns, and least width of a last column of words (points).
 const COLUMN_GAP: f32 = 14.0;
-const MIN_LAST_WIDTH: f32 = 170.0;
+const MIN_LAST_WIDTH: f32 = 110.0;
 
-/// Draws an answer in a room, in which it scrolls. `shown` are the methods of the panes. Returns the
-/// request of the mouse.
+/// Draws an answer in a room, in which it scrolls. `shown` are the methods of the panes. Returns
+/// the request of the mouse.
 pub fn show(
     ui: &mut Ui,
     room: Rect,

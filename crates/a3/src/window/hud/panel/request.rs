@@ -101,8 +101,8 @@ pub fn numbers(session: &Session) -> Vec<usize> {
     knobs.chain(measuring).chain(parts).collect()
 }
 
-/// Handles a key, and returns whether the panel or the questions take it. With `other`, a knob turns by the other
-/// step of its scale.
+/// Handles a key, and returns whether the panel or the questions take it. With `other`, a knob
+/// turns by the other step of its scale.
 pub fn press(session: &mut Session, key: PanelKey, other: bool) -> bool {
     if session.measuring.open && key != PanelKey::Up && key != PanelKey::Down {
         let request = match key {
