@@ -9,7 +9,7 @@ use crate::base::failure::Failure;
 use crate::base::{interrupt, terminal};
 use crate::cli::{self, Cli, Command};
 #[cfg(feature = "window")]
-use crate::commands::render;
+use crate::commands::{answer, render};
 use crate::commands::{chart, choose, judge, list, manual, simplify, simulate, stability, sweep};
 use crate::files::lessons;
 #[cfg(feature = "window")]
@@ -30,14 +30,14 @@ pub fn run(args: &[OsString]) -> u8 {
     let result = match Cli::try_parse_from(args) {
         Ok(cli) => match cli.command {
             #[cfg(feature = "window")]
-            None => window::run(&cli.window),
+            None => window::run(&cli.window, answer::answer),
             #[cfg(not(feature = "window"))]
             None => Err(Failure::usage(
                 "this a3 was built without its window: give a command; --help lists them",
             )),
             #[cfg(feature = "window")]
             Some(Command::Compare(options)) if options.output.is_none() => {
-                window::open_comparison(&options)
+                window::open_comparison(&options, answer::answer)
             }
             #[cfg(feature = "window")]
             Some(Command::Compare(options)) => compare::run(&options),

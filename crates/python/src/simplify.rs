@@ -25,7 +25,7 @@ impl Simplified {
 
     /// All of it in words.
     fn text(&self) -> String {
-        self.0.text.clone()
+        self.0.text()
     }
 
     /// All of it as JSON.

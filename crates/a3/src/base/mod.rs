@@ -11,9 +11,9 @@ pub mod holding;
 pub mod input_error;
 #[cfg(not(target_arch = "wasm32"))]
 pub mod interrupt;
-#[cfg(not(target_arch = "wasm32"))]
 pub mod monitor;
 pub mod progress;
+pub mod report;
 pub mod rounding;
 #[cfg_attr(target_arch = "wasm32", path = "console.rs")]
 pub mod terminal;

@@ -4,40 +4,10 @@ use a3_core::{Control, integrators};
 use a3_scenes::{Description, List};
 
 use crate::base::failure::Failure;
+use crate::base::report::table;
 use crate::base::terminal;
 use crate::cli::Scenes;
 use crate::files::setup::find;
-
-/// Lays out a table with columns as wide as their widest cells. A column whose heading starts with
-/// a space is aligned to the right.
-pub fn table(rows: &[Vec<String>]) -> String {
-    let headings = &rows[0];
-    let width = |c: usize| {
-        rows.iter()
-            .map(|row| row[c].trim().chars().count())
-            .max()
-            .unwrap_or(0)
-    };
-    let widths: Vec<_> = (0..headings.len()).map(width).collect();
-    let cell = |(c, cell): (usize, &String)| {
-        let (cell, width) = (cell.trim(), widths[c]);
-        if headings[c].starts_with(' ') {
-            format!("{cell:>width$}")
-        } else {
-            format!("{cell:<width$}")
-        }
-    };
-    let line = |row: &Vec<String>| {
-        row.iter()
-            .enumerate()
-            .map(cell)
-            .collect::<Vec<_>>()
-            .join("  ")
-    };
-    rows.iter()
-        .map(|row| line(row).trim_end().to_owned() + "\n")
-        .collect()
-}
 
 /// Lists the scenes, or prints the file of one, its list or the schema.
 pub fn scenes(options: &Scenes) -> Result<(), Failure> {

@@ -1,5 +1,7 @@
 //! The commands of the program, a module each.
 
+#[cfg(feature = "window")]
+pub mod answer;
 pub mod chart;
 pub mod choose;
 pub mod compare;

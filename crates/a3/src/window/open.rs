@@ -8,14 +8,15 @@ use crate::cli::{Compare, Look, WindowOptions};
 use crate::draw::show;
 use crate::files::output;
 use crate::window::app::{self, End};
-use crate::window::session::Session;
+use crate::window::session::{Answerer, Session};
 use crate::window::settings::Settings;
 use crate::window::{begin, headless, keep};
 
-/// Opens the window on one run, until it is closed. Fails if an option does not fit, or with the
-/// failure that closed the window.
-pub fn run(options: &WindowOptions) -> Result<(), Failure> {
+/// Opens the window on one run, until it is closed. `answerer` answers questions about the scene.
+/// Fails if an option does not fit, or with the failure that closed the window.
+pub fn run(options: &WindowOptions, answerer: Answerer) -> Result<(), Failure> {
     let mut session = begin::window(options)?;
+    session.measuring.answerer = Some(answerer);
     // The scene, its meshes and their buffers.
     let files = if options.watch {
         output::files_read()
@@ -32,8 +33,10 @@ pub fn run(options: &WindowOptions) -> Result<(), Failure> {
 }
 
 /// Opens the window on several runs, until it is closed. Fails as [`run`] does.
-pub fn compare(options: &Compare) -> Result<(), Failure> {
-    open(begin::comparison(options)?, &options.look, vec![])
+pub fn compare(options: &Compare, answerer: Answerer) -> Result<(), Failure> {
+    let mut session = begin::comparison(options)?;
+    session.measuring.answerer = Some(answerer);
+    open(session, &options.look, vec![])
 }
 
 fn open(session: Session, look: &Look, files: Vec<PathBuf>) -> Result<(), Failure> {

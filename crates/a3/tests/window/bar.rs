@@ -36,11 +36,11 @@ fn the_bar_does_what_keys_do() {
     still("59", BAR);
     app.expect("scrubbed", "true");
     // Scenes and solvers, by their lists. A second press closes a list.
-    still("975", BAR);
+    still("941", BAR);
     app.expect("list", "true");
-    still("975", BAR);
+    still("941", BAR);
     app.expect("list", "false");
-    still("975", BAR);
+    still("941", BAR);
     app.expect("list", "true");
     still("450", "390");
     app.expect("list", "false");

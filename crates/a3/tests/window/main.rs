@@ -15,6 +15,7 @@ mod display;
 mod filming;
 mod keys;
 mod lessons;
+mod measuring;
 mod mouse;
 mod panel;
 mod remembering;

@@ -60,6 +60,28 @@ impl Screen {
             .count()
     }
 
+    /// Returns the middle of the first square of a side (px) within these ranges for all of whose
+    /// pixels `is` is true.
+    pub fn block(
+        &self,
+        x: Range<i32>,
+        y: Range<i32>,
+        side: usize,
+        is: impl Fn([u8; 3]) -> bool,
+    ) -> Option<(i32, i32)> {
+        let is_filled = |left: i32, top: i32| {
+            let row = |k: usize| (top as usize + k) * self.width + left as usize;
+            (0..side).all(|k| {
+                let pixels = self.pixels.get(row(k)..row(k) + side);
+                pixels.is_some_and(|pixels| pixels.iter().all(|pixel| is(*pixel)))
+            })
+        };
+        let half = side as i32 / 2;
+        y.flat_map(|top| x.clone().map(move |left| (left, top)))
+            .find(|(left, top)| is_filled(*left, *top))
+            .map(|(left, top)| (left + half, top + half))
+    }
+
     /// Returns the mean absolute difference of the channels, from 0 to 255.
     pub fn difference(&self, other: &Self) -> f64 {
         let pairs = self

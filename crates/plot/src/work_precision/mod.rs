@@ -65,8 +65,10 @@ impl WorkPrecision {
         marks.filter(|mark| mark.is_drawn())
     }
 
-    /// The axes of error and of work, around all runs on all problems.
-    fn axes(&self) -> Option<[Axis; 2]> {
+    /// The axes of error and of work, around all runs on all problems; `None` if no run has a place
+    /// on them.
+    #[must_use]
+    pub fn axes(&self) -> Option<[Axis; 2]> {
         let range = |values: &mut dyn Iterator<Item = f64>| {
             values.fold(None, |range, value| {
                 Some(range.map_or((value, value), |(low, high): (f64, f64)| {

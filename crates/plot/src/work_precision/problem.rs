@@ -80,12 +80,14 @@ impl Mark {
 
 impl Measurement {
     /// Whether the run has a place on the chart. That of an error of 0 is at the left end.
-    pub(super) fn is_drawn(&self) -> bool {
+    #[must_use]
+    pub fn is_drawn(&self) -> bool {
         self.work.is_finite() && self.work > 0.0
     }
 
     /// Whether the run is drawn beside the chart.
-    pub(super) fn is_lost(&self) -> bool {
+    #[must_use]
+    pub fn is_lost(&self) -> bool {
         self.lost || !self.error.is_finite() || self.error < 0.0
     }
 }
@@ -94,7 +96,8 @@ impl Curve {
     /// The runs that a line joins, from the most accurate on: those that no other run of the method
     /// beats in both error and work. The steps of an adaptive method at its limit of stability cost
     /// about the same at any error, and a line through them would only go back and forth.
-    pub(super) fn joined(&self) -> Vec<&Measurement> {
+    #[must_use]
+    pub fn joined(&self) -> Vec<&Measurement> {
         let drawn = self.runs.iter();
         let mut runs: Vec<_> = drawn
             .filter(|run| run.is_drawn() && !run.is_lost())
@@ -112,7 +115,8 @@ impl Curve {
 
 impl Problem {
     /// The least error that can be trusted, or 0 if that is not known.
-    pub(super) fn trusted(&self) -> f64 {
+    #[must_use]
+    pub fn trusted(&self) -> f64 {
         let known = self.resolved.filter(|resolved| resolved.is_finite());
         known.unwrap_or(0.0)
     }

@@ -11,7 +11,6 @@ use super::each::Each;
 use super::files::{PICTURES, write_picture};
 use super::value::{Chart, ChartOptions};
 use super::words::Label;
-use super::{picture, table};
 use crate::base::failure::Failure;
 use crate::base::progress::Bar;
 use crate::base::{interrupt, terminal};
@@ -97,11 +96,8 @@ impl<'a> Asked<'a> {
 
     /// Prints the tables, advice where the reference is uncertain, and the error of the grid.
     fn print(&self, chart: &Chart) -> Result<(), Failure> {
-        terminal::say(&chart.table())?;
+        terminal::say(&(chart.table() + &chart.advice()))?;
         if chart.metric == Metric::Position {
-            for advice in chart.studies.iter().filter_map(table::advice) {
-                terminal::say(&advice)?;
-            }
             self.print_grid_error(chart)?;
         }
         Ok(())
@@ -122,10 +118,11 @@ impl<'a> Asked<'a> {
 
     /// Draws the chart, writes it to its file, and prints the path.
     fn draw(&self, chart: &Chart) -> Result<(), Failure> {
-        let mut diagram = chart.picture();
-        if self.options.solvers.is_empty() {
-            picture::keep_best(&mut diagram, &self.methods, &self.scene);
-        }
+        let diagram = if self.options.solvers.is_empty() {
+            chart.best_picture()
+        } else {
+            chart.picture()
+        };
         let (width, height) = self.options.size;
         let figure = diagram.draw(f64::from(width), f64::from(height));
         let figure = figure.map_err(|why| {

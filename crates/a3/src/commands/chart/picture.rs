@@ -175,6 +175,18 @@ fn spread(run: &Record, beside: &[&Record], metric: Metric) -> Option<[f64; 2]> 
     })
 }
 
+/// Returns the runs of a method that its curve has, in the order of the curve.
+pub fn drawn<'a>(all: &[&'a Record], method: &Method, metric: Metric) -> Vec<&'a Record> {
+    let mut records: Vec<_> = all
+        .iter()
+        .copied()
+        .filter(|r| r.solver == method.name)
+        .filter(|r| r.lost_at.is_some() || r.error(metric) <= MAX_ERROR_RATIO * r.still(metric))
+        .collect();
+    records.sort_by(|a, b| b.setting.total_cmp(&a.setting));
+    records
+}
+
 /// Creates the panel of a scene's runs, without a title. The errors of the runs at neighbouring
 /// tolerances become bands.
 pub fn problem(
@@ -186,13 +198,7 @@ pub fn problem(
 ) -> Problem {
     let styles = style::together(methods);
     let curves = methods.iter().zip(styles).map(|(method, style)| {
-        let mut records: Vec<_> = all
-            .iter()
-            .copied()
-            .filter(|r| r.solver == method.name)
-            .filter(|r| r.lost_at.is_some() || r.error(metric) <= MAX_ERROR_RATIO * r.still(metric))
-            .collect();
-        records.sort_by(|a, b| b.setting.total_cmp(&a.setting));
+        let records = drawn(all, method, metric);
         // A run that blew up is drawn at the work that it would have taken until the end. It was
         // not timed: its computing time is estimated from the other runs of the method.
         let price = records

@@ -9,7 +9,7 @@ use super::data::Data;
 use super::measure::Study;
 use super::record::Record;
 use super::words::unit;
-use crate::commands::list;
+use crate::base::report::Report;
 
 /// Decimal digits of the errors in the table, which are 1e-2 to 1e-8.
 const DIGITS: std::ops::RangeInclusive<i32> = 2..=8;
@@ -98,14 +98,14 @@ pub fn advice(study: &Study) -> Option<String> {
     })
 }
 
-/// Writes the tables of all studies, each with its cheapest methods.
-pub fn text(
+/// Creates the table of each study, with its cheapest methods below it.
+pub fn reports(
     studies: &[Study],
     data: &Data,
     methods: &[&'static Method],
     metric: Metric,
     timed: bool,
-) -> String {
+) -> Vec<Report> {
     // Plain numbers have no unit that is known.
     let unit = match metric {
         Metric::State => String::new(),
@@ -117,21 +117,23 @@ pub fn text(
     } else {
         "work (evaluations of the forces, linear algebra included)"
     };
-    let parts = studies.iter().map(|study| {
-        let head = if studies.len() == 1 && study.stiffness() == 1.0 {
+    let reports = studies.iter().map(|study| {
+        let of = if studies.len() == 1 && study.stiffness() == 1.0 {
             String::new()
         } else {
             format!(", stiffness x {}", study.stiffness())
         };
         let until = study.frames.until;
-        format!(
-            "\n{what} for {until} s of {}{head}, to keep the error within\n{}{}",
-            study.scene.name,
-            list::table(&rows(study, data, methods, metric, timed, unit)),
-            winners(study, data, methods, metric, timed, unit),
-        )
+        Report {
+            head: format!(
+                "\n{what} for {until} s of {}{of}, to keep the error within\n",
+                study.scene.name,
+            ),
+            rows: rows(study, data, methods, metric, timed, unit),
+            foot: winners(study, data, methods, metric, timed, unit),
+        }
     });
-    parts.collect::<Vec<_>>().concat()
+    reports.collect()
 }
 
 /// Returns the rows of a study's table: a heading, and the cost of each method for each error.

@@ -1,7 +1,7 @@
 //! A chart as a value: the runs of methods on a scene, their table, their picture and their data.
 
 use a3_core::accuracy::Metric;
-use a3_core::{Method, Scene};
+use a3_core::{Control, Method, Scene};
 use a3_plot::{Figure, WorkPrecision};
 
 use super::asked::{check_methods, check_metric, check_scene, scope};
@@ -13,6 +13,7 @@ use super::words::Label;
 use super::{picture, table};
 use crate::base::failure::Failure;
 use crate::base::monitor::Monitor;
+use crate::base::report::Report;
 use crate::cli::ErrorScope;
 use crate::cli::values::{FACTORS, HORIZONS};
 use crate::files::rows::text;
@@ -210,7 +211,13 @@ impl Chart {
     /// Returns the tables as text: the cost of each method for each error, and the cheapest method.
     #[must_use]
     pub fn table(&self) -> String {
-        table::text(
+        let reports = self.reports();
+        reports.iter().map(Report::text).collect()
+    }
+
+    /// Returns the table of each study.
+    pub(super) fn reports(&self) -> Vec<Report> {
+        table::reports(
             &self.studies,
             &self.data,
             &self.methods,
@@ -230,6 +237,50 @@ impl Chart {
             self.timed,
             &self.title,
         )
+    }
+
+    /// Returns the diagram with the curves that the command draws by default: those of methods that
+    /// are cheapest for some error, and of a few others.
+    pub(super) fn best_picture(&self) -> WorkPrecision {
+        let mut diagram = self.picture();
+        picture::keep_best(&mut diagram, &self.methods, &self.studies[0].scene);
+        diagram
+    }
+
+    /// Returns the table of the first study with advice, and the diagram that the command draws by
+    /// default.
+    pub(crate) fn best(&self) -> (Report, WorkPrecision) {
+        let mut report = self.reports().swap_remove(0);
+        report.foot += &self.advice();
+        (report, self.best_picture())
+    }
+
+    /// Returns the method and the step or tolerance of each run in the first panel of a diagram of
+    /// this chart, by curve.
+    pub(crate) fn runs_in(&self, diagram: &WorkPrecision) -> Vec<Vec<(&'static Method, Control)>> {
+        let records: Vec<_> = self.studies[0].records(&self.data).collect();
+        let curves = diagram.problems[0].curves.iter();
+        let runs_of = |method: &&'static Method| {
+            let drawn = picture::drawn(&records, method, self.metric).into_iter();
+            drawn
+                .map(|r| (*method, method.control(r.setting)))
+                .collect()
+        };
+        curves
+            .map(|curve| {
+                let method = self.methods.iter().find(|m| m.title == curve.name);
+                method.map(runs_of).unwrap_or_default()
+            })
+            .collect()
+    }
+
+    /// Advises an earlier end where the reference becomes much worse from some time on.
+    pub(super) fn advice(&self) -> String {
+        let known = self.studies.iter().filter_map(table::advice);
+        match self.metric {
+            Metric::Position => known.collect(),
+            _ => String::new(),
+        }
     }
 
     /// Draws the diagram on a sheet of this width and height (px, 96 to the inch), for SVG, PDF or

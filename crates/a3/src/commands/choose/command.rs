@@ -3,14 +3,13 @@
 use a3_core::Scene;
 use a3_core::accuracy::{Frames, Metric, Scope};
 
-use super::search::ENOUGH_MARGIN;
-use super::value::{Choice, ChooseOptions, Goal, choose, describe_goal};
-use super::words::{command, report, set_by};
+use super::value::{Choice, ChooseOptions, Goal, choose};
+use super::words::{command, report};
 use crate::base::failure::Failure;
 use crate::base::progress::Bar;
 use crate::base::{interrupt, terminal};
 use crate::cli::{Choose, WorkMeasure};
-use crate::commands::chart::{check_metric, methods, scope, unit};
+use crate::commands::chart::{check_metric, methods, scope};
 use crate::commands::motion::{grid_error, open};
 use crate::files::setup::Request;
 
@@ -63,20 +62,8 @@ impl<'a> Asked<'a> {
     /// Prints the candidates, and the command line that runs the best one.
     fn print(&self, choice: &Choice) -> Result<(), Failure> {
         let (best, what, goal) = (choice.best(), &self.options.what, self.wanted.goal);
-        let note = match goal {
-            Goal::Error(_) => set_by(best),
-            Goal::Budget(_) if best.error < ENOUGH_MARGIN * choice.floor => {
-                format!(
-                    "the reference, known to {:.0e} {}, is the limit, not the budget: finer runs were not tried\n",
-                    choice.floor,
-                    unit(choice.metric)
-                )
-            }
-            Goal::Budget(_) => String::new(),
-        };
-        let goal = describe_goal(goal, choice.metric, self.scope);
-        let table = report(what, &self.scene, &goal, choice);
-        terminal::say(&(table + &note))?;
+        let report = report(what, &self.scene, (goal, self.scope), choice);
+        terminal::say(&report.text())?;
         let line = command(what, best.method, best.control, choice.until);
         terminal::say(&format!("run it:  {line}\n"))?;
         self.print_grid_error(choice)

@@ -7,4 +7,4 @@ mod words;
 
 pub use command::run;
 pub use value::{Choice, ChooseOptions, Chosen, Goal, choose};
-pub use words::command;
+pub use words::{command, report};

@@ -2,17 +2,18 @@
 
 use std::fmt::Write;
 
-use a3_core::accuracy::SetBy;
+use a3_core::accuracy::{Scope, SetBy};
 use a3_core::{Control, Method, Scene};
 
-use super::value::{Choice, Chosen};
+use super::search::ENOUGH_MARGIN;
+use super::value::{Choice, Chosen, Goal, describe_goal};
+use crate::base::report::Report;
 use crate::cli::What;
 use crate::commands::chart::table::fraction;
 use crate::commands::chart::{describe, unit};
-use crate::commands::list;
 
 /// Says why the best candidate's step or tolerance is not larger.
-pub fn set_by(best: &Chosen) -> String {
+fn set_by(best: &Chosen) -> String {
     let what = if best.control.step().is_some() {
         "step"
     } else {
@@ -29,8 +30,9 @@ pub fn set_by(best: &Chosen) -> String {
     }
 }
 
-/// Writes the table of candidates, with the computing times of their frames (ms).
-pub fn report(what: &What, scene: &Scene, goal: &str, choice: &Choice) -> String {
+/// Creates the table of candidates, with the computing times of their frames (ms). Below it is what
+/// limits the best one.
+pub fn report(what: &What, scene: &Scene, goal: (Goal, Scope), choice: &Choice) -> Report {
     let (metric, until) = (choice.metric, choice.until);
     let error = format!(" error ({})", unit(metric));
     let mut rows = vec![
@@ -63,11 +65,24 @@ pub fn report(what: &What, scene: &Scene, goal: &str, choice: &Choice) -> String
             },
         ]);
     }
-    format!(
-        "{} for {until} s, {goal}:\n{}",
-        describe(what, scene),
-        list::table(&rows)
-    )
+    let (goal, scope) = goal;
+    let foot = match goal {
+        Goal::Error(_) => set_by(choice.best()),
+        Goal::Budget(_) if choice.best().error < ENOUGH_MARGIN * choice.floor => {
+            format!(
+                "the reference, known to {:.0e} {}, is the limit, not the budget: finer runs were not tried\n",
+                choice.floor,
+                unit(metric)
+            )
+        }
+        Goal::Budget(_) => String::new(),
+    };
+    let goal = describe_goal(goal, metric, scope);
+    Report {
+        head: format!("{} for {until} s, {goal}:\n", describe(what, scene)),
+        rows,
+        foot,
+    }
 }
 
 /// Writes a step or a tolerance for a command line. A step of a run of `until` (s) is exact: a

@@ -35,7 +35,7 @@ pub fn run(options: &Simplify) -> Result<(), Failure> {
     if let Some(path) = &options.chart {
         draw(path, options.size, &found)?;
     }
-    terminal::say(&found.text)?;
+    terminal::say(&found.text())?;
     match (&found.lean, &options.output) {
         (Some(lean), Some(path)) => {
             output::write(path, lean.scene.as_bytes())?;

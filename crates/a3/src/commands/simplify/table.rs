@@ -1,23 +1,76 @@
 //! The table of the models, and the leanest scene in words.
 
 use super::lean::{Answer, LeanModel};
-use super::models::Model;
+use super::models::{Model, Models};
+use crate::base::report::Report;
+use crate::cli::Quantity;
 use crate::commands::chart::table::words;
-use crate::commands::list;
 use crate::commands::motion::{GridError, grid};
 use a3_scenes::Description;
 
 /// Change of the motion, over the error that is asked for, above which a part is barely needed.
 const BARELY_NEEDED: f64 = 0.1;
 
-/// Writes the table of all models, with a verdict on each. `motion` is the change in the run of the
-/// whole scene, with its unit, and `error` the error that is asked for.
-pub fn text(
+/// Describes the models, the error of the grid, and the leanest scene in words.
+pub fn report(
+    title: &str,
+    error: f64,
+    models: &Models,
+    all: &[Model],
+    why: Option<&str>,
+    answer: Option<&Answer>,
+) -> Report {
+    let compared = models.compared;
+    let (motion, unit) = (compared.way(&models.whole), compared.unit());
+    let (method, control) = models.accurate;
+    let head = format!(
+        "{title} for {} s, an error of {error:e} {unit}; {} by {motion:.1e} {unit}:\n\
+         each model is run by {} at {}, which is accurate to {:.0e} {unit} on the whole scene\n",
+        compared.frames.until,
+        changing(compared.quantity),
+        method.title,
+        words(control),
+        models.uncertainty
+    );
+    let lean = answer.map(|answer| &answer.model);
+    let rows = if all.is_empty() {
+        vec![]
+    } else {
+        rows(all, (motion, unit), error, lean)
+    };
+    let mut foot = String::new();
+    let of_grid = of_grid(all, &models.request.source.description);
+    if let Some(of_grid) = of_grid.filter(|_| compared.quantity == Quantity::Position) {
+        foot += &of_grid.sentence();
+    }
+    if let Some(why) = why {
+        foot += "the grid is not varied: ";
+        foot += why;
+        foot += "\n";
+    }
+    if let Some(answer) = answer {
+        foot += &of_lean(answer, unit);
+    }
+    Report { head, rows, foot }
+}
+
+/// Returns the quantity and its verb, as the subject of a sentence.
+pub fn changing(quantity: Quantity) -> &'static str {
+    match quantity {
+        Quantity::Position => "the particles move",
+        Quantity::Centre => "the centre of mass moves",
+        Quantity::Energy => "the energy changes",
+    }
+}
+
+/// Returns the rows of the table of all models, with a verdict on each. `motion` is the change in
+/// the run of the whole scene, with its unit, and `error` the error that is asked for.
+fn rows(
     models: &[Model],
     (motion, unit): (f64, &str),
     error: f64,
     lean: Option<&LeanModel>,
-) -> String {
+) -> Vec<Vec<String>> {
     let changes = format!(" changes ({unit})");
     let heading = [
         "left out or changed",
@@ -45,7 +98,7 @@ pub fn text(
             ],
         });
     }
-    list::table(&rows)
+    rows
 }
 
 /// Returns the verdict on a model, or the reason why it was not measured. `error` is the error that

@@ -12,9 +12,9 @@ use super::models::{Model, Models, measure_all};
 use super::table;
 use crate::base::failure::Failure;
 use crate::base::monitor::Monitor;
+use crate::base::report::Report;
 use crate::cli::values::{ERRORS, HORIZONS};
 use crate::cli::{ErrorScope, Quantity};
-use crate::commands::chart::table::words;
 use crate::commands::chart::{check_motion, look_ahead, scope};
 use crate::commands::motion::{Compared, open};
 use crate::files::setup::Request;
@@ -116,9 +116,8 @@ pub struct LeanScene {
 /// What a scene can do without.
 #[derive(Clone, Debug, Serialize)]
 pub struct Simplified {
-    /// All of it in words.
     #[serde(skip)]
-    pub text: String,
+    pub(crate) report: Report,
     /// Name of the quantity that is compared.
     pub of: &'static str,
     /// Unit of the quantity.
@@ -142,6 +141,12 @@ pub struct Simplified {
 }
 
 impl Simplified {
+    /// Returns all of it in words.
+    #[must_use]
+    pub fn text(&self) -> String {
+        self.report.text()
+    }
+
     /// Whether there is a chart of models: it was asked for, and the scene has grids that differ by
     /// less than the motion.
     #[must_use]
@@ -208,7 +213,7 @@ pub fn measure(
     let of_grid = of_grid.filter(|_| options.of == Quantity::Position);
     let scene = |answer: &Answer| lean_scene(&models, answer);
     Ok(Simplified {
-        text: text(title, error, &models, &all, why.as_deref(), answer.as_ref()),
+        report: table::report(title, error, &models, &all, why.as_deref(), answer.as_ref()),
         of: options.of.name(),
         unit: models.compared.unit(),
         until: models.compared.frames.until,
@@ -267,21 +272,12 @@ fn whole<'a>(
     if error > motion {
         monitor.warn(&format!(
             "warning: {} by no more than {motion:.0e} {unit} in {} s: an error of {error:e} {unit} says nothing",
-            changing(quantity),
+            table::changing(quantity),
             compared.frames.until,
             unit = compared.unit(),
         ));
     }
     Ok(models)
-}
-
-/// Returns the quantity and its verb, as the subject of a sentence.
-fn changing(quantity: Quantity) -> &'static str {
-    match quantity {
-        Quantity::Position => "the particles move",
-        Quantity::Centre => "the centre of mass moves",
-        Quantity::Energy => "the energy changes",
-    }
 }
 
 /// Assembles the leanest scene, and finds the cheapest solvers for it and for the whole scene.
@@ -325,43 +321,6 @@ fn leanest(models: &Models, all: &[Model], error: f64) -> Result<Option<Answer>,
         solved,
         whole,
     }))
-}
-
-/// Describes the models, the error of the grid, and the leanest scene in words.
-fn text(
-    title: &str,
-    error: f64,
-    models: &Models,
-    all: &[Model],
-    why: Option<&str>,
-    answer: Option<&Answer>,
-) -> String {
-    let compared = models.compared;
-    let (motion, unit) = (compared.way(&models.whole), compared.unit());
-    let (method, control) = models.accurate;
-    let mut text = format!(
-        "{title} for {} s, an error of {error:e} {unit}; {} by {motion:.1e} {unit}:\n\
-         each model is run by {} at {}, which is accurate to {:.0e} {unit} on the whole scene\n",
-        compared.frames.until,
-        changing(compared.quantity),
-        method.title,
-        words(control),
-        models.uncertainty
-    );
-    let lean = answer.map(|answer| &answer.model);
-    if !all.is_empty() {
-        text += &table::text(all, (motion, unit), error, lean);
-    }
-    let of_grid = table::of_grid(all, &models.request.source.description);
-    if let Some(of_grid) = of_grid.filter(|_| compared.quantity == Quantity::Position) {
-        text += &of_grid.sentence();
-    }
-    if let Some(why) = why {
-        text += "the grid is not varied: ";
-        text += why;
-        text += "\n";
-    }
-    text + &answer.map_or(String::new(), |answer| table::of_lean(answer, unit))
 }
 
 /// Writes the leanest scene as a scene file, with its solver and its step.

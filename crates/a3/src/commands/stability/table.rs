@@ -5,7 +5,7 @@ use std::fmt::Write;
 use a3_core::stability::{Limit, Mode, Observation};
 
 use super::limits::{MethodLimits, Stability};
-use crate::commands::list;
+use crate::base::report::Report;
 
 /// Writes a step (s) in ms, to three digits.
 pub fn step(seconds: f64) -> String {
@@ -42,8 +42,8 @@ pub fn observation(seen: Option<Observation>) -> String {
     })
 }
 
-/// Writes the table of all limits, below the fastest motion and above the meaning of the columns.
-pub fn text(found: &Stability) -> String {
+/// Creates the table of all limits, below the fastest motion and above the meaning of the columns.
+pub fn report(found: &Stability) -> Report {
     let rows = &found.limits;
     let heading = [
         "solver",
@@ -76,39 +76,96 @@ pub fn text(found: &Stability) -> String {
             format!("{:.1} rad/s, damping ratio {damping:.3}", mode.frequency())
         })
     };
-    let mut text = format!(
+    let mut head = format!(
         "{}: fastest motion {} at the start",
         found.name,
         frequency(&found.at_start)
     );
     if let Some(rest) = &found.at_rest {
-        let _ = write!(text, ", {} at rest", frequency(rest));
+        let _ = write!(head, ", {} at rest", frequency(rest));
     }
-    let _ = write!(
-        text,
-        "\n\nlargest step (ms), that of the fixed step for adaptive solvers\n{}\
-         bounded   nothing grows without end: at rest by all modes, moving as runs show\n\
+    head += "\n\nlargest step (ms), that of the fixed step for adaptive solvers\n";
+    let mut foot = format!(
+        "bounded   nothing grows without end: at rest by all modes, moving as runs show\n\
          tenfold   a disturbance at rest grows tenfold in 10 s, or in 1000 steps if that is longer\n\
          accurate  errors stay below a hundredth of the motion in the first {:.2} s\n",
-        list::table(&cells),
         found.predictable,
     );
     if any_observed(rows, is_interval) {
-        let _ = writeln!(text, "a\u{2013}b       {INTERVAL}");
+        let _ = writeln!(foot, "a\u{2013}b       {INTERVAL}");
     }
     if any_observed(rows, Observation::is_open) {
-        text += ">         no longer step was tried\n";
+        foot += ">         no longer step was tried\n";
     }
     let short: Vec<_> = rows.iter().filter(|row| row.is_short).collect();
     if !short.is_empty() {
         let names: Vec<_> = short.iter().map(|row| row.method.name).collect();
         let _ = writeln!(
-            text,
+            foot,
             "short     the runs were shorter than 10 s, or too few to tell more, because they take long: {}",
             names.join(", ")
         );
     }
-    text
+    Report {
+        head,
+        rows: cells,
+        foot,
+    }
+}
+
+/// Creates the table of the largest stable step of each method with its reason, and of the largest
+/// accurate one.
+pub fn reasons(found: &Stability) -> Report {
+    let heading = ["solver", " stable", " accurate", "with longer steps"];
+    let mut rows = vec![heading.map(String::from).to_vec()];
+    let modes = found.at_rest.as_deref().unwrap_or(&found.at_start);
+    for row in &found.limits {
+        let (stable, why) = reason(row, modes);
+        rows.push(vec![
+            row.method.name.into(),
+            stable,
+            row.accurate.map_or("-".into(), step),
+            why,
+        ]);
+    }
+    let Report { head, .. } = report(found);
+    let head = head.lines().next().unwrap_or_default();
+    Report {
+        head: format!("{head}\nlargest steps (ms), fixed ones also for adaptive solvers\n"),
+        rows,
+        foot: format!(
+            "stable: nothing grows without end; accurate: errors stay below a hundredth of the motion in the first {:.2} s\n",
+            found.predictable
+        ),
+    }
+}
+
+/// Returns the largest stable step of a method (ms), and what happens beyond it. `modes` are those
+/// by which its limit at rest was computed.
+fn reason(row: &MethodLimits, modes: &[Mode]) -> (String, String) {
+    let at_rest = row.rest.map_or(f64::INFINITY, |limit| limit.step);
+    let moving = row.bounded.filter(|seen| seen.held < at_rest);
+    if let Some(seen) = moving {
+        let why = if seen.is_open() {
+            "none was tried"
+        } else {
+            "it blows up in motion"
+        };
+        return (observation(row.bounded), why.into());
+    }
+    let Some(limit) = row.rest else {
+        return ("-".into(), "it was not measured".into());
+    };
+    let mode = modes.get(limit.mode).filter(|_| at_rest.is_finite());
+    let why = mode.map_or("nothing grows".into(), |mode| {
+        let (frequency, damping) = (mode.frequency(), mode.drag + mode.damping);
+        if damping > 2.0 * frequency {
+            format!("damping of {damping:.0} / s grows at rest")
+        } else {
+            format!("{frequency:.0} rad/s grows at rest")
+        }
+    });
+    (step(at_rest), why)
 }
 
 /// Meaning of an interval where the table shows one instead of a limit.

@@ -9,6 +9,7 @@ use super::measure::measure;
 use super::{data, picture, table};
 use crate::base::failure::Failure;
 use crate::base::monitor::Monitor;
+use crate::base::report::Report;
 use crate::commands::chart::{Label, check_methods, check_scene};
 
 /// Measures the largest steps of these methods on a scene, as `a3 stability` does; of all methods
@@ -47,7 +48,12 @@ impl Stability {
     /// Returns the table of all limits as text.
     #[must_use]
     pub fn table(&self) -> String {
-        table::text(self)
+        table::report(self).text()
+    }
+
+    /// Returns the largest stable step of each method with its reason.
+    pub(crate) fn reasons(&self) -> Report {
+        table::reasons(self)
     }
 
     /// Returns the limits as a JSON array of objects, in seconds, as `a3 stability --data` writes

@@ -35,6 +35,7 @@ impl App {
         session.view.track_followed(&session.runs.panes);
         session.read_state();
         panel::update(session);
+        session.measuring.update();
         self.mouse
             .update_hover(self.modifiers.shift_key(), session, &self.screen);
         let message_ends = session.readings.message_ends();
@@ -67,8 +68,10 @@ impl App {
                     status.frames += 1;
                 }
                 let frame_time = self.screen.frame_time(self.session.panel.frame_limit);
-                let measuring = self.session.effects.progress();
-                let measured = measuring.map(|_| now + MEASURING_DELAY);
+                let session = &self.session;
+                let measuring =
+                    session.effects.progress().is_some() || session.measuring.progress().is_some();
+                let measured = measuring.then_some(now + MEASURING_DELAY);
                 let next = if self.session.animated() {
                     Some(now + frame_time)
                 } else {

@@ -122,7 +122,7 @@ impl Mouse {
 
     /// Ends the drag without an effect on the session.
     pub fn abort(&mut self) {
-        (self.drag, self.button) = (Drag::None, None);
+        (self.drag, self.button, self.pane) = (Drag::None, None, 0);
     }
 
     /// Returns the particles in the box, without the walls of tanks.

@@ -4,7 +4,7 @@ use egui::{Align2, Area, Color32, Context, FontId, Id, Rect, Response, Sense, Ui
 
 use super::panel::{Request, is_shown};
 use super::style::{ALARM, FAINT, TEXT};
-use super::{layout, timeline};
+use super::{layout, measure, timeline};
 use crate::window::session::{Action, RunAction, Session, WindowAction};
 
 /// Width of a button with a symbol (points).
@@ -77,7 +77,8 @@ impl Button {
 pub fn show(ctx: &Context, session: &Session) -> Option<Request> {
     let (window, picture) = (ctx.viewport_rect(), ctx.content_rect());
     let height = layout::bar_height([window.width(), window.height()]);
-    let covered = is_shown(session) && picture.right() >= window.right();
+    let docked = is_shown(session) || measure::is_shown(session);
+    let covered = docked && picture.right() >= window.right();
     if height == 0.0 || covered {
         return None;
     }
@@ -180,6 +181,11 @@ fn others(session: &Session) -> Vec<Button> {
     let mut buttons = vec![
         Button::new(&scene, "Choose a scene (o)", run(RunAction::Scenes)),
         Button::new(&solver, "Choose a solver (e)", run(RunAction::Solvers)),
+        Button::new(
+            "📈",
+            "Measure: chart, limits, choice, parts (q)",
+            run(RunAction::Measure),
+        ),
         Button::new("⚙", "Tune and plot (Tab)", run(RunAction::Panel)),
         Button::new("⮪", "Undo (z)", window(WindowAction::Undo)),
         Button::new("📷", "Save a picture (p)", window(WindowAction::Picture)),
@@ -196,8 +202,14 @@ fn others(session: &Session) -> Vec<Button> {
         "Help, and everything else (h)",
         run(RunAction::Help),
     ));
-    if session.panel.open {
+    if session.measuring.open {
         buttons[2].colour = FAINT;
+    }
+    if session.panel.open {
+        buttons[3].colour = FAINT;
+    }
+    if session.measuring.answerer.is_none() {
+        buttons.remove(2);
     }
     buttons
 }

@@ -51,7 +51,7 @@ pub fn help(ctx: &Context, several: bool) -> Option<Request> {
 /// Writes all groups in three columns, or below one another in a narrow window. Returns the request
 /// of the mouse.
 fn columns(ui: &mut Ui, several: bool, wide: bool) -> Option<Request> {
-    let [running, choose, change, show, look, keep, window] = &GROUPS;
+    let [running, choose, change, show, look, measure, keep, window] = &GROUPS;
     let mut request = None;
     let mut column = |ui: &mut Ui, groups: &[&Group], mouse: bool, numbered: bool| {
         ui.vertical(|ui| {
@@ -75,7 +75,7 @@ fn columns(ui: &mut Ui, several: bool, wide: bool) -> Option<Request> {
     ui.horizontal_top(|ui| {
         ui.spacing_mut().item_spacing.x = 26.0;
         column(ui, &[change, choose, show], true, false);
-        column(ui, &[running, look, window], false, false);
+        column(ui, &[running, look, measure, window], false, false);
         column(ui, &[keep], false, true);
     });
     request

@@ -2,7 +2,7 @@
 
 use a3_render::Tile;
 
-use super::panel;
+use super::{measure, panel};
 use crate::window::session::Session;
 
 /// Distance between panes (points).
@@ -24,7 +24,11 @@ pub fn bar_height([width, height]: [f32; 2]) -> f32 {
 /// Returns the size (px) of the picture beside the panel and above the bar, in a window of `size`
 /// (px) at `scale` pixels per point.
 pub fn picture_size(session: &Session, size: (u32, u32), scale: f32) -> (u32, u32) {
-    let (width, height) = panel::picture_size(session, size, scale);
+    let (width, height) = if measure::is_shown(session) {
+        measure::picture_size(size, scale)
+    } else {
+        panel::picture_size(session, size, scale)
+    };
     let bar = bar_height([size.0, size.1].map(|side| side as f32 / scale));
     let bar = (bar * scale).round() as u32;
     (width, height.saturating_sub(bar).max(1))

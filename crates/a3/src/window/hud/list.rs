@@ -38,6 +38,7 @@ pub fn show(
     let (heading, scenes) = match list.topic {
         Topic::Scenes => ("Scenes", true),
         Topic::Solvers { .. } => ("Solvers", false),
+        Topic::Beside { .. } => ("Compare with", false),
     };
     let largest = if scenes { MAX_SCENES_WIDTH } else { MAX_WIDTH };
     let width = largest.min(window.width() - 24.0);

@@ -48,6 +48,8 @@ pub enum RunAction {
     /// Look from the next direction: front, right, or above.
     NextView,
     Panel,
+    /// Show questions about the scene and their answers, or hide them.
+    Measure,
     WriteScene,
     Help,
 }

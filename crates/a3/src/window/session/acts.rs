@@ -9,6 +9,7 @@ use super::actions::RunAction;
 use super::history::Change;
 use super::list::{List, TextKey, Topic, solvers};
 use super::looks;
+use super::panes;
 use super::runs::KEY_BUDGET;
 use super::save;
 use super::state::Session;
@@ -93,7 +94,18 @@ impl Session {
             RunAction::Projection => self.readings.say(self.view.toggle_projection()),
             RunAction::SeeAll => self.view.see_all(&self.runs.panes),
             RunAction::NextView => self.readings.say(self.view.next_view()),
-            RunAction::Panel => self.panel.open = !self.panel.open,
+            RunAction::Panel => {
+                self.panel.open = !self.panel.open;
+                self.measuring.open &= !self.panel.open;
+            }
+            RunAction::Measure if self.measuring.answerer.is_none() => self
+                .readings
+                .say("Only the program measures: key y copies the command line for it."),
+            RunAction::Measure => {
+                self.measuring.open = !self.measuring.open;
+                self.panel.open &= !self.measuring.open;
+                self.readings.help = false;
+            }
             RunAction::WriteScene => {
                 let pane = &self.runs.panes[at.min(self.runs.panes.len() - 1)];
                 let said = match save::write_scene(self, &pane.simulation) {
@@ -198,14 +210,16 @@ impl Session {
     }
 
     /// Opens a list, or closes the one that is open.
-    fn toggle_list(&mut self, topic: Topic) {
+    pub fn toggle_list(&mut self, topic: Topic) {
         if self.list.take().is_some_and(|list| list.topic == topic) {
             return;
         }
         let panes = &self.runs.panes;
         let entries = match topic {
             Topic::Scenes => self.scenes.entries(),
-            Topic::Solvers { pane } => solvers(&panes[pane.min(panes.len() - 1)].simulation),
+            Topic::Solvers { pane } | Topic::Beside { pane } => {
+                solvers(&panes[pane.min(panes.len() - 1)].simulation)
+            }
         };
         self.readings.help = false;
         self.list = Some(List::new(topic, entries));
@@ -235,6 +249,15 @@ impl Session {
                 true
             }
             Some(Topic::Solvers { pane }) => self.act(RunAction::Solver(number), pane),
+            Some(Topic::Beside { pane }) => {
+                let method = &integrators::METHODS[number];
+                let pane = pane.min(self.runs.panes.len() - 1);
+                let control = self.runs.panes[pane].control_of(method, &self.tuning.defaults);
+                let added = panes::add(self, pane, (method, control));
+                let is_new = added.is_ok();
+                self.report(added);
+                is_new
+            }
             None => false,
         }
     }
@@ -321,6 +344,7 @@ impl Session {
             Ok(said) => {
                 self.tuning = Tuning::of(&self.scenes.shown, setup);
                 self.effects.forget();
+                self.measuring.forget();
                 self.readings.left_out.clear();
                 self.view.stop_following();
                 self.history.clear();

@@ -30,7 +30,7 @@ pub struct Group {
 }
 
 /// All keys except the digits, which choose solvers in the order of their table.
-pub static GROUPS: [Group; 7] = [
+pub static GROUPS: [Group; 8] = [
     Group {
         purpose: "Run",
         bindings: &[
@@ -83,6 +83,14 @@ pub static GROUPS: [Group; 7] = [
             run(&["i"], RunAction::Projection, "perspective or parallel"),
             window(&["j"], WindowAction::Follow, "follow a particle"),
         ],
+    },
+    Group {
+        purpose: "Measure",
+        bindings: &[run(
+            &["q"],
+            RunAction::Measure,
+            "chart, limits, choice, parts",
+        )],
     },
     Group {
         purpose: "Keep",

@@ -9,6 +9,8 @@ pub enum Topic {
     Scenes,
     /// Solvers, for one pane.
     Solvers { pane: usize },
+    /// Solvers, for another pane beside one.
+    Beside { pane: usize },
 }
 
 /// An open list.

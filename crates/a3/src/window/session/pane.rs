@@ -3,7 +3,7 @@
 use std::sync::Arc;
 use web_time::{Duration, Instant};
 
-use a3_core::{Checkpoint, Error, Method, Simulation};
+use a3_core::{Checkpoint, Control, Error, Method, Simulation};
 use a3_render::Topology;
 use a3_scenes::{Defaults, Presentation};
 
@@ -203,6 +203,16 @@ impl Pane {
         self.restart_cost();
     }
 
+    /// Returns the step or tolerance that a solver gets: that of the run if it takes the same kind.
+    pub fn control_of(&self, method: &Method, defaults: &Defaults) -> Control {
+        let run = &self.simulation;
+        if method.is_adaptive() == run.method().is_adaptive() {
+            run.control()
+        } else {
+            defaults.control_of(method)
+        }
+    }
+
     /// Changes the solver, and keeps the step or tolerance if the new one takes the same kind.
     /// Fails if the solver cannot integrate the scene.
     pub fn set_method(
@@ -211,13 +221,8 @@ impl Pane {
         defaults: &Defaults,
     ) -> Result<(), Error> {
         self.wanted_step = None;
-        let run = &self.simulation;
-        let control = if method.is_adaptive() == run.method().is_adaptive() {
-            run.control()
-        } else {
-            defaults.control_of(method)
-        };
-        self.simulation.set_method(method, control)?;
+        self.simulation
+            .set_method(method, self.control_of(method, defaults))?;
         self.wanted = method;
         self.restart_cost();
         Ok(())

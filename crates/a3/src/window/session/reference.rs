@@ -4,6 +4,7 @@ use web_time::{Duration, Instant};
 
 use a3_core::{Control, Method, Simulation, integrators};
 
+use super::continued::continue_from;
 use super::pane::{ADAPTIVE_SLICE, Pane};
 use super::predictability::Predictability;
 use crate::base::failure::Failure;
@@ -90,6 +91,11 @@ impl ReferenceRun {
     pub fn exchange(&mut self, simulation: Simulation) -> Simulation {
         self.predictability = Predictability::new(simulation.scene().clone());
         std::mem::replace(&mut self.simulation, simulation)
+    }
+
+    /// Continues from the state of a run.
+    pub fn continue_from(&mut self, run: &Simulation) -> Result<(), Failure> {
+        continue_from(&mut self.simulation, run).map_err(Failure::run)
     }
 
     /// Returns the reason why the reference was stopped, if it was.

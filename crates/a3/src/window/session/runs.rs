@@ -11,6 +11,7 @@ use super::reference::ReferenceRun;
 use crate::base::bounds;
 use crate::base::failure::Failure;
 use crate::base::holding::shorter_step;
+use crate::draw::show::Quantity;
 
 /// Longest real time of the steps that a key causes.
 pub(super) const KEY_BUDGET: Duration = Duration::from_millis(200);
@@ -226,6 +227,41 @@ impl Runs {
         let set = self.panes[at].set_step(value);
         self.adapt_reference();
         set
+    }
+
+    /// Adds a pane, whose run is in the same state as another one's. If there was a single pane, a
+    /// reference begins in that state. Fails, and changes nothing, if there can be no reference.
+    pub(super) fn add_pane(&mut self, pane: Pane) -> Result<(), Failure> {
+        self.panes.push(pane);
+        if self.reference.is_some() {
+            self.adapt_reference();
+        } else {
+            let begun = ReferenceRun::new(&self.panes).and_then(|mut reference| {
+                if let Some(reference) = &mut reference {
+                    reference.continue_from(&self.panes[0].simulation)?;
+                }
+                Ok(reference)
+            });
+            self.reference = begun.inspect_err(|_| {
+                self.panes.pop();
+            })?;
+        }
+        self.drop_due_steps();
+        Ok(())
+    }
+
+    /// Removes a pane, and the reference with the last but one.
+    pub(super) fn remove_pane(&mut self, at: usize) {
+        self.panes.remove(at);
+        if let [pane] = &mut *self.panes {
+            self.reference = None;
+            pane.set_errors(vec![]);
+            if pane.show.colouring.quantity == Some(Quantity::Error) {
+                pane.show.colouring.set_quantity(None);
+            }
+        }
+        self.adapt_reference();
+        self.drop_due_steps();
     }
 
     /// Adapts the reference to the solvers and steps of the panes.

@@ -65,7 +65,7 @@ fn scene_text(session: &Session, run: &Simulation) -> Result<String, a3_core::Er
 }
 
 /// Returns the description of the tuned scene with the present state.
-fn description(session: &Session, run: &Simulation) -> Description {
+pub fn description(session: &Session, run: &Simulation) -> Description {
     let tuning = &session.tuning;
     let parts: Vec<_> = tuning.left_out.iter().map(|k| &tuning.parts[*k]).collect();
     let mut description = session.scenes.shown.described_without(&parts);

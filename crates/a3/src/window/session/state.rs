@@ -8,6 +8,7 @@ use a3_scenes::Setup;
 use super::effects::Effects;
 use super::history::History;
 use super::list::List;
+use super::measuring::Measuring;
 use super::meter::Meter;
 use super::origin::Origin;
 use super::pane::Pane;
@@ -65,6 +66,8 @@ pub struct Session {
     pub tuning: Tuning,
     /// What the parts of the scene cost and change.
     pub effects: Effects,
+    /// Questions about the scene, and their answers.
+    pub measuring: Measuring,
     /// State of the panel.
     pub panel: PanelState,
     /// The open list, if there is one.
@@ -104,6 +107,7 @@ impl Session {
             tuning: Tuning::of(&origin, setup),
             scenes: Scenes::new(origin),
             effects: Effects::default(),
+            measuring: Measuring::default(),
             panel: PanelState::default(),
             list: None,
             readings: Readings {
@@ -327,11 +331,8 @@ mod tests {
             for _ in 0..(3.0 * rate) as u32 {
                 session.tick(1.0 / rate);
             }
-            assert!(
-                (session.runs.panes[0].simulation.time() - 3.0).abs() < 0.011,
-                "{rate}: {}",
-                session.runs.panes[0].simulation.time()
-            );
+            let time = session.runs.first().time();
+            assert!((time - 3.0).abs() < 0.011, "{rate}: {time}");
         }
     }
 

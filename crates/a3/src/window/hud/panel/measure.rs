@@ -8,12 +8,14 @@ use std::thread;
 use web_time::{Duration, Instant};
 
 use a3_core::integrators::find;
-use a3_core::{Checkpoint, Control, Error, Method, Progress, Simulation};
+use a3_core::{Checkpoint, Control, Error, Method, Simulation};
 
 use super::parts::{is_in, set};
 use super::tune::{leave_out_named, tuned, turn_knobs};
 use super::values::pane;
-use crate::window::session::{Beginning, Deviation, Effect, Job, Origin, Session, Situation};
+use crate::window::session::{
+    Beginning, Deviation, Effect, Job, Origin, Session, Situation, continue_from,
+};
 
 /// Simulated time over which motions are compared (s).
 const COMPARED_TIME: f64 = 2.0;
@@ -164,16 +166,8 @@ fn accurate_method(run: &Simulation) -> Option<&'static Method> {
 
 /// Creates a run that continues from the state of another one by a method.
 fn copy(run: &Simulation, method: &'static Method, control: Control) -> Result<Simulation, Error> {
-    let mut moment = run.moment();
-    let time = moment.time();
-    let state = &mut moment.run;
-    (state.method, state.control) = (method, control);
-    (state.since, state.taken, state.shown) = (time, 0, None);
-    moment.progress = Progress::default();
     let mut copy = Simulation::new(run.scene().clone(), method, control)?;
-    copy.restore(&moment)?;
-    // Energy of another model is no gain of the method.
-    copy.set_method(method, control)?;
+    continue_from(&mut copy, run)?;
     Ok(copy)
 }
 

@@ -4,7 +4,7 @@ use super::dial::{Dial, Turn};
 use super::knobs::{KNOBS, Knob, is_left_out};
 use super::values::pane;
 use super::{measure, parts};
-use crate::window::session::{Action, Session, TextKey};
+use crate::window::session::{Action, MeasureRequest, Session, TextKey, Topic, asking, panes};
 
 /// A request of the mouse.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -30,6 +30,12 @@ pub enum PanelRequest {
     CloseList,
     /// Go to a share of the timeline.
     GoTo(f32),
+    /// Ask something about the scene, or use an answer.
+    Measure(MeasureRequest),
+    /// Choose a solver for another pane beside that of a number.
+    AddPane(usize),
+    /// Remove the pane of a number.
+    RemovePane(usize),
 }
 
 /// A key of the panel.
@@ -95,9 +101,18 @@ pub fn numbers(session: &Session) -> Vec<usize> {
     knobs.chain(measuring).chain(parts).collect()
 }
 
-/// Handles a key, and returns whether the panel is visible. With `other`, a knob turns by the other
-/// step of its scale.
+/// Handles a key, and returns whether the panel or the questions take it. With `other`, a knob
+/// turns by the other step of its scale.
 pub fn press(session: &mut Session, key: PanelKey, other: bool) -> bool {
+    if session.measuring.open && key != PanelKey::Up && key != PanelKey::Down {
+        let request = match key {
+            PanelKey::Left => MeasureRequest::Ask(session.measuring.question.neighbour(-1)),
+            PanelKey::Right => MeasureRequest::Ask(session.measuring.question.neighbour(1)),
+            _ => MeasureRequest::Toggle,
+        };
+        apply(session, PanelRequest::Measure(request));
+        return true;
+    }
     if !is_shown(session) {
         return false;
     }
@@ -142,6 +157,9 @@ pub fn apply(session: &mut Session, request: PanelRequest) -> bool {
         PanelRequest::TakeEntry(number) => return session.take_entry(number),
         PanelRequest::CloseList => session.list = None,
         PanelRequest::GoTo(share) => session.scrub_to(share),
+        PanelRequest::Measure(request) => return asking::apply(session, request, at),
+        PanelRequest::AddPane(pane) => session.toggle_list(Topic::Beside { pane }),
+        PanelRequest::RemovePane(pane) => return panes::remove(session, pane),
     }
     false
 }

@@ -1,0 +1,9 @@
+//! Questions about the scene and their answers, beside the picture (key q).
+
+mod answer;
+mod chip;
+mod diagram;
+mod plot;
+mod view;
+
+pub use view::{is_shown, picture_size, show};
