@@ -122,7 +122,8 @@ impl Mouse {
 
     /// Ends the drag without an effect on the session.
     pub fn abort(&mut self) {
-        (self.drag, self.button) = (Drag::None, None);
+        // Another session may have fewer panes.
+        (self.drag, self.button, self.pane) = (Drag::None, None, 0);
     }
 
     /// Returns the particles in the box, without the walls of tanks.

@@ -166,9 +166,3 @@ impl Films {
         real
     }
 }
-
-/// Opens the lessons, which are beside the page, and returns a message.
-pub fn open_lessons() -> String {
-    browser::open("lessons/README.md");
-    "The lessons are open beside this page.".into()
-}

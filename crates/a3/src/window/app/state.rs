@@ -17,7 +17,7 @@ use super::screen::Screen;
 use super::status::Status;
 use crate::base::failure::Failure;
 use crate::files::output;
-use crate::window::hud::panel;
+use crate::window::hud::{lessons, panel};
 use crate::window::session::{Action, RunAction, Session, WindowAction};
 use crate::window::settings::Settings;
 use crate::window::{command_line, keep};
@@ -130,7 +130,16 @@ impl App {
         if typed.is_some_and(|key| panel::press_text(&mut self.session, key)) {
             return;
         }
+        if typed.is_some_and(|key| lessons::press_text(&mut self.session, key)) {
+            return;
+        }
         let key = keyboard::panel_key(&event.logical_key);
+        if let Some(request) = key.and_then(|key| lessons::request(&self.session, key)) {
+            if lessons::apply(&mut self.session, request) {
+                self.scene_changed();
+            }
+            return;
+        }
         let shift = self.modifiers.shift_key();
         if key.is_some_and(|key| panel::press(&mut self.session, key, shift)) {
             return;
@@ -243,7 +252,6 @@ impl App {
                 self.scene_changed();
                 None
             }
-            WindowAction::Lessons => Some(platform::open_lessons()),
         };
         if let Some(message) = message {
             self.session.readings.say(message);

@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use egui::{Context, TextureId};
 
 use super::panel::{self, Request};
-use super::{bar, hint, list, text};
+use super::{bar, hint, lessons, list, text};
 use crate::window::session::Session;
 
 /// Draws text, panel, bar and the open list, with `pictures` of scenes by their names. Returns the
@@ -18,7 +18,8 @@ pub fn show_all(
     hint::show(ctx, session);
     let on_text = text::show(ctx, &session.runs.panes, &session.readings);
     let on_panel = panel::show(ctx, session);
+    let on_lessons = lessons::show(ctx, session).map(Request::Learn);
     let on_bar = bar::show(ctx, session);
     let on_list = list::show(ctx, session, pictures).map(Request::Change);
-    on_list.or(on_bar).or(on_panel).or(on_text)
+    on_list.or(on_bar).or(on_panel).or(on_lessons).or(on_text)
 }

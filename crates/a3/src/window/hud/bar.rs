@@ -82,7 +82,7 @@ pub fn show(ctx: &Context, session: &Session) -> Option<Request> {
         return None;
     }
     let rect = Rect::from_min_max(
-        pos2(picture.left(), picture.bottom()),
+        pos2(picture.left(), window.bottom() - height),
         pos2(picture.right(), window.bottom()),
     );
     let mut request = None;
@@ -181,6 +181,7 @@ fn others(session: &Session) -> Vec<Button> {
         Button::new(&scene, "Choose a scene (o)", run(RunAction::Scenes)),
         Button::new(&solver, "Choose a solver (e)", run(RunAction::Solvers)),
         Button::new("⚙", "Tune and plot (Tab)", run(RunAction::Panel)),
+        Button::new("📖", "Lessons (F1)", run(RunAction::Lessons)),
         Button::new("⮪", "Undo (z)", window(WindowAction::Undo)),
         Button::new("📷", "Save a picture (p)", window(WindowAction::Picture)),
     ];

@@ -2,7 +2,7 @@
 
 use a3_render::Tile;
 
-use super::panel;
+use super::{lessons, panel};
 use crate::window::session::Session;
 
 /// Distance between panes (points).
@@ -21,13 +21,17 @@ pub fn bar_height([width, height]: [f32; 2]) -> f32 {
     }
 }
 
-/// Returns the size (px) of the picture beside the panel and above the bar, in a window of `size`
+/// Returns the size (px) of the picture beside the panel or the lessons, and above the bar, in a window of `size`
 /// (px) at `scale` pixels per point.
 pub fn picture_size(session: &Session, size: (u32, u32), scale: f32) -> (u32, u32) {
     let (width, height) = panel::picture_size(session, size, scale);
-    let bar = bar_height([size.0, size.1].map(|side| side as f32 / scale));
-    let bar = (bar * scale).round() as u32;
-    (width, height.saturating_sub(bar).max(1))
+    let window = [size.0, size.1].map(|side| side as f32 / scale);
+    let [right, below] = lessons::taken(session, window);
+    let [right, below] = [right, below + bar_height(window)].map(|a| (a * scale).round() as u32);
+    (
+        width.saturating_sub(right).max(1),
+        height.saturating_sub(below).max(1),
+    )
 }
 
 /// Returns the width on the right and the height below that are not available to text (points).

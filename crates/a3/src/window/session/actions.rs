@@ -48,6 +48,7 @@ pub enum RunAction {
     /// Look from the next direction: front, right, or above.
     NextView,
     Panel,
+    Lessons,
     WriteScene,
     Help,
 }
@@ -73,7 +74,6 @@ pub enum WindowAction {
     /// Load the last checkpoint.
     LoadRun,
     FullScreen,
-    Lessons,
     /// Close the help; without it, ask whether to quit.
     Quit,
     /// Close the window.

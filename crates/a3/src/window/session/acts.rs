@@ -93,7 +93,16 @@ impl Session {
             RunAction::Projection => self.readings.say(self.view.toggle_projection()),
             RunAction::SeeAll => self.view.see_all(&self.runs.panes),
             RunAction::NextView => self.readings.say(self.view.next_view()),
-            RunAction::Panel => self.panel.open = !self.panel.open,
+            RunAction::Panel => {
+                self.panel.open = !self.panel.open;
+                self.panel.lessons.open &= !self.panel.open;
+            }
+            RunAction::Lessons => {
+                let lessons = &mut self.panel.lessons;
+                lessons.open = !lessons.open;
+                self.panel.open &= !lessons.open;
+                self.list = None;
+            }
             RunAction::WriteScene => {
                 let pane = &self.runs.panes[at.min(self.runs.panes.len() - 1)];
                 let said = match save::write_scene(self, &pane.simulation) {
