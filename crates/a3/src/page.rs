@@ -15,7 +15,6 @@ use crate::cli::{self, Cli, Command};
 use crate::files::scene_file::Hash;
 use crate::window::app;
 use crate::window::begin;
-use crate::window::session::{Action, RunAction};
 use crate::window::settings::Settings;
 
 /// Starts the run that the address describes, or shows on the page why that is not possible.
@@ -88,9 +87,9 @@ pub fn run_steps(words: &str, steps: u32) -> String {
     }
 }
 
-/// Opens or closes the panel, as key Tab does in a window; in a browser that key leaves the canvas.
-pub fn toggle_panel() {
-    app::send(app::Event::Act(Action::Run(RunAction::Panel)));
+/// Shows a message of the page.
+pub fn say(words: &str) {
+    app::send(app::Event::Say(words.into()));
 }
 
 /// Opens a file that was dropped on the page.

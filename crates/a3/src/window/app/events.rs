@@ -10,6 +10,7 @@ use winit::window::{Fullscreen, WindowId};
 
 use super::platform::{self, Event};
 use super::state::App;
+use super::touch;
 
 impl ApplicationHandler<Event> for App {
     fn resumed(&mut self, event_loop: &ActiveEventLoop) {
@@ -47,7 +48,10 @@ impl ApplicationHandler<Event> for App {
                 }
                 self.screen.redraw();
             }
-            Event::Act(action) => self.act(event_loop, action),
+            Event::Say(words) => {
+                self.session.readings.warn(words);
+                self.screen.redraw();
+            }
         }
     }
 
@@ -77,6 +81,9 @@ impl ApplicationHandler<Event> for App {
     }
 
     fn window_event(&mut self, event_loop: &ActiveEventLoop, _: WindowId, event: WindowEvent) {
+        if let WindowEvent::Touch(touch) = &event {
+            touch::point(self, touch);
+        }
         let Some(graphics) = &mut self.screen.graphics else {
             return;
         };
@@ -133,6 +140,7 @@ impl ApplicationHandler<Event> for App {
                 self.mouse.release(button, &mut self.session, &self.screen);
                 self.screen.redraw();
             }
+            WindowEvent::Touch(touch) => touch::change(self, &touch, taken),
             WindowEvent::DroppedFile(path) => {
                 if self.session.open(&path) {
                     self.scene_changed();

@@ -15,6 +15,7 @@ use super::platform::{self, Platform};
 use super::remember::remember;
 use super::screen::Screen;
 use super::status::Status;
+use super::touch::Fingers;
 use crate::base::failure::Failure;
 use crate::files::output;
 use crate::window::hud::{lessons, panel};
@@ -33,6 +34,8 @@ pub struct App {
     pub screen: Screen,
     /// The mouse.
     pub mouse: Mouse,
+    /// The fingers.
+    pub fingers: Fingers,
     /// The modifier keys that are held.
     pub modifiers: ModifiersState,
     /// Time when the session was last advanced.
@@ -61,6 +64,7 @@ impl App {
             session,
             screen: Screen::new(display, zoom),
             mouse: Mouse::new(),
+            fingers: Fingers::default(),
             modifiers: ModifiersState::empty(),
             last_tick: Instant::now(),
             settings,

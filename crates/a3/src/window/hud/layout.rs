@@ -10,12 +10,16 @@ const PANE_GAP: f32 = 3.0;
 
 /// Height of the bar below the picture (points).
 const BAR_HEIGHT: f32 = 40.0;
+/// Height of the bar for fingers (points).
+const TOUCH_BAR_HEIGHT: f32 = 48.0;
 
-/// Returns the height of the bar below the picture, in a window of a size (points). A small window
-/// has none.
-pub fn bar_height([width, height]: [f32; 2]) -> f32 {
+/// Returns the height of the bar below the picture, in a window of a size (points). For fingers it
+/// is higher, and a small window has none.
+pub fn bar_height(session: &Session, [width, height]: [f32; 2]) -> f32 {
     if width < 280.0 || height < 240.0 {
         0.0
+    } else if session.panel.touch {
+        TOUCH_BAR_HEIGHT
     } else {
         BAR_HEIGHT
     }
@@ -27,7 +31,8 @@ pub fn picture_size(session: &Session, size: (u32, u32), scale: f32) -> (u32, u3
     let (width, height) = panel::picture_size(session, size, scale);
     let window = [size.0, size.1].map(|side| side as f32 / scale);
     let [right, below] = lessons::taken(session, window);
-    let [right, below] = [right, below + bar_height(window)].map(|a| (a * scale).round() as u32);
+    let [right, below] =
+        [right, below + bar_height(session, window)].map(|a| (a * scale).round() as u32);
     (
         width.saturating_sub(right).max(1),
         height.saturating_sub(below).max(1),

@@ -262,6 +262,12 @@ impl Session {
     /// Shows the scene of a file, and keeps solvers and steps that can integrate it. If the file
     /// cannot be opened, shows why and returns false; the runs continue.
     pub fn open(&mut self, file: &Path) -> bool {
+        if file.is_dir() {
+            let folder = file.display();
+            let why = format!("{folder} is a folder: drop the scene file or the mesh in it.");
+            self.readings.warn(why);
+            return false;
+        }
         match self.scenes.open(file) {
             Ok(setup) => {
                 let source = &self.scenes.shown.source;

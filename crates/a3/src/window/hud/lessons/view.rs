@@ -15,7 +15,7 @@ use crate::window::session::{LessonRequest, Session};
 /// Distance of the text from the edges of the sheet (points).
 const MARGIN: f32 = 16.0;
 /// Height of the heading (points).
-const HEADING_HEIGHT: f32 = 38.0;
+const HEADING_HEIGHT: f32 = 44.0;
 /// Height of the buttons and of their margins, with the mouse and with fingers (points).
 const BUTTONS_HEIGHTS: [f32; 2] = [48.0, 58.0];
 
