@@ -186,7 +186,7 @@ fn every_step_is_drawn_in_windows_and_on_phones() {
         );
         let pixels = (size[0] as u32, size[1] as u32);
         let picture = layout::picture_size(&session, pixels, 1.0);
-        assert!(picture.0 >= 390 && picture.1 >= 400, "{picture:?}");
+        assert!(picture.0 >= 390 && picture.1 >= 390, "{picture:?}");
         for lesson in 0..ALL.len() {
             for step in 0..ALL[lesson].steps.len() {
                 let lessons = &mut session.panel.lessons;
