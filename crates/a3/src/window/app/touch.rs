@@ -1,9 +1,7 @@
 //! Fingers: one pulls, pushes or turns, as the left button does; two move and zoom the view.
 
 use a3_render::{Camera, Tile};
-use winit::event::{MouseButton, Touch, TouchPhase};
-
-use super::state::App;
+use winit::event::{Touch, TouchPhase};
 
 /// The fingers on the screen.
 #[derive(Default)]
@@ -92,43 +90,14 @@ impl Fingers {
     }
 }
 
-/// Puts the pointer where the first finger comes down.
-pub fn point(app: &mut App, touch: &Touch) {
-    if app.fingers.begins(touch) {
-        app.mouse.pointer.position = position(touch);
-        app.mouse.pointer.inside = true;
-    }
-}
-
-/// Does what a change of a finger means, which is `taken` if text or a button is there.
-pub fn change(app: &mut App, touch: &Touch, taken: bool) {
-    let (session, screen, mouse) = (&mut app.session, &app.screen, &mut app.mouse);
-    let is_down = !matches!(touch.phase, TouchPhase::Ended | TouchPhase::Cancelled);
-    session.history.set_button_held(is_down);
-    session.panel.touch = true;
-    let (id, at) = (touch.id, position(touch));
-    match app.fingers.change(id, touch.phase, at, taken) {
-        Effect::Nothing => {}
-        Effect::Press => mouse.press(MouseButton::Left, false, session, screen),
-        Effect::Move => mouse.move_to(touch.location, session, screen),
-        Effect::Release => mouse.release(MouseButton::Left, session, screen),
-        Effect::Finish => mouse.finish(session, screen),
-        Effect::Pinch(places) => {
-            let tile = screen.tile(session, mouse.pointer.pane(session, screen));
-            pinch(&mut session.view.camera, tile, places);
-        }
-    }
-    mouse.pointer.inside &= is_down;
-    screen.redraw();
-}
-
-fn position(touch: &Touch) -> [f32; 2] {
+/// Returns the place of a finger (px).
+pub fn position(touch: &Touch) -> [f32; 2] {
     [touch.location.x as f32, touch.location.y as f32]
 }
 
 /// Moves and zooms the view in a tile as a finger moves from one place to another (px) while the
 /// second one stays at the third: what was between them stays between them.
-fn pinch(camera: &mut Camera, tile: Tile, [from, to, other]: [[f32; 2]; 3]) {
+pub fn pinch(camera: &mut Camera, tile: Tile, [from, to, other]: [[f32; 2]; 3]) {
     let aspect = tile.aspect();
     let distance = |a: [f32; 2]| (a[0] - other[0]).hypot(a[1] - other[1]).max(1.0);
     let middle = |a: [f32; 2]| tile.place([0.5 * (a[0] + other[0]), 0.5 * (a[1] + other[1])]);

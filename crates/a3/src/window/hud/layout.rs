@@ -25,8 +25,8 @@ pub fn bar_height(session: &Session, [width, height]: [f32; 2]) -> f32 {
     }
 }
 
-/// Returns the size (px) of the picture beside the panel or the lessons, and above the bar, in a window of `size`
-/// (px) at `scale` pixels per point.
+/// Returns the size (px) of the picture beside the panel or the lessons, and above the bar, in a
+/// window of `size` (px) at `scale` pixels per point.
 pub fn picture_size(session: &Session, size: (u32, u32), scale: f32) -> (u32, u32) {
     let (width, height) = panel::picture_size(session, size, scale);
     let window = [size.0, size.1].map(|side| side as f32 / scale);

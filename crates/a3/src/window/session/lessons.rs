@@ -2,8 +2,6 @@
 
 use std::collections::BTreeMap;
 
-use super::looks;
-use super::state::Session;
 use crate::files::lessons::{ALL, Answer, Lesson, Step};
 
 /// A request of the user to the pane of lessons.
@@ -169,19 +167,6 @@ impl Lessons {
             (given.right, given.done) = (Some(true), true);
         }
     }
-}
-
-/// Shows another session in place of the present one, with the settings of the window.
-pub fn replace(session: &mut Session, next: Session) {
-    let former = std::mem::replace(session, next);
-    let dark = former.runs.panes[0].show.dark;
-    looks::set_dark(&mut session.runs.panes, dark);
-    session.panel = former.panel;
-    (session.panel.pane, session.panel.typed) = (0, None);
-    session.pulled = former.pulled;
-    session.scenes.adopt(former.scenes);
-    session.readings.in_window = former.readings.in_window;
-    session.readings.film = former.readings.film;
 }
 
 #[cfg(test)]

@@ -1,5 +1,6 @@
 //! The pane of lessons beside the picture, or below it in a narrow window (key F1).
 
+mod button;
 mod contents;
 mod marked;
 mod place;

@@ -6,8 +6,8 @@ use egui::{
 
 use super::super::panel::{CHOSEN, EDGE, HOVERED, INK, TRACK};
 use super::super::style::{FAINT, SAFE, TEXT, WARNING};
+use super::button::button;
 use super::marked::job;
-use super::view::button;
 use crate::files::lessons::{Answer, Choice, Lesson, Step};
 use crate::window::session::{Given, LessonRequest, Session};
 

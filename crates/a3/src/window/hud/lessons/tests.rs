@@ -2,13 +2,15 @@
 
 use egui::{Event, Modifiers, PointerButton, Pos2, RawInput, Rect, SafeAreaInsets};
 
-use super::super::layout;
 use super::super::panel::PanelKey;
 use super::super::style::context;
-use super::{apply, press_text, request, show};
+use super::{apply, press_text, request, show, taken};
 use crate::files::lessons::{ALL, Answer};
 use crate::window::begin;
 use crate::window::session::{LessonRequest, RunAction, Session, TextKey, session};
+
+/// Height of the bar (points).
+const BAR: f32 = 48.0;
 
 /// What a question asks for, by lesson and step.
 const ASKED: [(usize, usize, Asked); 15] = [
@@ -131,8 +133,8 @@ fn the_right_choices_are_what_happens() {
 fn draw(session: &Session, size: [f32; 2], words: Option<&str>) -> (String, Option<LessonRequest>) {
     let ctx = context();
     let window = Rect::from_min_size(Pos2::ZERO, size.into());
-    let pixels = (size[0] as u32, size[1] as u32);
-    let [right, bottom] = layout::insets(session, pixels, 1.0);
+    let [right, below] = taken(session, size);
+    let bottom = below + BAR;
     let (mut said, mut request, mut at) = (String::new(), None, Pos2::new(3.0, 3.0));
     for pressed in [None, None, None, Some(true), Some(false)] {
         let press = pressed.map(|pressed| Event::PointerButton {
@@ -184,9 +186,9 @@ fn every_step_is_drawn_in_windows_and_on_phones() {
             ALL.iter().all(|lesson| said.contains(&lesson.title)),
             "{said}"
         );
-        let pixels = (size[0] as u32, size[1] as u32);
-        let picture = layout::picture_size(&session, pixels, 1.0);
-        assert!(picture.0 >= 390 && picture.1 >= 390, "{picture:?}");
+        let [right, below] = taken(&session, size);
+        let picture = [size[0] - right, size[1] - below - BAR];
+        assert!(picture.iter().all(|side| *side >= 390.0), "{picture:?}");
         for lesson in 0..ALL.len() {
             for step in 0..ALL[lesson].steps.len() {
                 let lessons = &mut session.panel.lessons;

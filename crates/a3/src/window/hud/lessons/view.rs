@@ -1,12 +1,13 @@
 //! Drawing of the lessons: their sheet, the heading, and what scrolls below it.
 
 use egui::{
-    Align2, Area, Color32, Context, CursorIcon, FontId, Id, Rect, Response, ScrollArea, Sense,
-    Stroke, StrokeKind, Ui, UiBuilder, pos2, vec2,
+    Align2, Area, Context, CursorIcon, FontId, Id, Rect, ScrollArea, Sense, Stroke, Ui, UiBuilder,
+    pos2, vec2,
 };
 
-use super::super::panel::{EDGE, HOVERED, INK, SHEET};
+use super::super::panel::{EDGE, INK, SHEET};
 use super::super::style::{FAINT, TEXT};
+use super::button::button;
 use super::place::{self, is_shown};
 use super::request::{next, previous};
 use super::{contents, step};
@@ -127,19 +128,4 @@ fn buttons(ui: &Ui, row: Rect, session: &Session) -> Option<LessonRequest> {
         }
     }
     request
-}
-
-/// Draws a button with its label in the middle; one that `is_due` stands out.
-pub fn button(ui: &Ui, rect: Rect, response: &Response, words: &str, is_due: bool) {
-    let (fill, colour) = match (is_due, response.hovered()) {
-        (true, false) => (INK, Color32::WHITE),
-        (true, true) => (INK.gamma_multiply(0.86), Color32::WHITE),
-        (false, true) => (HOVERED, TEXT),
-        (false, false) => (Color32::from_gray(238), TEXT),
-    };
-    let stroke = Stroke::new(1.0, if is_due { INK } else { EDGE });
-    let painter = ui.painter();
-    painter.rect(rect, 6.0, fill, stroke, StrokeKind::Inside);
-    let font = FontId::proportional(13.5);
-    painter.text(rect.center(), Align2::CENTER_CENTER, words, font, colour);
 }
