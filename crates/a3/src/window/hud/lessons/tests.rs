@@ -2,7 +2,7 @@
 
 use egui::{Event, Modifiers, PointerButton, Pos2, RawInput, Rect, SafeAreaInsets};
 
-use super::super::panel::PanelKey;
+use super::super::panel::PanelKey::{self, Down, Left, Right, Toggle, Up};
 use super::super::style::context;
 use super::{apply, press_text, request, show, taken};
 use crate::files::lessons::{ALL, Answer};
@@ -247,7 +247,7 @@ fn a_lesson_is_gone_through_by_clicks() {
 #[test]
 fn a_lesson_is_gone_through_by_keys() {
     let mut session = session(&["t", "0.01", "--paused"]);
-    assert_eq!(request(&session, PanelKey::Toggle), None);
+    assert_eq!(request(&session, Toggle), None);
     session.act(RunAction::Lessons, 0);
     let mut press = |keys: &[PanelKey]| {
         for key in keys {
@@ -257,7 +257,6 @@ fn a_lesson_is_gone_through_by_keys() {
         let lessons = &session.panel.lessons;
         (lessons.chosen, lessons.step, lessons.given())
     };
-    use PanelKey::{Down, Left, Right, Toggle, Up};
     let (lesson, step, _) = press(&[Up, Down, Down, Toggle]);
     assert_eq!((lesson, step), (1, Some(0)));
     assert_eq!(press(&[Right, Right]).1, Some(2));
