@@ -8,7 +8,31 @@ const relaxed = WebAssembly.validate(new Uint8Array([
 ]));
 const words = document.getElementById("words");
 const canvas = document.getElementById("a3");
-const panel = document.getElementById("panel");
+// The largest file that is opened (bytes).
+const LARGEST = 64 << 20;
+
+// Keys of the browser, which the program must not see: it would keep the browser from them.
+addEventListener("keydown", (event) => {
+  const withControl = event.ctrlKey || event.metaKey;
+  const undoes = withControl && /^[zy]$/i.test(event.key);
+  if ((withControl && !undoes) || event.altKey || /^F([3-9]|12)$/.test(event.key)) event.stopImmediatePropagation();
+}, true);
+
+// Opens files that were dropped, and says which of them it cannot open.
+const open = async (program, items) => {
+  const files = items.map((item) => [item.getAsFile(), item.webkitGetAsEntry?.()?.isDirectory]);
+  // A scene comes after the meshes that it names.
+  const last = ([file]) => /\.(toml|json)$/i.test(file.name);
+  for (const [file, folder] of files.filter(([file]) => file).sort((a, b) => last(a) - last(b))) {
+    if (folder) {
+      program.say(`${file.name} is a folder: drop the scene file and the meshes in it.`);
+    } else if (file.size > LARGEST) {
+      program.say(`${file.name} has ${Math.ceil(file.size / (1 << 20))} MB, and a page opens at most 64 MB.`);
+    } else {
+      program.open_file(file.name, new Uint8Array(await file.arrayBuffer()));
+    }
+  }
+};
 
 try {
   // A browser may support WebGPU without having an adapter for it.
@@ -22,19 +46,10 @@ try {
   program.start();
   if (words.textContent.startsWith("a3 is loading")) words.textContent = "";
   canvas.focus();
-  panel.hidden = false;
-  panel.addEventListener("click", () => {
-    program.toggle_panel();
-    canvas.focus();
-  });
   addEventListener("dragover", (event) => event.preventDefault());
-  addEventListener("drop", async (event) => {
+  addEventListener("drop", (event) => {
     event.preventDefault();
-    // A scene comes after the meshes that it names.
-    const last = (file) => /\.(toml|json)$/i.test(file.name);
-    for (const file of [...event.dataTransfer.files].sort((a, b) => last(a) - last(b))) {
-      program.open_file(file.name, new Uint8Array(await file.arrayBuffer()));
-    }
+    open(program, [...event.dataTransfer.items]);
   });
 } catch (error) {
   console.error(error);

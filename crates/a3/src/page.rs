@@ -1,5 +1,5 @@
 //! The program as a web page: the window in a canvas. The query of the address (after its question
-//! mark) is a command line without the program's name, so that a link shows a run.
+//! mark) is a command line without the program's name, so that a link shows a run, or a lesson.
 
 use std::panic;
 use std::path::Path;
@@ -12,11 +12,16 @@ use crate::base::browser::{self, files};
 use crate::base::failure::Failure;
 use crate::base::progress;
 use crate::cli::{self, Cli, Command};
+use crate::files::lessons::ALL;
 use crate::files::scene_file::Hash;
 use crate::window::app;
 use crate::window::begin;
-use crate::window::session::{Action, RunAction};
+use crate::window::hud::lessons;
+use crate::window::session::LessonRequest;
 use crate::window::settings::Settings;
+
+/// Beginning of the word of the address that names a lesson.
+const LESSON: &str = "lesson=";
 
 /// Starts the run that the address describes, or shows on the page why that is not possible.
 pub fn start() {
@@ -30,12 +35,16 @@ pub fn start() {
 }
 
 fn begin() -> Result<(), Failure> {
-    let words = ["a3".to_owned()].into_iter().chain(browser::words());
+    let (asked, words): (Vec<_>, Vec<_>) = browser::words()
+        .into_iter()
+        .partition(|word| word.starts_with(LESSON));
+    let lesson = asked.first().map(|word| lesson(word)).transpose()?;
+    let words = ["a3".to_owned()].into_iter().chain(words);
     let options = Cli::try_parse_from(words).map_err(|error| match cli::explain(&error, &[]) {
         Err(failure) => failure,
         Ok(()) => Failure::usage(error),
     })?;
-    let (session, look) = match options.command {
+    let (mut session, look) = match options.command {
         None => (begin::window(&options.window)?, options.window.look),
         Some(Command::Compare(options)) => (begin::comparison(&options)?, options.look),
         Some(_) => {
@@ -49,7 +58,31 @@ fn begin() -> Result<(), Failure> {
     } else {
         Settings::read().map_err(|why| browser::log(&why)).ok()
     };
+    if let Some(lesson) = lesson {
+        session.panel.lessons.open = true;
+        lessons::apply(&mut session, lesson);
+    }
     app::spawn(session, &look, settings)
+}
+
+/// Returns the request for the lesson that a word of the address names, and for its step if it
+/// names one, as in `lesson=3` or `lesson=3.2`.
+fn lesson(word: &str) -> Result<LessonRequest, Failure> {
+    let asked = word.trim_start_matches(LESSON);
+    let (lesson, step) = asked.split_once('.').unwrap_or((asked, "1"));
+    let number = |text: &str| text.parse::<usize>().ok()?.checked_sub(1);
+    let found = number(lesson).zip(number(step));
+    let found = found.filter(|(lesson, step)| {
+        let lesson = ALL.get(*lesson);
+        lesson.is_some_and(|lesson| *step < lesson.steps.len())
+    });
+    let (lesson, step) = found.ok_or_else(|| {
+        let count = ALL.len();
+        Failure::usage(format!(
+            "{word}: there are {count} lessons in a few steps each, as in lesson=3 or lesson=3.2"
+        ))
+    })?;
+    Ok(LessonRequest::Open(lesson, step))
 }
 
 /// Takes steps of the run that a command line describes, as fast as possible. Returns a hash
@@ -88,9 +121,9 @@ pub fn run_steps(words: &str, steps: u32) -> String {
     }
 }
 
-/// Opens or closes the panel, as key Tab does in a window; in a browser that key leaves the canvas.
-pub fn toggle_panel() {
-    app::send(app::Event::Act(Action::Run(RunAction::Panel)));
+/// Shows a message of the page.
+pub fn say(words: &str) {
+    app::send(app::Event::Say(words.into()));
 }
 
 /// Opens a file that was dropped on the page.

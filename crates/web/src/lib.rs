@@ -10,10 +10,10 @@ pub fn start() {
     a3::page::start();
 }
 
-/// Opens or closes the panel.
+/// Shows a message over the picture.
 #[wasm_bindgen]
-pub fn toggle_panel() {
-    a3::page::toggle_panel();
+pub fn say(words: &str) {
+    a3::page::say(words);
 }
 
 /// Takes steps of the run in a command line: returns a hash of the state, and the time of a step

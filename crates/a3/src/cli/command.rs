@@ -89,7 +89,7 @@ pub enum Command {
     Scenes(Scenes),
     /// List the solvers with their order, evaluations per step, and default step or tolerance
     Solvers,
-    /// Print a lesson on solvers, or the list of lessons; key F1 of the window opens them
+    /// Print a lesson on solvers, or the list of lessons; key F1 of the window goes through them
     Lessons {
         /// Number of the lesson
         #[arg(value_parser = clap::value_parser!(u8).range(1..=i64::from(LESSONS)))]

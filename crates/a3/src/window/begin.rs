@@ -1,10 +1,13 @@
 //! Sessions from command-line arguments, for windows and for pictures.
 
 use a3_core::{Simulation, StepLimits};
+use clap::Parser;
 
 use crate::base::failure::Failure;
-use crate::cli::{Compare, Drawing, Look, WindowOptions};
+use crate::cli::{Cli, Command, Compare, Drawing, Look, What, WindowOptions};
 use crate::draw::show::{self, Quantity};
+use crate::files::lessons::{self, Step};
+use crate::files::scene_file::Source;
 use crate::files::setup::Request;
 use crate::window::session::{Beginning, Origin, Session};
 
@@ -12,6 +15,11 @@ use crate::window::session::{Beginning, Origin, Session};
 pub fn window(options: &WindowOptions) -> Result<Session, Failure> {
     let mut request = Request::read(&options.what)?;
     request.source = request.source.in_window();
+    window_on(request, options)
+}
+
+/// Creates the session of a window on one run of a scene that was read already.
+fn window_on(request: Request, options: &WindowOptions) -> Result<Session, Failure> {
     let source = &request.source;
     if options.watch && (source.path.is_none() || source.is_input()) {
         return Err(Failure::usage(
@@ -47,7 +55,11 @@ pub fn comparison(options: &Compare) -> Result<Session, Failure> {
             "compare takes 2 to 4 solvers, as in `a3 compare e:0.05 r:0.05`, not {count}"
         )));
     }
-    let request = Request::read(&options.what)?;
+    comparison_on(Request::read(&options.what)?, options)
+}
+
+/// Creates the session of a comparison on a scene that was read already.
+fn comparison_on(request: Request, options: &Compare) -> Result<Session, Failure> {
     let mut setup = request.build()?;
     setup.scene.limits = options.limits.given().or(setup.scene.limits);
     let simulations = options
@@ -74,6 +86,26 @@ fn begun(mut run: Simulation, look: &Look) -> Result<Simulation, Failure> {
         run.set_touching(false).map_err(Failure::usage)?;
     }
     Ok(run)
+}
+
+/// Creates the session of a step of a lesson, which pauses at the time of the step. Fails if its
+/// command line does not fit its scene.
+pub fn step(step: &Step) -> Result<Session, Failure> {
+    let options = Cli::try_parse_from(step.run.split_whitespace()).map_err(Failure::usage)?;
+    let request = |what: &What| match lessons::scene(&what.scene) {
+        Some(text) => Ok(Request {
+            source: Source::carried(&what.scene, text)?,
+            options: what.clone(),
+        }),
+        None => Request::read(what),
+    };
+    let mut session = match options.command {
+        Some(Command::Compare(options)) => comparison_on(request(&options.what)?, &options)?,
+        _ => window_on(request(&options.window.what)?, &options.window)?,
+    };
+    let own = session.tuning.defaults.duration;
+    session.tuning.defaults.duration = step.until.or(own);
+    Ok(session)
 }
 
 fn origin(request: Request, limits: StepLimits) -> Origin {

@@ -1,31 +1,32 @@
-//! Key F1, which opens the lessons with the system's opener.
-
-use std::fs;
-use std::os::unix::fs::PermissionsExt;
+//! Lessons in the window (key F1): a step begins its run, and another one replaces it.
 
 use crate::app::App;
-use crate::display::{Display, until};
+use crate::display::Display;
 
 #[test]
-fn a_key_opens_the_lessons() {
+fn a_key_opens_the_lessons_and_keys_go_through_them() {
     let Some(display) = Display::open() else {
         return;
     };
     let folder = tempfile::tempdir().unwrap();
-    let opener = folder.path().join("xdg-open");
-    fs::write(
-        &opener,
-        "#!/bin/sh\necho \"$@\" > asked.tmp\nmv asked.tmp asked\n",
-    )
-    .unwrap();
-    fs::set_permissions(&opener, fs::Permissions::from_mode(0o755)).unwrap();
-    let app = App::open(&display, folder.path(), &["r", "0.01", "--scene", "simple"]);
+    let app = App::open(&display, folder.path(), &["r", "0.01", "--scene", "chain"]);
     app.press("F1");
-    let asked = folder.path().join("asked");
-    let asked = until("the opener", || fs::read_to_string(&asked).ok());
-    let index = folder.path().join("a3/lessons/README.md");
-    assert_eq!(asked.trim_end(), index.to_str().unwrap());
-    let page = fs::read_to_string(index).unwrap();
-    assert!(page.starts_with("# Lessons"), "{page}");
+    app.expect("lesson", "list");
+    app.press("Return");
+    app.expect("lesson", "1.1");
+    app.expect("panes", "2");
+    app.expect("scene", "simple");
+    // From two panes to one, and to another scene.
+    app.press("Right");
+    app.expect("lesson", "1.2");
+    app.expect("panes", "1");
+    app.expect("solver", "euler");
+    app.press("Left");
+    app.expect("panes", "2");
+    app.press("Left");
+    app.expect("lesson", "list");
+    app.press("Tab");
+    app.expect("panel", "true");
+    app.expect("lesson", "-");
     app.expect_frames();
 }

@@ -7,4 +7,4 @@ mod window;
 
 pub use address::{address, set_words, words};
 pub use download::{download, download_picture};
-pub use window::{canvas, copy, log, open, show, storage, window};
+pub use window::{canvas, copy, log, show, storage, window};

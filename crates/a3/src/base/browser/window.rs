@@ -41,10 +41,3 @@ pub fn copy(text: &str) {
         let _ = window.navigator().clipboard().write_text(text);
     }
 }
-
-/// Opens another page in a new tab.
-pub fn open(address: &str) {
-    if let Some(window) = window() {
-        let _ = window.open_with_url_and_target(address, "_blank");
-    }
-}

@@ -146,6 +146,19 @@ impl Source {
         Ok(Self::of_text(text, description, places.without_lines()))
     }
 
+    /// Reads a scene that the program carries under a name, from its text in TOML.
+    pub fn carried(name: &str, text: &str) -> Result<Self, InputError> {
+        let (mut description, places) = parse_toml(text).map_err(in_text)?;
+        let stem = Path::new(name).file_stem().unwrap_or_default();
+        let own = || stem.to_string_lossy().into();
+        description.name.get_or_insert_with(own);
+        Ok(Self {
+            typed: name.into(),
+            path: None,
+            ..Self::of_text(text.into(), description, places)
+        })
+    }
+
     fn of_text(text: String, mut description: Description, places: Places) -> Self {
         description.name.get_or_insert_with(|| TEXT.into());
         Self {

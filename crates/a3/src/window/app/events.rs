@@ -4,12 +4,13 @@ use std::sync::Arc;
 use web_time::Instant;
 
 use winit::application::ApplicationHandler;
-use winit::event::{ElementState, StartCause, WindowEvent};
+use winit::event::{ElementState, MouseButton, StartCause, Touch, TouchPhase, WindowEvent};
 use winit::event_loop::{ActiveEventLoop, ControlFlow};
 use winit::window::{Fullscreen, WindowId};
 
 use super::platform::{self, Event};
 use super::state::App;
+use super::touch::{Effect, pinch, position};
 
 impl ApplicationHandler<Event> for App {
     fn resumed(&mut self, event_loop: &ActiveEventLoop) {
@@ -47,7 +48,10 @@ impl ApplicationHandler<Event> for App {
                 }
                 self.screen.redraw();
             }
-            Event::Act(action) => self.act(event_loop, action),
+            Event::Say(words) => {
+                self.session.readings.warn(words);
+                self.screen.redraw();
+            }
         }
     }
 
@@ -77,6 +81,9 @@ impl ApplicationHandler<Event> for App {
     }
 
     fn window_event(&mut self, event_loop: &ActiveEventLoop, _: WindowId, event: WindowEvent) {
+        if let WindowEvent::Touch(touch) = &event {
+            point(self, touch);
+        }
         let Some(graphics) = &mut self.screen.graphics else {
             return;
         };
@@ -133,6 +140,7 @@ impl ApplicationHandler<Event> for App {
                 self.mouse.release(button, &mut self.session, &self.screen);
                 self.screen.redraw();
             }
+            WindowEvent::Touch(touch) => change(self, &touch, taken),
             WindowEvent::DroppedFile(path) => {
                 if self.session.open(&path) {
                     self.scene_changed();
@@ -153,4 +161,34 @@ impl ApplicationHandler<Event> for App {
             _ => {}
         }
     }
+}
+
+/// Puts the pointer where the first finger comes down.
+fn point(app: &mut App, touch: &Touch) {
+    if app.fingers.begins(touch) {
+        app.mouse.pointer.position = position(touch);
+        app.mouse.pointer.inside = true;
+    }
+}
+
+/// Does what a change of a finger means, which is `taken` if text or a button is there.
+fn change(app: &mut App, touch: &Touch, taken: bool) {
+    let (session, screen, mouse) = (&mut app.session, &app.screen, &mut app.mouse);
+    let is_down = !matches!(touch.phase, TouchPhase::Ended | TouchPhase::Cancelled);
+    session.history.set_button_held(is_down);
+    session.panel.touch = true;
+    let (id, at) = (touch.id, position(touch));
+    match app.fingers.change(id, touch.phase, at, taken) {
+        Effect::Nothing => {}
+        Effect::Press => mouse.press(MouseButton::Left, false, session, screen),
+        Effect::Move => mouse.move_to(touch.location, session, screen),
+        Effect::Release => mouse.release(MouseButton::Left, session, screen),
+        Effect::Finish => mouse.finish(session, screen),
+        Effect::Pinch(places) => {
+            let tile = screen.tile(session, mouse.pointer.pane(session, screen));
+            pinch(&mut session.view.camera, tile, places);
+        }
+    }
+    mouse.pointer.inside &= is_down;
+    screen.redraw();
 }

@@ -7,6 +7,7 @@ use winit::event_loop::ActiveEventLoop;
 
 use super::graphics::FrameOutcome;
 use super::state::App;
+use crate::window::hud::lessons;
 use crate::window::hud::panel::{self, Request};
 use crate::window::session::{Action, RunAction};
 
@@ -60,6 +61,9 @@ impl App {
                         self.act(event_loop, action);
                     }
                     Some(Request::Change(change)) if panel::apply(session, change) => {
+                        self.scene_changed();
+                    }
+                    Some(Request::Learn(request)) if lessons::apply(session, request) => {
                         self.scene_changed();
                     }
                     _ => {}

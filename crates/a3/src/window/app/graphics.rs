@@ -7,7 +7,7 @@ use std::time::Duration;
 use a3_render::{Gpu, GpuError, Renderer, Targets, Tile, Transfer};
 use egui::CursorIcon;
 use wgpu::CurrentSurfaceTexture;
-use winit::event::WindowEvent;
+use winit::event::{TouchPhase, WindowEvent};
 use winit::window::Window;
 
 use super::adapter::{choose_format, clamped, transfer, window_samples};
@@ -146,7 +146,11 @@ impl Graphics {
             .egui_winit
             .on_window_event(&self.window, event)
             .consumed;
-        let is_press = matches!(event, WindowEvent::MouseInput { state, .. } if state.is_pressed());
+        let is_press = match event {
+            WindowEvent::MouseInput { state, .. } => state.is_pressed(),
+            WindowEvent::Touch(touch) => touch.phase == TouchPhase::Started,
+            _ => false,
+        };
         if !is_press && !matches!(event, WindowEvent::MouseWheel { .. }) {
             return consumed;
         }

@@ -122,6 +122,7 @@ impl Mouse {
 
     /// Ends the drag without an effect on the session.
     pub fn abort(&mut self) {
+        // Another session may have fewer panes.
         (self.drag, self.button, self.pane) = (Drag::None, None, 0);
     }
 

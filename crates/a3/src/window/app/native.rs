@@ -18,7 +18,6 @@ use super::screen::Screen;
 use super::watch::Watch;
 use crate::base::failure::Failure;
 use crate::base::terminal;
-use crate::files::lessons;
 use crate::files::output;
 use crate::window::hud::Studio;
 use crate::window::session::{Readings, Session};
@@ -107,11 +106,6 @@ impl Platform {
     pub fn next_check(&self) -> Option<Instant> {
         self.watch.as_ref().map(Watch::next)
     }
-}
-
-/// Opens the lessons, and returns a message.
-pub fn open_lessons() -> String {
-    lessons::open().unwrap_or_else(|failure| failure.to_string())
 }
 
 /// Writes a picture under the first free name, and returns its path. Several panes have their text,

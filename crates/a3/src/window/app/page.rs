@@ -15,7 +15,7 @@ use super::graphics::Graphics;
 use super::screen::Screen;
 use crate::base::browser;
 use crate::base::terminal;
-use crate::window::session::{Action, Session};
+use crate::window::session::Session;
 
 thread_local! {
     /// Sender of events to the window.
@@ -36,8 +36,8 @@ pub enum Event {
     Opened(Result<(Gpu, wgpu::Surface<'static>), GpuError>),
     /// A scene file was chosen on the page.
     Open(PathBuf),
-    /// A button of the page was pressed.
-    Act(Action),
+    /// The page has a message.
+    Say(String),
 }
 
 /// Sends an event to the window, if it is connected.
@@ -165,10 +165,4 @@ impl Films {
     pub fn time_to_advance(&self, _: &Session, real: f64) -> f64 {
         real
     }
-}
-
-/// Opens the lessons, which are beside the page, and returns a message.
-pub fn open_lessons() -> String {
-    browser::open("lessons/README.md");
-    "The lessons are open beside this page.".into()
 }

@@ -73,7 +73,7 @@ pub fn spawn(mut session: Session, look: &Look, settings: Option<Settings>) -> R
 fn prepare(session: &mut Session, look: &Look, settings: Option<&Settings>) {
     session.readings.in_window = true;
     if let Some(settings) = settings {
-        session.panel.open = settings.panel;
+        session.panel.open = settings.panel && !session.panel.lessons.open;
         session.pulled = settings.pulled;
         if settings.dark && !look.manner.light {
             looks::set_dark(&mut session.runs.panes, true);

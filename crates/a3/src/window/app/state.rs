@@ -15,9 +15,10 @@ use super::platform::{self, Platform};
 use super::remember::remember;
 use super::screen::Screen;
 use super::status::Status;
+use super::touch::Fingers;
 use crate::base::failure::Failure;
 use crate::files::output;
-use crate::window::hud::panel;
+use crate::window::hud::{lessons, panel};
 use crate::window::session::{Action, RunAction, Session, WindowAction};
 use crate::window::settings::Settings;
 use crate::window::{command_line, keep};
@@ -33,6 +34,8 @@ pub struct App {
     pub screen: Screen,
     /// The mouse.
     pub mouse: Mouse,
+    /// The fingers.
+    pub fingers: Fingers,
     /// The modifier keys that are held.
     pub modifiers: ModifiersState,
     /// Time when the session was last advanced.
@@ -61,6 +64,7 @@ impl App {
             session,
             screen: Screen::new(display, zoom),
             mouse: Mouse::new(),
+            fingers: Fingers::default(),
             modifiers: ModifiersState::empty(),
             last_tick: Instant::now(),
             settings,
@@ -130,7 +134,16 @@ impl App {
         if typed.is_some_and(|key| panel::press_text(&mut self.session, key)) {
             return;
         }
+        if typed.is_some_and(|key| lessons::press_text(&mut self.session, key)) {
+            return;
+        }
         let key = keyboard::panel_key(&event.logical_key);
+        if let Some(request) = key.and_then(|key| lessons::request(&self.session, key)) {
+            if lessons::apply(&mut self.session, request) {
+                self.scene_changed();
+            }
+            return;
+        }
         let shift = self.modifiers.shift_key();
         if key.is_some_and(|key| panel::press(&mut self.session, key, shift)) {
             return;
@@ -244,7 +257,6 @@ impl App {
                 self.scene_changed();
                 None
             }
-            WindowAction::Lessons => Some(platform::open_lessons()),
         };
         if let Some(message) = message {
             self.session.readings.say(message);

@@ -50,7 +50,7 @@ impl Status {
             values.join(",")
         };
         let state = format!(
-            "scene={} solver={} step={} style={:?} wind={} swing={} paused={} help={} asks={} hint={} panel={} measure={} known={} list={} film={} cursor={cursor:?} followed={} parallel={} scale={} dark={} blown={} grabbed={grabbed} \
+            "scene={} solver={} step={} style={:?} wind={} swing={} paused={} help={} asks={} hint={} panel={} measure={} known={} lesson={} list={} film={} cursor={cursor:?} followed={} parallel={} scale={} dark={} blown={} grabbed={grabbed} \
              colour={} arrows={} slowness={} scrubbed={} pins={} springs_of={} size={}x{} visible={} devices={}",
             run.scene().name,
             run.method().name,
@@ -65,6 +65,7 @@ impl Status {
             session.panel.open,
             session.measuring.open,
             session.measuring.known().is_some(),
+            lesson(session),
             session.list.is_some(),
             readings.film.is_some(),
             session
@@ -123,5 +124,15 @@ impl Status {
         ));
         self.state = state;
         self.said = Some(now);
+    }
+}
+
+/// Returns the lesson and the step that are shown, as in `1.2`, and `list` for the list of lessons.
+fn lesson(session: &Session) -> String {
+    let lessons = &session.panel.lessons;
+    match lessons.step {
+        _ if !lessons.open => "-".into(),
+        None => "list".into(),
+        Some(step) => format!("{}.{}", lessons.chosen + 1, step + 1),
     }
 }

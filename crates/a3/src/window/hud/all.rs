@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use egui::{Context, TextureId};
 
 use super::panel::{self, Request};
-use super::{bar, hint, list, measure, pane_buttons, text};
+use super::{bar, hint, lessons, list, measure, pane_buttons, text};
 use crate::window::session::Session;
 
 /// Draws text, panel, bar and the open list, with `pictures` of scenes by their names. Returns the
@@ -20,12 +20,14 @@ pub fn show_all(
     let on_panel = panel::show(ctx, session);
     let on_measure = measure::show(ctx, session);
     let on_panes = pane_buttons::show(ctx, session);
+    let on_lessons = lessons::show(ctx, session).map(Request::Learn);
     let on_bar = bar::show(ctx, session);
     let on_list = list::show(ctx, session, pictures).map(Request::Change);
     on_list
         .or(on_bar)
         .or(on_panel)
         .or(on_measure)
+        .or(on_lessons)
         .or(on_panes)
         .or(on_text)
 }

@@ -7,8 +7,10 @@ use super::style::{ALARM, FAINT, TEXT};
 use super::{layout, measure, timeline};
 use crate::window::session::{Action, RunAction, Session, WindowAction};
 
-/// Width of a button with a symbol (points).
-const SYMBOL_WIDTH: f32 = 34.0;
+/// Width of a button with a symbol, for the mouse and for fingers (points).
+const SYMBOL_WIDTHS: [f32; 2] = [34.0, 44.0];
+/// Width of a bar below which fingers have fewer buttons for the run (points).
+const MIN_WIDTH_OF_ALL: f32 = 480.0;
 /// Smallest width of the timeline (points).
 const MIN_TIMELINE_WIDTH: f32 = 90.0;
 /// Colour of the bar.
@@ -38,10 +40,10 @@ impl Button {
         }
     }
 
-    /// Returns the width of the button (points).
-    fn width(&self, ui: &Ui) -> f32 {
+    /// Returns the width of the button (points), if one with a symbol is `least` wide.
+    fn width(&self, ui: &Ui, least: f32) -> f32 {
         if self.face.chars().count() == 1 {
-            return SYMBOL_WIDTH;
+            return least;
         }
         let font = FontId::proportional(13.5);
         let words = ui
@@ -76,14 +78,14 @@ impl Button {
 /// Draws the bar, if the window has room for it, and returns the request of the mouse.
 pub fn show(ctx: &Context, session: &Session) -> Option<Request> {
     let (window, picture) = (ctx.viewport_rect(), ctx.content_rect());
-    let height = layout::bar_height([window.width(), window.height()]);
+    let height = layout::bar_height(session, [window.width(), window.height()]);
     let docked = is_shown(session) || measure::is_shown(session);
     let covered = docked && picture.right() >= window.right();
     if height == 0.0 || covered {
         return None;
     }
     let rect = Rect::from_min_max(
-        pos2(picture.left(), picture.bottom()),
+        pos2(picture.left(), window.bottom() - height),
         pos2(picture.right(), window.bottom()),
     );
     let mut request = None;
@@ -113,12 +115,18 @@ fn contents(ui: &Ui, rect: Rect, session: &Session) -> Option<Request> {
         }
     };
     let (mut left, mut right) = (rect.left(), rect.right());
-    for button in running(session) {
-        place(&button, left, SYMBOL_WIDTH);
-        left += SYMBOL_WIDTH;
+    let touch = session.panel.touch;
+    let symbol = SYMBOL_WIDTHS[usize::from(touch)];
+    let few = touch && rect.width() < MIN_WIDTH_OF_ALL;
+    for (k, button) in running(session).iter().enumerate() {
+        // Start again, and play or pause.
+        if !few || k % 2 == 0 {
+            place(button, left, symbol);
+            left += symbol;
+        }
     }
     let mut others = others(session);
-    let width = |buttons: &[Button]| buttons.iter().map(|it| it.width(ui)).sum::<f32>();
+    let width = |buttons: &[Button]| buttons.iter().map(|it| it.width(ui, symbol)).sum::<f32>();
     let room = right - left - MIN_TIMELINE_WIDTH;
     // In a narrow bar, a symbol has to do for scene and solver; then the last buttons go.
     if width(&others) > room {
@@ -129,8 +137,9 @@ fn contents(ui: &Ui, rect: Rect, session: &Session) -> Option<Request> {
         others.remove(others.len() - 2);
     }
     for button in others.iter().rev() {
-        right -= button.width(ui);
-        place(button, right, button.width(ui));
+        let width = button.width(ui, symbol);
+        right -= width;
+        place(button, right, width);
     }
     let room = Rect::from_min_max(
         pos2(left + 14.0, rect.top()),
@@ -187,6 +196,7 @@ fn others(session: &Session) -> Vec<Button> {
             run(RunAction::Measure),
         ),
         Button::new("⚙", "Tune and plot (Tab)", run(RunAction::Panel)),
+        Button::new("📖", "Lessons (F1)", run(RunAction::Lessons)),
         Button::new("⮪", "Undo (z)", window(WindowAction::Undo)),
         Button::new("📷", "Save a picture (p)", window(WindowAction::Picture)),
     ];
@@ -232,7 +242,7 @@ mod tests {
         at: Pos2,
     ) -> (String, Vec<Rect>, Option<Request>) {
         let window = Rect::from_min_size(Pos2::ZERO, vec2(width, height));
-        let bottom = layout::bar_height([width, height]);
+        let bottom = layout::bar_height(session, [width, height]);
         let press = |pressed| Event::PointerButton {
             pos: at,
             button: PointerButton::Primary,
@@ -301,6 +311,20 @@ mod tests {
         for symbol in words.chars().chain("⏸⏹☰∫✖".chars()).filter(|c| *c != '\n') {
             let known = ctx.fonts_mut(|fonts| fonts.has_glyph(&font, symbol));
             assert!(known, "{symbol}");
+        }
+        // Fingers have larger buttons, and on a phone the lessons are among them.
+        let mut touched = rewound();
+        touched.panel.touch = true;
+        for width in [360.0, 390.0, 844.0] {
+            let (words, places, _) = draw(&ctx, &touched, [width, 600.0], away);
+            assert!(words.contains('📖') && words.contains('▶'), "{words}");
+            assert_eq!(words.contains('⏭'), width > 500.0, "{words}");
+            let middles = places.iter().map(|place| place.center().x);
+            let middles: Vec<_> = middles.filter(|x| *x > 0.5 * width).collect();
+            let apart = middles
+                .iter()
+                .filter(|x| middles.iter().any(|y| y - *x > 0.0 && y - *x < 40.0));
+            assert_eq!(apart.count(), 0, "{words}");
         }
         // A tiny window has no bar.
         assert_eq!(draw(&ctx, &session, [200.0, 150.0], away).0, "");

@@ -15,6 +15,7 @@ pub fn show(ctx: &Context, session: &Session) {
         return;
     };
     let words = match network.bodies().len() {
+        0 if session.panel.touch => "Pull me with a finger",
         0 => "Pull me with the mouse",
         1 => "Push or pull me with the mouse",
         _ => "Push or pull one with the mouse",

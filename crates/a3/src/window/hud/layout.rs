@@ -2,7 +2,7 @@
 
 use a3_render::Tile;
 
-use super::{measure, panel};
+use super::{lessons, measure, panel};
 use crate::window::session::Session;
 
 /// Distance between panes (points).
@@ -10,28 +10,37 @@ const PANE_GAP: f32 = 3.0;
 
 /// Height of the bar below the picture (points).
 const BAR_HEIGHT: f32 = 40.0;
+/// Height of the bar for fingers (points).
+const TOUCH_BAR_HEIGHT: f32 = 48.0;
 
-/// Returns the height of the bar below the picture, in a window of a size (points). A small window
-/// has none.
-pub fn bar_height([width, height]: [f32; 2]) -> f32 {
+/// Returns the height of the bar below the picture, in a window of a size (points). For fingers it
+/// is higher, and a small window has none.
+pub fn bar_height(session: &Session, [width, height]: [f32; 2]) -> f32 {
     if width < 280.0 || height < 240.0 {
         0.0
+    } else if session.panel.touch {
+        TOUCH_BAR_HEIGHT
     } else {
         BAR_HEIGHT
     }
 }
 
-/// Returns the size (px) of the picture beside the panel and above the bar, in a window of `size`
-/// (px) at `scale` pixels per point.
+/// Returns the size (px) of the picture beside the panel or the lessons, and above the bar, in a
+/// window of `size` (px) at `scale` pixels per point.
 pub fn picture_size(session: &Session, size: (u32, u32), scale: f32) -> (u32, u32) {
     let (width, height) = if measure::is_shown(session) {
         measure::picture_size(size, scale)
     } else {
         panel::picture_size(session, size, scale)
     };
-    let bar = bar_height([size.0, size.1].map(|side| side as f32 / scale));
-    let bar = (bar * scale).round() as u32;
-    (width, height.saturating_sub(bar).max(1))
+    let window = [size.0, size.1].map(|side| side as f32 / scale);
+    let [right, below] = lessons::taken(session, window);
+    let [right, below] =
+        [right, below + bar_height(session, window)].map(|a| (a * scale).round() as u32);
+    (
+        width.saturating_sub(right).max(1),
+        height.saturating_sub(below).max(1),
+    )
 }
 
 /// Returns the width on the right and the height below that are not available to text (points).

@@ -10,6 +10,7 @@ mod help;
 mod hint;
 pub mod layout;
 mod legend;
+pub mod lessons;
 mod list;
 mod measure;
 mod overlay;

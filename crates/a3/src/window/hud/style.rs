@@ -41,6 +41,11 @@ pub struct Mark {
 }
 
 impl Mark {
+    /// Returns the symbol alone.
+    pub fn symbol(self) -> char {
+        self.symbol
+    }
+
     /// Returns text of normal size, with this mark.
     pub fn text(self, words: &str) -> RichText {
         text(format!("{} {words}", self.symbol)).color(self.colour)

@@ -50,6 +50,7 @@ pub enum RunAction {
     Panel,
     /// Show questions about the scene and their answers, or hide them.
     Measure,
+    Lessons,
     WriteScene,
     Help,
 }
@@ -75,7 +76,6 @@ pub enum WindowAction {
     /// Load the last checkpoint.
     LoadRun,
     FullScreen,
-    Lessons,
     /// Close the help; without it, ask whether to quit.
     Quit,
     /// Close the window.

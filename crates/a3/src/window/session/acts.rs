@@ -94,17 +94,8 @@ impl Session {
             RunAction::Projection => self.readings.say(self.view.toggle_projection()),
             RunAction::SeeAll => self.view.see_all(&self.runs.panes),
             RunAction::NextView => self.readings.say(self.view.next_view()),
-            RunAction::Panel => {
-                self.panel.open = !self.panel.open;
-                self.measuring.open &= !self.panel.open;
-            }
-            RunAction::Measure if self.measuring.answerer.is_none() => self
-                .readings
-                .say("Only the program measures: key y copies the command line for it."),
-            RunAction::Measure => {
-                self.measuring.open = !self.measuring.open;
-                self.panel.open &= !self.measuring.open;
-                self.readings.help = false;
+            RunAction::Panel | RunAction::Measure | RunAction::Lessons => {
+                self.toggle_beside(action)
             }
             RunAction::WriteScene => {
                 let pane = &self.runs.panes[at.min(self.runs.panes.len() - 1)];
@@ -117,6 +108,27 @@ impl Session {
             RunAction::Help => self.readings.help = !self.readings.help,
         }
         false
+    }
+
+    /// Opens the panel, the measurements or the lessons beside the picture, or closes it; the others
+    /// are closed then.
+    fn toggle_beside(&mut self, action: RunAction) {
+        if action == RunAction::Measure && self.measuring.answerer.is_none() {
+            let why = "Only the program measures: key y copies the command line for it.";
+            return self.readings.say(why);
+        }
+        let panes = [
+            (RunAction::Panel, &mut self.panel.open),
+            (RunAction::Measure, &mut self.measuring.open),
+            (RunAction::Lessons, &mut self.panel.lessons.open),
+        ];
+        for (own, open) in panes {
+            *open = own == action && !*open;
+        }
+        if action != RunAction::Panel {
+            self.readings.help = false;
+            self.list = None;
+        }
     }
 
     /// Resets all runs to the initial state of their scene.
@@ -276,6 +288,12 @@ impl Session {
     /// Shows the scene of a file, and keeps solvers and steps that can integrate it. If the file
     /// cannot be opened, shows why and returns false; the runs continue.
     pub fn open(&mut self, file: &Path) -> bool {
+        if file.is_dir() {
+            let folder = file.display();
+            let why = format!("{folder} is a folder: drop the scene file or the mesh in it.");
+            self.readings.warn(why);
+            return false;
+        }
         match self.scenes.open(file) {
             Ok(setup) => {
                 let source = &self.scenes.shown.source;

@@ -109,7 +109,7 @@ pub static GROUPS: [Group; 8] = [
         purpose: "Window",
         bindings: &[
             window(&["F11"], WindowAction::FullScreen, "full screen"),
-            window(&["F1"], WindowAction::Lessons, "lessons"),
+            run(&["F1"], RunAction::Lessons, "lessons"),
             run(&["h", "?"], RunAction::Help, "this help"),
             window(&["Esc"], WindowAction::Quit, "close the help; quit"),
         ],

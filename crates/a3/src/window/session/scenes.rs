@@ -51,6 +51,19 @@ impl Scenes {
         }
     }
 
+    /// Adds the scenes that a former session could show, and watches its file.
+    pub fn adopt(&mut self, former: Self) {
+        let shown = self.shown.source.typed.clone();
+        let others = former.asked.into_iter();
+        self.asked
+            .extend(others.filter(|origin| origin.source.typed != shown));
+        self.begun = former.begun;
+        self.recent = former.recent;
+        self.checkpoint = former.checkpoint;
+        let number = self.names().iter().position(|name| *name == shown);
+        self.number = number.unwrap_or(0);
+    }
+
     /// Returns the names of all scenes: first the user's files, then the built-in scenes.
     fn names(&self) -> Vec<String> {
         let files = self.asked.iter().map(|origin| &origin.source);

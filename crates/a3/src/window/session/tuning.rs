@@ -3,6 +3,7 @@
 use a3_core::Scene;
 use a3_scenes::{Defaults, Part, PartChange, Setup};
 
+use super::lessons::Lessons;
 use super::origin::Origin;
 use crate::files::ending::Ending;
 
@@ -53,10 +54,14 @@ impl Tuning {
 /// Default simulated time that a film of the last seconds covers (s).
 pub const DEFAULT_FILM_SECONDS: f64 = 5.0;
 
-/// State of the panel, except the settings of runs.
+/// State of the panel, except the settings of runs, and of the pane of lessons.
 pub struct PanelState {
     /// Whether the panel is open.
     pub open: bool,
+    /// The lessons, in whose place the panel opens.
+    pub lessons: Lessons,
+    /// Whether fingers are used, for which buttons are larger.
+    pub touch: bool,
     /// Number of the chosen row in the table of knobs, which keys turn.
     pub row: usize,
     /// Whether the dark theme is on, if the panel chose it.
@@ -77,6 +82,8 @@ impl Default for PanelState {
     fn default() -> Self {
         Self {
             open: false,
+            lessons: Lessons::default(),
+            touch: false,
             row: 0,
             dark: None,
             typed: None,

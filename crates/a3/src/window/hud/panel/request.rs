@@ -4,7 +4,9 @@ use super::dial::{Dial, Turn};
 use super::knobs::{KNOBS, Knob, is_left_out};
 use super::values::pane;
 use super::{measure, parts};
-use crate::window::session::{Action, MeasureRequest, Session, TextKey, Topic, asking, panes};
+use crate::window::session::{
+    Action, LessonRequest, MeasureRequest, Session, TextKey, Topic, asking, panes,
+};
 
 /// A request of the mouse.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -13,6 +15,8 @@ pub enum Request {
     Act(Action),
     /// Change the panel, a knob, the open list, or the moment.
     Change(PanelRequest),
+    /// Go on in a lesson.
+    Learn(LessonRequest),
 }
 
 /// A request of the mouse to the panel, the open list or the timeline.

@@ -17,13 +17,13 @@ pub const SHEET: Color32 = Color32::from_rgb(226, 226, 224);
 /// Colour of the panel's edge.
 pub const EDGE: Color32 = Color32::from_rgb(188, 189, 192);
 /// Colour of values that differ from the scene's own, and of controls.
-pub(super) const INK: Color32 = Color32::from_rgb(38, 84, 132);
+pub const INK: Color32 = Color32::from_rgb(38, 84, 132);
 /// Colour of the empty part of a track, and of a switch that is off.
-const TRACK: Color32 = Color32::from_rgb(186, 188, 194);
+pub const TRACK: Color32 = Color32::from_rgb(186, 188, 194);
 /// Colour of the chosen row.
-pub(super) const CHOSEN: Color32 = Color32::from_rgb(207, 211, 218);
+pub const CHOSEN: Color32 = Color32::from_rgb(207, 211, 218);
 /// Colour of the row under the pointer.
-pub(super) const HOVERED: Color32 = Color32::from_rgb(217, 218, 220);
+pub const HOVERED: Color32 = Color32::from_rgb(217, 218, 220);
 
 /// Width of the name (points).
 const NAME_WIDTH: f32 = 76.0;
