@@ -61,6 +61,8 @@ pub enum Refusal {
     Rotates,
     /// Constraints hold particles.
     HoldsConstraints,
+    /// Constraints hold particles, and surfaces touch.
+    HoldsTouching,
     /// Particles also act on others than their neighbours, as in fluids, through a shared density.
     HidesCouplings,
     /// Forces between particles are not linear springs.
@@ -232,6 +234,9 @@ impl fmt::Display for Refusal {
             Self::HoldsConstraints => {
                 f.write_str("does not support constraints: use an explicit solver")
             }
+            Self::HoldsTouching => f.write_str(
+                "does not support constraints where surfaces touch: use an explicit solver",
+            ),
             Self::HidesCouplings => f.write_str(
                 "does not support fluids and amounts of gas, whose particles act on others than \
                  their neighbours: use an explicit solver",

@@ -65,6 +65,7 @@ mod failure;
 mod fused;
 mod geometry;
 mod grid;
+mod held;
 pub mod integrators;
 mod lanes;
 mod linear;
@@ -89,6 +90,7 @@ mod system;
 #[cfg(test)]
 mod testing;
 mod threads;
+mod views;
 mod work;
 
 pub use constraints::Constraint;

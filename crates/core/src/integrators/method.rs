@@ -144,7 +144,10 @@ impl Method {
             linearized.is_some_and(|linearized| linearized.baumgarte_frequency().is_some());
         let lists_all_couplings = linearized.is_none_or(Linearized::lists_all_couplings);
         match self.view {
-            View::Tangent | View::Springs if holds_constraints => Some(Refusal::HoldsConstraints),
+            View::Springs if holds_constraints => Some(Refusal::HoldsConstraints),
+            View::Tangent if holds_constraints && linearized.is_some_and(|l| l.held().is_none()) => {
+                Some(Refusal::HoldsTouching)
+            }
             View::Tangent | View::Springs if !lists_all_couplings => Some(Refusal::HidesCouplings),
             View::Springs if mechanics.compliant().is_none() => Some(Refusal::LacksSprings),
             View::Accelerations if !mechanics.is_positional() => Some(Refusal::ReadsVelocity),

@@ -47,11 +47,12 @@ impl Integrator for ImplicitMidpoint {
         check_dim(base.len(), y)?;
         base.copy_from_slice(y);
         let half = 0.5 * h;
-        let work = stage.solve(system, t + half, half, base, y, Newton::Full)?;
+        let work = stage.solve(system, t + half, half, base, y, Newton::Mirrored)?;
         for (y, base) in y.iter_mut().zip(&*base) {
             *y = 2.0 * *y - base;
         }
         system.hold(t + h, y);
+        stage.project(system, y);
         Ok(work)
     }
 }

@@ -44,4 +44,12 @@ impl StageSolver {
             }),
         }
     }
+
+    /// Moves a state to where all constraints are met and stay so.
+    pub(super) fn project(&self, system: &dyn ParticleSystem, y: &mut [f64]) {
+        let linearized = system.mechanics().and_then(Mechanics::linearized);
+        if let (Self::Mechanical(stage), Some(linearized)) = (self, linearized) {
+            stage.project(linearized, y.split_at_mut(y.len() / 2).into());
+        }
+    }
 }
