@@ -36,7 +36,11 @@ impl Pattern {
     /// Pattern for a matrix of n rows of blocks and one more row for each of these `ties`, which
     /// has blocks in the columns of both of its ends, and is eliminated next after them; the other
     /// blocks are at `pairs`.
-    pub fn tied(n: usize, pairs: impl Iterator<Item = [u32; 2]>, ties: &[[u32; 2]]) -> Option<Self> {
+    pub fn tied(
+        n: usize,
+        pairs: impl Iterator<Item = [u32; 2]>,
+        ties: &[[u32; 2]],
+    ) -> Option<Self> {
         // A tie joins its ends once one of them is eliminated.
         let mut meets = neighbours(n, pairs.chain(ties.iter().copied()));
         let ends_first = order::order(meets.clone(), usize::MAX)?;
@@ -46,7 +50,11 @@ impl Pattern {
         }
         let mut after = vec![vec![]; n];
         for ([i, j], tie) in ties.iter().zip(n as u32..) {
-            let last = if ranks[*i as usize] > ranks[*j as usize] { i } else { j };
+            let last = if ranks[*i as usize] > ranks[*j as usize] {
+                i
+            } else {
+                j
+            };
             after[*last as usize].push(tie);
             let mut ends = vec![*i, *j];
             ends.dedup();

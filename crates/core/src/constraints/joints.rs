@@ -79,7 +79,13 @@ pub(crate) fn project(
                 break;
             }
         }
-        push(constraints, inverse_masses, [&*x, &*v], system, |_, rate| -rate);
+        push(
+            constraints,
+            inverse_masses,
+            [&*x, &*v],
+            system,
+            |_, rate| -rate,
+        );
         spread(constraints, system, v);
     });
 }

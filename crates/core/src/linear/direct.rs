@@ -90,7 +90,12 @@ impl Direct {
 }
 
 /// Writes the blocks of a tangent to their places in a factor that is otherwise zero.
-pub(super) fn fill(tangent: &Tangent, pattern: &Pattern, factor: &mut Factor<3, 4>, places: &[Place]) {
+pub(super) fn fill(
+    tangent: &Tangent,
+    pattern: &Pattern,
+    factor: &mut Factor<3, 4>,
+    places: &[Place],
+) {
     factor.clear();
     let masses = tangent.masses();
     for (i, m) in masses.iter().enumerate() {

@@ -78,7 +78,12 @@ impl Saddle {
         let n = tangent.particles();
         let is_free = |i: usize| tangent.masses()[i] != 0.0;
         let [xx, yy, zz, ..] = tangent.diagonal();
-        for (k, ((joint, impulses), ties)) in joints.iter().zip(impulses.as_chunks::<3>().0).zip(ties).enumerate() {
+        for (k, ((joint, impulses), ties)) in joints
+            .iter()
+            .zip(impulses.as_chunks::<3>().0)
+            .zip(ties)
+            .enumerate()
+        {
             let pushes = joint.count > 0 && impulses[joint.count - 1] > 0.0;
             let bent = match pushes && clamped {
                 true => Matrix3::zeros(),

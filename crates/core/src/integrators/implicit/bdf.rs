@@ -329,7 +329,7 @@ impl Trial for Bdf {
 
     fn interpolate(
         &mut self,
-        _system: &dyn ParticleSystem,
+        system: &dyn ParticleSystem,
         _t: f64,
         theta: f64,
         out: &mut [f64],
@@ -340,6 +340,7 @@ impl Trial for Bdf {
             factor *= (theta - 1.0 + j as f64) / (j + 1) as f64;
             add_scaled(out, factor, d);
         }
+        self.solver.project(system, out);
         Work::default()
     }
 

@@ -64,12 +64,27 @@ impl Joined {
 
     /// Finds the constraints at x, and the rates by which v has to change for them to be met, for a
     /// change of x by the gap and a times that of v.
-    pub fn evaluate(&mut self, held: &dyn Held, a: f64, [bx, x, gap]: [&[f64]; 3], newton: Newton) {
+    pub fn evaluate(
+        &mut self,
+        system: &dyn Linearized,
+        (t, a): (f64, f64),
+        [bx, x, gap]: [&[f64]; 3],
+        newton: Newton,
+    ) {
+        let Some(held) = held(system) else {
+            return;
+        };
         held.joints(x, &mut self.joints);
         if newton == Newton::Mirrored {
             for ((end, x), bx) in self.end.iter_mut().zip(x).zip(bx) {
                 *end = 2.0 * x - bx;
             }
+            let n = x.len() / 3;
+            system.pins(t + a, &mut |i, place| {
+                for axis in 0..3 {
+                    self.end[axis * n + i] = place.position[axis];
+                }
+            });
             held.joints(&self.end, &mut self.at_end);
             // The end moves twice as far as the middle.
             for (joint, end) in self.joints.iter_mut().zip(&self.at_end) {

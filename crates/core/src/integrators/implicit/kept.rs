@@ -117,7 +117,7 @@ impl KeptSolver {
             }
             match solved {
                 Ok(()) => {
-                    self.stage.project(system, y);
+                    self.project(system, y);
                     return (work, true);
                 }
                 Err(Failure::Indefinite) if !self.tangent.clamped => clamped = true,
@@ -129,6 +129,11 @@ impl KeptSolver {
             }
             fresh = true;
         }
+    }
+
+    /// Moves a state to where all constraints are met and stay so.
+    pub fn project(&self, system: &dyn ParticleSystem, y: &mut [f64]) {
+        self.stage.project(system, y);
     }
 
     /// Forms the tangent where it was formed before. Returns the cost, and whether it is positive

@@ -274,8 +274,8 @@ impl Mechanical {
         if most <= 0.0 {
             self.gap.fill(0.0);
         }
-        if let (Some(joined), Some(held)) = (&mut self.joined, held(mechanics)) {
-            joined.evaluate(held, a, [bx, x, &self.gap], newton);
+        if let Some(joined) = &mut self.joined {
+            joined.evaluate(mechanics, (t, a), [bx, x, &self.gap], newton);
         }
         Work::of(1)
     }

@@ -3,7 +3,8 @@
 use super::dense::Dense;
 use super::mechanical::Mechanical;
 use super::newton::Newton;
-use crate::error::{Error, Refusal};
+use crate::error::Error;
+use crate::refusal::Refusal;
 use crate::system::{Mechanics, ParticleSystem};
 use crate::work::Work;
 
@@ -43,6 +44,11 @@ impl StageSolver {
                 why: Refusal::LacksMasses,
             }),
         }
+    }
+
+    /// Whether there are constraints.
+    pub(super) fn is_joined(&self) -> bool {
+        matches!(self, Self::Mechanical(stage) if stage.joined.is_some())
     }
 
     /// Moves a state to where all constraints are met and stay so.
