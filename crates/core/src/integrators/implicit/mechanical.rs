@@ -275,6 +275,14 @@ impl Mechanical {
             self.gap.fill(0.0);
         }
         if let Some(joined) = &mut self.joined {
+            // Pins are in their places.
+            let inverse_masses = mechanics.inverse_masses();
+            for column in self.gap.chunks_exact_mut(inverse_masses.len()) {
+                let pinned = column.iter_mut().zip(inverse_masses);
+                pinned
+                    .filter(|(_, w)| **w == 0.0)
+                    .for_each(|(gap, _)| *gap = 0.0);
+            }
             joined.evaluate(mechanics, (t, a), [bx, x, &self.gap], newton);
         }
         Work::of(1)
