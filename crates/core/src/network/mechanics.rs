@@ -143,7 +143,7 @@ impl Linearized for Network {
             .then(|| self.constraints.baumgarte_frequency())
     }
 
-    /// Returns the constraints, unless surfaces touch: the equations of both at once are not solved.
+    /// Returns the constraints, unless surfaces touch, whose pairs of vertices change.
     fn held(&self) -> Option<HeldView<'_>> {
         let is_served = self.is_constrained() && self.hints().pattern_is_fixed();
         is_served.then_some(HeldView(self))

@@ -90,6 +90,16 @@ fn bdf_meets_its_tolerance_with_rods() {
 }
 
 #[test]
+fn bdf_begins_off_a_wire() {
+    let network = network(&[0.5], &[wire()]);
+    let y = state(&[vector(1.0 + 1e-5, 0.0, 0.0)], &[ZERO]);
+    let scene = Scene::new("bead", Model::Network(Box::new(network.clone())), y);
+    let mut run = Simulation::new(scene, method("bdf"), Control::Tolerance(1e-7)).unwrap();
+    run.advance_to(0.1).unwrap();
+    assert!(error(&network, run.state()) < 1e-14);
+}
+
+#[test]
 fn the_midpoint_rule_keeps_the_energy_of_rods() {
     let (network, y) = double_pendulum();
     let (off, change, _) = watch(&network, &y, "implicit-midpoint", 0.01, 1000);
