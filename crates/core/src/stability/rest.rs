@@ -173,8 +173,8 @@ impl RestState {
 /// Euler with growing steps.
 ///
 /// `None` if implicit Euler does not support the scene, if the scene has constraints, which the
-/// modes around rest leave out, rigid bodies, or moving pins or obstacles, and if it does not settle
-/// or takes too much work; also soon after `go_on` returns false.
+/// modes around rest leave out, rigid bodies, or moving pins or obstacles, and if it does not
+/// settle or takes too much work; also soon after `go_on` returns false.
 ///
 /// # Errors
 /// The scene cannot be run.

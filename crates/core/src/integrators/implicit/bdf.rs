@@ -237,8 +237,8 @@ impl Trial for Bdf {
     }
 
     fn begin(&mut self, system: &dyn ParticleSystem, t: f64, y: &[f64]) -> Work {
-        // A pin that a hand has just set in motion jumps to the velocity of its path, and what is off
-        // its constraints returns to them: no step is so short that it would not.
+        // A pin that a hand has just set in motion jumps to the velocity of its path, and what is
+        // off its constraints returns to them: no step is so short that it would not.
         self.step.y0.copy_from_slice(y);
         system.hold(t, &mut self.step.y0);
         self.solver.project(system, &mut self.step.y0);
