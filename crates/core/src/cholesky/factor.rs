@@ -163,7 +163,9 @@ impl<const B: usize, const P: usize> WithSimd for Factorise<'_, B, P> {
             }
             if negative[k] {
                 *diagonal = opposite(diagonal);
-                column.iter_mut().for_each(|block| *block = opposite(block));
+                for block in &mut *column {
+                    *block = opposite(block);
+                }
             }
             if !root(diagonal) {
                 return false;

@@ -58,7 +58,9 @@ impl Pattern {
             after[*last as usize].push(tie);
             let mut ends = vec![*i, *j];
             ends.dedup();
-            ends.iter().for_each(|end| meets[*end as usize].push(tie));
+            for end in &ends {
+                meets[*end as usize].push(tie);
+            }
             meets.push(ends);
         }
         let with_ties = |row: &u32| [&[*row][..], &after[*row as usize]].concat();

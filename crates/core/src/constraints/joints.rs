@@ -74,8 +74,7 @@ pub(crate) fn project(
         for _ in 0..MAX_ITERATIONS {
             let longest = push(constraints, inverse_masses, [&*x, &*v], system, |c, _| -c);
             spread(constraints, system, x);
-            // Written so that NaN ends the iteration.
-            if !(longest > ROUNDING * size) {
+            if longest.is_nan() || longest <= ROUNDING * size {
                 break;
             }
         }

@@ -85,9 +85,10 @@ impl Saddle {
             .enumerate()
         {
             let pushes = joint.count > 0 && impulses[joint.count - 1] > 0.0;
-            let bent = match pushes && clamped {
-                true => Matrix3::zeros(),
-                false => joint.turning(impulses) * -a,
+            let bent = if pushes && clamped {
+                Matrix3::zeros()
+            } else {
+                joint.turning(impulses) * -a
             };
             let mut softness = 0.0;
             for ((i, sign), place) in joint.parts().zip(&ties[1..]) {

@@ -27,8 +27,15 @@ pub(super) struct Joined {
 }
 
 /// Returns the constraints of a system, if it has some.
-pub(super) fn held<'a>(system: &'a dyn Linearized) -> Option<&'a dyn Held> {
+pub(super) fn held(system: &dyn Linearized) -> Option<&dyn Held> {
     system.held().map(|HeldView(held)| held)
+}
+
+/// Moves a state to where all constraints are met and stay so.
+pub(super) fn project(system: &dyn Linearized, [x, v]: [&mut [f64]; 2]) {
+    if let Some(held) = held(system) {
+        held.project(x, v);
+    }
 }
 
 impl Joined {

@@ -8,7 +8,7 @@
 //! Simulation*, 1998).
 
 use super::changes::{Changes, TOLERANCE};
-use super::joined::{Joined, held};
+use super::joined::{Joined, held, project};
 use super::newton::{MAX_ITERATIONS, Newton, dot, norm};
 use super::secants::Secants;
 use crate::error::Error;
@@ -119,14 +119,14 @@ impl Mechanical {
                 change *= share;
             }
             if newton == Newton::Once {
-                self.project(mechanics, [x, v]);
+                project(mechanics, [x, v]);
                 return Ok(work);
             }
             let size = norm(v) + norm(x) / a.abs();
             changes.add(change, size, residual);
             if changes.are_over(1e3 * TOLERANCE) {
                 if newton == Newton::Full {
-                    self.project(mechanics, [x, v]);
+                    project(mechanics, [x, v]);
                 }
                 return Ok(work);
             }
@@ -368,13 +368,6 @@ impl Mechanical {
             None => self
                 .solver
                 .solve(mechanics, &self.rhs, &mut self.dv, tolerance),
-        }
-    }
-
-    /// Moves a state to where all constraints are met and stay so.
-    pub(super) fn project(&self, mechanics: &dyn Linearized, [x, v]: [&mut [f64]; 2]) {
-        if let Some(held) = held(mechanics) {
-            held.project(x, v);
         }
     }
 }

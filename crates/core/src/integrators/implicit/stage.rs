@@ -1,6 +1,7 @@
 //! The solver of the implicit stages of a system, by the kind of the system.
 
 use super::dense::Dense;
+use super::joined::project;
 use super::mechanical::Mechanical;
 use super::newton::Newton;
 use crate::error::Error;
@@ -54,8 +55,8 @@ impl StageSolver {
     /// Moves a state to where all constraints are met and stay so.
     pub(super) fn project(&self, system: &dyn ParticleSystem, y: &mut [f64]) {
         let linearized = system.mechanics().and_then(Mechanics::linearized);
-        if let (Self::Mechanical(stage), Some(linearized)) = (self, linearized) {
-            stage.project(linearized, y.split_at_mut(y.len() / 2).into());
+        if let (Self::Mechanical(_), Some(linearized)) = (self, linearized) {
+            project(linearized, y.split_at_mut(y.len() / 2).into());
         }
     }
 }

@@ -20,8 +20,8 @@ fn double_pendulum() -> (Network, Vec<f64>) {
     (network, state(&x, &[ZERO; 3]))
 }
 
-/// Where its particles are after a second, by the equations for the two angles, solved with SciPy's
-/// DOP853 at a tolerance of 1e-13.
+/// Where its particles are after a second, by the equations for the two angles, solved by the
+/// pair DOP853 of `scipy` at a tolerance of 1e-13.
 const AFTER_A_SECOND: [Vector3<f64>; 2] = [
     vector_of(0.371_795_553_050_316_3, -0.928_314_637_788_292_9),
     vector_of(-0.004_249_225_825_422_1, -1.854_916_129_412_549_4),
