@@ -9,6 +9,7 @@ mod element;
 mod elements;
 mod energies;
 mod evaluation;
+mod held;
 mod holding;
 mod matrix;
 mod mechanics;

@@ -6,12 +6,15 @@ use std::ops::Range;
 
 use crate::coupling::Coupling;
 use crate::error::Error;
+use crate::held::HeldView;
 use crate::measure::Measure;
 use crate::path::Place;
 use crate::products::{Products, SolverHints};
-use crate::rows::{Rows, Terms};
+use crate::rows::Rows;
 use crate::spring::SpringLaw;
 use crate::threads::copy;
+pub(crate) use crate::views::Rigid;
+pub use crate::views::{RigidView, RowsView};
 
 /// A first-order system y' = f(t, y).
 ///
@@ -206,44 +209,6 @@ pub trait Splitting {
     fn drift(&self, t: f64, h: f64, x: &mut [f64], v: &mut [f64]);
 }
 
-/// View of [`Rows`], of which other crates see only whether it is there.
-#[derive(Clone, Copy)]
-pub struct RowsView<'a>(pub(crate) &'a dyn Rows);
-
-/// View of [`Rigid`], of which other crates see only whether it is there.
-#[derive(Clone, Copy)]
-pub struct RigidView<'a>(pub(crate) &'a dyn Rigid);
-
-/// A system whose state y = [x | v | z] holds more than positions and velocities: the rotations and
-/// the angular momenta of rigid bodies.
-pub(crate) trait Rigid {
-    /// Returns the length of the state.
-    fn length(&self) -> usize;
-
-    /// Writes y' = f(t, y) to `dydt`.
-    fn rates(&self, t: f64, y: &[f64], dydt: &mut [f64]);
-
-    /// Writes the rates of velocities and angular momenta by the forces of these terms to `rates`,
-    /// and 0 for all the rest of y.
-    fn kick(&self, t: f64, terms: Terms, y: &[f64], rates: &mut [f64]);
-
-    /// Whether the forces of a kick depend on velocities.
-    fn kick_reads_velocity(&self) -> bool;
-
-    /// Moves y from t to t + h (s) by its motion without the forces of a kick.
-    fn drift(&self, t: f64, h: f64, terms: Terms, y: &mut [f64]);
-
-    /// Whether number k of the state is a position or a velocity of a point of a body: no f reads
-    /// it, and [`place`](Self::place) writes it.
-    fn is_carried(&self, k: usize) -> bool;
-
-    /// Puts pins and the points of bodies in their places at time t (s).
-    fn place(&self, t: f64, y: &mut [f64]);
-
-    /// Visits the numbers of the state with their quantities, except those of the points of bodies.
-    fn measures(&self, visit: &mut dyn FnMut(Range<usize>, Measure));
-}
-
 /// The forces of a system to first order, for methods that solve with them.
 pub trait Linearized: Mechanics {
     /// Writes dF = dF/dx dx + dF/dv dv to `df`, without forming a matrix.
@@ -271,8 +236,15 @@ pub trait Linearized: Mechanics {
 
     /// Returns the natural frequency w (1/s) of Baumgarte stabilisation, C'' = -w2 C - 2 w C', if
     /// the forces hold constraints C = 0. The differential and the couplings leave these forces
-    /// out, so implicit methods refuse the system.
+    /// out.
     fn baumgarte_frequency(&self) -> Option<f64> {
+        None
+    }
+
+    /// Returns the view of the constraints, with which implicit methods step. Without it, they
+    /// refuse a system that has constraints.
+    #[doc(hidden)]
+    fn held(&self) -> Option<HeldView<'_>> {
         None
     }
 

@@ -33,6 +33,9 @@ pub(crate) struct Factor<const B: usize, const P: usize> {
     first: Vec<u32>,
     next: Vec<u32>,
     reached: Vec<u32>,
+    /// Whether the block of each column on the diagonal of the matrix that is left when the column
+    /// is reached is negative definite.
+    negative: Vec<bool>,
 }
 
 impl<const B: usize, const P: usize> Factor<B, P> {
@@ -50,6 +53,7 @@ impl<const B: usize, const P: usize> Factor<B, P> {
             first: vec![NONE; n],
             next: vec![NONE; n],
             reached: vec![0; n],
+            negative: vec![false; n],
         })
     }
 
@@ -69,7 +73,13 @@ impl<const B: usize, const P: usize> Factor<B, P> {
         &mut self.blocks[place.block as usize]
     }
 
-    /// Factorises the matrix in the blocks. Returns whether it is positive definite.
+    /// Makes the factorisation A = L S LT one in which the sign of a row of the matrix in S is -1.
+    pub fn set_negative(&mut self, pattern: &Pattern, i: usize) {
+        self.negative[pattern.ranks[i] as usize] = true;
+    }
+
+    /// Factorises the matrix in the blocks. Returns whether it is positive definite, or has the
+    /// signs that were set.
     pub fn factorise(&mut self, pattern: &Pattern) -> bool {
         let factor = self;
         Arch::new().dispatch(Factorise { factor, pattern })
@@ -118,6 +128,7 @@ impl<const B: usize, const P: usize> WithSimd for Factorise<'_, B, P> {
             first,
             next,
             reached,
+            negative,
             ..
         } = self.factor;
         let Pattern { starts, rows, .. } = self.pattern;
@@ -137,8 +148,9 @@ impl<const B: usize, const P: usize> WithSimd for Factorise<'_, B, P> {
                 let j = left as usize;
                 left = next[j];
                 let (place, end) = (reached[j] as usize, starts[j + 1] as usize);
-                let by = before[place];
-                subtract_product(diagonal, &by, &by);
+                let own = before[place];
+                let by = if negative[j] { opposite(&own) } else { own };
+                subtract_product(diagonal, &own, &by);
                 for place in place + 1..end {
                     let target = places[rows[place] as usize] as usize;
                     subtract_product(&mut column[target], &before[place], &by);
@@ -147,6 +159,12 @@ impl<const B: usize, const P: usize> WithSimd for Factorise<'_, B, P> {
                     let to = rows[place + 1] as usize;
                     reached[j] += 1;
                     (next[j], first[to]) = (first[to], j as u32);
+                }
+            }
+            if negative[k] {
+                *diagonal = opposite(diagonal);
+                for block in &mut *column {
+                    *block = opposite(block);
                 }
             }
             if !root(diagonal) {
@@ -179,6 +197,7 @@ impl<const B: usize, const P: usize> WithSimd for Solve<'_, B, P> {
             diagonal,
             blocks,
             unknowns,
+            negative,
             ..
         } = self.factor;
         let Pattern { starts, rows, .. } = self.pattern;
@@ -202,6 +221,9 @@ impl<const B: usize, const P: usize> WithSimd for Solve<'_, B, P> {
                 add_terms(&mut sums, &blocks[place], &unknowns[rows[place] as usize]);
             }
             let x = &mut unknowns[k];
+            if negative[k] {
+                *x = x.map(|x| -x);
+            }
             for c in (0..B).rev() {
                 let mut of_c = x[c];
                 for r in 0..P {
@@ -214,6 +236,12 @@ impl<const B: usize, const P: usize> WithSimd for Solve<'_, B, P> {
             }
         }
     }
+}
+
+/// The block with the opposite sign.
+#[inline(always)]
+fn opposite<const B: usize, const P: usize>(a: &Block<B, P>) -> Block<B, P> {
+    a.map(|column| column.map(|number| -number))
 }
 
 /// c -= a bT

@@ -28,17 +28,51 @@ impl Pattern {
     /// triangle and possibly repeated; `None` if the factor would have more than `most` blocks
     /// below its diagonal.
     pub fn new(n: usize, pairs: impl Iterator<Item = [u32; 2]>, most: usize) -> Option<Self> {
-        let mut meets = vec![vec![]; n];
-        for [i, j] in pairs.filter(|[i, j]| i != j) {
-            meets[i as usize].push(j);
-            meets[j as usize].push(i);
-        }
-        for others in &mut meets {
-            others.sort_unstable();
-            others.dedup();
-        }
+        let meets = neighbours(n, pairs);
         let order = order::order(meets.clone(), most)?;
-        let (ranks, columns) = columns(&order, &meets);
+        Some(Self::in_order(&order, &meets))
+    }
+
+    /// Pattern for a matrix of n rows of blocks and one more row for each of these `ties`, which
+    /// has blocks in the columns of both of its ends, and is eliminated next after them; the other
+    /// blocks are at `pairs`.
+    pub fn tied(
+        n: usize,
+        pairs: impl Iterator<Item = [u32; 2]>,
+        ties: &[[u32; 2]],
+    ) -> Option<Self> {
+        // A tie joins its ends once one of them is eliminated.
+        let mut meets = neighbours(n, pairs.chain(ties.iter().copied()));
+        let ends_first = order::order(meets.clone(), usize::MAX)?;
+        let mut ranks = vec![0; n];
+        for (row, rank) in ends_first.iter().zip(0u32..) {
+            ranks[*row as usize] = rank;
+        }
+        let mut after = vec![vec![]; n];
+        for ([i, j], tie) in ties.iter().zip(n as u32..) {
+            let last = if ranks[*i as usize] > ranks[*j as usize] {
+                i
+            } else {
+                j
+            };
+            after[*last as usize].push(tie);
+            let mut ends = vec![*i, *j];
+            ends.dedup();
+            for end in &ends {
+                meets[*end as usize].push(tie);
+            }
+            meets.push(ends);
+        }
+        let with_ties = |row: &u32| [&[*row][..], &after[*row as usize]].concat();
+        let order: Vec<_> = ends_first.iter().flat_map(with_ties).collect();
+        Some(Self::in_order(&order, &meets))
+    }
+
+    /// Pattern for a matrix of which the neighbours of each row are given, in that order of
+    /// elimination.
+    fn in_order(order: &[u32], meets: &[Vec<u32>]) -> Self {
+        let n = order.len();
+        let (ranks, columns) = columns(order, meets);
         let sorted = children_first(&columns);
         let (mut starts, mut rows) = (vec![0], vec![]);
         let mut places = vec![0; n];
@@ -55,11 +89,11 @@ impl Pattern {
             rows[from..].sort_unstable();
             starts.push(rows.len() as u32);
         }
-        Some(Self {
+        Self {
             ranks: ranks.iter().map(|rank| places[*rank as usize]).collect(),
             starts,
             rows,
-        })
+        }
     }
 
     /// Number of rows of the matrix.
@@ -97,6 +131,20 @@ impl Pattern {
     fn column(&self, column: usize) -> Range<usize> {
         self.starts[column] as usize..self.starts[column + 1] as usize
     }
+}
+
+/// Neighbours of each of n rows, in order, from pairs of them that may be repeated.
+fn neighbours(n: usize, pairs: impl Iterator<Item = [u32; 2]>) -> Vec<Vec<u32>> {
+    let mut meets = vec![vec![]; n];
+    for [i, j] in pairs.filter(|[i, j]| i != j) {
+        meets[i as usize].push(j);
+        meets[j as usize].push(i);
+    }
+    for others in &mut meets {
+        others.sort_unstable();
+        others.dedup();
+    }
+    meets
 }
 
 /// Rank of each row in an order, and the rows below the diagonal in each column of the factor, by

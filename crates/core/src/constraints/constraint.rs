@@ -92,6 +92,17 @@ impl Constraint {
         matches!(self, Self::Rope { length, .. } if equation.value < -SLACK_SHARE * length)
     }
 
+    /// Distance (m) that one of its equations is about; `None` for one that is linear.
+    pub(super) fn distance(&self, equation: &Equation) -> Option<f64> {
+        let length = match *self {
+            Self::Point { .. } | Self::Line { .. } => return None,
+            Self::Circle { radius, .. } | Self::Sphere { radius, .. } => radius,
+            Self::Rod { length, .. } | Self::Rope { length, .. } => length,
+        };
+        let distance = equation.value + length;
+        (distance > CENTER_SHARE * length).then_some(distance)
+    }
+
     /// Whether it is a rope, which holds only while it is taut.
     pub(super) fn is_rope(&self) -> bool {
         matches!(self, Self::Rope { .. })

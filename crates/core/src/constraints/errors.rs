@@ -1,7 +1,5 @@
 //! Errors of constraints, and whether constraints can be met at all.
 
-use std::sync::Arc;
-
 use nalgebra::Vector3;
 
 use super::constraint::{Constraint, Equation};
@@ -165,7 +163,7 @@ impl Constraints {
                 system.rows.push(row);
             });
         }
-        system.solve(|| self.pattern.get_or_init(|| Arc::new(self.find_pattern())));
+        system.solve(|| self.pattern());
         system.spread();
     }
 

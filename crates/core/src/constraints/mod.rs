@@ -16,6 +16,7 @@
 mod constraint;
 mod direct;
 mod errors;
+mod joints;
 mod ropes;
 mod row;
 mod set;
@@ -23,6 +24,7 @@ mod solve;
 mod turning;
 
 pub use constraint::Constraint;
+pub(crate) use joints::{joints, multipliers, project};
 pub(crate) use ropes::{
     beyond, has_ropes, least_tension, loosen, set_all_taut, set_taut, strike, taut,
 };

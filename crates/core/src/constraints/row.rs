@@ -87,6 +87,11 @@ impl Row {
         self.scale == 0.0
     }
 
+    /// Multiplier of the row as it was before it was scaled.
+    pub fn unscaled(&self) -> f64 {
+        self.scale * self.multiplier
+    }
+
     /// The force J^T lambda on its first particle (N).
     pub fn force(&self) -> Vector3<f64> {
         self.parts[0].1 * self.multiplier

@@ -226,10 +226,21 @@ impl Constraints {
     /// vectors of the system.
     pub(super) fn solve(
         &self,
-        [x, v]: [&[f64]; 2],
+        state: [&[f64]; 2],
         system: &mut System,
         target: impl Fn(usize, &Row, &Equation, f64, &[Vector3<f64>]) -> f64 + Sync,
     ) -> bool {
+        self.build(state, system, target);
+        system.solve(|| self.pattern())
+    }
+
+    /// Builds the rows at x and v; `target` is that of [`solve`](Self::solve).
+    pub(super) fn build(
+        &self,
+        [x, v]: [&[f64]; 2],
+        system: &mut System,
+        target: impl Fn(usize, &Row, &Equation, f64, &[Vector3<f64>]) -> f64 + Sync,
+    ) {
         let System {
             weights,
             vectors,
@@ -273,11 +284,15 @@ impl Constraints {
             let target = target(owner, row, &equation, rate, vectors);
             row.set_target(target, weights);
         });
-        system.solve(|| self.pattern.get_or_init(|| Arc::new(self.find_pattern())))
     }
 
-    /// Pattern of what each equation moves.
-    pub(super) fn find_pattern(&self) -> Pattern {
+    /// Returns the pattern of what each equation moves.
+    pub(super) fn pattern(&self) -> &Arc<Pattern> {
+        self.pattern.get_or_init(|| Arc::new(self.find_pattern()))
+    }
+
+    /// Finds the pattern of what each equation moves.
+    fn find_pattern(&self) -> Pattern {
         let rows = self.owners.iter().map(|(owner, _)| {
             let [a, b] = self.ends[*owner];
             [a.place, a.turn, b.place, b.turn]

@@ -49,9 +49,7 @@ impl System {
 
     /// Finds the multipliers. Returns whether A is nearly singular, and was made softer.
     pub fn solve<'a>(&mut self, pattern: impl Fn() -> &'a Arc<Pattern>) -> bool {
-        if self.rows.len() < MIN_DIRECT_ROWS || !self.solve_directly(pattern()) {
-            self.iterate(0.0);
-        }
+        self.solve_exactly(pattern);
         let (mut all, mut amplified) = (0.0, 0.0);
         for row in &self.rows {
             all += row.target * row.target;
@@ -64,6 +62,13 @@ impl System {
             self.iterate(MAX_SOFTNESS * excess.min(1.0));
         }
         soft
+    }
+
+    /// Finds the multipliers, however large they are.
+    pub fn solve_exactly<'a>(&mut self, pattern: impl Fn() -> &'a Arc<Pattern>) {
+        if self.rows.len() < MIN_DIRECT_ROWS || !self.solve_directly(pattern()) {
+            self.iterate(0.0);
+        }
     }
 
     /// Writes W J^T lambda, the changes by the multipliers, to the vectors.

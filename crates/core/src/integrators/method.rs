@@ -8,7 +8,8 @@ use super::error_norm::Tolerance;
 use super::integrator::Integrator;
 use super::trial::Trial;
 use crate::control::Control;
-use crate::error::{Error, Refusal, positive};
+use crate::error::{Error, positive};
+use crate::refusal::Refusal;
 use crate::system::{Linearized, ParticleSystem};
 
 /// Largest state (numbers) for which implicit methods compute the Jacobian of f.
@@ -143,8 +144,10 @@ impl Method {
         let holds_constraints =
             linearized.is_some_and(|linearized| linearized.baumgarte_frequency().is_some());
         let lists_all_couplings = linearized.is_none_or(Linearized::lists_all_couplings);
+        let is_joined = linearized.is_some_and(|linearized| linearized.held().is_some());
         match self.view {
-            View::Tangent | View::Springs if holds_constraints => Some(Refusal::HoldsConstraints),
+            View::Springs if holds_constraints => Some(Refusal::HoldsConstraints),
+            View::Tangent if holds_constraints && !is_joined => Some(refusal_of_joints(linearized)),
             View::Tangent | View::Springs if !lists_all_couplings => Some(Refusal::HidesCouplings),
             View::Springs if mechanics.compliant().is_none() => Some(Refusal::LacksSprings),
             View::Accelerations if !mechanics.is_positional() => Some(Refusal::ReadsVelocity),
@@ -229,6 +232,16 @@ impl Method {
 impl PartialEq for Method {
     fn eq(&self, other: &Self) -> bool {
         self.name == other.name
+    }
+}
+
+/// Refusal of a system with constraints that offers no view of them.
+fn refusal_of_joints(system: Option<&dyn Linearized>) -> Refusal {
+    let touches = system.is_some_and(|system| !system.hints().pattern_is_fixed());
+    if touches {
+        Refusal::HoldsTouching
+    } else {
+        Refusal::HoldsConstraints
     }
 }
 

@@ -15,7 +15,8 @@ use super::embedded::{add_to_block, blocks};
 use super::error_norm::ErrorNorm;
 use super::integrator::{Integrator, check_dim};
 use super::trial::{LastStep, Trial};
-use crate::error::{Error, Refusal};
+use crate::error::Error;
+use crate::refusal::Refusal;
 use crate::system::{Mechanics, ParticleSystem, place_pins};
 use crate::work::Work;
 

@@ -3,7 +3,8 @@
 //! treated as in implicit Euler, so it is stable at any step; it adds h c to the masses for the
 //! solution of springs. Pinned particles move to their places at t + h.
 
-use crate::error::{Error, Refusal};
+use crate::error::Error;
+use crate::refusal::Refusal;
 use crate::system::{Compliant, Mechanics, ParticleSystem, place_pins};
 use crate::work::Work;
 

@@ -8,7 +8,8 @@ use super::arithmetic::add_scaled;
 use super::integrator::{Integrator, check_dim};
 use super::runge_kutta::{Combine, Table, stages};
 use super::sweep::Sweeper;
-use crate::error::{Error, Refusal};
+use crate::error::Error;
+use crate::refusal::Refusal;
 use crate::rows::{Next, Stage, Terms};
 use crate::system::{
     Mechanics, ParticleSystem, Rigid, divide_by_masses, kick_reads_velocity, place_pins, rigid_of,

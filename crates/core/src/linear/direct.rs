@@ -13,12 +13,22 @@ const SOLUTION: [f64; 2] = [3.0, 2.0];
 /// factor, which any tree meets. Nets with larger factors are solved faster by iterations.
 const MAX_BLOCKS: [usize; 2] = [500_000, 2];
 /// Fixed overhead of an evaluation, in evaluations of a coupling.
-const OVERHEAD: f64 = 10.0;
+pub(super) const OVERHEAD: f64 = 10.0;
 
 /// Returns the price of a factorisation with a number of products of blocks for each coupling, in
 /// evaluations of forces spring by spring.
 pub(super) fn price_of_products(products: f64) -> f64 {
     FACTORISATION[1] * products
+}
+
+/// Returns the prices of a factorisation of a pattern, and of a solve with it, in evaluations of
+/// forces spring by spring of that many couplings.
+pub(super) fn prices(pattern: &Pattern, couplings: f64) -> [f64; 2] {
+    let columns = pattern.len() as f64 / couplings;
+    [
+        FACTORISATION[0] * columns + price_of_products(pattern.products() / couplings),
+        SOLUTION[0] * columns + SOLUTION[1] * pattern.size() as f64 / couplings,
+    ]
 }
 
 /// Factorisation of a matrix whose pattern was analysed.
@@ -41,14 +51,13 @@ impl Direct {
         let n = tangent.particles();
         let pattern = Pattern::new(n, tangent.pairs(), MAX_BLOCKS[0].max(MAX_BLOCKS[1] * n))?;
         let couplings = tangent.couplings() as f64 + OVERHEAD;
-        let columns = pattern.len() as f64 / couplings;
+        let [factorisation, solution] = prices(&pattern, couplings);
         Some(Self {
             factor: Factor::new(&pattern)?,
             places: tangent.pairs().map(|[i, j]| pattern.place(i, j)).collect(),
             couplings: tangent.pattern(),
-            factorisation: FACTORISATION[0] * columns
-                + price_of_products(pattern.products() / couplings),
-            solution: SOLUTION[0] * columns + SOLUTION[1] * pattern.size() as f64 / couplings,
+            factorisation,
+            solution,
             pattern,
         })
     }
@@ -60,7 +69,7 @@ impl Direct {
 
     /// Factorises A. Returns whether it is positive definite.
     pub fn factorise(&mut self, tangent: &Tangent) -> bool {
-        self.fill(tangent);
+        fill(tangent, &self.pattern, &mut self.factor, &self.places);
         self.factor.factorise(&self.pattern)
     }
 
@@ -78,46 +87,46 @@ impl Direct {
             [x[i], x[n + i], x[2 * n + i], _] = *factor.unknowns_mut(pattern, i);
         }
     }
+}
 
-    fn fill(&mut self, tangent: &Tangent) {
-        let Self {
-            pattern,
-            factor,
-            places,
-            ..
-        } = self;
-        factor.clear();
-        let masses = tangent.masses();
-        for (i, m) in masses.iter().enumerate() {
-            let m = if *m == 0.0 { 1.0 } else { *m };
-            let diagonal = factor.diagonal_mut(pattern, i);
-            for (axis, column) in diagonal.iter_mut().enumerate() {
-                column[axis] = m;
+/// Writes the blocks of a tangent to their places in a factor that is otherwise zero.
+pub(super) fn fill(
+    tangent: &Tangent,
+    pattern: &Pattern,
+    factor: &mut Factor<3, 4>,
+    places: &[Place],
+) {
+    factor.clear();
+    let masses = tangent.masses();
+    for (i, m) in masses.iter().enumerate() {
+        let m = if *m == 0.0 { 1.0 } else { *m };
+        let diagonal = factor.diagonal_mut(pattern, i);
+        for (axis, column) in diagonal.iter_mut().enumerate() {
+            column[axis] = m;
+        }
+    }
+    let mut places = places.iter();
+    tangent.blocks(|i, j, block| {
+        let Some(place) = places.next().filter(|_| i != j) else {
+            return;
+        };
+        let at = |row: usize, column: usize| block[3 * row + column];
+        for end in [i, j] {
+            if masses[end] != 0.0 {
+                // The sum of the blocks of a particle is symmetric.
+                let half = |r, c| 0.5 * (at(r, c) + at(c, r));
+                add(factor.diagonal_mut(pattern, end), half);
             }
         }
-        let mut places = places.iter();
-        tangent.blocks(|i, j, block| {
-            let Some(place) = places.next().filter(|_| i != j) else {
-                return;
-            };
-            let at = |row: usize, column: usize| block[3 * row + column];
-            for end in [i, j] {
-                if masses[end] != 0.0 {
-                    // The sum of the blocks of a particle is symmetric.
-                    let half = |r, c| 0.5 * (at(r, c) + at(c, r));
-                    add(factor.diagonal_mut(pattern, end), half);
-                }
+        if masses[i] != 0.0 && masses[j] != 0.0 {
+            let block = factor.block_mut(*place);
+            if place.transposed {
+                add(block, |r, c| -at(c, r));
+            } else {
+                add(block, |r, c| -at(r, c));
             }
-            if masses[i] != 0.0 && masses[j] != 0.0 {
-                let block = factor.block_mut(*place);
-                if place.transposed {
-                    add(block, |r, c| -at(c, r));
-                } else {
-                    add(block, |r, c| -at(r, c));
-                }
-            }
-        });
-    }
+        }
+    });
 }
 
 /// Adds numbers by row and column to a block.

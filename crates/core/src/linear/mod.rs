@@ -6,11 +6,13 @@ mod conjugate_gradients;
 mod direct;
 mod ends;
 mod multigrid;
+mod saddle;
 mod tangent;
 
 use conjugate_gradients::ConjugateGradients;
 use direct::Direct;
 use multigrid::Multigrid;
+pub(crate) use saddle::Saddle;
 pub(crate) use tangent::Tangent;
 
 use crate::system::Linearized;

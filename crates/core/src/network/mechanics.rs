@@ -9,6 +9,7 @@ use crate::columns::columns_mut;
 use crate::coupling::{Coupling, Diagonal, Matrix};
 use crate::elements::{Drag, Finish};
 use crate::error::Error;
+use crate::held::HeldView;
 use crate::path::Place;
 use crate::products::{Products, SolverHints};
 use crate::rows::Terms;
@@ -140,6 +141,12 @@ impl Linearized for Network {
     fn baumgarte_frequency(&self) -> Option<f64> {
         self.is_constrained()
             .then(|| self.constraints.baumgarte_frequency())
+    }
+
+    /// Returns the constraints, unless surfaces touch, whose pairs of vertices change.
+    fn held(&self) -> Option<HeldView<'_>> {
+        let is_served = self.is_constrained() && self.hints().pattern_is_fixed();
+        is_served.then_some(HeldView(self))
     }
 
     fn products(&self) -> Option<&dyn Products> {

@@ -1,7 +1,8 @@
 //! Failures of steps.
 
 use super::bounds::not_finite;
-use crate::error::{Cause, Error, Refusal};
+use crate::error::{Cause, Error};
+use crate::refusal::Refusal;
 use crate::scene::Model;
 
 /// Reason why a run cannot continue.

@@ -172,9 +172,9 @@ impl RestState {
 /// State in which the scene comes to rest without wind, swing and tearing, computed by implicit
 /// Euler with growing steps.
 ///
-/// `None` if implicit Euler does not support the scene, if the scene has rigid bodies or moving
-/// pins or obstacles, and if it does not settle or takes too much work; also soon after `go_on`
-/// returns false.
+/// `None` if implicit Euler does not support the scene, if the scene has constraints, which the
+/// modes around rest leave out, rigid bodies, or moving pins or obstacles, and if it does not
+/// settle or takes too much work; also soon after `go_on` returns false.
 ///
 /// # Errors
 /// The scene cannot be run.
@@ -182,8 +182,8 @@ pub fn rest(scene: &Scene, go_on: impl Fn() -> bool) -> Result<Option<RestState>
     let Some((implicit, network)) = find("implicit").zip(scene.model.network()) else {
         return Ok(None);
     };
-    let has_bodies = !network.bodies().is_empty();
-    if implicit.check(network).is_err() || has_bodies || network.moves_by_itself() {
+    let is_held = network.is_constrained() || !network.bodies().is_empty();
+    if implicit.check(network).is_err() || is_held || network.moves_by_itself() {
         return Ok(None);
     }
     let mut scene = scene.clone();

@@ -52,7 +52,11 @@ fn a_fall_ends_in_a_swing_in_the_order_of_the_method() {
     assert!(slack.is_none());
     let end = Vector3::new(angle.sin(), -angle.cos(), 0.0);
     let error = |name, value| (run(&scene, name, value, until).position(1) - end).norm();
-    for (name, tolerance, bound) in [("dop853", 1e-10, 1e-8), ("dopri5", 1e-8, 1e-6)] {
+    for (name, tolerance, bound) in [
+        ("dop853", 1e-10, 1e-8),
+        ("dopri5", 1e-8, 1e-6),
+        ("bdf", 1e-8, 1e-5),
+    ] {
         let error = error(name, tolerance);
         assert!(error < bound, "{name}: {error:e}");
     }
@@ -64,6 +68,9 @@ fn a_fall_ends_in_a_swing_in_the_order_of_the_method() {
         ("midpoint", 3.4),
         ("verlet", 3.4),
         ("rk4", 10.0),
+        ("implicit", 1.7),
+        ("tr-bdf2", 3.4),
+        ("implicit-midpoint", 3.4),
     ] {
         let [coarse, fine] = [4e-3, 2e-3].map(|h| error(name, h));
         assert!(coarse / fine > least, "{name}: {coarse:e} {fine:e}");
@@ -82,7 +89,11 @@ fn a_rebound_has_the_restitution_of_the_rope() {
         let after = across - out * (restitution * 0.8 * speed);
         let down = Vector3::new(0.0, -G, 0.0);
         let end = out + after * rest + down * (0.5 * rest * rest);
-        for (name, value, bound) in [("dop853", 1e-9, 1e-8), ("verlet", 1e-3, 1e-5)] {
+        for (name, value, bound) in [
+            ("dop853", 1e-9, 1e-8),
+            ("verlet", 1e-3, 1e-5),
+            ("tr-bdf2", 1e-3, 1e-5),
+        ] {
             let run = run(&scene, name, value, tight + rest);
             let error = (run.position(1) - end).norm();
             assert!(error < bound, "{name}: {error:e}");
@@ -113,6 +124,9 @@ fn a_pendulum_that_is_too_slow_leaves_its_circle() {
         ("dop853", 1e-10, 3e-5),
         ("verlet", 1e-3, 1e-4),
         ("rk4", 5e-3, 1e-4),
+        ("tr-bdf2", 1e-3, 1e-4),
+        ("implicit-midpoint", 1e-3, 1e-4),
+        ("bdf", 1e-7, 1e-4),
     ] {
         let run = run(&scene, name, value, time + flight);
         let error = (run.position(1) - end).norm();
@@ -175,7 +189,12 @@ fn ropes_in_a_row_tighten_one_after_another() {
 #[test]
 fn a_run_on_a_rope_continues_from_a_checkpoint_bit_for_bit() {
     let scene = on_rope([0.6, 0.0, 0.1], [0.0; 3], 0.3);
-    for (name, value) in [("dopri5", 1e-6), ("verlet", 0.01)] {
+    for (name, value) in [
+        ("dopri5", 1e-6),
+        ("verlet", 0.01),
+        ("bdf", 1e-4),
+        ("tr-bdf2", 0.01),
+    ] {
         for cut in [0.2, 0.41, 1.0] {
             let mut whole = run(&scene, name, value, cut);
             let checkpoint = whole.checkpoint();

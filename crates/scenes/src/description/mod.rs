@@ -105,7 +105,7 @@ pub struct Description {
     /// Whether `springs` only pull, and hang slack if they are shorter than their rest length.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub tension_only: bool,
-    /// Rods, ropes and wires, which explicit solvers keep exactly.
+    /// Rods, ropes and wires, which solvers keep exactly.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub constraint: Vec<ConstraintSpec>,
     /// Rate at which a drift off a constraint is corrected (1/s); 10 if not given.

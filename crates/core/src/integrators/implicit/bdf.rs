@@ -237,9 +237,11 @@ impl Trial for Bdf {
     }
 
     fn begin(&mut self, system: &dyn ParticleSystem, t: f64, y: &[f64]) -> Work {
-        // A pin that a hand has just set in motion jumps to the velocity of its path.
+        // A pin that a hand has just set in motion jumps to the velocity of its path, and what is
+        // off its constraints returns to them: no step is so short that it would not.
         self.step.y0.copy_from_slice(y);
         system.hold(t, &mut self.step.y0);
+        self.solver.project(system, &mut self.step.y0);
         system.eval_f(t, &self.step.y0, &mut self.step.k[0]);
         // The first difference is f times the time between the states.
         self.step.h = 1.0;
@@ -329,7 +331,7 @@ impl Trial for Bdf {
 
     fn interpolate(
         &mut self,
-        _system: &dyn ParticleSystem,
+        system: &dyn ParticleSystem,
         _t: f64,
         theta: f64,
         out: &mut [f64],
@@ -340,6 +342,7 @@ impl Trial for Bdf {
             factor *= (theta - 1.0 + j as f64) / (j + 1) as f64;
             add_scaled(out, factor, d);
         }
+        self.solver.project(system, out);
         Work::default()
     }
 

@@ -6,6 +6,7 @@
 use super::super::arithmetic::add_scaled;
 use super::super::error_norm::ErrorNorm;
 use super::mechanical::Mechanical;
+use super::newton::Newton;
 use super::stage::StageSolver;
 use crate::system::{Linearized, Mechanics, ParticleSystem};
 use crate::work::Work;
@@ -115,7 +116,10 @@ impl KeptSolver {
                 solved = converged;
             }
             match solved {
-                Ok(()) => return (work, true),
+                Ok(()) => {
+                    self.project(system, y);
+                    return (work, true);
+                }
                 Err(Failure::Indefinite) if !self.tangent.clamped => clamped = true,
                 Err(Failure::Diverges) if !fresh => (),
                 Err(_) => {
@@ -127,14 +131,24 @@ impl KeptSolver {
         }
     }
 
+    /// Moves a state to where all constraints are met and stay so.
+    pub fn project(&self, system: &dyn ParticleSystem, y: &mut [f64]) {
+        self.stage.project(system, y);
+    }
+
     /// Forms the tangent where it was formed before. Returns the cost, and whether it is positive
     /// definite.
     pub fn form(&mut self, system: &dyn ParticleSystem) -> (Work, bool) {
         let Tangent { t, a, clamped, .. } = self.tangent;
         match (&mut self.stage, linearized(system)) {
             (StageSolver::Mechanical(stage), Some(linearized)) => {
-                let x = &self.at[..self.at.len() / 2];
-                let mut work = stage.solver.assemble(linearized, (t, a), x, clamped);
+                let (x, v) = self.at.split_at(self.at.len() / 2);
+                let mut work = stage.begin(linearized, (t, a), [x, v]);
+                let (cost, of_use) = stage.assemble(linearized, (t, a), x, clamped);
+                work += cost;
+                if stage.joined.is_some() {
+                    return (work, of_use);
+                }
                 let (cost, of_use) = stage.solver.prepare(linearized, FORCING);
                 work += cost;
                 (work, of_use)
@@ -155,6 +169,11 @@ impl KeptSolver {
     ) -> (Work, Result<(), Failure>) {
         let mut work = Work::default();
         let mut last: Option<f64> = None;
+        if let StageSolver::Mechanical(stage) = &mut self.stage
+            && let Some(joined) = &mut stage.joined
+        {
+            joined.restart();
+        }
         let rate = &mut self.tangent.rate;
         for left in (0..MAX_ITERATIONS).rev() {
             let (cost, solved) = match (&mut self.stage, linearized(system)) {
@@ -208,10 +227,11 @@ impl Mechanical {
     ) -> (Work, bool) {
         let (bx, bv) = base.split_at(base.len() / 2);
         let (x, v) = y.split_at(bx.len());
-        let mut work = self.evaluate(mechanics, t, a, bx, [x, v]);
+        let mut work = self.evaluate(mechanics, t, a, bx, [x, v], Newton::Full);
         self.reduce(mechanics, a, bv, v);
         let (dx, dv) = change.split_at_mut(bx.len());
-        let (cost, solved) = self.solver.solve(mechanics, &self.rhs, dv, FORCING);
+        let (cost, solved) = self.solve_linear(mechanics, FORCING);
+        dv.copy_from_slice(&self.dv);
         work += cost;
         for ((dx, gap), dv) in dx.iter_mut().zip(&self.gap).zip(dv) {
             *dx = gap + a * *dv;

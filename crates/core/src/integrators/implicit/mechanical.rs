@@ -8,6 +8,7 @@
 //! Simulation*, 1998).
 
 use super::changes::{Changes, TOLERANCE};
+use super::joined::{Joined, held, project};
 use super::newton::{MAX_ITERATIONS, Newton, dot, norm};
 use super::secants::Secants;
 use crate::error::Error;
@@ -39,7 +40,7 @@ pub(super) struct Mechanical {
     pub(super) rhs: Vec<f64>,
     /// Gap bx + a v - x (m).
     pub(super) gap: Vec<f64>,
-    dv: Vec<f64>,
+    pub(super) dv: Vec<f64>,
     /// Change of x by an iteration (m).
     dx: Vec<f64>,
     /// Right-hand side at the beginning of an iteration.
@@ -48,14 +49,19 @@ pub(super) struct Mechanical {
     secants: Secants,
     /// Whether the forces are known at the beginning of the next iteration.
     evaluated: bool,
+    /// The constraints, if there are some.
+    pub(super) joined: Option<Box<Joined>>,
 }
 
 impl Mechanical {
     pub(super) fn new(mechanics: &dyn Linearized) -> Self {
         let n = mechanics.inverse_masses().len();
         let zeros = || vec![0.0; 3 * n];
+        let solver = Solver::new(mechanics);
+        let joined = |held| Box::new(Joined::new(held, &solver.tangent));
         Self {
-            solver: Solver::new(mechanics),
+            joined: held(mechanics).map(joined),
+            solver,
             f: zeros(),
             rhs: zeros(),
             gap: zeros(),
@@ -84,7 +90,7 @@ impl Mechanical {
         let (x, v) = y.split_at_mut(bx.len());
         place_pins(mechanics, t, x, v);
         let mut work = Work::default();
-        let searches = newton == Newton::Full && mechanics.hints().reach.is_finite();
+        let searches = newton != Newton::Once && mechanics.hints().reach.is_finite();
         let mut changes = Changes::new(!searches);
         let most = if searches {
             MAX_CONTACT_ITERATIONS
@@ -100,6 +106,7 @@ impl Mechanical {
             }
             place_pins(mechanics, t, x, v);
         }
+        work += self.begin(mechanics, (t, a), [x, v]);
         let mut settled = 0;
         for iteration in 0..most {
             let assembles = searches || !changes.shrink_fast().unwrap_or(false);
@@ -112,11 +119,15 @@ impl Mechanical {
                 change *= share;
             }
             if newton == Newton::Once {
+                project(mechanics, [x, v]);
                 return Ok(work);
             }
             let size = norm(v) + norm(x) / a.abs();
             changes.add(change, size, residual);
             if changes.are_over(1e3 * TOLERANCE) {
+                if newton == Newton::Full {
+                    project(mechanics, [x, v]);
+                }
                 return Ok(work);
             }
             if !changes.are_finite() {
@@ -148,26 +159,32 @@ impl Mechanical {
         work: &mut Work,
     ) -> Result<(f64, f64), Error> {
         if !std::mem::take(&mut self.evaluated) {
-            *work += self.evaluate(mechanics, t, a, bx, [x, v]);
+            *work += self.evaluate(mechanics, t, a, bx, [x, v], newton);
         }
         let mut clamped = newton == Newton::Once;
         let mut assembles = assembles;
         let residual = loop {
             if assembles {
-                *work += self.solver.assemble(mechanics, (t, a), x, clamped);
+                let (cost, of_use) = self.assemble(mechanics, (t, a), x, clamped);
+                *work += cost;
+                if !of_use && !clamped {
+                    clamped = true;
+                    continue;
+                }
+                if !of_use {
+                    return Err(Error::NoConvergence { residual: 1.0 });
+                }
             }
             self.reduce(mechanics, a, bv, v);
             let tolerance = match newton {
-                Newton::Full => forcing,
+                Newton::Full | Newton::Mirrored => forcing,
                 // Short steps are solved more accurately, so that errors keep the method's order in
                 // the step.
                 Newton::Once => 1e-4 * self.solver.stiffness().clamp(1e-2, 1.0).powi(4),
             };
             self.before.copy_from_slice(&self.rhs);
             self.secants.reduce(&mut self.rhs);
-            let (cost, solved) = self
-                .solver
-                .solve(mechanics, &self.rhs, &mut self.dv, tolerance);
+            let (cost, solved) = self.solve_linear(mechanics, tolerance);
             self.secants.complete(&mut self.dv);
             *work += cost;
             match solved {
@@ -211,7 +228,7 @@ impl Mechanical {
         // Shares of the change with positive and with negative power, and the power there.
         let (mut low, mut high) = ((0.0, begin), (share, 0.0));
         for _ in 0..MAX_SHORTENINGS {
-            *work += self.evaluate(mechanics, t, a, bx, [x, v]);
+            *work += self.evaluate(mechanics, t, a, bx, [x, v], Newton::Full);
             self.evaluated = true;
             self.reduce(mechanics, a, bv, v);
             let power = dot(&self.rhs, &self.dv);
@@ -242,8 +259,12 @@ impl Mechanical {
         a: f64,
         bx: &[f64],
         [x, v]: [&[f64]; 2],
+        newton: Newton,
     ) -> Work {
-        mechanics.forces(t, x, v, &mut self.f);
+        match held(mechanics) {
+            Some(held) => held.free_forces(t, x, v, &mut self.f),
+            None => mechanics.forces(t, x, v, &mut self.f),
+        }
         let mut most: f64 = 0.0;
         for (((gap, bx), x), v) in self.gap.iter_mut().zip(bx).zip(x).zip(v) {
             *gap = bx + a * v - x;
@@ -252,6 +273,17 @@ impl Mechanical {
         // After an iteration the gap is zero up to rounding, which is not worth a product.
         if most <= 0.0 {
             self.gap.fill(0.0);
+        }
+        if let Some(joined) = &mut self.joined {
+            // Pins are in their places.
+            let inverse_masses = mechanics.inverse_masses();
+            for column in self.gap.chunks_exact_mut(inverse_masses.len()) {
+                let pinned = column.iter_mut().zip(inverse_masses);
+                pinned
+                    .filter(|(_, w)| **w == 0.0)
+                    .for_each(|(gap, _)| *gap = 0.0);
+            }
+            joined.evaluate(mechanics, (t, a), [bx, x, &self.gap], newton);
         }
         Work::of(1)
     }
@@ -264,6 +296,7 @@ impl Mechanical {
             f,
             rhs,
             gap,
+            joined,
             ..
         } = self;
         solver.tangent.filter(gap);
@@ -281,7 +314,61 @@ impl Mechanical {
         if gap.iter().any(|gap| *gap != 0.0) {
             solver.tangent.subtract_stiffness(mechanics, a, gap, rhs);
         }
+        if let Some(joined) = joined {
+            joined.add_impulses(gap, rhs);
+        }
         solver.tangent.filter(rhs);
+    }
+
+    /// Estimates the impulses of constraints in the state (x, v). Returns the cost.
+    pub(super) fn begin(
+        &mut self,
+        mechanics: &dyn Linearized,
+        (t, a): (f64, f64),
+        [x, v]: [&[f64]; 2],
+    ) -> Work {
+        let (Some(joined), Some(held)) = (&mut self.joined, held(mechanics)) else {
+            return Work::default();
+        };
+        held.free_forces(t, x, v, &mut self.f);
+        joined.begin(held, (t, a), [x, v], &self.f);
+        Work::of(1)
+    }
+
+    /// Assembles the matrix at x, and factorises it if there are constraints. Returns the cost, and
+    /// whether it is of use.
+    pub(super) fn assemble(
+        &mut self,
+        mechanics: &dyn Linearized,
+        (t, a): (f64, f64),
+        x: &[f64],
+        clamped: bool,
+    ) -> (Work, bool) {
+        let mut work = self.solver.assemble(mechanics, (t, a), x, clamped);
+        let Some(joined) = &mut self.joined else {
+            return (work, true);
+        };
+        let (cost, of_use) = joined.factorise(&mut self.solver, mechanics, (a, clamped));
+        work += cost;
+        (work, of_use)
+    }
+
+    /// Solves the linear system of an iteration. Returns the cost, and the relative residual;
+    /// `None` if the matrix is not positive definite.
+    pub(super) fn solve_linear(
+        &mut self,
+        mechanics: &dyn Linearized,
+        tolerance: f64,
+    ) -> (Work, Option<f64>) {
+        match &mut self.joined {
+            Some(joined) => {
+                let work = joined.solve(mechanics, &self.rhs, &mut self.dv);
+                (work, Some(0.0))
+            }
+            None => self
+                .solver
+                .solve(mechanics, &self.rhs, &mut self.dv, tolerance),
+        }
     }
 }
 

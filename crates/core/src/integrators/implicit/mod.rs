@@ -8,6 +8,7 @@ mod dense;
 mod differences;
 mod euler;
 mod formulas;
+mod joined;
 mod kept;
 mod mechanical;
 mod midpoint;

@@ -10,6 +10,8 @@ pub(super) enum Newton {
     Once,
     /// Iterations until the state no longer changes.
     Full,
+    /// The same for the middle of a step, at whose end constraints are met.
+    Mirrored,
 }
 
 /// Euclidean norm.

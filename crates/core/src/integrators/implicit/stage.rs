@@ -1,9 +1,11 @@
 //! The solver of the implicit stages of a system, by the kind of the system.
 
 use super::dense::Dense;
+use super::joined::project;
 use super::mechanical::Mechanical;
 use super::newton::Newton;
-use crate::error::{Error, Refusal};
+use crate::error::Error;
+use crate::refusal::Refusal;
 use crate::system::{Mechanics, ParticleSystem};
 use crate::work::Work;
 
@@ -42,6 +44,19 @@ impl StageSolver {
                 method: "the implicit method",
                 why: Refusal::LacksMasses,
             }),
+        }
+    }
+
+    /// Whether there are constraints.
+    pub(super) fn is_joined(&self) -> bool {
+        matches!(self, Self::Mechanical(stage) if stage.joined.is_some())
+    }
+
+    /// Moves a state to where all constraints are met and stay so.
+    pub(super) fn project(&self, system: &dyn ParticleSystem, y: &mut [f64]) {
+        let linearized = system.mechanics().and_then(Mechanics::linearized);
+        if let (Self::Mechanical(_), Some(linearized)) = (self, linearized) {
+            project(linearized, y.split_at_mut(y.len() / 2).into());
         }
     }
 }

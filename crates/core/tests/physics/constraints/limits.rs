@@ -156,7 +156,7 @@ fn methods_that_do_not_serve_constraints_refuse_in_one_line() {
     let free = network(&[1.0], &[]);
     for m in integrators::METHODS {
         assert!(m.check(&free).is_ok());
-        let refuses = m.is_implicit() || m.positions_only();
+        let refuses = m.needs_springs() || m.positions_only();
         assert_eq!(m.check(&constrained).is_err(), refuses, "{}", m.name);
         if let Err(refused) = m.integrator(&constrained) {
             let line = refused.to_string();
@@ -303,8 +303,8 @@ fn a_hand_keeps_the_length_of_a_rod() {
     }
 }
 
-/// Baumgarte stabilisation limits the step too, and a scene with constraints has no state of rest,
-/// as implicit methods do not support it.
+/// Baumgarte stabilisation limits the step too. No state of rest is found for a scene with
+/// constraints, whose modes around it would leave these out.
 #[test]
 fn stability_knows_of_the_feedback() {
     let scene = scene(chain(3));

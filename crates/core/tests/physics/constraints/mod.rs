@@ -2,6 +2,7 @@
 //! with them.
 
 mod bodies;
+mod implicit;
 mod limits;
 mod motion;
 

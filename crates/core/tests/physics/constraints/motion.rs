@@ -94,10 +94,9 @@ fn a_chain_of_rods_falls_and_holds() {
     assert!(off < 1e-5 && change < 1e-4, "{off:e} m, {change:e} J");
 }
 
-/// Explicit methods keep their order with constraints, also where only the constraints depend on
-/// velocities.
+/// Methods keep their order with constraints, also where only the constraints depend on velocities.
 #[test]
-fn every_explicit_method_keeps_its_order() {
+fn every_method_keeps_its_order() {
     for damping in [0.5, 0.0] {
         let (network, y0) = driven(damping);
         let exact = integrate(&network, method("dop853"), &y0, 1.0 / 512.0, 512);

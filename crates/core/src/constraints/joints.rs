@@ -1,0 +1,140 @@
+//! Constraints for implicit methods: to second order, with their multipliers, and the projection of
+//! a state on what they allow. None of them holds a rigid body.
+
+use nalgebra::{Matrix3, Vector3};
+
+use super::constraint::Constraint;
+use super::set::{Constraints, Moved};
+use super::solve::System;
+use super::turning::Turning;
+use crate::held::Joint;
+
+/// Largest number of Newton steps of a projection.
+const MAX_ITERATIONS: usize = 20;
+
+/// Longest step, over the positions, that counts as rounding.
+const ROUNDING: f64 = 4.0 * f64::EPSILON;
+
+/// Replaces `out` by the constraints at x.
+pub(crate) fn joints(constraints: &Constraints, x: &[f64], out: &mut Vec<Joint>) {
+    out.clear();
+    for (k, (constraint, holds)) in constraints.all.iter().zip(&constraints.holds).enumerate() {
+        let (i, other) = constraint.ends();
+        let mut joint = Joint {
+            ends: [i, other.unwrap_or(i)],
+            count: 0,
+            gradients: [Vector3::zeros(); 3],
+            values: [0.0; 3],
+            curvature: Matrix3::zeros(),
+        };
+        let relative = constraints.relative(k, x);
+        constraint.equations(relative, Vector3::zeros(), |equation| {
+            if *holds && !constraint.is_slack(&equation) {
+                joint.gradients[joint.count] = equation.gradient;
+                joint.values[joint.count] = equation.value;
+                joint.count += 1;
+                if let Some(distance) = constraint.distance(&equation) {
+                    joint.curvature = curvature(constraint, equation.gradient, distance);
+                }
+            }
+        });
+        out.push(joint);
+    }
+}
+
+/// Writes the multipliers (N), three for each constraint. The other arguments are those of
+/// [`Constraints::add_forces`].
+pub(crate) fn multipliers(
+    constraints: &Constraints,
+    motion: impl Fn(usize, &[f64]) -> (f64, Vector3<f64>),
+    state: [&[f64]; 2],
+    f: &[f64],
+    out: &mut [f64],
+) {
+    let turning = |_, _: &[f64]| -> Turning { unreachable!("there are no bodies") };
+    constraints.scratch.lend(|system| {
+        constraints.find_multipliers(motion, turning, state, f, system);
+        out.fill(0.0);
+        for (row, (owner, number)) in system.rows.iter().zip(&constraints.owners) {
+            out[3 * owner + number] = row.unscaled();
+        }
+    });
+}
+
+/// Moves x to where all constraints are met, and v to where they stay so, each by the least
+/// distance, weighted by the masses.
+pub(crate) fn project(
+    constraints: &Constraints,
+    inverse_masses: &[f64],
+    x: &mut [f64],
+    v: &mut [f64],
+) {
+    let size = x.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
+    constraints.scratch.lend(|system| {
+        for _ in 0..MAX_ITERATIONS {
+            let longest = push(constraints, inverse_masses, [&*x, &*v], system, |c, _| -c);
+            spread(constraints, system, x);
+            if longest.is_nan() || longest <= ROUNDING * size {
+                break;
+            }
+        }
+        push(
+            constraints,
+            inverse_masses,
+            [&*x, &*v],
+            system,
+            |_, rate| -rate,
+        );
+        spread(constraints, system, v);
+    });
+}
+
+/// Writes the least changes of all particles that have the effect on each equation that `target`
+/// returns for its error and its rate of change, to the vectors of the system. Returns the length
+/// of the longest.
+fn push(
+    constraints: &Constraints,
+    inverse_masses: &[f64],
+    state: [&[f64]; 2],
+    system: &mut System,
+    target: impl Fn(f64, f64) -> f64 + Sync,
+) -> f64 {
+    system.clear();
+    for moved in &constraints.moved {
+        let weight = match *moved {
+            Moved::Particle(i) => inverse_masses[i],
+            Moved::Nothing | Moved::Body(_) => 0.0,
+        };
+        system.weights.push(Vector3::repeat(weight));
+        system.vectors.push(Vector3::zeros());
+        system.turnings.push(None);
+    }
+    constraints.build(state, system, |_, _, equation, rate, _| {
+        target(equation.value, rate)
+    });
+    system.solve_exactly(|| constraints.pattern());
+    system.spread();
+    system.vectors.iter().map(Vector3::norm).fold(0.0, f64::max)
+}
+
+/// Adds the vectors of the system to the rows of the particles in `out`, n x 3.
+fn spread(constraints: &Constraints, system: &System, out: &mut [f64]) {
+    let n = out.len() / 3;
+    for (moved, change) in constraints.moved.iter().zip(&system.vectors) {
+        if let Moved::Particle(i) = *moved {
+            for axis in 0..3 {
+                out[axis * n + i] += change[axis];
+            }
+        }
+    }
+}
+
+/// Second derivative (1/m) of the last equation of a constraint at a distance from its centre, or
+/// between its ends, along a unit vector.
+fn curvature(constraint: &Constraint, outwards: Vector3<f64>, distance: f64) -> Matrix3<f64> {
+    let mut within = Matrix3::identity() - outwards * outwards.transpose();
+    if let Constraint::Circle { normal, .. } = constraint {
+        within -= normal * normal.transpose();
+    }
+    within / distance
+}
