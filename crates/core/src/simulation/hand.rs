@@ -19,11 +19,14 @@ const PULL_SPEED: f64 = 10.0;
 const HELD_REACH: f64 = 0.05;
 
 /// Largest distance from which a spring attracts any other particle, in radii of the scene.
-const FREE_REACH: f64 = 0.5;
+const FREE_REACH: f64 = 2.0;
 
 /// Share of the particle's distance from its target by which each pull moves the hand further: so
 /// the particle gets there under any load.
 const FOLLOWED_SHARE: f64 = 0.25;
+
+/// Share of its lead over the particle that a hand keeps in each pull while a spring is too long.
+const EASED_SHARE: f64 = 0.8;
 
 /// Least and greatest distance to which a hand may bring the ends of a rod, in lengths of the rod,
 /// before the other end has followed.
@@ -76,10 +79,15 @@ impl<'a> Hand<'a> {
             |share: f64, ahead: Vector3<f64>| from + ahead.cap_magnitude(share * self.radius);
         let path = match grabbed.is_attracted(self.network) {
             true if self.network.is_held(i) => self.way(from, within(HELD_REACH, target - from)),
-            // The hand moves on from where it was, until the particle is at the target.
+            // The hand moves on from where it was, until the particle is at the target, or until
+            // its springs are as long as they may be.
             true => {
                 let hand = grabbed.path.at(self.time).position;
-                let ahead = hand - from + (target - from) * FOLLOWED_SHARE;
+                let ahead = if self.within_reach(i, from, target) == from {
+                    (hand - from) * EASED_SHARE
+                } else {
+                    hand - from + (target - from) * FOLLOWED_SHARE
+                };
                 self.way(hand, within(FREE_REACH, ahead))
             }
             false => self.way(from, self.within_reach(i, from, target)),
