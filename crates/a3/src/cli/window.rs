@@ -38,6 +38,7 @@ pub struct WindowOptions {
 
 /// Options for the start of a window.
 #[derive(Args)]
+#[expect(clippy::struct_excessive_bools, reason = "each is an option")]
 pub struct Look {
     #[command(flatten)]
     pub manner: Drawing,

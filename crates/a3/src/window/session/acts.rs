@@ -95,7 +95,7 @@ impl Session {
             RunAction::SeeAll => self.view.see_all(&self.runs.panes),
             RunAction::NextView => self.readings.say(self.view.next_view()),
             RunAction::Panel | RunAction::Measure | RunAction::Lessons => {
-                self.toggle_beside(action)
+                self.toggle_beside(action);
             }
             RunAction::WriteScene => {
                 let pane = &self.runs.panes[at.min(self.runs.panes.len() - 1)];
@@ -110,8 +110,8 @@ impl Session {
         false
     }
 
-    /// Opens the panel, the measurements or the lessons beside the picture, or closes it; the others
-    /// are closed then.
+    /// Opens the panel, the measurements or the lessons beside the picture, or closes it; the
+    /// others are closed then.
     fn toggle_beside(&mut self, action: RunAction) {
         if action == RunAction::Measure && self.measuring.answerer.is_none() {
             let why = "Only the program measures: key y copies the command line for it.";
