@@ -226,9 +226,12 @@ fn others(session: &Session) -> Vec<Button> {
 
 #[cfg(test)]
 mod tests {
+    use std::collections::HashMap;
+
     use egui::{Event, Modifiers, PointerButton, Pos2, RawInput, SafeAreaInsets};
 
     use super::*;
+    use crate::window::hud::all::show_all;
     use crate::window::hud::panel::PanelRequest;
     use crate::window::hud::style::context;
     use crate::window::session::{TimelinePosition, session};
@@ -343,5 +346,35 @@ mod tests {
         assert!(share > 0.2 && share < 0.4, "{share}");
         let (.., request) = draw(&ctx, &session, size, Pos2::new(400.0, 600.0));
         assert_eq!(request, None);
+    }
+
+    /// What is beside the picture leaves the bar to the mouse, also after it has opened.
+    #[test]
+    fn panes_beside_the_picture_cover_no_button() {
+        let (ctx, mut session) = (context(), session(&["t", "0.01"]));
+        let window = Rect::from_min_size(Pos2::ZERO, vec2(1280.0, 720.0));
+        for action in [RunAction::Panel, RunAction::Lessons] {
+            session.act(action, 0);
+            let size = layout::picture_size(&session, (1280, 720), 1.0);
+            let at = pos2(size.0 as f32 - 30.0, 700.0);
+            for _ in 0..4 {
+                let input = RawInput {
+                    screen_rect: Some(window),
+                    safe_area_insets: Some(SafeAreaInsets(egui::epaint::MarginF32 {
+                        bottom: (720 - size.1) as f32,
+                        right: (1280 - size.0) as f32,
+                        ..Default::default()
+                    })),
+                    ..RawInput::default()
+                };
+                let mut output = ctx.run_ui(input, |ui| {
+                    let _ = show_all(ui.ctx(), &session, &HashMap::new());
+                });
+                output.textures_delta.set.clear();
+                output.textures_delta.free.clear();
+            }
+            let layer = ctx.layer_id_at(at).unwrap();
+            assert_eq!(layer.id, Id::unique("controls"), "{action:?}");
+        }
     }
 }

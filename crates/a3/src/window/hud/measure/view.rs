@@ -63,6 +63,7 @@ pub fn show(ctx: &Context, session: &Session) -> Option<Request> {
     Area::new(Id::unique("measure"))
         .fixed_pos(rect.min)
         .constrain_to(window)
+        .constrain(false)
         .fade_in(false)
         .show(ctx, |ui| {
             ui.allocate_rect(rect, Sense::click());
