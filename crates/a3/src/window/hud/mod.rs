@@ -12,6 +12,7 @@ pub mod layout;
 mod legend;
 pub mod lessons;
 mod list;
+#[cfg_attr(target_arch = "wasm32", path = "no_measure.rs")]
 mod measure;
 mod overlay;
 mod pane_buttons;
