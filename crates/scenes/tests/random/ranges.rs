@@ -43,6 +43,7 @@ pub const NUMBERS: &[(&[&str], Range)] = &[
     (&["thickness"], (1e-4, 0.01, true)),
     (&["pressure"], (-100.0, 1000.0, false)),
     (&["fill"], (0.9, 1.1, true)),
+    (&["rolling_friction"], (1e-4, 0.1, true)),
     (&["spacing"], (0.08, 0.3, true)),
     (&["mass", "masses"], MASS),
     (&["inertia"], (0.1, 0.19, true)),
