@@ -96,7 +96,7 @@ pub fn position(touch: &Touch) -> [f32; 2] {
 }
 
 /// Moves and zooms the view in a tile as a finger moves from one place to another (px) while the
-/// second one stays at the third: what was between them stays between them.
+/// second one stays at the third, so that the points of the scene under both stay under them.
 pub fn pinch(camera: &mut Camera, tile: Tile, [from, to, other]: [[f32; 2]; 3]) {
     let aspect = tile.aspect();
     let distance = |a: [f32; 2]| (a[0] - other[0]).hypot(a[1] - other[1]).max(1.0);

@@ -31,8 +31,8 @@ pub fn taken(session: &Session, [width, height]: [f32; 2]) -> [f32; 2] {
     }
 }
 
-/// Returns the rectangle of the lessons: the whole right side, or what is between the picture and
-/// the bar.
+/// Returns the rectangle of the lessons: the whole right side, or the room between the picture
+/// and the bar.
 pub fn rect(ctx: &Context, session: &Session) -> Rect {
     let (window, picture) = (ctx.viewport_rect(), ctx.content_rect());
     match taken(session, [window.width(), window.height()]) {

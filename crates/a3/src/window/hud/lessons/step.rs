@@ -17,7 +17,7 @@ const TRIES: u32 = 2;
 const CARD: Color32 = Color32::from_gray(238);
 /// Width of the button that checks a number (points).
 const CHECK_WIDTH: f32 = 84.0;
-/// Heights of what is pressed, with the mouse and with fingers (points).
+/// Heights of a button, with the mouse and with fingers (points).
 const HEIGHTS: [f32; 2] = [32.0, 42.0];
 /// The keys of the keypad, for fingers; `<` erases.
 const KEYPAD: [&str; 2] = ["12345-<", "67890.e"];

@@ -199,7 +199,7 @@ fn every_step_is_drawn_in_windows_and_on_phones() {
                     said.contains("Run again") && said.contains("Next"),
                     "{said}"
                 );
-                // On a phone, the reply is below what is seen, and comes by scrolling.
+                // On a phone, the reply is below the visible part of the pane, until one scrolls.
                 let replied = said.contains("That is right.");
                 assert!(replied || size[1] > 2.0 * size[0], "{said}");
             }

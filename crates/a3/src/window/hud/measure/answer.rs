@@ -171,7 +171,7 @@ fn press(ui: &mut Ui, width: f32, words: &str) -> bool {
     response.clicked()
 }
 
-/// Writes what is said where there is no answer, wrapped in a room.
+/// Writes a message in place of an answer, wrapped to the width of a rectangle.
 pub fn say(ui: &Ui, room: Rect, words: &str) {
     let painter = ui.painter();
     let job =

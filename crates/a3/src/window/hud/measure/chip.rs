@@ -8,7 +8,7 @@ use super::super::style::TEXT;
 pub const SHEET: Color32 = Color32::from_rgb(226, 226, 224);
 /// Colour of edges.
 pub const EDGE: Color32 = Color32::from_rgb(188, 189, 192);
-/// Colour of what is chosen, and of what is done.
+/// Colour of the chosen button, and of the finished part of a progress bar.
 pub const INK: Color32 = Color32::from_rgb(38, 84, 132);
 /// Colour under the pointer.
 const HOVERED: Color32 = Color32::from_rgb(207, 211, 218);

@@ -1,4 +1,4 @@
-//! Drawing of a work-precision diagram, which shows what is under the pointer.
+//! Drawing of a work-precision diagram, and of the values of the run under the pointer.
 
 use a3_plot::{Curve, CurveStyle, WorkPrecision};
 use egui::epaint::{Mesh, PathStroke, Vertex, WHITE_UV};

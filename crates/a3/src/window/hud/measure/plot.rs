@@ -1,4 +1,4 @@
-//! The places of the runs of a diagram on the screen, and what is under the pointer.
+//! The places of the runs of a diagram on the screen, and the run under the pointer.
 
 use a3_plot::{Axis, Measurement, Problem, WorkPrecision};
 use egui::{Pos2, Rect, pos2, vec2};
