@@ -10,7 +10,9 @@ use crate::base::{interrupt, terminal};
 use crate::cli::{self, Cli, Command};
 #[cfg(feature = "window")]
 use crate::commands::{answer, render};
-use crate::commands::{chart, choose, judge, list, manual, simplify, simulate, stability, sweep};
+use crate::commands::{
+    chart, choose, judge, list, manual, simplify, simulate, solvers, stability, sweep,
+};
 use crate::files::lessons;
 #[cfg(feature = "window")]
 use crate::window::{self, compare};
@@ -51,7 +53,7 @@ pub fn run(args: &[OsString]) -> u8 {
             Some(Command::Judge(options)) => judge::run(&options),
             Some(Command::Sweep(options)) => sweep::run(&options),
             Some(Command::Scenes(options)) => list::scenes(&options),
-            Some(Command::Solvers) => list::solvers(),
+            Some(Command::Solvers(options)) => solvers::run(&options),
             Some(Command::Lessons { lesson }) => lessons::print(lesson),
             Some(Command::Completions { shell }) => manual::completions(shell),
             Some(Command::Man { output }) => manual::run(output.as_deref()),

@@ -14,6 +14,7 @@ use super::judge::Judge;
 use super::scenes::Scenes;
 use super::simplify::Simplify;
 use super::simulate::Simulate;
+use super::solvers::Solvers;
 use super::stability::Stability;
 #[cfg(not(target_arch = "wasm32"))]
 use super::sweep::Sweep;
@@ -87,8 +88,9 @@ pub enum Command {
     Compare(Compare),
     /// List the scenes with their particles, springs, length of the state and forces
     Scenes(Scenes),
-    /// List the solvers with their order, evaluations per step, and default step or tolerance
-    Solvers,
+    /// List the solvers with their order, evaluations per step, and default step or tolerance; say
+    /// which of them serve a scene
+    Solvers(Solvers),
     /// Print a lesson on solvers, or the list of lessons; key F1 of the window goes through them
     Lessons {
         /// Number of the lesson

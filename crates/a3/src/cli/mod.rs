@@ -16,6 +16,7 @@ mod scenes;
 pub mod share;
 mod simplify;
 mod simulate;
+mod solvers;
 mod stability;
 #[cfg(not(target_arch = "wasm32"))]
 mod sweep;
@@ -37,6 +38,7 @@ pub use run::{RunOptions, What};
 pub use scenes::Scenes;
 pub use simplify::{Quantity, Simplify};
 pub use simulate::Simulate;
+pub use solvers::Solvers;
 pub use stability::Stability;
 #[cfg(not(target_arch = "wasm32"))]
 pub use sweep::Sweep;

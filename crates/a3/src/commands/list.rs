@@ -1,6 +1,5 @@
-//! `a3 scenes` and `a3 solvers`: lists of the built-in scenes and of the solvers.
+//! `a3 scenes`: the built-in scenes.
 
-use a3_core::{Control, integrators};
 use a3_scenes::{Description, List};
 
 use crate::base::failure::Failure;
@@ -50,51 +49,6 @@ pub fn scenes(options: &Scenes) -> Result<(), Failure> {
                 .ok()
                 .and_then(|d| d.summary)
                 .unwrap_or_default(),
-        ]);
-    }
-    terminal::say(&table(&rows))
-}
-
-/// Lists the solvers.
-pub fn solvers() -> Result<(), Failure> {
-    let heading = [
-        "",
-        "solver",
-        " order",
-        " evaluations/step",
-        " default",
-        "serves",
-        "method",
-    ];
-    let mut rows = vec![heading.map(String::from).to_vec()];
-    for m in integrators::METHODS {
-        rows.push(vec![
-            m.letter.map(String::from).unwrap_or_default(),
-            m.name.into(),
-            m.order.to_string(),
-            if m.is_implicit() && !m.needs_springs() {
-                format!("{} and linear solves", m.evaluations)
-            } else if m.damped_evaluations == m.evaluations {
-                m.evaluations.to_string()
-            } else {
-                format!(
-                    "{} ({} if springs are damped)",
-                    m.evaluations, m.damped_evaluations
-                )
-            },
-            match m.default_control {
-                Control::Step(step) => format!("{step} s"),
-                Control::Tolerance(tolerance) => format!("tolerance {tolerance:.0e}"),
-            },
-            if m.needs_springs() {
-                "springs"
-            } else if m.needs_mechanics() {
-                "masses"
-            } else {
-                "any system"
-            }
-            .into(),
-            m.title.into(),
         ]);
     }
     terminal::say(&table(&rows))

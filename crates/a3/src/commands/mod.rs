@@ -13,6 +13,7 @@ mod motion;
 pub mod render;
 pub mod simplify;
 pub mod simulate;
+pub mod solvers;
 pub mod stability;
 mod summary;
 pub mod sweep;

@@ -129,8 +129,9 @@ impl Method {
         }
     }
 
-    /// Reason why the method does not support a system; `None` if it does.
-    fn refusal(&self, system: &dyn ParticleSystem) -> Option<Refusal> {
+    /// Returns the reason why the method does not support a system; `None` if it does.
+    #[must_use]
+    pub fn refusal(&self, system: &dyn ParticleSystem) -> Option<Refusal> {
         let Some(mechanics) = system.mechanics() else {
             return match self.view {
                 View::Derivative => None,
