@@ -40,12 +40,9 @@ pub fn table() -> Result<String, Fault> {
         let answers = families.iter().map(|family| cell(family.refusals[k]));
         rows.push([kind.words.to_owned()].into_iter().chain(answers).collect());
     }
-    let mut text = laid_out(&rows);
-    text.push('\n');
-    for (number, why) in reasons.iter().enumerate() {
-        text += &format!("{}. The solver {why}.\n", number + 1);
-    }
-    Ok(text)
+    let reason = |(number, why): (usize, Refusal)| format!("{number}. The solver {why}.\n");
+    let reasons: String = (1..).zip(reasons).map(reason).collect();
+    Ok(format!("{}\n{reasons}", laid_out(&rows)))
 }
 
 /// Sorts the solvers into families, in the order of the table of solvers.
