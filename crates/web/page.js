@@ -10,6 +10,10 @@ const words = document.getElementById("words");
 const canvas = document.getElementById("a3");
 // The largest file that is opened (bytes).
 const LARGEST = 64 << 20;
+// The words of the address, of which some name files beside the page.
+const asked = decodeURIComponent(location.search.slice(1).replaceAll("+", " ")).split(" ");
+// A frame in another page leaves the wheel and the finger to it until it is clicked.
+const embedded = asked.includes("embed=1");
 
 // Keys of the browser, which the program must not see: it would keep the browser from them.
 addEventListener("keydown", (event) => {
@@ -34,6 +38,32 @@ const open = async (program, items) => {
   }
 };
 
+// Fetches the scenes that the address names, and the meshes that these name.
+const fetchScenes = async (program) => {
+  const fetchFile = async (name) => {
+    const place = new URL(name, location);
+    const response = place.origin === location.origin && await fetch(place);
+    if (!response?.ok) throw new Error(`there is no file ${name} beside this page`);
+    program.keep_file(name, new Uint8Array(await response.clone().arrayBuffer()));
+    return response;
+  };
+  const isFile = (word) => /\.(toml|json)$/i.test(word);
+  const words = asked.flatMap((word) => word.replace(/^scenes=/, "").split(",")).filter(isFile);
+  for (const name of new Set(words)) {
+    const text = await (await fetchFile(name)).text();
+    for (const [, mesh] of text.matchAll(/\bfile\b"?\s*[=:]\s*["']([^"']+)["']/g)) {
+      await fetchFile(name.replace(/[^/]*$/, "") + mesh);
+    }
+  }
+};
+
+if (embedded) {
+  document.body.classList.add("embedded");
+  addEventListener("wheel", (event) => {
+    if (document.activeElement !== canvas) event.stopImmediatePropagation();
+  }, true);
+}
+
 try {
   // A browser may support WebGPU without having an adapter for it.
   const adapter = relaxed && await navigator.gpu?.requestAdapter().catch(() => null);
@@ -43,9 +73,10 @@ try {
   }
   const program = await import(`./${build}/a3_web.js`);
   await program.default();
+  await fetchScenes(program);
   program.start();
   if (words.textContent.startsWith("a3 is loading")) words.textContent = "";
-  canvas.focus();
+  if (!embedded) canvas.focus();
   addEventListener("dragover", (event) => event.preventDefault());
   addEventListener("drop", (event) => {
     event.preventDefault();

@@ -1,5 +1,6 @@
 //! The program as a web page: the window in a canvas. The query of the address (after its question
-//! mark) is a command line without the program's name, so that a link shows a run, or a lesson.
+//! mark) is a command line without the program's name, with parameters, so that a link shows a run,
+//! or a lesson.
 
 use std::panic;
 use std::path::Path;
@@ -12,16 +13,13 @@ use crate::base::browser::{self, files};
 use crate::base::failure::Failure;
 use crate::base::progress;
 use crate::cli::{self, Cli, Command};
-use crate::files::lessons::ALL;
 use crate::files::scene_file::Hash;
+use crate::window::address::Address;
 use crate::window::app;
 use crate::window::begin;
 use crate::window::hud::lessons;
 use crate::window::session::LessonRequest;
 use crate::window::settings::Settings;
-
-/// Beginning of the word of the address that names a lesson.
-const LESSON: &str = "lesson=";
 
 /// Starts the run that the address describes, or shows on the page why that is not possible.
 pub fn start() {
@@ -35,11 +33,8 @@ pub fn start() {
 }
 
 fn begin() -> Result<(), Failure> {
-    let (asked, words): (Vec<_>, Vec<_>) = browser::words()
-        .into_iter()
-        .partition(|word| word.starts_with(LESSON));
-    let lesson = asked.first().map(|word| lesson(word)).transpose()?;
-    let words = ["a3".to_owned()].into_iter().chain(words);
+    let address = Address::read(browser::words())?;
+    let words = ["a3".to_owned()].into_iter().chain(address.words);
     let options = Cli::try_parse_from(words).map_err(|error| match cli::explain(&error, &[]) {
         Err(failure) => failure,
         Ok(()) => Failure::usage(error),
@@ -53,36 +48,20 @@ fn begin() -> Result<(), Failure> {
             ));
         }
     };
-    let settings = if look.no_config {
+    let settings = if look.no_config || address.embedded {
         None
     } else {
         Settings::read().map_err(|why| browser::log(&why)).ok()
     };
-    if let Some(lesson) = lesson {
+    session.hidden = address.hidden;
+    if let Some(names) = address.scenes {
+        session.scenes.offer(names);
+    }
+    if let Some((lesson, step)) = address.lesson {
         session.panel.lessons.open = true;
-        lessons::apply(&mut session, lesson);
+        lessons::apply(&mut session, LessonRequest::Open(lesson, step));
     }
     app::spawn(session, &look, settings)
-}
-
-/// Returns the request for the lesson that a word of the address names, and for its step if it
-/// names one, as in `lesson=3` or `lesson=3.2`.
-fn lesson(word: &str) -> Result<LessonRequest, Failure> {
-    let asked = word.trim_start_matches(LESSON);
-    let (lesson, step) = asked.split_once('.').unwrap_or((asked, "1"));
-    let number = |text: &str| text.parse::<usize>().ok()?.checked_sub(1);
-    let found = number(lesson).zip(number(step));
-    let found = found.filter(|(lesson, step)| {
-        let lesson = ALL.get(*lesson);
-        lesson.is_some_and(|lesson| *step < lesson.steps.len())
-    });
-    let (lesson, step) = found.ok_or_else(|| {
-        let count = ALL.len();
-        Failure::usage(format!(
-            "{word}: there are {count} lessons in a few steps each, as in lesson=3 or lesson=3.2"
-        ))
-    })?;
-    Ok(LessonRequest::Open(lesson, step))
 }
 
 /// Takes steps of the run that a command line describes, as fast as possible. Returns a hash
@@ -124,6 +103,11 @@ pub fn run_steps(words: &str, steps: u32) -> String {
 /// Shows a message of the page.
 pub fn say(words: &str) {
     app::send(app::Event::Say(words.into()));
+}
+
+/// Stores a file that the scenes of the page may name.
+pub fn keep_file(name: &str, bytes: &[u8]) {
+    files::keep(Path::new(name), bytes);
 }
 
 /// Opens a file that was dropped on the page.

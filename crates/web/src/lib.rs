@@ -23,6 +23,12 @@ pub fn run_steps(words: &str, steps: u32) -> String {
     a3::page::run_steps(words, steps)
 }
 
+/// Stores a file that the scenes of the page may name.
+#[wasm_bindgen]
+pub fn keep_file(name: &str, bytes: &[u8]) {
+    a3::page::keep_file(name, bytes);
+}
+
 /// Opens a file that was dropped on the page.
 #[wasm_bindgen]
 pub fn open_file(name: &str, bytes: &[u8]) {

@@ -1,5 +1,7 @@
 //! The window and the page: sessions, the text over their pictures, and the input of the user.
 
+#[cfg(any(target_arch = "wasm32", test))]
+pub mod address;
 pub mod app;
 pub mod begin;
 pub mod command_line;

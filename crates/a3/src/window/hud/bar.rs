@@ -177,7 +177,9 @@ fn others(session: &Session) -> Vec<Button> {
     let (run, window) = (Action::Run, Action::Window);
     let first = session.runs.first();
     let scene = format!("{} ⏷", first.scene().name);
+    let hidden = &session.hidden;
     let solver = match session.runs.panes.len() {
+        1 if hidden.solvers => first.method().name.into(),
         1 => format!("{} ⏷", first.method().name),
         _ => "solvers ⏷".into(),
     };
@@ -200,8 +202,11 @@ fn others(session: &Session) -> Vec<Button> {
         Button::new("⮪", "Undo (z)", window(WindowAction::Undo)),
         Button::new("📷", "Save a picture (p)", window(WindowAction::Picture)),
     ];
-    // A page makes no films.
-    if !cfg!(target_arch = "wasm32") {
+    // A page makes no films, and a telephone has no key that fills the screen.
+    if cfg!(target_arch = "wasm32") {
+        let whole = Button::new("⛶", "Full screen (F11)", window(WindowAction::FullScreen));
+        buttons.insert(5, whole);
+    } else {
         buttons.push(Button {
             colour: ALARM.colour,
             ..Button::new(film, does, window(WindowAction::Record))
@@ -212,15 +217,22 @@ fn others(session: &Session) -> Vec<Button> {
         "Help, and everything else (h)",
         run(RunAction::Help),
     ));
-    if session.measuring.open {
-        buttons[2].colour = FAINT;
+    for button in &mut buttons {
+        let is_open = match button.action {
+            Action::Run(RunAction::Measure) => session.measuring.open,
+            Action::Run(RunAction::Panel) => session.panel.open,
+            _ => false,
+        };
+        if is_open {
+            button.colour = FAINT;
+        }
     }
-    if session.panel.open {
-        buttons[3].colour = FAINT;
-    }
-    if session.measuring.answerer.is_none() {
-        buttons.remove(2);
-    }
+    buttons.retain(|button| match button.action {
+        Action::Run(RunAction::Measure) => session.measuring.answerer.is_some(),
+        Action::Run(RunAction::Solvers) => true,
+        Action::Run(action) => hidden.refusal(action).is_none(),
+        Action::Window(_) => true,
+    });
     buttons
 }
 
@@ -311,7 +323,7 @@ mod tests {
             assert!(words.contains(said), "{said} in {words}");
         }
         let font = FontId::proportional(18.0);
-        for symbol in words.chars().chain("⏸⏹☰∫✖".chars()).filter(|c| *c != '\n') {
+        for symbol in words.chars().chain("⏸⏹☰∫✖⛶".chars()).filter(|c| *c != '\n') {
             let known = ctx.fonts_mut(|fonts| fonts.has_glyph(&font, symbol));
             assert!(known, "{symbol}");
         }

@@ -23,6 +23,10 @@ impl Session {
     /// Performs an action, and returns whether it changed the scene. Solvers and scene files are
     /// those of pane `at`; all other actions apply to every pane.
     pub fn act(&mut self, action: RunAction, at: usize) -> bool {
+        if let Some(why) = self.hidden.refusal(action) {
+            self.readings.say(why);
+            return false;
+        }
         match action {
             RunAction::NextScene | RunAction::PreviousScene => {
                 let by = if action == RunAction::NextScene {
@@ -226,6 +230,9 @@ impl Session {
         if self.list.take().is_some_and(|list| list.topic == topic) {
             return;
         }
+        if let Some(why) = self.hidden.refusal_of_list(topic) {
+            return self.readings.say(why);
+        }
         let panes = &self.runs.panes;
         let entries = match topic {
             Topic::Scenes => self.scenes.entries(),
@@ -291,6 +298,11 @@ impl Session {
         if file.is_dir() {
             let folder = file.display();
             let why = format!("{folder} is a folder: drop the scene file or the mesh in it.");
+            self.readings.warn(why);
+            return false;
+        }
+        if self.scenes.leaves_out(file) {
+            let why = "This page has its own scenes alone: o lists them.";
             self.readings.warn(why);
             return false;
         }

@@ -18,6 +18,8 @@ pub struct Scenes {
     begun: String,
     /// The present scene.
     pub shown: Origin,
+    /// The names of all scenes that may be shown; those below if `None`.
+    offered: Option<Vec<String>>,
     /// Number of the present scene: first the user's files, then the built-in scenes.
     number: usize,
     /// Files that were opened in earlier windows, the most recent first.
@@ -40,6 +42,7 @@ impl Scenes {
     pub fn new(origin: Origin) -> Self {
         Self {
             begun: origin.source.typed.clone(),
+            offered: None,
             number: a3_scenes::SCENES
                 .iter()
                 .position(|entry| entry.name == origin.source.typed)
@@ -58,14 +61,33 @@ impl Scenes {
         self.asked
             .extend(others.filter(|origin| origin.source.typed != shown));
         self.begun = former.begun;
+        self.offered = former.offered;
         self.recent = former.recent;
         self.checkpoint = former.checkpoint;
         let number = self.names().iter().position(|name| *name == shown);
         self.number = number.unwrap_or(0);
     }
 
+    /// Limits the scenes to those with these names.
+    #[cfg(any(target_arch = "wasm32", test))]
+    pub fn offer(&mut self, names: Vec<String>) {
+        let shown = &self.shown.source.typed;
+        self.number = names.iter().position(|name| name == shown).unwrap_or(0);
+        self.recent.clear();
+        self.offered = Some(names);
+    }
+
+    /// Whether the scene of a file may not be shown.
+    pub fn leaves_out(&self, file: &Path) -> bool {
+        let has = |names: &Vec<String>| names.iter().any(|name| Path::new(name) == file);
+        self.offered.as_ref().is_some_and(|names| !has(names))
+    }
+
     /// Returns the names of all scenes: first the user's files, then the built-in scenes.
     fn names(&self) -> Vec<String> {
+        if let Some(offered) = &self.offered {
+            return offered.clone();
+        }
         let files = self.asked.iter().map(|origin| &origin.source);
         let files = files.filter(|source| source.path.is_some());
         let table = a3_scenes::SCENES.iter().map(|entry| entry.name.to_owned());
