@@ -53,7 +53,7 @@ fn begin() -> Result<(), Failure> {
     } else {
         Settings::read().map_err(|why| browser::log(&why)).ok()
     };
-    session.hidden = address.hidden;
+    session.panel.hidden = address.hidden;
     if let Some(names) = address.scenes {
         session.scenes.offer(names);
     }

@@ -177,7 +177,7 @@ fn others(session: &Session) -> Vec<Button> {
     let (run, window) = (Action::Run, Action::Window);
     let first = session.runs.first();
     let scene = format!("{} ⏷", first.scene().name);
-    let hidden = &session.hidden;
+    let hidden = &session.panel.hidden;
     let solver = match session.runs.panes.len() {
         1 if hidden.solvers => first.method().name.into(),
         1 => format!("{} ⏷", first.method().name),
@@ -229,9 +229,10 @@ fn others(session: &Session) -> Vec<Button> {
     }
     buttons.retain(|button| match button.action {
         Action::Run(RunAction::Measure) => session.measuring.answerer.is_some(),
-        Action::Run(RunAction::Solvers) => true,
-        Action::Run(action) => hidden.refusal(action).is_none(),
-        Action::Window(_) => true,
+        Action::Run(action @ (RunAction::Panel | RunAction::Lessons)) => {
+            hidden.refusal(action).is_none()
+        }
+        _ => true,
     });
     buttons
 }

@@ -23,7 +23,7 @@ impl Session {
     /// Performs an action, and returns whether it changed the scene. Solvers and scene files are
     /// those of pane `at`; all other actions apply to every pane.
     pub fn act(&mut self, action: RunAction, at: usize) -> bool {
-        if let Some(why) = self.hidden.refusal(action) {
+        if let Some(why) = self.panel.hidden.refusal(action) {
             self.readings.say(why);
             return false;
         }
@@ -230,7 +230,7 @@ impl Session {
         if self.list.take().is_some_and(|list| list.topic == topic) {
             return;
         }
-        if let Some(why) = self.hidden.refusal_of_list(topic) {
+        if let Some(why) = self.panel.hidden.refusal_of_list(topic) {
             return self.readings.say(why);
         }
         let panes = &self.runs.panes;

@@ -48,7 +48,7 @@ mod tests {
     #[test]
     fn what_is_hidden_is_refused_and_nothing_changes() {
         let mut session = session(&["t", "0.01"]);
-        session.hidden = Hidden {
+        session.panel.hidden = Hidden {
             panel: true,
             solvers: true,
             lessons: true,

@@ -39,6 +39,7 @@ pub use actions::{Action, RunAction, WindowAction};
 pub use asking::MeasureRequest;
 pub use continued::continue_from;
 pub use effects::{Deviation, Effect, Job, Situation};
+#[cfg(any(target_arch = "wasm32", test))]
 pub use hidden::Hidden;
 pub use history::Change;
 pub use keys::{Binding, GROUPS, Group, MOUSE, action};

@@ -9,7 +9,6 @@ pub fn replace(session: &mut Session, next: Session) {
     let dark = former.runs.panes[0].show.dark;
     looks::set_dark(&mut session.runs.panes, dark);
     session.panel = former.panel;
-    session.hidden = former.hidden;
     (session.panel.pane, session.panel.typed) = (0, None);
     session.pulled = former.pulled;
     session.scenes.adopt(former.scenes);

@@ -6,7 +6,6 @@ use a3_core::{Checkpoint, Error, Simulation};
 use a3_scenes::Setup;
 
 use super::effects::Effects;
-use super::hidden::Hidden;
 use super::history::History;
 use super::list::List;
 use super::measuring::Measuring;
@@ -71,8 +70,6 @@ pub struct Session {
     pub measuring: Measuring,
     /// State of the panel.
     pub panel: PanelState,
-    /// The actions that are left out.
-    pub hidden: Hidden,
     /// The open list, if there is one.
     pub list: Option<List>,
     /// Values for the text over the picture.
@@ -112,7 +109,6 @@ impl Session {
             effects: Effects::default(),
             measuring: Measuring::default(),
             panel: PanelState::default(),
-            hidden: Hidden::default(),
             list: None,
             readings: Readings {
                 paused: beginning.paused,

@@ -3,6 +3,7 @@
 use a3_core::Scene;
 use a3_scenes::{Defaults, Part, PartChange, Setup};
 
+use super::hidden::Hidden;
 use super::lessons::Lessons;
 use super::origin::Origin;
 use crate::files::ending::Ending;
@@ -60,6 +61,8 @@ pub struct PanelState {
     pub open: bool,
     /// The lessons, in whose place the panel opens.
     pub lessons: Lessons,
+    /// The actions that are left out.
+    pub hidden: Hidden,
     /// Whether fingers are used, for which buttons are larger.
     pub touch: bool,
     /// Number of the chosen row in the table of knobs, which keys turn.
@@ -83,6 +86,7 @@ impl Default for PanelState {
         Self {
             open: false,
             lessons: Lessons::default(),
+            hidden: Hidden::default(),
             touch: false,
             row: 0,
             dark: None,
