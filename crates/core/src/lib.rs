@@ -105,7 +105,7 @@ pub use grid::{Grid, MAX_PARTICLES};
 pub use integrators::{Integrator, Method, Work};
 pub use measure::Measure;
 pub use nalgebra::Vector3;
-pub use network::{Element, Network, Touch};
+pub use network::{Element, Network, Touch, untangle};
 pub use own::{Ode, SecondOrder};
 pub use path::{Orientation, Path, Place, Pose, Turn, rotation};
 pub use products::{Products, SolverHints};

@@ -25,6 +25,7 @@ mod sweep;
 mod tearing;
 
 pub(crate) use attraction::{attract, let_go, mass_behind};
+pub use crossings::untangle;
 pub use element::Element;
 pub(crate) use energies::{add_wind, energy_of_errors, is_conservative};
 pub(crate) use holding::{contradiction, is_nearly_singular};

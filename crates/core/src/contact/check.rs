@@ -4,7 +4,7 @@ use std::fmt;
 
 use super::advance::rounding_error;
 use super::candidates::Stretch;
-use super::exact::crossings;
+use super::exact::{Crossing, crossings};
 use super::layer::{Buffers, ContactLayer};
 use super::listing::Candidate;
 use crate::error::Vertex;
@@ -88,6 +88,40 @@ pub(crate) fn is_crowded(layer: &ContactLayer, t: f64, x: &[f64], thickness: f64
 
 fn crossed_with(layer: &ContactLayer, buffers: &mut Buffers, t: f64, x: &[f64]) -> Vec<Crossed> {
     let surface = layer.surface();
+    let (edges, triangles): (Vec<_>, Vec<_>) =
+        (surface.edges().collect(), surface.triangles().collect());
+    let (crossings, inside) = meetings(layer, buffers, t, x, &edges, &triangles);
+    let name = |points: &[u32]| points.iter().map(|i| surface.vertex(*i)).collect();
+    let exact = crossings.into_iter().map(|crossing| Crossed {
+        first: name(&edges[crossing.edge]),
+        second: name(&triangles[crossing.triangle]),
+    });
+    let inside = inside.iter().map(|pair| {
+        let (first, second) = pair.points.split_at(pair.kind.first());
+        let of = |points: &[u32]| {
+            let mut points = points.to_vec();
+            points.dedup();
+            name(&points)
+        };
+        Crossed {
+            first: of(first),
+            second: of(second),
+        }
+    });
+    exact.chain(inside).collect()
+}
+
+/// The crossings of these edges and triangles of the surface, and the pairs inside a round obstacle
+/// or a floor, as [`crossed`] has them.
+pub(super) fn meetings(
+    layer: &ContactLayer,
+    buffers: &mut Buffers,
+    t: f64,
+    x: &[f64],
+    edges: &[[u32; 2]],
+    triangles: &[[u32; 3]],
+) -> (Vec<Crossing>, Vec<Candidate>) {
+    let surface = layer.surface();
     let n = surface.particles();
     let Buffers {
         candidates,
@@ -95,23 +129,14 @@ fn crossed_with(layer: &ContactLayer, buffers: &mut Buffers, t: f64, x: &[f64]) 
         ..
     } = buffers;
     surface.place(layer.obstacles(), t, x, places);
-    let (edges, triangles): (Vec<_>, Vec<_>) =
-        (surface.edges().collect(), surface.triangles().collect());
-    let name = |points: &[u32]| points.iter().map(|i| surface.vertex(*i)).collect();
-    let counts = |edge: &[u32; 2], triangle: &[u32; 3]| {
+    let counts = |crossing: &Crossing| {
+        let (edge, triangle) = (edges[crossing.edge], triangles[crossing.triangle]);
         let [a, b] = [edge[0], triangle[0]].map(|i| (i as usize) < n);
         let apart = !surface.is_one_solid(edge[0], triangle[0]);
         a && b && surface.touches_itself && apart || a != b
     };
-    let exact = crossings(x, &places[n..], &triangles, &edges).into_iter();
-    let exact = exact
-        .map(|crossing| (edges[crossing.edge], triangles[crossing.triangle]))
-        .filter(|(edge, triangle)| counts(edge, triangle))
-        .map(|(edge, triangle)| Crossed {
-            first: name(&edge),
-            second: name(&triangle),
-        });
-    let mut crossed: Vec<_> = exact.collect();
+    let mut exact = crossings(x, &places[n..], triangles, edges);
+    exact.retain(counts);
     let stretch = Stretch {
         times: [t; 2],
         ends: [places; 2],
@@ -128,17 +153,5 @@ fn crossed_with(layer: &ContactLayer, buffers: &mut Buffers, t: f64, x: &[f64]) 
         }
     };
     let inside = candidates.near(surface.nearest()).filter(is_inside);
-    crossed.extend(inside.map(|pair| {
-        let (first, second) = pair.points.split_at(pair.kind.first());
-        let of = |points: &[u32]| {
-            let mut points = points.to_vec();
-            points.dedup();
-            name(&points)
-        };
-        Crossed {
-            first: of(first),
-            second: of(second),
-        }
-    }));
-    crossed
+    (exact, inside.copied().collect())
 }

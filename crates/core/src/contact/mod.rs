@@ -43,6 +43,7 @@ mod strike;
 mod surface;
 #[cfg(test)]
 mod tests;
+mod untangle;
 
 pub use crate::geometry::{ClosedMesh, Closest, PairKind, Shape, Simplices, closest, weighted};
 pub use advance::time_of_impact;
@@ -63,3 +64,4 @@ pub use resolve::{ContactPhase, Step, resolve};
 pub use skin::Skin;
 pub use strain::{StrainLimit, StrainLimiter, Strained};
 pub use surface::Surface;
+pub(crate) use untangle::{Freedom, untangle};

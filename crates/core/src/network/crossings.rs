@@ -5,7 +5,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 
 use super::parts::Network;
-use crate::contact::{Crossed, is_crowded};
+use crate::contact::{self, ContactLayer, Crossed, Freedom, is_crowded};
+use crate::coupling::{AxialCoupling, BlockCoupling, Coupling, GeneralCoupling};
 use crate::error::{Error, Vertex};
 use crate::sets::Sets;
 
@@ -15,17 +16,7 @@ const MAX_NAMED: usize = 3;
 /// Checks that no surfaces pass through one another at time t (s) at x (m), n x 3.
 pub(super) fn check_apart(network: &Network, t: f64, x: &[f64]) -> Result<(), Error> {
     if let Some(layer) = network.contact_layer() {
-        let thickest = layer.surface().thickest();
-        if is_crowded(layer, t, x, 0.0) {
-            let why = "too many surfaces are at the same place for contact: move them apart";
-            return Err(Error::Invalid(why.into()));
-        }
-        if is_crowded(layer, t, x, thickest) {
-            return Err(Error::Invalid(format!(
-                "too many surfaces are within their thickness of one another for contact: it is up to {thickest} m, \
-                 and a smaller one would do"
-            )));
-        }
+        check_crowded(layer, t, x)?;
     }
     let crossed = network.crossed(t, x);
     if crossed.is_empty() {
@@ -37,6 +28,78 @@ pub(super) fn check_apart(network: &Network, t: f64, x: &[f64]) -> Result<(), Er
         crossed: &crossed,
     };
     Err(Error::Invalid(description.to_string()))
+}
+
+/// Checks that there are not too many pairs at the same place to list them.
+fn check_crowded(layer: &ContactLayer, t: f64, x: &[f64]) -> Result<(), Error> {
+    let thickest = layer.surface().thickest();
+    if is_crowded(layer, t, x, 0.0) {
+        let why = "too many surfaces are at the same place for contact: move them apart";
+        return Err(Error::Invalid(why.into()));
+    }
+    if is_crowded(layer, t, x, thickest) {
+        return Err(Error::Invalid(format!(
+            "too many surfaces are within their thickness of one another for contact: it is up to {thickest} m, and a \
+             smaller one would do"
+        )));
+    }
+    Ok(())
+}
+
+/// Moves the particles of the state y of a network at time 0 until no surfaces cross, with lengths
+/// kept as far as possible. Pins, obstacles, and particles that constraints hold stay where they
+/// are, rigid bodies keep their directions, and velocities do not change.
+///
+/// # Errors
+/// Surfaces still cross after many attempts: the message is that of [`Network::check_apart`], and y
+/// has the last attempt.
+///
+/// # Panics
+/// y has fewer than three numbers for each particle.
+pub fn untangle(network: &Network, y: &mut [f64]) -> Result<(), Error> {
+    let Some(layer) = network.contact_layer() else {
+        return Ok(());
+    };
+    let n = network.particles();
+    let x = &mut y[..3 * n];
+    check_crowded(layer, 0.0, x)?;
+    let links = links(network, x);
+    let mut weights: Vec<_> = network.masses().iter().map(|mass| 1.0 / mass).collect();
+    for body in network.bodies() {
+        let weight = weights[body.center()];
+        weights[body.points()].fill(weight);
+    }
+    for (i, weight) in weights.iter_mut().enumerate() {
+        if network.is_pinned(i) || network.is_held(i) {
+            *weight = 0.0;
+        }
+    }
+    let freedom = Freedom {
+        links: &links,
+        weights: &weights,
+    };
+    if contact::untangle(layer, &freedom, 0.0, x) {
+        return Ok(());
+    }
+    check_apart(network, 0.0, x)
+        .map_err(|why| Error::Invalid(format!("they do not come apart: {why}")))
+}
+
+/// Returns the pairs of particles between which forces act, except contact.
+fn links(network: &Network, x: &[f64]) -> Vec<[u32; 2]> {
+    let mut links = BTreeSet::new();
+    let all = network.elements().iter();
+    for element in all.filter(|element| element.get::<ContactLayer>().is_none()) {
+        element.force().couplings(0.0, x, true, &mut |coupling| {
+            let (i, j) = match coupling {
+                Coupling::Axial(AxialCoupling { i, j, .. })
+                | Coupling::Block(BlockCoupling { i, j, .. })
+                | Coupling::General(GeneralCoupling { i, j, .. }) => (i, j),
+            };
+            links.insert([i.min(j) as u32, i.max(j) as u32]);
+        });
+    }
+    links.into_iter().collect()
 }
 
 /// Connected part, body or obstacle that a surface belongs to.

@@ -77,7 +77,11 @@ impl RunState {
         }
         if let Some(network) = model.network().filter(|n| n.contact_layer().is_some()) {
             let apart = network.check_apart(0.0, network.halves(y).0);
-            apart.map_err(|e| Error::Invalid(format!("surfaces cannot begin crossed: {e}")))?;
+            apart.map_err(|e| {
+                Error::Invalid(format!(
+                    "surfaces cannot begin crossed, unless `untangle` brings them apart: {e}"
+                ))
+            })?;
         }
         Ok(Self::new(method, control, y.clone()))
     }

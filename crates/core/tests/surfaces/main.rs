@@ -20,6 +20,7 @@ mod rigid;
 mod scenes;
 mod slope;
 mod swift;
+mod untangle;
 
 use a3_core::contact::{Obstacle, Shape, Skin};
 use a3_core::{Network, Path, Touch, Vector3};

@@ -117,6 +117,9 @@ impl Description {
         if let Some(given) = &self.state {
             state::write(given, n, &mut state)?;
         }
+        if let (true, Model::Network(network)) = (self.untangle, &model) {
+            at("untangle", a3_core::untangle(network, &mut state))?;
+        }
         if let Some(trail) = self.trail.filter(|i| *i >= n) {
             return Err(Fault::no_particle("trail", trail, n));
         }

@@ -33,6 +33,7 @@ pub use rigid::{PartSpec, RigidBody};
 /// followed by its tank's walls.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
+#[allow(clippy::struct_excessive_bools, reason = "keys of a file")]
 pub struct Description {
     /// Short name; if not given, that of the file.
     pub name: Option<String>,
@@ -61,6 +62,9 @@ pub struct Description {
     /// elsewhere.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub window_self_collision: bool,
+    /// Whether surfaces that can touch and cross at the start come apart.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub untangle: bool,
     /// Level floor: its height (m), or a table with `height` and `friction`.
     pub floor: Option<Floor>,
     /// Largest stretch, in rest lengths, to which a hand pulls the springs of the particle it
