@@ -6,6 +6,12 @@ use super::nearest::Separation;
 use super::shape::Shape;
 
 impl Shape {
+    /// Distance of a point from the surface (m), below 0 inside.
+    #[must_use]
+    pub fn distance(&self, point: Vector3<f64>) -> f64 {
+        self.separation(point).distance
+    }
+
     /// Separation of a point d, in the shape's own frame.
     pub(crate) fn separation(&self, d: Vector3<f64>) -> Separation {
         match self {

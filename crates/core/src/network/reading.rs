@@ -112,10 +112,11 @@ impl Network {
         self.elements.fluid()
     }
 
-    /// Whether particle i is in a wall: pinned, and of the fluid.
+    /// Whether particle i is in a wall: of the fluid, and pinned or carried by a rigid body.
     #[must_use]
     pub fn is_wall(&self, i: usize) -> bool {
-        self.is_pinned(i) && self.fluid().is_some_and(|fluid| fluid.contains(i))
+        let is_led = self.is_pinned(i) || self.is_carried(i);
+        is_led && self.fluid().is_some_and(|fluid| fluid.contains(i))
     }
 
     /// Returns the bend springs that buckle.

@@ -91,13 +91,23 @@ impl Body {
         })
     }
 
+    /// The same body with more points, as those that a liquid touches: the particles that follow
+    /// the points of its parts. Their places are relative to the centre and along the principal
+    /// axes (m).
+    #[must_use]
+    pub fn with_points(mut self, places: impl IntoIterator<Item = Vector3<f64>>) -> Self {
+        self.anchors.extend(places);
+        self.points.end = self.points.start + self.anchors.len();
+        self
+    }
+
     /// Particle at its centre of mass, which has its mass.
     #[must_use]
     pub fn center(&self) -> usize {
         self.center
     }
 
-    /// Particles at the points of its parts, which have no mass.
+    /// Particles at the points of its parts, and at further points, which have no mass.
     #[must_use]
     pub fn points(&self) -> Range<usize> {
         self.points.clone()

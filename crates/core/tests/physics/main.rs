@@ -9,6 +9,7 @@ mod contact;
 mod cords;
 mod elements;
 mod fan;
+mod floating;
 mod fluid;
 mod forces;
 mod friction;

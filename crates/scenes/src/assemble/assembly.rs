@@ -86,6 +86,8 @@ pub(super) struct Assembly {
     pub strain_limits: Vec<(String, Range<usize>, f64)>,
     /// Law of the fluid, and the particles of each of its bodies.
     pub fluid: Option<(FluidLaw, Vec<Range<usize>>)>,
+    /// Points of each rigid body that the fluid touches.
+    pub soaked: Vec<Range<usize>>,
     /// Particles of the walls of each tank.
     pub tanks: Vec<Range<usize>>,
 }

@@ -249,16 +249,19 @@ impl Body for Fluid {
     }
 }
 
-/// Adds the fluid of all bodies to a network, whose initial positions are `x` (m).
+/// Adds the fluid of all bodies to a network, whose initial positions are `x` (m). It touches the
+/// `soaked` points of rigid bodies.
 pub(super) fn add(
     fluid: Option<(FluidLaw, Vec<Range<usize>>)>,
+    soaked: Vec<Range<usize>>,
     network: &mut Network,
     x: &[f64],
 ) -> Result<(), Fault> {
     let Some((law, particles)) = fluid else {
         return Ok(());
     };
-    let particles = particles.into_iter().flatten().map(|i| i as u32);
+    let particles = particles.into_iter().chain(soaked).flatten();
+    let particles = particles.map(|i| i as u32);
     let fluid = at("fluid", Liquid::new(law, particles.collect()))?;
     if let Some(([i, j], distance)) = fluid.nearest_pair(x)
         && distance < MIN_DISTANCE * law.spacing

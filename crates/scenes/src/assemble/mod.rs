@@ -17,6 +17,7 @@ mod obstacles;
 mod pins;
 mod rigid;
 mod skins;
+mod soaked;
 mod solid;
 mod state;
 

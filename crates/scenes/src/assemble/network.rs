@@ -93,7 +93,12 @@ pub(super) fn build(
     for rod in assembly.rods {
         at("", network.add_constraint(rod))?;
     }
-    fluid::add(assembly.fluid, &mut network, &state[..3 * n])?;
+    fluid::add(
+        assembly.fluid,
+        assembly.soaked,
+        &mut network,
+        &state[..3 * n],
+    )?;
     constraints::add(description, &mut network, &state)?;
     let triangles = assembly.surface.triangles.iter();
     let triangles = triangles.map(|t| t.map(|i| i as usize));
@@ -199,7 +204,7 @@ fn assembled(
     }
     for (k, body) in description.body.iter().enumerate() {
         let key = key_of("body", k, description.body.len());
-        let loaded = LoadedBody::load(body, budget, mesh);
+        let loaded = LoadedBody::load(body, description.fluid.first(), budget, mesh);
         let loaded = loaded.map_err(|fault| fault.within(&key))?;
         assembly.add(&key, &loaded, budget)?;
     }

@@ -9,9 +9,10 @@ use nalgebra::{Matrix3, Rotation3, UnitQuaternion};
 
 use super::assembly::{Assembly, Body, Counts};
 use super::skins::rigid_skin;
+use super::soaked::soaked;
 use crate::budget::{Budget, FACES, TRIANGLES};
 use crate::check::{at, at_least, key_of, one_of, positive};
-use crate::description::{PartSpec, Pin, RigidBody, Spot};
+use crate::description::{Fluid, PartSpec, Pin, RigidBody, Spot};
 use crate::fault::Fault;
 use crate::mesh::Mesh;
 
@@ -24,12 +25,15 @@ pub(super) struct LoadedBody<'a> {
     parts: Vec<Part>,
     /// Smallest extent of a part (m).
     smallest: f64,
+    /// Places that a fluid touches (m), relative to the origin.
+    soaked: Vec<Vector3<f64>>,
 }
 
 impl<'a> LoadedBody<'a> {
-    /// Reads the files of the body by `mesh`.
+    /// Reads the files of the body by `mesh`. A `fluid` of the scene touches it.
     pub fn load(
         body: &'a RigidBody,
+        fluid: Option<&Fluid>,
         budget: &mut Budget,
         mesh: &mut dyn FnMut(&str) -> Result<Mesh, String>,
     ) -> Result<Self, Fault> {
@@ -41,6 +45,7 @@ impl<'a> LoadedBody<'a> {
             body,
             parts: vec![],
             smallest: f64::INFINITY,
+            soaked: vec![],
         };
         for (k, spec) in body.parts.iter().enumerate() {
             let within = |fault: Fault| fault.within(&key_of("parts", k, body.parts.len()));
@@ -51,21 +56,31 @@ impl<'a> LoadedBody<'a> {
                 at: Vector3::from(spec.at.unwrap_or_default()),
             });
         }
+        if let Some(fluid) = fluid {
+            loaded.soaked = soaked(&loaded.parts, loaded.of_density(1.0)?.mass, fluid)?;
+        }
         Ok(loaded)
     }
 
-    /// Returns the mass, the centre and the inertia of all parts together, relative to the origin.
+    /// Returns the mass, the centre and the inertia of all parts together at a density (kg/m3),
+    /// relative to the origin.
+    fn of_density(&self, density: f64) -> Result<MassProperties, Fault> {
+        let mut all = MassProperties::default();
+        for part in &self.parts {
+            let own = at("parts", MassProperties::of(&part.shape, density))?;
+            all += own.moved(part.at);
+        }
+        Ok(all)
+    }
+
+    /// Returns the mass, the centre and the inertia of the body, relative to the origin.
     fn properties(&self) -> Result<MassProperties, Fault> {
         let (by_volume, number) = one_of(("density", self.body.density), ("mass", self.body.mass))?;
         at(
             if by_volume { "density" } else { "mass" },
             positive("it", number),
         )?;
-        let mut all = MassProperties::default();
-        for part in &self.parts {
-            let own = at("parts", MassProperties::of(&part.shape, 1.0))?;
-            all += own.moved(part.at);
-        }
+        let mut all = self.of_density(1.0)?;
         let scale = if by_volume { number } else { number / all.mass };
         (all.mass, all.inertia) = (all.mass * scale, all.inertia * scale);
         if let Some(inertia) = self.body.inertia {
@@ -79,7 +94,8 @@ impl Body for LoadedBody<'_> {
     fn counts(&self) -> Result<Counts, Fault> {
         let points = |part: &Part| part.shape.simplices().points.len();
         Ok(Counts {
-            particles: 1 + self.parts.iter().map(points).sum::<usize>(),
+            particles: 1 + self.parts.iter().map(points).sum::<usize>() + self.soaked.len(),
+            smoothed: self.soaked.len(),
             parts: self.parts.len(),
             ..Counts::default()
         })
@@ -103,7 +119,9 @@ impl Body for LoadedBody<'_> {
         } else {
             "parts"
         };
-        let made = at(key, made)?;
+        let soaked = self.soaked.iter();
+        let made = at(key, made)?
+            .with_points(soaked.map(|place| axes.tr_mul(&(place - properties.center))));
         let turn = rotation(Vector3::from(body.rotation.unwrap_or_default()));
         let orientation = Rotation3::from_matrix_unchecked(turn * axes);
         let q = *UnitQuaternion::from_rotation_matrix(&orientation).quaternion();
@@ -133,6 +151,10 @@ impl Body for LoadedBody<'_> {
             )?
         };
         assembly.skins.extend(vec![skin; count]);
+        if !self.soaked.is_empty() {
+            let end = made.points().end;
+            assembly.soaked.push(end - self.soaked.len()..end);
+        }
         assembly.rigid.push((made, rotation));
         Ok(())
     }

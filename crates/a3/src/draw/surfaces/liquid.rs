@@ -55,7 +55,7 @@ impl Liquid {
             return Self::default();
         };
         let free = fluid.particles().iter().map(|i| *i as usize);
-        let free = free.filter(|i| !network.is_pinned(*i));
+        let free = free.filter(|i| !network.is_wall(*i) && !network.is_pinned(*i));
         let is_placed = |i: &usize| simulation.position(*i).iter().all(|x| x.is_finite());
         let free: Vec<_> = free.filter(is_placed).collect();
         let places: Vec<_> = free
