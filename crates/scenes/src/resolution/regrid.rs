@@ -79,6 +79,9 @@ fn check_grids(scene: &Description) -> Result<(), String> {
     if !is_gridded {
         return Err("no body has a grid that could be finer".into());
     }
+    if !scene.fluid.is_empty() && !scene.body.is_empty() {
+        return Err("rigid bodies carry particles of the fluid's lattice".into());
+    }
     for cloth in &scene.cloth {
         if cloth.spacing.is_some() || cloth.mass.is_some() {
             return Err("a cloth gives the mass and the distance of its particles, \
@@ -269,5 +272,9 @@ mod tests {
             let scene = Description::parse(&text).unwrap();
             assert!(regridded(&scene, 2.0, 176).is_err(), "{more}");
         }
+        let afloat = "[[body]]\nparts = [{ ball = 0.1 }]\nmass = 1\nat = [0, 1, 0]\n[[fluid]]\nsize = [0.4, 0.4, 0.4]\n\
+                      spacing = 0.1\nat = [0, 0, 0]\ndensity = 1000\nsound = 20\n";
+        let scene = Description::parse(afloat).unwrap();
+        assert!(regridded(&scene, 2.0, 100).unwrap_err().contains("bodies"));
     }
 }
