@@ -118,3 +118,41 @@ fn a_ball_has_as_many_points_as_its_volume_has_cells() {
         assert!((count as f64 - exact).abs() <= 12.5, "{count} of {exact}");
     }
 }
+
+/// Obstacles keep a fluid out also where surfaces touch: in a basin of thick walls, and beside a
+/// body that floats in it.
+#[test]
+fn a_basin_of_obstacles_holds_water_where_surfaces_touch() {
+    let basin = |thickness: &str, body: &str| {
+        described(&format!(
+            "gravity = [0, -9.81, 0]
+            floor = {{ height = 0 {thickness} }}
+            {body}
+            [[box]]
+            center = [0.45, 0.3, 0]
+            size = [0.1, 1, 1]
+            [[capsule]]
+            from = [-0.5, -0.5, 0]
+            to = [-0.5, 1, 0]
+            radius = 0.1
+            [[fluid]]
+            dimensions = 2
+            size = [0.6, 0.4, 0]
+            spacing = 0.05
+            at = [0, 0.3, 0]
+            density = 1000
+            sound = 20
+            viscosity = 0.05"
+        ))
+    };
+    let raft = "[[body]]\nparts = [{ box = [0.3, 0.1, 1] }]\ndensity = 500\nat = [0, 0.6, 0]\n";
+    for scene in [basin(", thickness = 0.01", ""), basin("", raft)] {
+        let mut run = run(scene, 1e-3);
+        run.advance_to(0.6).unwrap();
+        for i in 0..run.particles() {
+            let x = run.position(i);
+            let inside = x.y > -1e-9 && x.y < 0.9 && x.x > -0.401 && x.x < 0.401;
+            assert!(inside, "particle {i} is at {x}");
+        }
+    }
+}
