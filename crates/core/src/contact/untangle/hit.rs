@@ -7,10 +7,10 @@ use super::skeleton::Skeleton;
 use crate::contact::exact::Crossing;
 
 /// Largest displacement of a round, as a share of the length of the edge or of the size of the
-/// triangle.
+/// triangle; of fine surfaces as of coarse ones of the same size.
 const REACH: f64 = 0.25;
-/// Least displacement, as a share of the largest.
-const LEAST: f64 = 0.2;
+/// Least displacement of a passage, as a share of the largest.
+const LEAST: f64 = 0.5;
 
 /// An edge that crosses a triangle.
 pub(super) struct Hit {
@@ -67,7 +67,9 @@ impl Hit {
             },
             normal,
             heights,
-            most: REACH * (q - p).norm().min(area.sqrt()),
+            most: REACH
+                * skeleton.fineness([ends[0], corners[0]])
+                * (q - p).norm().min(area.sqrt()),
         }
     }
 

@@ -5,6 +5,9 @@ use std::collections::BTreeMap;
 use crate::contact::surface::Surface;
 use crate::sets::Sets;
 
+/// Number of vertices along a line of a coarse surface.
+const COARSE: f64 = 16.0;
+
 /// Edges and triangles of bodies and obstacles, and how they are joined.
 pub(super) struct Skeleton {
     pub edges: Vec<[u32; 2]>,
@@ -17,6 +20,8 @@ pub(super) struct Skeleton {
     pub border: Vec<u32>,
     /// The connected part of each vertex, by its smallest vertex.
     pub parts: Vec<u32>,
+    /// Number of vertices of each part.
+    counts: Vec<usize>,
 }
 
 impl Skeleton {
@@ -36,17 +41,31 @@ impl Skeleton {
             neighbours[*b as usize].push((*a, k as u32));
             sets.join(*a, *b);
         }
+        let parts: Vec<_> = (0..surface.vertices() as u32)
+            .map(|i| sets.find(i))
+            .collect();
+        let mut counts = vec![0; parts.len()];
+        for part in &parts {
+            counts[*part as usize] += 1;
+        }
         let border = sides.iter().filter(|(_, at)| at.len() == 1);
         Self {
             border: border.flat_map(|(side, _)| *side).collect(),
-            parts: (0..surface.vertices() as u32)
-                .map(|i| sets.find(i))
-                .collect(),
+            parts,
+            counts,
             edges,
             triangles,
             sides,
             neighbours,
         }
+    }
+
+    /// Returns how many times more vertices along a line than a coarse one the finest part of
+    /// these vertices has; 1 for all coarse ones.
+    pub fn fineness(&self, vertices: [u32; 2]) -> f64 {
+        let counts = vertices.map(|i| self.counts[self.parts[i as usize] as usize]);
+        let most = counts[0].max(counts[1]) as f64;
+        (most.sqrt() / COARSE).max(1.0)
     }
 
     /// Returns the triangles at an edge.
