@@ -100,7 +100,7 @@ fn crossed_with(layer: &ContactLayer, buffers: &mut Buffers, t: f64, x: &[f64]) 
     let name = |points: &[u32]| points.iter().map(|i| surface.vertex(*i)).collect();
     let counts = |edge: &[u32; 2], triangle: &[u32; 3]| {
         let [a, b] = [edge[0], triangle[0]].map(|i| (i as usize) < n);
-        let apart = !surface.is_one_solid(edge[0], triangle[0]);
+        let apart = !surface.are_one(edge, triangle);
         a && b && surface.touches_itself && apart || a != b
     };
     let exact = crossings(x, &places[n..], &triangles, &edges).into_iter();
