@@ -2,8 +2,8 @@
 //!
 //! A joint has a frame on each of its two sides, which turns with the body of that side; the second
 //! side may be the world, and the first one of a ball joint a particle. Let d be the place of the
-//! first frame seen from the second, a_i and u_j the axes of the two, and w_1, w_2 the angular
-//! velocities of their bodies. The equations are of three forms, each with its rate of change:
+//! first frame seen from the second, `a_i` and `u_j` the axes of the two, and `w_1`, `w_2` the
+//! angular velocities of their bodies. The equations are of three forms, each with its rate:
 //!
 //! ```text
 //! C = e . d            C' = e . d'                        along an axis e of the world
@@ -12,10 +12,10 @@
 //! ```
 //!
 //! L is a length, so that errors of directions are distances, too. A ball joint has three equations
-//! of the first form; a hinge has these, and its axis a_1 is perpendicular to u_2 and u_3; where
-//! bodies are fixed to each other, a_2 is perpendicular to u_3 as well. A slider has these three
-//! right angles, and two equations of the second form, across its axis u_1 (Haug, *Computer Aided
-//! Kinematics and Dynamics of Mechanical Systems*, 1989).
+//! of the first form; a hinge has these, and `a_1` is perpendicular to `u_2` and `u_3`; where
+//! bodies are fixed to each other, `a_2` is perpendicular to `u_3` as well. A slider has these
+//! three right angles, and two equations of the second form, across its axis `u_1` (Haug, *Computer
+//! Aided Kinematics and Dynamics of Mechanical Systems*, 1989).
 
 use std::f64::consts::{PI, TAU};
 
@@ -170,15 +170,16 @@ impl Joint {
         ))
     }
 
-    /// Checks what it joins: for each side that is not the world, whether it is the centre of a
-    /// body, or no particle of one.
+    /// Checks what it joins. `is_center` returns whether a particle is the centre of a body, or
+    /// `None` if it is on no body.
     pub(super) fn check_bodies(
         &self,
-        first: Option<bool>,
-        second: Option<Option<bool>>,
+        is_center: impl Fn(usize) -> Option<bool>,
     ) -> Result<(), Error> {
-        let is_body = first == Some(true) && matches!(second, None | Some(Some(true)));
-        let is_attached = first.is_none() && second == Some(Some(true));
+        let first = is_center(self.first);
+        let second = self.second.map(|i| is_center(i) == Some(true));
+        let is_body = first == Some(true) && second != Some(false);
+        let is_attached = first.is_none() && second == Some(true);
         if is_body || is_attached && self.kind == JointKind::Ball {
             return Ok(());
         }

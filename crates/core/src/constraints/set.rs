@@ -85,7 +85,7 @@ impl Constraints {
         let joint = constraint.joint();
         if let Some(joint) = joint {
             let is_center = |i: usize| carrier(i).map(|(center, _)| center == i);
-            joint.check_bodies(is_center(first), second.map(is_center))?;
+            joint.check_bodies(is_center)?;
         }
         let moved = &mut self.moved;
         let mut place = |places: &mut BTreeMap<usize, usize>, of: usize, what| {

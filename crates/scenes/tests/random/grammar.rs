@@ -91,10 +91,9 @@ impl Writer<'_> {
     fn is_there(&mut self, table: &str, key: &str) -> bool {
         match (table, key) {
             ("", key) if NUMBERED.contains(&key) || key == "circle" => false,
-            ("", "gravity") => self.chance.once_in(2),
+            ("", "gravity") | ("HingeSpec" | "SliderSpec", _) => self.chance.once_in(2),
             ("", key) if BODIES.contains(&key) => self.chance.once_in(5),
             ("", _) => self.chance.once_in(6),
-            ("HingeSpec" | "SliderSpec", _) => self.chance.once_in(2),
             _ => self.chance.once_in(4),
         }
     }

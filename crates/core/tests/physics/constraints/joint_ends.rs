@@ -105,7 +105,7 @@ fn a_cloth_is_attached_to_a_turning_body() {
             .collect::<Vec<_>>()
     };
     let total = |run: &Simulation| {
-        let moved = (0..20).map(|i| velocity_of(&run, i) * network.masses()[i]);
+        let moved = (0..20).map(|i| velocity_of(run, i) * network.masses()[i]);
         moved.sum::<Vector3<f64>>() + momenta(run).0
     };
     let begun = simulated(&scene, "dop853", 1e-9, 0.0);

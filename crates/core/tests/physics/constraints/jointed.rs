@@ -161,8 +161,8 @@ fn a_chain_on_ball_joints_keeps_energy_and_angular_momentum() {
 }
 
 /// Angle of the crank after 0.8 s (rad) and its rate (rad/s). Its equation of motion is d/dt (J
-/// q'^2 / 2 + V) = T q', with J and V of all links at the angle q. NumPy has integrated it by 8000
-/// steps of Runge-Kutta, with derivatives by q from complex steps.
+/// q'^2 / 2 + V) = T q', with J and V of all links at the angle q. It was integrated in Python by
+/// 8000 steps of Runge-Kutta, with derivatives by q from complex steps.
 const CRANK: [f64; 2] = [8.553_989_261_8, 14.271_053_112_6];
 
 /// A four-bar linkage in a plane, driven by a motor, against its one coordinate: the crank's angle.
