@@ -11,10 +11,12 @@ mod energies;
 mod evaluation;
 mod held;
 mod holding;
+mod loads;
 mod matrix;
 mod mechanics;
 mod particles;
 mod parts;
+mod project;
 mod reading;
 mod rigid;
 mod ropes;
@@ -27,10 +29,11 @@ mod tearing;
 pub(crate) use attraction::{attract, let_go, mass_behind};
 pub use crossings::untangle;
 pub use element::Element;
-pub(crate) use energies::{add_wind, energy_of_errors, is_conservative};
+pub(crate) use energies::{add_wind, energy_of_errors, has_motors, is_conservative};
 pub(crate) use holding::{contradiction, is_nearly_singular};
 pub use parts::Network;
+pub(crate) use project::{has_joints, project};
 pub(crate) use ropes::{
-    Least, has_ropes, least_tension, ropes_of, set_taut, settle, slack, taut, tighten,
+    Least, has_ropes, least_tension, open_ends, ropes_of, set_taut, settle, slack, taut, tighten,
 };
 pub use surfaces::Touch;

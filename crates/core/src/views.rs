@@ -39,6 +39,9 @@ pub(crate) trait Rigid {
     /// Puts pins and the points of bodies in their places at time t (s).
     fn place(&self, t: f64, y: &mut [f64]);
 
+    /// Moves y by the least distance, weighted by the masses, to where joints are met and stay so.
+    fn project(&self, y: &mut [f64]);
+
     /// Visits the numbers of the state with their quantities, except those of the points of bodies.
     fn measures(&self, visit: &mut dyn FnMut(Range<usize>, Measure));
 }

@@ -121,10 +121,12 @@ pub fn begin_with(description: &mut Description, model: &Model, now: &Checkpoint
     }
     write_obstacles(description, network, t);
     write_strain_limits(description, network);
+    // Particles that are attached to rigid bodies stay so.
     for pins in body_pins(description) {
-        pins.clear();
+        pins.retain(|pin| pin.body.is_some());
     }
-    description.pin = pins(now);
+    description.pin.retain(|pin| pin.body.is_some());
+    description.pin.extend(pins(now));
 }
 
 /// Describes the obstacles as they are at time t (s). The obstacles of each kind are in the order

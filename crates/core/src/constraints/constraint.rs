@@ -2,6 +2,7 @@
 
 use nalgebra::Vector3;
 
+use super::joint::{Joint, JointEquation, Side, Stop, normals};
 use crate::error::{Error, positive};
 
 /// Distance from the centre of a circle or a sphere, in radii, up to which the direction outwards
@@ -72,10 +73,14 @@ pub enum Constraint {
         /// rope has tightened, over that at which they parted before.
         restitution: f64,
     },
+    /// A rigid body is joined to another one or to the world, or a particle to a body.
+    Joint(Joint),
+    /// A joint turns or slides only so far.
+    Stop(Stop),
 }
 
 impl Constraint {
-    /// Its particle, and the other one of a rod or a rope.
+    /// Its particle, and the other one of a rod, a rope or a joint.
     #[must_use]
     pub fn ends(&self) -> (usize, Option<usize>) {
         match *self {
@@ -84,7 +89,39 @@ impl Constraint {
             | Self::Circle { particle, .. }
             | Self::Sphere { particle, .. } => (particle, None),
             Self::Rod { i, j, .. } | Self::Rope { i, j, .. } => (i, Some(j)),
+            Self::Joint(joint) | Self::Stop(Stop { joint, .. }) => (joint.first, joint.second),
         }
+    }
+
+    /// Its joint, if it is a joint or the end of one.
+    pub(super) fn joint(&self) -> Option<&Joint> {
+        match self {
+            Self::Joint(joint) | Self::Stop(Stop { joint, .. }) => Some(joint),
+            _ => None,
+        }
+    }
+
+    /// Number of its equations as a joint.
+    pub(super) fn joint_equations(&self) -> usize {
+        match self {
+            Self::Joint(joint) => joint.count(),
+            Self::Stop(_) => 1,
+            _ => 0,
+        }
+    }
+
+    /// Equation of a number as a joint with these sides.
+    pub(super) fn joint_equation(&self, number: usize, sides: &[Side; 2]) -> JointEquation {
+        match self {
+            Self::Joint(joint) => joint.equation(number, sides),
+            Self::Stop(stop) => stop.equation(sides),
+            _ => JointEquation::default(),
+        }
+    }
+
+    /// Whether it is the end of a joint that is clearly away from it.
+    pub(super) fn is_away(&self, equation: &JointEquation) -> bool {
+        matches!(self, Self::Stop(Stop { joint, .. }) if equation.value < -SLACK_SHARE * joint.length)
     }
 
     /// Whether it is a rope that is clearly shorter than its length.
@@ -95,7 +132,7 @@ impl Constraint {
     /// Distance (m) that one of its equations is about; `None` for one that is linear.
     pub(super) fn distance(&self, equation: &Equation) -> Option<f64> {
         let length = match *self {
-            Self::Point { .. } | Self::Line { .. } => return None,
+            Self::Point { .. } | Self::Line { .. } | Self::Joint(_) | Self::Stop(_) => return None,
             Self::Circle { radius, .. } | Self::Sphere { radius, .. } => radius,
             Self::Rod { length, .. } | Self::Rope { length, .. } => length,
         };
@@ -103,9 +140,9 @@ impl Constraint {
         (distance > CENTER_SHARE * length).then_some(distance)
     }
 
-    /// Whether it is a rope, which holds only while it is taut.
-    pub(super) fn is_rope(&self) -> bool {
-        matches!(self, Self::Rope { .. })
+    /// Whether it is a rope, which holds only while it is taut, or the end of a joint.
+    pub(super) fn is_one_sided(&self) -> bool {
+        matches!(self, Self::Rope { .. } | Self::Stop(_))
     }
 
     /// The same constraint with directions of length 1, or an error if its numbers are invalid.
@@ -139,6 +176,8 @@ impl Constraint {
                     )));
                 }
             }
+            Self::Joint(joint) => joint.check()?,
+            Self::Stop(stop) => stop.check()?,
         }
         let mut unit = self;
         if let Self::Line { direction: u, .. } | Self::Circle { normal: u, .. } = &mut unit {
@@ -150,7 +189,7 @@ impl Constraint {
     }
 
     /// Visits its equations, always the same number, where its first particle is at x with velocity
-    /// v; for a rod or a rope, relative to its second particle.
+    /// v; for a rod or a rope, relative to its second particle. Those of joints are elsewhere.
     pub(super) fn equations(
         &self,
         x: Vector3<f64>,
@@ -186,6 +225,7 @@ impl Constraint {
             Self::Rod { length, .. } | Self::Rope { length, .. } => {
                 visit(Equation::distance(x, v, length));
             }
+            Self::Joint(_) | Self::Stop(_) => {}
         }
     }
 }
@@ -198,6 +238,16 @@ pub(super) struct Equation {
     pub value: f64,
     /// Rate of change J' v of the gradient along the velocity (m/s2).
     pub bend: f64,
+}
+
+impl From<JointEquation> for Equation {
+    fn from(equation: JointEquation) -> Self {
+        Self {
+            gradient: equation.gradient,
+            value: equation.value,
+            bend: equation.bend,
+        }
+    }
 }
 
 impl Equation {
@@ -226,14 +276,6 @@ impl Equation {
             bend,
         }
     }
-}
-
-/// Two unit vectors, perpendicular to a third and to one another.
-fn normals(direction: Vector3<f64>) -> [Vector3<f64>; 2] {
-    let mut axis = Vector3::zeros();
-    axis[direction.iamin()] = 1.0;
-    let first = direction.cross(&axis).normalize();
-    [first, direction.cross(&first)]
 }
 
 fn check_different(kind: &str, i: usize, j: usize) -> Result<(), Error> {

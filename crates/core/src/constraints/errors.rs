@@ -1,8 +1,9 @@
 //! Errors of constraints, and whether constraints can be met at all.
 
-use nalgebra::Vector3;
+use nalgebra::{Matrix3, Vector3};
 
 use super::constraint::{Constraint, Equation};
+use super::joint::Stop;
 use super::row::Row;
 use super::set::{Constraints, Moved, vector};
 use super::solve::System;
@@ -34,6 +35,8 @@ impl Constraint {
             Self::Sphere { particle, .. } => ("sphere", particle, None),
             Self::Rod { i, j, .. } => ("rod", i, Some(j)),
             Self::Rope { i, j, .. } => ("rope", i, Some(j)),
+            Self::Joint(joint) => (joint.kind.name(), joint.first, joint.second),
+            Self::Stop(stop) => ("limit", stop.joint.first, stop.joint.second),
         };
         ConstraintName {
             kind,
@@ -44,7 +47,7 @@ impl Constraint {
 
     /// Error (m) of one of its equations: a rope may be shorter than its length.
     pub(super) fn error(&self, equation: &Equation) -> f64 {
-        if self.is_rope() {
+        if self.is_one_sided() {
             equation.value.max(0.0)
         } else {
             equation.value.abs()
@@ -57,21 +60,50 @@ impl Constraint {
             Self::Rod { length, .. } | Self::Rope { length, .. } => Some(length),
             Self::Circle { radius, .. } | Self::Sphere { radius, .. } => Some(radius),
             Self::Point { .. } | Self::Line { .. } => None,
+            Self::Joint(joint) | Self::Stop(Stop { joint, .. }) => Some(joint.length),
         }
     }
 }
 
 impl Constraints {
-    /// The constraint with the largest error at x, in a scene of that radius (m).
-    pub fn worst(&self, x: &[f64], radius: f64) -> Option<Unmet> {
+    /// The largest error |C| (m) at x. `rotation` returns the rotation matrix of a body.
+    pub fn error(&self, x: &[f64], rotation: impl Fn(usize) -> Matrix3<f64>) -> Option<f64> {
+        let all = (0..self.all.len()).map(|number| self.error_of(number, x, &rotation));
+        all.reduce(f64::max)
+    }
+
+    /// The largest error (m) of the constraint of a number at x.
+    fn error_of(&self, number: usize, x: &[f64], rotation: impl Fn(usize) -> Matrix3<f64>) -> f64 {
+        let (constraint, mut error) = (&self.all[number], 0.0_f64);
+        let turned = |place: usize| match self.moved[place] {
+            Moved::Body(k) => Some((rotation(k), Vector3::zeros())),
+            Moved::Nothing | Moved::Particle(_) => None,
+        };
+        if let Some(sides) = self.sides(number, [x, x], turned) {
+            for k in 0..constraint.joint_equations() {
+                let equation = constraint.joint_equation(k, &sides);
+                error = error.max(constraint.error(&equation.into()));
+            }
+            return error;
+        }
+        constraint.equations(self.relative(number, x), Vector3::zeros(), |equation| {
+            error = error.max(constraint.error(&equation));
+        });
+        error
+    }
+
+    /// The constraint with the largest error at x, in a scene of that radius (m). `rotation`
+    /// returns the rotation matrix of a body.
+    pub fn worst(
+        &self,
+        x: &[f64],
+        rotation: impl Fn(usize) -> Matrix3<f64>,
+        radius: f64,
+    ) -> Option<Unmet> {
         let mut worst: Option<Unmet> = None;
-        for (number, &constraint) in self.all.iter().enumerate() {
+        for (number, constraint) in self.all.iter().enumerate() {
             let length = constraint.length().unwrap_or(radius);
-            let mut error = 0.0_f64;
-            constraint.equations(self.relative(number, x), Vector3::zeros(), |equation| {
-                error = error.max(constraint.error(&equation));
-            });
-            let share = error / length;
+            let share = self.error_of(number, x, &rotation) / length;
             if worst.is_none_or(|worst| share > worst.share) {
                 worst = Some(Unmet {
                     number,
@@ -115,9 +147,10 @@ impl Constraints {
     /// displacement, weighted by the masses. Returns the worst constraint if that fails.
     fn approach(&self, inverse_masses: &[f64], x: &mut [f64], radius: f64) -> Option<Unmet> {
         let most = MAX_DISPLACEMENT * self.shortest(radius);
+        let none = |_| unreachable!("constraints hold no bodies");
         let mut system = System::default();
         for _ in 0..MAX_ITERATIONS {
-            let worst = self.worst(x, radius)?;
+            let worst = self.worst(x, none, radius)?;
             if worst.share <= MET_SHARE || worst.share.is_nan() {
                 return None;
             }
@@ -133,7 +166,7 @@ impl Constraints {
                 }
             }
         }
-        self.worst(x, radius)
+        self.worst(x, none, radius)
             .filter(|worst| worst.share > UNMET_SHARE)
     }
 
@@ -155,7 +188,7 @@ impl Constraints {
             let relative = self.relative(number, x);
             constraint.equations(relative, Vector3::zeros(), |equation| {
                 let mut row = Row::default();
-                if constraint.error(&equation) > 0.0 || !constraint.is_rope() {
+                if constraint.error(&equation) > 0.0 || !constraint.is_one_sided() {
                     row.add(first.place, equation.gradient);
                     row.add(second.place, -equation.gradient);
                     row.set_target(-equation.value, &system.weights);

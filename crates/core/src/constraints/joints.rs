@@ -1,5 +1,5 @@
 //! Constraints for implicit methods: to second order, with their multipliers, and the projection of
-//! a state on what they allow. None of them holds a rigid body.
+//! a state on what they allow. With rigid bodies, there is the projection alone.
 
 use nalgebra::{Matrix3, Vector3};
 
@@ -62,7 +62,7 @@ pub(crate) fn multipliers(
 }
 
 /// Moves x to where all constraints are met, and v to where they stay so, each by the least
-/// distance, weighted by the masses.
+/// distance, weighted by the masses. None of them holds a rigid body.
 pub(crate) fn project(
     constraints: &Constraints,
     inverse_masses: &[f64],
@@ -70,51 +70,77 @@ pub(crate) fn project(
     v: &mut [f64],
 ) {
     let size = x.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
+    let weight = |i: usize| inverse_masses[i];
+    let none = |_| -> Turning { unreachable!("there are no bodies") };
     constraints.scratch.lend(|system| {
         for _ in 0..MAX_ITERATIONS {
-            let longest = push(constraints, inverse_masses, [&*x, &*v], system, |c, _| -c);
+            let state = [&*x, &*v];
+            push(constraints, weight, none, state, system, |c, _| -c);
             spread(constraints, system, x);
+            let longest = system.vectors.iter().map(Vector3::norm).fold(0.0, f64::max);
             if longest.is_nan() || longest <= ROUNDING * size {
                 break;
             }
         }
-        push(
-            constraints,
-            inverse_masses,
-            [&*x, &*v],
-            system,
-            |_, rate| -rate,
-        );
+        let state = [&*x, &*v];
+        push(constraints, weight, none, state, system, |_, rate| -rate);
         spread(constraints, system, v);
     });
 }
 
-/// Writes the least changes of all particles that have the effect on each equation that `target`
-/// returns for its error and its rate of change, to the vectors of the system. Returns the length
-/// of the longest.
+/// What a step of a projection changes.
+#[derive(Clone, Copy, PartialEq)]
+pub(crate) enum Projected {
+    /// Positions (m) and orientations (rad), by the errors of the constraints.
+    Places,
+    /// Velocities (m/s) and angular velocities (rad/s), by the rates of these errors.
+    Velocities,
+}
+
+/// Visits the least changes, weighted by the masses, of all that the constraints move, in the
+/// world: a step of Newton's method towards a state that meets them. `weight` returns the inverse
+/// mass (1/kg) of a particle on no body or of the centre of one.
+pub(crate) fn nearest(
+    constraints: &Constraints,
+    weight: impl Fn(usize) -> f64,
+    turning: impl Fn(usize) -> Turning,
+    state: [&[f64]; 2],
+    what: Projected,
+    visit: &mut dyn FnMut(Moved, Vector3<f64>),
+) {
+    constraints.scratch.lend(|system| {
+        let target = |error: f64, rate: f64| match what {
+            Projected::Places => -error,
+            Projected::Velocities => -rate,
+        };
+        push(constraints, weight, turning, state, system, target);
+        for (k, moved) in constraints.moved.iter().enumerate() {
+            let change = system.vectors[k];
+            let turning = system.turnings[k].as_ref();
+            visit(
+                *moved,
+                turning.map_or(change, |turning| turning.rotation * change),
+            );
+        }
+    });
+}
+
+/// Writes the least changes of all that moves that have the effect on each equation that `target`
+/// returns for its error and its rate of change, to the vectors of the system.
 fn push(
     constraints: &Constraints,
-    inverse_masses: &[f64],
+    weight: impl Fn(usize) -> f64,
+    turning: impl Fn(usize) -> Turning,
     state: [&[f64]; 2],
     system: &mut System,
     target: impl Fn(f64, f64) -> f64 + Sync,
-) -> f64 {
-    system.clear();
-    for moved in &constraints.moved {
-        let weight = match *moved {
-            Moved::Particle(i) => inverse_masses[i],
-            Moved::Nothing | Moved::Body(_) => 0.0,
-        };
-        system.weights.push(Vector3::repeat(weight));
-        system.vectors.push(Vector3::zeros());
-        system.turnings.push(None);
-    }
+) {
+    constraints.prepare(system, weight, turning);
     constraints.build(state, system, |_, _, equation, rate, _| {
         target(equation.value, rate)
     });
     system.solve_exactly(|| constraints.pattern());
     system.spread();
-    system.vectors.iter().map(Vector3::norm).fold(0.0, f64::max)
 }
 
 /// Adds the vectors of the system to the rows of the particles in `out`, n x 3.

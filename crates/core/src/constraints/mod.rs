@@ -11,11 +11,13 @@
 //! end of a rod. A force at a point of a rigid body moves and rotates the body: W then includes the
 //! body's inverse inertia, and J the lever r x g of the force along g.
 //!
-//! A rope has a row like a rod's while it is taut: see `ropes`.
+//! A rope has a row like a rod's while it is taut: see `ropes`. A joint of rigid bodies has up to
+//! six rows, which also act on the rotations alone: see `joint`.
 
 mod constraint;
 mod direct;
 mod errors;
+mod joint;
 mod joints;
 mod ropes;
 mod row;
@@ -24,9 +26,10 @@ mod solve;
 mod turning;
 
 pub use constraint::Constraint;
-pub(crate) use joints::{joints, multipliers, project};
+pub use joint::{Joint, JointKind, Stop};
+pub(crate) use joints::{Projected, joints, multipliers, nearest, project};
 pub(crate) use ropes::{
-    beyond, has_ropes, least_tension, loosen, set_all_taut, set_taut, strike, taut,
+    beyond, has_ropes, least_tension, loosen, open_ends, set_all_taut, set_taut, strike, taut,
 };
 pub(crate) use set::{Constraints, Moved};
 pub(crate) use turning::Turning;

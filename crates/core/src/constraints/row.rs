@@ -92,6 +92,12 @@ impl Row {
         self.scale * self.multiplier
     }
 
+    /// What J^T lambda has at a place.
+    pub fn at(&self, place: usize) -> Vector3<f64> {
+        let own = self.parts().iter().filter(|(own, _)| *own == place);
+        own.map(|(_, part)| part * self.multiplier).sum()
+    }
+
     /// The force J^T lambda on its first particle (N).
     pub fn force(&self) -> Vector3<f64> {
         self.parts[0].1 * self.multiplier

@@ -3,10 +3,11 @@
 use std::collections::BTreeMap;
 use std::sync::{Arc, OnceLock};
 
-use nalgebra::Vector3;
+use nalgebra::{Matrix3, Vector3};
 
 use super::constraint::{Constraint, Equation};
 use super::direct::Pattern;
+use super::joint::{JointEquation, Side};
 use super::row::Row;
 use super::solve::System;
 use super::turning::{Lever, Turning};
@@ -20,7 +21,7 @@ use crate::threads::each;
 pub(super) struct Held {
     particle: usize,
     pub(super) place: usize,
-    turn: usize,
+    pub(super) turn: usize,
 }
 
 /// Unit of motion: a particle, or the rotation of a body. Place 0 stands for none.
@@ -73,7 +74,7 @@ impl Default for Constraints {
 
 impl Constraints {
     /// Adds a constraint whose particles exist. `carrier` returns the centre and the number of the
-    /// body to which a particle belongs.
+    /// body to which a particle belongs, as its centre or as a point.
     pub fn add(
         &mut self,
         constraint: Constraint,
@@ -81,6 +82,11 @@ impl Constraints {
     ) -> Result<(), Error> {
         let constraint = constraint.checked()?;
         let (first, second) = constraint.ends();
+        let joint = constraint.joint();
+        if let Some(joint) = joint {
+            let is_center = |i: usize| carrier(i).map(|(center, _)| center == i);
+            joint.check_bodies(is_center)?;
+        }
         let moved = &mut self.moved;
         let mut place = |places: &mut BTreeMap<usize, usize>, of: usize, what| {
             *places.entry(of).or_insert_with(|| {
@@ -89,7 +95,9 @@ impl Constraints {
             })
         };
         let mut hold = |particle: usize| {
-            let body = carrier(particle);
+            // No force at its centre turns a body, but a joint does.
+            let turns = |(center, _): &(usize, usize)| joint.is_some() || *center != particle;
+            let body = carrier(particle).filter(turns);
             let mover = body.map_or(particle, |(center, _)| center);
             Held {
                 particle,
@@ -108,8 +116,9 @@ impl Constraints {
         constraint.equations(Vector3::zeros(), Vector3::zeros(), |_| {
             owners.push((own, owners.len() - before));
         });
+        owners.extend((0..constraint.joint_equations()).map(|number| (own, number)));
         self.all.push(constraint);
-        self.holds.push(!constraint.is_rope());
+        self.holds.push(!constraint.is_one_sided());
         self.pattern = OnceLock::new();
         Ok(())
     }
@@ -147,27 +156,18 @@ impl Constraints {
         Ok(())
     }
 
-    /// The largest error |C| (m).
-    pub fn error(&self, x: &[f64]) -> Option<f64> {
-        let mut largest = None;
-        for (k, constraint) in self.all.iter().enumerate() {
-            constraint.equations(self.relative(k, x), Vector3::zeros(), |equation| {
-                largest = Some(constraint.error(&equation).max(largest.unwrap_or(0.0)));
-            });
-        }
-        largest
-    }
-
     /// Adds J^T lambda (N) to all other forces f, also on pinned particles. `motion` returns the
     /// inverse mass (1/kg) of a particle on no body and its acceleration (m/s2) without
-    /// constraints, and `turning` the rotation of a body, both under the forces f. Returns whether
-    /// the constraints are too nearly singular for exact multipliers.
+    /// constraints, and `turning` the rotation of a body, both under the forces f. Adds the torques
+    /// (N m) by joints about the centres of bodies, three numbers for each body, to `torques`.
+    /// Returns whether the constraints are too nearly singular for exact multipliers.
     pub fn add_forces(
         &self,
         motion: impl Fn(usize, &[f64]) -> (f64, Vector3<f64>),
         turning: impl Fn(usize, &[f64]) -> Turning,
         state: [&[f64]; 2],
         f: &mut [f64],
+        torques: &mut [f64],
     ) -> bool {
         self.scratch.lend(|system| {
             let soft = self.find_multipliers(motion, turning, state, f, system);
@@ -180,9 +180,26 @@ impl Constraints {
                         f[axis * n + second.particle] -= force[axis];
                     }
                 }
+                if self.all[*owner].joint().is_some() {
+                    self.add_torques(system, row, [first, second], torques);
+                }
             }
             soft
         })
+    }
+
+    /// Adds the torques by a row of a joint about the centres of its bodies.
+    fn add_torques(&self, system: &System, row: &Row, ends: [Held; 2], torques: &mut [f64]) {
+        for end in ends {
+            if let (Moved::Body(k), Some(turning)) =
+                (self.moved[end.turn], &system.turnings[end.turn])
+            {
+                let torque = turning.rotation * row.at(end.turn);
+                for (sum, torque) in torques[3 * k..3 * k + 3].iter_mut().zip(&torque) {
+                    *sum += torque;
+                }
+            }
+        }
     }
 
     /// Finds the multipliers under all other forces f (N), as [`add_forces`](Self::add_forces).
@@ -221,6 +238,29 @@ impl Constraints {
         })
     }
 
+    /// Clears a system, and writes the weights of all that the constraints move, and no vectors.
+    pub(super) fn prepare(
+        &self,
+        system: &mut System,
+        weight: impl Fn(usize) -> f64,
+        turning: impl Fn(usize) -> Turning,
+    ) {
+        system.clear();
+        for moved in &self.moved {
+            let (weight, turning) = match *moved {
+                Moved::Nothing => (Vector3::zeros(), None),
+                Moved::Particle(i) => (Vector3::repeat(weight(i)), None),
+                Moved::Body(k) => {
+                    let turning = turning(k);
+                    (turning.inverse_inertia, Some(turning))
+                }
+            };
+            system.weights.push(weight);
+            system.vectors.push(Vector3::zeros());
+            system.turnings.push(turning);
+        }
+    }
+
     /// Builds the rows at x and v, and solves for the multipliers. `target` returns the right-hand
     /// side of a row of a constraint, with its equation, the rate of change of that (m/s), and the
     /// vectors of the system.
@@ -251,9 +291,20 @@ impl Constraints {
         rows.resize_with(self.owners.len(), Row::default);
         each(rows, &|k, row| {
             let (owner, number) = self.owners[k];
-            let (constraint, ends) = (self.all[owner], self.ends[owner]);
+            let (constraint, ends) = (&self.all[owner], self.ends[owner]);
             *row = Row::default();
             if !self.holds[owner] {
+                return;
+            }
+            let turned = |turn: usize| turnings[turn].as_ref().map(Turning::turned);
+            if let Some(sides) = self.sides(owner, [x, v], turned) {
+                let equation = constraint.joint_equation(number, &sides);
+                if constraint.is_away(&equation) {
+                    return;
+                }
+                fill(row, ends, turnings, &equation);
+                let (rate, equation) = (equation.rate, Equation::from(equation));
+                row.set_target(target(owner, row, &equation, rate, vectors), weights);
                 return;
             }
             let relative = |a: &[f64]| match constraint.ends() {
@@ -286,6 +337,19 @@ impl Constraints {
         });
     }
 
+    /// Returns the sides of a joint in the state (x, v), if the constraint of that number is one or
+    /// the end of one. `turned` is that of [`Joint::sides`](super::Joint), for a rotation's place.
+    pub(super) fn sides(
+        &self,
+        number: usize,
+        state: [&[f64]; 2],
+        turned: impl Fn(usize) -> Option<(Matrix3<f64>, Vector3<f64>)>,
+    ) -> Option<[Side; 2]> {
+        let joint = self.all[number].joint()?;
+        let ends = self.ends[number];
+        Some(joint.sides(state, |side| turned(ends[side].turn)))
+    }
+
     /// Returns the pattern of what each equation moves.
     pub(super) fn pattern(&self) -> &Arc<Pattern> {
         self.pattern.get_or_init(|| Arc::new(self.find_pattern()))
@@ -298,6 +362,17 @@ impl Constraints {
             [a.place, a.turn, b.place, b.turn]
         });
         Pattern::new(&rows.collect::<Vec<_>>(), self.moved.len())
+    }
+}
+
+/// Fills a row of J with an equation of a joint.
+fn fill(row: &mut Row, ends: [Held; 2], turnings: &[Option<Turning>], equation: &JointEquation) {
+    let signs = [1.0, -1.0];
+    for ((end, sign), lever) in ends.iter().zip(signs).zip(equation.levers) {
+        row.add(end.place, equation.gradient * sign);
+        if let Some(turning) = &turnings[end.turn] {
+            row.add(end.turn, turning.rotation.tr_mul(&lever));
+        }
     }
 }
 

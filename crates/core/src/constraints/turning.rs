@@ -16,6 +16,13 @@ pub(crate) struct Turning {
     pub inverse_inertia: Vector3<f64>,
 }
 
+impl Turning {
+    /// Rotation matrix, and angular velocity (rad/s).
+    pub(super) fn turned(&self) -> (Matrix3<f64>, Vector3<f64>) {
+        (self.rotation, self.spin)
+    }
+}
+
 /// Lever of a point of a rigid body.
 pub(super) struct Lever {
     /// From the centre to the point (m).

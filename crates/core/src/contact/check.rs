@@ -132,7 +132,7 @@ pub(super) fn meetings(
     let counts = |crossing: &Crossing| {
         let (edge, triangle) = (edges[crossing.edge], triangles[crossing.triangle]);
         let [a, b] = [edge[0], triangle[0]].map(|i| (i as usize) < n);
-        let apart = !surface.is_one_solid(edge[0], triangle[0]);
+        let apart = !surface.are_one(&edge, &triangle);
         a && b && surface.touches_itself && apart || a != b
     };
     let mut exact = crossings(x, &places[n..], triangles, edges);

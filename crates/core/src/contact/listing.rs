@@ -190,7 +190,7 @@ impl Query<'_> {
         let primitives = |[k, l]: [u32; 2]| {
             let (v, [a, b, c]) = (first.vertices[k as usize], second.triangles()[l as usize]);
             let is_corner = v == a || v == b || v == c;
-            (!is_corner && !self.surface.is_one_solid(v, a))
+            (!is_corner && !self.surface.are_one(&[v], &[a, b, c]))
                 .then(|| ([v, second.ranks[l as usize]], [v, a, b, c]))
         };
         self.search(PairKind::VertexTriangle, trees, primitives, blocks, pairs);
@@ -212,7 +212,7 @@ impl Query<'_> {
             }
             // A point and an edge of a triangle: the point and its corners are a pair already.
             let is_point = e[0] == e[1] && second.is_side(l) || f[0] == f[1] && first.is_side(k);
-            if is_point || self.surface.is_one_solid(e[0], f[0]) {
+            if is_point || self.surface.are_one(&e, &f) {
                 return None;
             }
             let [mut e, mut f] = [(first.edge_ranks[k], e), (second.edge_ranks[l], f)];

@@ -29,6 +29,8 @@ pub struct Surface {
     solids: Vec<u32>,
     /// Rigid bodies.
     rigid: Vec<Body>,
+    /// Pairs of bodies, by their centres, and of particles with bodies that joints join, in order.
+    joined: Vec<[u32; 2]>,
     /// Points of each obstacle in its own frame, before it turned (m).
     anchors: Vec<Vec<Vector3<f64>>>,
     pub(super) bodies: Items,
@@ -148,6 +150,15 @@ impl Surface {
         surface
     }
 
+    /// The same surface, in which pairs of bodies, named by their centres, and of particles with
+    /// bodies do not touch one another.
+    pub(crate) fn with_joined(mut self, pairs: impl Iterator<Item = [usize; 2]>) -> Self {
+        let pairs = pairs.map(|[a, b]| [a.min(b) as u32, a.max(b) as u32]);
+        self.joined.extend(pairs);
+        self.joined.sort_unstable();
+        self
+    }
+
     /// Number of particles, which are the first vertices.
     #[must_use]
     pub fn particles(&self) -> usize {
@@ -215,10 +226,17 @@ impl Surface {
         self.radius(vertex) > 0.0 || is_alone()
     }
 
-    /// Whether two vertices belong to the same rigid body, whose parts do not touch one another.
-    pub(super) fn is_one_solid(&self, a: u32, b: u32) -> bool {
-        let solid = self.solid(a);
-        solid.is_some() && solid == self.solid(b)
+    /// Whether two primitives, given by their vertices, do not touch: on the same rigid body, or
+    /// where a joint joins them.
+    pub(super) fn are_one(&self, a: &[u32], b: &[u32]) -> bool {
+        let solid = self.solid(a[0]);
+        if solid.is_some() && solid == self.solid(b[0]) {
+            return true;
+        }
+        let owner = |i: u32| self.solid(i).map_or(i, |k| self.rigid[k].center() as u32);
+        let joined = |[i, j]: [u32; 2]| self.joined.binary_search(&[i.min(j), i.max(j)]).is_ok();
+        !self.joined.is_empty()
+            && (a.iter()).any(|i| b.iter().any(|j| joined([owner(*i), owner(*j)])))
     }
 
     /// Least thickness that is not 0 (m); infinite without any.

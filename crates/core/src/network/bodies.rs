@@ -6,17 +6,19 @@ use std::ops::Range;
 use super::elements::Elements;
 use super::particles::Particles;
 use crate::error::Error;
-use crate::rigid::{Body, Moving, ROTATION, Rotation};
+use crate::rigid::{Body, Motor, Moving, ROTATION, Rotation};
 use crate::scratch::Scratch;
 
 /// Rigid bodies of a network.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Bodies {
     all: Vec<Body>,
+    motors: Vec<Motor>,
     /// Number of particles.
     particles: usize,
-    /// Positions (m), velocities (m/s) and forces (N) of an evaluation, n x 3 each.
-    pub scratch: Scratch<[Vec<f64>; 3]>,
+    /// Positions (m), velocities (m/s) and forces (N) of an evaluation, n x 3 each, and torques
+    /// (N m) on bodies.
+    pub scratch: Scratch<[Vec<f64>; 4]>,
 }
 
 impl Bodies {
@@ -80,10 +82,41 @@ impl Bodies {
         &self.all
     }
 
+    /// Adds a motor.
+    pub fn add_motor(&mut self, motor: Motor) -> Result<(), Error> {
+        motor.check(self.all.len())?;
+        self.motors.push(motor);
+        Ok(())
+    }
+
+    pub fn motors(&self) -> &[Motor] {
+        &self.motors
+    }
+
+    /// Adds the torques (N m) of motors in the state y, three numbers for each body.
+    pub fn drive(&self, y: &[f64], torques: &mut [f64]) {
+        let moving = |k: usize| self.all[k].moving(&self.rotation(k, y));
+        for motor in &self.motors {
+            let torque = motor.torque(&moving(motor.first), motor.second.map(moving).as_ref());
+            let sides = [(Some(motor.first), torque), (motor.second, -torque)];
+            for (body, torque) in sides {
+                let out = body.map(|k| &mut torques[3 * k..3 * k + 3]);
+                for (sum, torque) in out.into_iter().flatten().zip(&torque) {
+                    *sum += torque;
+                }
+            }
+        }
+    }
+
     /// Returns the body to which particle i belongs, as its centre or as a point.
     pub fn body_of(&self, i: usize) -> Option<usize> {
         let mut bodies = self.all.iter();
         bodies.position(|body| body.center() == i || body.points().contains(&i))
+    }
+
+    /// Returns the centre and number of the body to which particle i belongs.
+    pub fn belonging(&self, i: usize) -> Option<(usize, usize)> {
+        self.body_of(i).map(|k| (self.all[k].center(), k))
     }
 
     /// Returns the centre and number of the body that carries particle i.
@@ -128,5 +161,17 @@ impl Bodies {
                 }
             }
         }
+    }
+
+    /// Puts the points of bodies in their places in the state y.
+    pub fn settle(&self, y: &mut [f64]) {
+        let n = 3 * self.particles;
+        self.scratch.lend(|[x, v, ..]| {
+            y[..n].clone_into(x);
+            y[n..2 * n].clone_into(v);
+            self.place_points(y, x, v);
+            y[..n].copy_from_slice(x);
+            y[n..2 * n].copy_from_slice(v);
+        });
     }
 }

@@ -9,6 +9,7 @@ use super::element::Element;
 use super::elements::Elements;
 use super::particles::Particles;
 use super::parts::Network;
+use super::project;
 use super::strain::StrainLimits;
 use super::surfaces::{Surfaces, Touch};
 use super::tearing::Tears;
@@ -17,7 +18,7 @@ use crate::contact::{ContactLayer, Obstacle, Shape};
 use crate::elements::{Buckling, Wind};
 use crate::error::{Error, at_least, positive};
 use crate::path::Path;
-use crate::rigid::Body;
+use crate::rigid::{Body, Motor};
 use crate::spring::Spring;
 
 impl Network {
@@ -121,8 +122,7 @@ impl Network {
         self.elements.add_spring(spring)
     }
 
-    /// Adds springs, and sorts all single ones by their ends, so that neighbours in memory are used
-    /// one after another.
+    /// Adds springs, and sorts all single ones by their ends: neighbours in memory follow in use.
     ///
     /// # Errors
     /// As [`add_spring`](Self::add_spring), for the first that cannot be: none after it is added.
@@ -263,21 +263,24 @@ impl Network {
     }
 
     /// Adds a constraint, which is held by forces. A state that violates it is drawn back to it.
+    /// The two sides of a joint do not touch each other any more.
     ///
     /// # Errors
-    /// There is no such particle; both ends of a rod are the same; or a number is out of its range.
+    /// There is no such particle; both ends of a rod are the same; a joint names no rigid body; or
+    /// a number is out of its range.
     pub fn add_constraint(&mut self, constraint: Constraint) -> Result<(), Error> {
         let (first, second) = constraint.ends();
         self.particles.check(first)?;
         self.particles.check(second.unwrap_or(first))?;
-        let carrier = |i| self.bodies.carrier(&self.particles, i);
-        self.constraints.add(constraint, carrier)
+        let bodies = &self.bodies;
+        self.constraints.add(constraint, |i| bodies.belonging(i))?;
+        self.renew_contact();
+        Ok(())
     }
 
     /// Sets the natural frequency w (1/s) with which errors of the constraints decay, like a
     /// critically damped spring, C'' = -w2 C - 2 w C' (Baumgarte). The default is 10: errors decay
-    /// within a second, which is slow compared with any step that resolves motion. Explicit methods
-    /// need steps well below 1 / w.
+    /// within a second. Explicit methods need steps well below 1 / w.
     ///
     /// # Errors
     /// w is not a finite number above 0.
@@ -296,11 +299,22 @@ impl Network {
         self.bodies.check(&body, &self.particles, &self.elements)?;
         self.particles.carry(body.points());
         self.bodies.add(body);
-        // The body may carry particles that constraints hold.
-        let carrier = |i| self.bodies.carrier(&self.particles, i);
-        self.constraints = self.constraints.with_carriers(carrier)?;
+        self.constraints = (self.constraints).with_carriers(|i| self.bodies.belonging(i))?;
         self.renew_contact();
         Ok(())
+    }
+
+    /// Changes the velocities in y least, weighted by the masses, so that joints stay met.
+    pub fn meet_joints(&self, y: &mut [f64]) {
+        project::project_velocities(self, y);
+    }
+
+    /// Adds a motor.
+    ///
+    /// # Errors
+    /// There is no such body, or a number is not finite.
+    pub fn add_motor(&mut self, motor: Motor) -> Result<(), Error> {
+        self.bodies.add_motor(motor)
     }
 
     /// Sets the triangles between particles, on which [wind](Wind::on_triangles) blows and which
@@ -379,7 +393,8 @@ impl Network {
 
     /// Creates the contact of surfaces again, with the present triangles and obstacles.
     fn renew_contact(&mut self) {
-        let layer = self.surfaces.layer(self.bodies.all(), &self.tears);
+        let jointed = (self.bodies.all(), self.constraints.all());
+        let layer = self.surfaces.layer(jointed, &self.tears);
         self.elements.replace_all(layer);
     }
 }

@@ -65,14 +65,16 @@ pub fn untangle(network: &Network, y: &mut [f64]) -> Result<(), Error> {
     check_crowded(layer, 0.0, x)?;
     let links = links(network, x);
     let mut weights: Vec<_> = network.masses().iter().map(|mass| 1.0 / mass).collect();
-    for body in network.bodies() {
-        let weight = weights[body.center()];
-        weights[body.points()].fill(weight);
-    }
     for (i, weight) in weights.iter_mut().enumerate() {
         if network.is_pinned(i) || network.is_held(i) {
             *weight = 0.0;
         }
+    }
+    for body in network.bodies() {
+        let all = || body.points().chain([body.center()]);
+        let stays = all().any(|i| weights[i] == 0.0);
+        let weight = if stays { 0.0 } else { weights[body.center()] };
+        all().for_each(|i| weights[i] = weight);
     }
     let freedom = Freedom {
         links: &links,

@@ -62,7 +62,13 @@ pub(crate) fn add_wind(network: &Network, t: f64, x: &[f64], v: &[f64], f: &mut 
     }
 }
 
-/// Whether the forces conserve energy: there is no damping, no wind and no prescribed motion, and
+/// Whether motors drive bodies.
+pub(crate) fn has_motors(network: &Network) -> bool {
+    !network.bodies.motors().is_empty()
+}
+
+/// Whether the forces conserve energy: there is no damping, no wind, no motor and no prescribed
+/// motion, and
 /// no spring is shortened or breaks. Contact with obstacles is left out.
 pub(crate) fn is_conservative(network: &Network) -> bool {
     let loses = |element: &Element| {
@@ -74,4 +80,5 @@ pub(crate) fn is_conservative(network: &Network) -> bool {
         && paths.all(|path| matches!(path, Path::Still(_)))
         && network.obstacles().iter().all(Obstacle::is_still)
         && network.strain_limits().is_empty()
+        && !has_motors(network)
 }

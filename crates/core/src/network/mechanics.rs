@@ -1,6 +1,7 @@
 //! A network as integrators see it: forces, accelerations, kicks and drifts, couplings and springs.
 
 use super::element::Element;
+use super::energies::has_motors;
 use super::evaluation::{at, finish, flow, other_forces};
 use super::holding::hold_particles;
 use super::matrix;
@@ -92,7 +93,7 @@ impl Splitting for Network {
 
     fn kick_reads_velocity(&self) -> bool {
         let reads = |e: &Element| e.force().drift_forces().is_none() && e.force().reads_velocity();
-        self.is_constrained() || self.elements().iter().any(reads)
+        self.is_constrained() || has_motors(self) || self.elements().iter().any(reads)
     }
 
     /// Solves x' = v, v' = g - (c/m) v exactly; with constraints, v is constant.

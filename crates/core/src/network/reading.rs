@@ -8,7 +8,7 @@ use super::element::Element;
 use super::evaluation::{at, prescribed};
 use super::parts::Network;
 use super::surfaces::Touch;
-use super::{crossings, energies};
+use super::{crossings, energies, holding};
 use crate::constraints::Constraint;
 use crate::contact::{ContactLayer, Crossed, Obstacle, StrainLimit, crossed};
 use crate::elements::{Buckling, Finish, Fluid, Sheet, Wind};
@@ -66,17 +66,16 @@ impl Network {
     /// Returns the names of the forces and obstacles in use.
     #[must_use]
     pub fn forces_in_use(&self) -> Vec<&'static str> {
-        let shapes = self
-            .obstacles()
-            .iter()
-            .map(|obstacle| obstacle.shape.name());
-        let shapes: Vec<_> = shapes.collect();
+        let obstacles = self.obstacles().iter();
+        let shapes: Vec<_> = obstacles.map(|obstacle| obstacle.shape.name()).collect();
         let shown = ["sphere", "box", "capsule", "floor"].into_iter();
         let constraints = self.is_constrained().then_some("constraints");
+        let motors = energies::has_motors(self).then_some("motors");
         let tearing = self.tear_limit().map(|_| "tearing");
         let limits = (!self.strain_limits().is_empty()).then_some("strain limit");
         let others = constraints
             .into_iter()
+            .chain(motors)
             .chain(shown.filter(|name| shapes.contains(name)))
             .chain(tearing)
             .chain(limits);
@@ -115,8 +114,8 @@ impl Network {
     /// Whether particle i is in a wall: of the fluid, and pinned or carried by a rigid body.
     #[must_use]
     pub fn is_wall(&self, i: usize) -> bool {
-        let is_led = self.is_pinned(i) || self.is_carried(i);
-        is_led && self.fluid().is_some_and(|fluid| fluid.contains(i))
+        let contains = |fluid: &Fluid| fluid.contains(i);
+        (self.is_pinned(i) || self.is_carried(i)) && self.fluid().is_some_and(contains)
     }
 
     /// Returns the bend springs that buckle.
@@ -254,16 +253,17 @@ impl Network {
         })
     }
 
-    /// Returns the largest error |C| (m) of the constraints at x. `None` without constraints.
+    /// Returns the largest error |C| (m) of the constraints in the state y, if there are any. Where
+    /// none is a joint, the positions are enough.
     #[must_use]
-    pub fn constraint_error(&self, x: &[f64]) -> Option<f64> {
-        self.constraints.error(x)
+    pub fn constraint_error(&self, y: &[f64]) -> Option<f64> {
+        holding::error(self, y)
     }
 
-    /// Returns the constraint with the largest relative error at x, in a scene of a radius (m).
+    /// Returns the constraint with the largest relative error in y, in a scene of a radius (m).
     #[must_use]
-    pub fn worst_constraint(&self, x: &[f64], radius: f64) -> Option<Unmet> {
-        self.constraints.worst(x, radius)
+    pub fn worst_constraint(&self, y: &[f64], radius: f64) -> Option<Unmet> {
+        holding::worst(self, y, radius)
     }
 
     /// Returns the rigid bodies, in the order in which they were added.
@@ -366,7 +366,8 @@ impl Network {
         if let Some(layer) = self.contact_layer() {
             return crossed(layer, t, x);
         }
-        let all = self.surfaces.layer_of_all(self.bodies(), self.particles());
+        let jointed = (self.bodies(), self.constraints());
+        let all = self.surfaces.layer_of_all(jointed, self.particles());
         crossed(&all, t, x)
     }
 

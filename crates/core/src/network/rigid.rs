@@ -3,53 +3,53 @@
 
 use std::ops::Range;
 
-use nalgebra::Vector3;
-
 use super::evaluation::{at, is_split};
 use super::holding::{free_motion, hold};
+use super::loads::{Loads, decay, turning, wrench};
 use super::parts::Network;
-use crate::constraints::{self, Turning};
+use super::project::{has_joints, project};
+use crate::constraints;
 use crate::elements::Finish;
 use crate::elements::force::DriftForces;
 use crate::measure::Measure;
-use crate::rigid::{Body, ROTATION, Rotation};
+use crate::rigid::{ROTATION, Rotation};
 use crate::rows::Terms;
 use crate::system::{Mechanics, Rigid, Splitting, place_pins};
 
-/// Force (N) and torque about the centre (N m) on a body.
-#[derive(Clone, Copy, Default)]
-struct Wrench {
-    force: Vector3<f64>,
-    torque: Vector3<f64>,
-}
-
-/// Evaluates forces (N), n x 3, in the state y at time t (s) with all points in their places, and
-/// calls `run` with these positions, velocities and forces.
+/// Evaluates forces in the state y at time t (s) with all points in their places, and calls `run`
+/// with the velocities, n x 3, and the forces.
 fn with_forces<T>(
     network: &Network,
     t: f64,
     terms: Terms,
     y: &[f64],
-    run: impl FnOnce(&[f64], &[f64], &[f64]) -> T,
+    run: impl FnOnce(&[f64], Loads) -> T,
 ) -> T {
-    with_other_forces(network, t, terms, y, |x, v, f| {
+    with_other_forces(network, t, terms, y, |x, v, f, [torques, held]| {
         if !is_split(network, terms) {
-            let bodies = |k: usize, f: &[f64]| turning(network, k, y, terms, x, f);
-            hold(network, t, [x, v], bodies, f);
+            let bodies = |k: usize, f: &[f64]| {
+                let torques = &*torques;
+                turning(network, k, y, terms, Loads { x, f, torques })
+            };
+            hold(network, t, [x, v], bodies, (f, held));
+            for (sum, torque) in torques.iter_mut().zip(&*held) {
+                *sum += torque;
+            }
         }
-        run(x, v, f)
+        run(v, Loads { x, f, torques })
     })
 }
 
-/// Evaluates all forces except those of constraints, as [`with_forces`].
+/// Evaluates all forces except those of constraints, as [`with_forces`]. `run` gets positions,
+/// velocities and forces, the torques of motors, and as many zeros.
 fn with_other_forces<T>(
     network: &Network,
     t: f64,
     terms: Terms,
     y: &[f64],
-    run: impl FnOnce(&[f64], &[f64], &mut [f64]) -> T,
+    run: impl FnOnce(&[f64], &[f64], &mut [f64], [&mut [f64]; 2]) -> T,
 ) -> T {
-    network.bodies.scratch.lend(|[x, v, f]| {
+    network.bodies.scratch.lend(|[x, v, f, torques]| {
         let (own_x, own_v) = network.halves(y);
         own_x.clone_into(x);
         own_v.clone_into(v);
@@ -65,7 +65,12 @@ fn with_other_forces<T>(
                 *f += mass * gravity[k / n] - if mass > 0.0 { drag * v } else { 0.0 };
             }
         }
-        run(x, v, f)
+        let count = 3 * network.bodies().len();
+        torques.clear();
+        torques.resize(2 * count, 0.0);
+        let (torques, held) = torques.split_at_mut(count);
+        network.bodies.drive(y, torques);
+        run(x, v, f, [torques, held])
     })
 }
 
@@ -73,8 +78,9 @@ fn with_other_forces<T>(
 /// [`least_tension`](crate::constraints::least_tension).
 pub(super) fn least_tension(network: &Network, t: f64, y: &[f64]) -> Option<(usize, f64)> {
     let terms = Terms::AllForces;
-    with_other_forces(network, t, terms, y, |x, v, f| {
-        let bodies = |k: usize, f: &[f64]| turning(network, k, y, terms, x, f);
+    with_other_forces(network, t, terms, y, |x, v, f, [torques, _]| {
+        let torques = &*torques;
+        let bodies = |k: usize, f: &[f64]| turning(network, k, y, terms, Loads { x, f, torques });
         let motion = |i: usize, f: &[f64]| free_motion(network, t, &bodies, i, f);
         constraints::least_tension(
             &network.constraints,
@@ -86,75 +92,12 @@ pub(super) fn least_tension(network: &Network, t: f64, y: &[f64]) -> Option<(usi
     })
 }
 
-/// Returns the force and torque on a body at x, from the forces f on its particles. Drag damps the
-/// rotation at the same rate c / m as the motion of the centre.
-fn wrench(
-    network: &Network,
-    body: &Body,
-    rotation: &Rotation,
-    terms: Terms,
-    x: &[f64],
-    f: &[f64],
-) -> Wrench {
-    let center = row(x, body.center());
-    let mut wrench = Wrench {
-        force: row(f, body.center()),
-        torque: Vector3::zeros(),
-    };
-    for i in body.points() {
-        let force = row(f, i);
-        wrench.force += force;
-        wrench.torque += (row(x, i) - center).cross(&force);
-    }
-    if !is_split(network, terms) {
-        wrench.torque -= rotation.momentum * decay(network, body);
-    }
-    wrench
-}
-
-/// Returns the rotation of body k and acceleration of its centre (m/s2) under the forces f, in the
-/// state y, with all points at x.
-pub(super) fn turning(
-    network: &Network,
-    k: usize,
-    y: &[f64],
-    terms: Terms,
-    x: &[f64],
-    f: &[f64],
-) -> (Turning, Vector3<f64>) {
-    let (body, rotation) = (&network.bodies()[k], network.rotation(k, y));
-    let moving = body.moving(&rotation);
-    let wrench = wrench(network, body, &rotation, terms, x, f);
-    let turning = Turning {
-        center: row(x, body.center()),
-        rotation: moving.rotation,
-        spin: moving.spin,
-        acceleration: moving.angular_acceleration(&body.inertia(), wrench.torque),
-        inverse_inertia: body.inertia().map(|moment| 1.0 / moment),
-    };
-    (
-        turning,
-        wrench.force * network.particles.inverse_masses()[body.center()],
-    )
-}
-
-/// Returns the rate (1/s) at which drag damps the motion of a body.
-fn decay(network: &Network, body: &Body) -> f64 {
-    network.elements.drift_forces().drag / network.masses()[body.center()]
-}
-
 /// Writes accelerations (m/s2) of particles that no body carries to a, n x 3.
 fn accelerate(network: &Network, f: &[f64], a: &mut [f64]) {
     let n = network.particles();
     for (k, (a, f)) in a.iter_mut().zip(f).enumerate() {
         *a = network.particles.inverse_masses()[k % n] * f;
     }
-}
-
-/// Returns row i of an n x 3 matrix.
-fn row(a: &[f64], i: usize) -> Vector3<f64> {
-    let n = a.len() / 3;
-    Vector3::new(a[i], a[n + i], a[2 * n + i])
 }
 
 impl Rigid for Network {
@@ -164,21 +107,21 @@ impl Rigid for Network {
 
     fn rates(&self, t: f64, y: &[f64], dydt: &mut [f64]) {
         let n = self.particles();
-        with_forces(self, t, Terms::AllForces, y, |x, v, f| {
+        with_forces(self, t, Terms::AllForces, y, |v, loads| {
             let (halves, tail) = dydt.split_at_mut(6 * n);
             let (dx, dv) = halves.split_at_mut(3 * n);
             dx.copy_from_slice(v);
-            accelerate(self, f, dv);
+            accelerate(self, loads.f, dv);
             Mechanics::pins(self, t, &mut |i, place| {
                 for axis in 0..3 {
                     dx[axis * n + i] = place.velocity[axis];
                     dv[axis * n + i] = place.acceleration[axis];
                 }
             });
-            for ((_, body, rotation, moving), tail) in
+            for ((k, body, rotation, moving), tail) in
                 self.bodies.each(y).zip(tail.chunks_exact_mut(ROTATION))
             {
-                let wrench = wrench(self, body, &rotation, Terms::AllForces, x, f);
+                let wrench = wrench(self, k, &rotation, Terms::AllForces, loads);
                 let (c, w) = (
                     body.center(),
                     self.particles.inverse_masses()[body.center()],
@@ -209,11 +152,11 @@ impl Rigid for Network {
 
     fn kick(&self, t: f64, terms: Terms, y: &[f64], rates: &mut [f64]) {
         let n = self.particles();
-        with_forces(self, t, terms, y, |x, _, f| {
+        with_forces(self, t, terms, y, |_, loads| {
             rates.fill(0.0);
-            accelerate(self, f, &mut rates[3 * n..6 * n]);
+            accelerate(self, loads.f, &mut rates[3 * n..6 * n]);
             for (k, body, rotation, _) in self.bodies.each(y) {
-                let wrench = wrench(self, body, &rotation, terms, x, f);
+                let wrench = wrench(self, k, &rotation, terms, loads);
                 let w = self.particles.inverse_masses()[body.center()];
                 for axis in 0..3 {
                     rates[(3 + axis) * n + body.center()] = w * wrench.force[axis];
@@ -259,14 +202,13 @@ impl Rigid for Network {
         let (x, rest) = y.split_at_mut(3 * n);
         let (v, _) = rest.split_at_mut(3 * n);
         place_pins(self, t, x, v);
-        self.bodies.scratch.lend(|[px, pv, _]| {
-            let (own_x, own_v) = self.halves(y);
-            own_x.clone_into(px);
-            own_v.clone_into(pv);
-            self.bodies.place_points(y, px, pv);
-            y[..3 * n].copy_from_slice(px);
-            y[3 * n..6 * n].copy_from_slice(pv);
-        });
+        self.bodies.settle(y);
+    }
+
+    fn project(&self, y: &mut [f64]) {
+        if has_joints(self) {
+            project(self, y);
+        }
     }
 
     fn measures(&self, visit: &mut dyn FnMut(Range<usize>, Measure)) {

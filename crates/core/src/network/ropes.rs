@@ -1,7 +1,8 @@
 //! Ropes of a network: which of them are taut, and the impacts by which they tighten.
 
-use nalgebra::Vector3;
+use nalgebra::{Matrix3, Vector3};
 
+use super::loads::{self, Loads};
 use super::parts::Network;
 use super::rigid;
 use crate::columns::{row, set_row};
@@ -71,7 +72,9 @@ pub(crate) fn tighten(network: &mut Network, t: f64, y: &mut [f64], least: Least
     let mut struck = false;
     for number in 0..MAX_IMPACTS {
         let may_rebound = least.rebounds && number < MAX_REBOUNDS;
-        let mut ropes = beyond(&network.constraints, halves(network, y), least.none);
+        let turned = |k| turned(network, k, y);
+        let state = halves(network, y);
+        let mut ropes = beyond(&network.constraints, state, &turned, least.none);
         ropes.retain(|rope| rope.rate > 0.0);
         if ropes.is_empty() {
             break;
@@ -102,10 +105,14 @@ pub(crate) fn settle(network: &mut Network, t: f64, y: &[f64], none: f64) -> u64
     if !has_ropes(network) {
         return 0;
     }
-    constraints::loosen(&mut network.constraints, &y[..3 * network.particles.len()]);
-    for rope in beyond(&network.constraints, halves(network, y), none) {
-        constraints::set_taut(&mut network.constraints, rope.number, true);
+    let mut all = std::mem::take(&mut network.constraints);
+    let turned = |k| turned(network, k, y);
+    let state = halves(network, y);
+    constraints::loosen(&mut all, state[0], &turned);
+    for rope in beyond(&all, state, &turned, none) {
+        constraints::set_taut(&mut all, rope.number, true);
     }
+    network.constraints = all;
     let mut evaluated = 0;
     while taut(network).next().is_some() {
         evaluated += 1;
@@ -132,7 +139,12 @@ fn strike(network: &mut Network, t: f64, y: &mut [f64], ropes: &[(usize, f64)]) 
     let (x, v) = network.halves(&before);
     let mut all = std::mem::take(&mut network.constraints);
     let weight = |i: usize| network.inverse_masses()[i];
-    let turning = |k: usize| rigid::turning(network, k, &before, Terms::KickForces, x, &still).0;
+    let loads = Loads {
+        x,
+        f: &still,
+        torques: &vec![0.0; 3 * network.bodies().len()],
+    };
+    let turning = |k: usize| loads::turning(network, k, &before, Terms::KickForces, loads).0;
     constraints::strike(
         &mut all,
         ropes,
@@ -168,6 +180,19 @@ fn parting(network: &Network, number: usize, y: &[f64], rates: &[f64]) -> f64 {
     let along = d / d.norm();
     let across = v - along * along.dot(&v);
     a.dot(&along) + across.norm_squared() / d.norm()
+}
+
+/// Returns the ends of joints that are not held in the state y, each with its error (m), negative
+/// before the end, and the rate of that (m/s).
+pub(crate) fn open_ends(network: &Network, y: &[f64]) -> Vec<(usize, f64, f64)> {
+    let turned = |k| turned(network, k, y);
+    constraints::open_ends(&network.constraints, halves(network, y), &turned).collect()
+}
+
+/// Returns the rotation matrix and the angular velocity (rad/s) of body k in the state y.
+fn turned(network: &Network, k: usize, y: &[f64]) -> (Matrix3<f64>, Vector3<f64>) {
+    let moving = network.bodies()[k].moving(&network.rotation(k, y));
+    (moving.rotation, moving.spin)
 }
 
 fn halves<'a>(network: &Network, y: &'a [f64]) -> [&'a [f64]; 2] {

@@ -4,11 +4,15 @@ use std::sync::Arc;
 
 use super::particles::Particles;
 use super::tearing::Tears;
+use crate::constraints::Constraint;
 use crate::contact::{ContactLayer, Obstacle, Shape, Skin, Surface};
 use crate::elements::Wind;
 use crate::error::Error;
 use crate::path::{Path, Turn};
 use crate::rigid::Body;
+
+/// Rigid bodies, with the constraints that may join them.
+pub(super) type Jointed<'a> = (&'a [Body], &'a [Constraint]);
 
 /// Contact properties of a network: skins, loose edges, and self-contact.
 #[derive(Clone, Debug, PartialEq)]
@@ -98,7 +102,7 @@ impl Surfaces {
     }
 
     /// Creates the contact of these surfaces and bodies, if they can touch.
-    pub fn layer(&self, bodies: &[Body], tears: &Tears) -> Option<ContactLayer> {
+    pub fn layer(&self, bodies: Jointed, tears: &Tears) -> Option<ContactLayer> {
         self.touch.as_ref().map(|touch| {
             let is_whole = |[a, b]: &[u32; 2]| !tears.is_torn(*a as usize, *b as usize);
             let edges: Vec<_> = touch.edges.iter().copied().filter(is_whole).collect();
@@ -107,7 +111,7 @@ impl Surfaces {
     }
 
     /// Creates the contact of all surfaces of n particles and of bodies, also if contact is off.
-    pub fn layer_of_all(&self, bodies: &[Body], n: usize) -> ContactLayer {
+    pub fn layer_of_all(&self, bodies: Jointed, n: usize) -> ContactLayer {
         self.contact(&vec![Skin::default(); n], &[], bodies, true)
     }
 
@@ -115,7 +119,7 @@ impl Surfaces {
         &self,
         skins: &[Skin],
         edges: &[[u32; 2]],
-        bodies: &[Body],
+        (bodies, constraints): Jointed,
         touches_itself: bool,
     ) -> ContactLayer {
         let obstacles = &self.obstacles;
@@ -127,7 +131,13 @@ impl Surfaces {
             obstacles,
             touches_itself,
         );
-        ContactLayer::new(surface, obstacles.clone())
+        let joined = constraints
+            .iter()
+            .filter_map(|constraint| match constraint {
+                Constraint::Joint(joint) => joint.second.map(|second| [joint.first, second]),
+                _ => None,
+            });
+        ContactLayer::new(surface.with_joined(joined), obstacles.clone())
     }
 }
 

@@ -16,10 +16,12 @@
 mod body;
 mod flight;
 mod mass;
+mod motor;
 mod rotation;
 
 pub(crate) use body::Moving;
 pub use body::{Body, Part};
 pub use mass::MassProperties;
+pub use motor::Motor;
 pub use rotation::{ROTATION, Rotation};
 pub(crate) use rotation::{rotation_vector, turn};

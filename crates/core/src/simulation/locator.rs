@@ -7,9 +7,12 @@ use super::resting::{Resting, Rests, first_end, first_negative, may_rest};
 use super::state::RunState;
 use super::stepper::Stepper;
 use crate::integrators::Work;
-use crate::network::{Network, has_ropes, least_tension, taut};
+use crate::network::{Network, has_ropes, least_tension, open_ends, taut};
 use crate::scene::Model;
 use crate::system::ParticleSystem;
+
+/// Number of intervals of a step at whose ends joints are looked at.
+const INTERVALS: u32 = 16;
 
 /// Search for the first event of a step.
 pub(super) struct Locator {
@@ -114,6 +117,13 @@ impl Locator {
         let state = &mut self.events.state;
         let span = (t, h, depths.none);
         let mut evaluated = 0;
+        let stop = if has_ropes {
+            first_stop(&step, before, state, &mut state_at)
+        } else {
+            None
+        };
+        let event = stop.or(event);
+        let before = event.map_or(1.0, |event| event.share);
         let end = first_end(
             network,
             (rests, scratch),
@@ -137,6 +147,54 @@ impl Locator {
         *work += Work::of(evaluated);
         slackens.or(end).or(event)
     }
+}
+
+/// Finds where a joint first reaches one of its ends before the share `before` of a step, on the
+/// step's polynomial, unless that lasts for less than one of some intervals. Writes the state there
+/// to `state`.
+fn first_stop(
+    step: &Searched,
+    before: f64,
+    state: &mut Vec<f64>,
+    state_at: &mut dyn FnMut(f64, &mut [f64]),
+) -> Option<Event> {
+    let Searched { network, h, .. } = *step;
+    let [begun, ended] = step.ends.map(|y| open_ends(network, y));
+    // Half of the most by which an error can leave its chord.
+    let is_near = |(a, b): (&(usize, f64, f64), &(usize, f64, f64))| {
+        a.1.max(b.1) + 0.5 * h * (a.2.abs() + b.2.abs()) > 0.0
+    };
+    if !begun.iter().zip(&ended).any(is_near) {
+        return None;
+    }
+    let none = step.depths.none;
+    // A joint that begins at its end or beyond has passed it a little later.
+    let passed = |value: f64| {
+        if -value > none {
+            0.0
+        } else {
+            none.max(value + 1e-3 * none)
+        }
+    };
+    let mut found = vec![0.0; network.dim()];
+    let mut margin = |share: f64| {
+        state_at(share, &mut found);
+        let now = open_ends(network, &found);
+        let left = begun
+            .iter()
+            .zip(&now)
+            .map(|(begun, now)| passed(begun.1) - now.1);
+        left.fold(f64::INFINITY, f64::min)
+    };
+    let ends = (1..=INTERVALS).map(|k| before * f64::from(k) / f64::from(INTERVALS));
+    let end = ends.into_iter().find(|share| margin(*share) < 0.0)?;
+    let share = first_negative(end, &mut margin)?;
+    state.resize(network.dim(), 0.0);
+    state_at(share, state);
+    Some(Event {
+        share,
+        kind: EventKind::Rested,
+    })
 }
 
 /// Finds where a taut rope slackens before the share `before` of a step of h (s) from t (s), on the

@@ -3,14 +3,22 @@
 //! places.
 
 use super::depths::Depths;
+use crate::columns::row;
+use crate::constraints::Constraint;
 use crate::contact::{
-    ContactPhase, Impulses, Pinched, Statistics, Step, StrainLimiter, Strained, bulge, guard,
-    resolve,
+    ContactLayer, ContactPhase, Impulses, Pinched, Statistics, Step, StrainLimiter, Strained,
+    bulge, guard, resolve,
 };
 use crate::error::Cause;
-use crate::network::{Network, has_ropes};
+use crate::network::{Network, has_joints, has_ropes, project};
 use crate::scene::Model;
 use crate::system::{Mechanics, ParticleSystem};
+
+/// Largest number of turns of contact and joints.
+const MAX_ROUNDS: usize = 40;
+
+/// Displacement by contact, over the first one, that ends these turns.
+const SETTLED_SHARE: f64 = 1e-2;
 
 /// Phases after a step, with their scratch.
 pub(super) struct Phases {
@@ -153,7 +161,9 @@ impl Phases {
         }
     }
 
-    /// Moves particles out of obstacles, or keeps surfaces from passing through one another.
+    /// Moves particles out of obstacles, or keeps surfaces from passing through one another. That
+    /// stops a body alone: where joints are, those on which it then pulls are moved after it, in
+    /// turns, until contact moves hardly anything any more.
     fn part(
         &mut self,
         network: &Network,
@@ -183,6 +193,33 @@ impl Phases {
         if y1.iter().any(|y| !y.is_finite()) {
             return Ok(Statistics::default());
         }
+        let mut before = has_joints(network).then(|| y1.to_vec());
+        let met = self.guard(network, layer, (t, h), y1)?;
+        if let Some(before) = &mut before {
+            let first = largest_shift(network, [before, y1]);
+            let mut last = first;
+            for _ in 0..MAX_ROUNDS {
+                if last <= SETTLED_SHARE * first {
+                    break;
+                }
+                project(network, y1);
+                before.copy_from_slice(y1);
+                self.guard(network, layer, (t, h), y1)?;
+                last = largest_shift(network, [before, y1]);
+            }
+        }
+        Ok(met)
+    }
+
+    /// Keeps surfaces from passing through one another.
+    fn guard(
+        &mut self,
+        network: &Network,
+        layer: &ContactLayer,
+        (t, h): (f64, f64),
+        y1: &mut [f64],
+    ) -> Result<Statistics, Cause> {
+        let inverse_masses = network.inverse_masses();
         let guarded = self.contact.guard(layer, inverse_masses, (t, h), y1);
         let met = guarded.map_err(|Pinched { vertices }| Cause::Pinched { vertices })?;
         if !network.bodies().is_empty() {
@@ -190,4 +227,21 @@ impl Phases {
         }
         Ok(met)
     }
+}
+
+/// Largest displacement (m) between two states of anything that joints join.
+fn largest_shift(network: &Network, [a, b]: [&[f64]; 2]) -> f64 {
+    let n = network.particles();
+    let joints = network
+        .constraints()
+        .iter()
+        .filter_map(|constraint| match constraint {
+            Constraint::Joint(joint) => Some([Some(joint.first), joint.second]),
+            _ => None,
+        });
+    let shifts = joints
+        .flatten()
+        .flatten()
+        .map(|i| (row(b, n, i) - row(a, n, i)).norm());
+    shifts.fold(0.0, f64::max)
 }

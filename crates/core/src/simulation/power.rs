@@ -1,4 +1,4 @@
-//! Power and work of everything that drives a scene: moving pins and obstacles, wind and
+//! Power and work of everything that drives a scene: moving pins and obstacles, wind, motors and
 //! constraints.
 //!
 //! A pin works against the springs at its particle and against gravity. Its power is integrated
@@ -13,7 +13,7 @@ use nalgebra::Vector3;
 use crate::contact::Obstacle;
 use crate::elements::force::{Force, Matter};
 use crate::energy::Energy;
-use crate::network::{Network, add_wind};
+use crate::network::{Network, add_wind, has_motors};
 use crate::path::Path;
 use crate::spring::Spring;
 use crate::system::{Mechanics, ParticleSystem};
@@ -100,6 +100,7 @@ fn works_together(network: &Network) -> bool {
     let pinned = network.pins().any(|(_, path)| moves(&path));
     let pushed = !network.obstacles().iter().all(Obstacle::is_still);
     !network.constraints().is_empty()
+        || has_motors(network)
         || has(|force| force.is_driven() && !force.is_wind())
         || network.contact_layer().is_some() && pushed
         || !network.bodies().is_empty() && (pinned || network.wind().is_some())

@@ -171,7 +171,7 @@ impl Watch {
         }
         balance.add(work);
         self.last.1 = work;
-        let worst = network.worst_constraint(network.halves(y).0, self.radius);
+        let worst = network.worst_constraint(y, self.radius);
         if let Some(unmet) = &worst {
             balance.note(unmet);
         }

@@ -6,9 +6,9 @@ use std::ops::Range;
 use a3_core::contact::Skin;
 use a3_core::elements::{Buckling, FluidLaw, Gas, Sheet, Solid};
 use a3_core::rigid::{self, Rotation};
-use a3_core::{Constraint, Path, Spring, Vector3};
+use a3_core::{Constraint, Spring, Vector3};
 
-use super::pins::pins;
+use super::pins::{Pinned, pins};
 use crate::budget::{
     BODIES, Budget, PARTICLES, PARTS, PINS, RODS, SMOOTHED, SPRINGS, STRIPS, TETRAHEDRA, TOUCHING,
 };
@@ -81,7 +81,7 @@ pub(super) struct Assembly {
     pub skins: Vec<Skin>,
     /// Edges that are in no triangle, and such points, as edges with equal ends.
     pub edges: Vec<[u32; 2]>,
-    pub pins: Vec<(usize, Path)>,
+    pub pins: Pinned,
     /// Bodies whose strain is limited: key, particles and limit.
     pub strain_limits: Vec<(String, Range<usize>, f64)>,
     /// Law of the fluid, and the particles of each of its bodies.
@@ -166,8 +166,7 @@ impl Assembly {
             body.spot(spot, positions)
         })
         .map_err(|fault| fault.within(key))?;
-        self.pins
-            .extend(pins.into_iter().map(|(i, path)| (first + i, path)));
+        self.pins.add(first, pins);
         Ok(())
     }
 

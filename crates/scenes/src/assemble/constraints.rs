@@ -13,15 +13,16 @@ const MAX_INITIAL_ERROR: f64 = 1e-3;
 pub(super) fn check(description: &Description, scene: &Scene) -> Result<(), Fault> {
     let network = scene.model.network();
     let (_, radius) = scene.extent();
-    let worst = network
-        .and_then(|network| network.worst_constraint(network.halves(&scene.state).0, radius));
+    let worst = network.and_then(|network| network.worst_constraint(&scene.state, radius));
     let Some((network, unmet)) = network.zip(worst.filter(|unmet| unmet.share > MAX_INITIAL_ERROR))
     else {
         return Ok(());
     };
-    // The rods of chains come first.
+    // The rods of chains come first, and joints, which begin where the bodies are, last.
     let count = description.constraint.len();
-    let rods = network.constraints().len() - count;
+    let is_joint = |it: &&Constraint| matches!(it, Constraint::Joint(_) | Constraint::Stop(_));
+    let joints = network.constraints().iter().filter(is_joint).count();
+    let rods = network.constraints().len() - joints - count;
     let (key, number) = match unmet.number.checked_sub(rods) {
         Some(k) => (key_of("constraint", k, count), format!("constraint {k}, ")),
         None => ("chain".into(), String::new()),

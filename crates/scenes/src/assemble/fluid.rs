@@ -217,7 +217,7 @@ impl Body for Fluid {
         let free = assembly.positions.len();
         for place in walls {
             let i = assembly.positions.len();
-            assembly.pins.push((i, Path::Still(place)));
+            assembly.pins.paths.push((i, Path::Still(place)));
             assembly.positions.push(place);
             assembly.velocities.push(Vector3::zeros());
         }

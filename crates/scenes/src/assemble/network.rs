@@ -11,7 +11,7 @@ use super::assembly::Assembly;
 use super::mesh_cloth::LoadedMesh;
 use super::rigid::LoadedBody;
 use super::solid::LoadedSolid;
-use super::{constraints, fluid, forces, laws, obstacles, pins, state};
+use super::{constraints, fluid, forces, joints, laws, obstacles, pins, state};
 use crate::budget::{Budget, CELLS, SPRINGS, TRIANGLES};
 use crate::check::{at, key_of};
 use crate::description::Description;
@@ -61,7 +61,7 @@ pub(super) fn build(
     let given = given.map(|all| all.iter().map(|p| Vector3::from(*p)).collect::<Vec<_>>());
     let positions = given.as_ref().unwrap_or(&assembly.positions);
     let more = pins::pins(&description.pin, positions, budget, |_| None)?;
-    assembly.pins.extend(more);
+    assembly.pins.add(0, more);
     let mut state = state::of(&assembly.positions, &assembly.velocities);
     let mut network = at("", Network::new(assembly.masses))?;
     for sheet in assembly.sheets {
@@ -100,10 +100,11 @@ pub(super) fn build(
         &state[..3 * n],
     )?;
     constraints::add(description, &mut network, &state)?;
+    joints::add(description, budget, &assembly.pins, &mut network, &state)?;
     let triangles = assembly.surface.triangles.iter();
     let triangles = triangles.map(|t| t.map(|i| i as usize));
     at("", network.set_triangles(triangles))?;
-    at("", network.pin_all(assembly.pins))?;
+    at("", network.pin_all(assembly.pins.paths))?;
     forces::set(description, &mut network)?;
     for (key, particles, limit) in assembly.strain_limits {
         let limited = network.set_strain_limit(particles, Some(limit));

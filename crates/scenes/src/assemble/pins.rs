@@ -3,23 +3,42 @@
 use a3_core::{Path, Vector3};
 
 use super::motion::motion;
-use crate::budget::{Budget, PINS, SEARCHED};
+use crate::budget::{Budget, PINS, RODS, SEARCHED};
 use crate::check::key_of;
 use crate::description::{Pin, Spot};
 use crate::fault::Fault;
 
-/// Lists the pinned particles with their paths. `spot` finds the particles of a spot.
+/// What holds particles.
+#[derive(Default)]
+pub(super) struct Pinned {
+    /// Particles on paths.
+    pub paths: Vec<(usize, Path)>,
+    /// Particles that are attached to rigid bodies, with the numbers of these.
+    pub attached: Vec<(usize, usize)>,
+}
+
+impl Pinned {
+    /// Adds others, whose particles are counted from `first`.
+    pub fn add(&mut self, first: usize, others: Self) {
+        let paths = others.paths.into_iter();
+        self.paths.extend(paths.map(|(i, path)| (first + i, path)));
+        let attached = others.attached.into_iter();
+        self.attached.extend(attached.map(|(i, k)| (first + i, k)));
+    }
+}
+
+/// Lists the pinned particles with what holds them. `spot` finds the particles of a spot.
 pub(super) fn pins(
     pins: &[Pin],
     positions: &[Vector3<f64>],
     budget: &mut Budget,
     spot: impl Fn(Spot) -> Option<Vec<usize>>,
-) -> Result<Vec<(usize, Path)>, Fault> {
-    let mut all = vec![];
+) -> Result<Pinned, Fault> {
+    let mut all = Pinned::default();
     for (k, pin) in pins.iter().enumerate() {
         let pinned = pinned(pin, positions, budget, &spot);
         let pinned = pinned.map_err(|fault| fault.within(&key_of("pin", k, pins.len())))?;
-        all.extend(pinned);
+        all.add(0, pinned);
     }
     Ok(all)
 }
@@ -49,7 +68,7 @@ fn pinned(
     positions: &[Vector3<f64>],
     budget: &mut Budget,
     spot: impl Fn(Spot) -> Option<Vec<usize>>,
-) -> Result<Vec<(usize, Path)>, Fault> {
+) -> Result<Pinned, Fault> {
     let mut particles = pin.particles.clone();
     budget.spend("particles", particles.len(), PINS)?;
     if let Some(i) = particles.iter().find(|i| **i >= positions.len()) {
@@ -79,6 +98,17 @@ fn pinned(
             "the turn of a pin needs it: a point of the axis (m)",
         ));
     }
+    if let Some(body) = pin.body {
+        if pin.sine.is_some() || pin.shift.is_some() || pin.turn.is_some() {
+            let why = "what is attached to a body has no motion of its own";
+            return Err(Fault::new("body", why));
+        }
+        budget.spend("body", particles.len(), RODS)?;
+        return Ok(Pinned {
+            attached: particles.into_iter().map(|i| (i, body)).collect(),
+            ..Pinned::default()
+        });
+    }
     let path = |i: usize| {
         let (path, _) = motion(
             pin.sine.as_ref(),
@@ -88,5 +118,9 @@ fn pinned(
         )?;
         Ok((i, path))
     };
-    particles.into_iter().map(path).collect()
+    let paths = particles.into_iter().map(path).collect::<Result<_, _>>()?;
+    Ok(Pinned {
+        paths,
+        ..Pinned::default()
+    })
 }

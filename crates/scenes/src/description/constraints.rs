@@ -1,4 +1,4 @@
-//! Constraints: rods, ropes and wires.
+//! Constraints: rods, ropes, wires and joints.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -62,4 +62,56 @@ pub struct BallSpec {
     pub center: Triple,
     /// Radius (m).
     pub radius: f64,
+}
+
+/// Joint of a rigid body with another one, or with the world: one of `ball`, `hinge`, `slider` and
+/// `fixed`. The two do not touch each other.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct JointSpec {
+    /// Number of the rigid body that is joined to the world, counted from 0. An alternative is
+    /// `bodies`.
+    pub body: Option<usize>,
+    /// Numbers of two rigid bodies, of which the second moves relative to the first.
+    pub bodies: Option<[usize; 2]>,
+    /// Ball joint: the point (m) that both have in common.
+    pub ball: Option<Triple>,
+    /// Hinge, about whose axis the body turns.
+    pub hinge: Option<HingeSpec>,
+    /// Slider, along whose axis the body moves without turning.
+    pub slider: Option<SliderSpec>,
+    /// Whether nothing moves.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub fixed: bool,
+}
+
+/// Hinge, with limits and a motor.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct HingeSpec {
+    /// A point of the axis (m).
+    pub at: Triple,
+    /// Direction of the axis, of any length but 0.
+    pub axis: Triple,
+    /// Least and largest angle (rad), anticlockwise as seen against the axis. It is 0 where the
+    /// bodies are as described.
+    #[serde(default)]
+    pub limits: Option<[f64; 2]>,
+    /// Torque of a motor (N m), at rest if there is a `speed`.
+    #[serde(default)]
+    pub torque: Option<f64>,
+    /// Speed at which the torque of the motor vanishes (rad/s); if not given, it is constant.
+    #[serde(default)]
+    pub speed: Option<f64>,
+}
+
+/// Slider.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct SliderSpec {
+    /// Direction of the axis, of any length but 0.
+    pub axis: Triple,
+    /// Least and largest displacement (m). It is 0 where the bodies are as described.
+    #[serde(default)]
+    pub limits: Option<[f64; 2]>,
 }

@@ -17,7 +17,9 @@ use crate::fault::Fault;
 use crate::reader::{self, Places};
 
 pub use bodies::{Chain, Circle, Cloth, Jelly, MeshCloth, Particles, Solid, SolidModel};
-pub use constraints::{BallSpec, CircleSpec, ConstraintSpec, LineSpec};
+pub use constraints::{
+    BallSpec, CircleSpec, ConstraintSpec, HingeSpec, JointSpec, LineSpec, SliderSpec,
+};
 pub use floor::{Floor, FloorSpec};
 pub use fluid::{Fluid, FluidShape, Tank};
 pub use forces::{BucklingSpec, RegionSpec, SpringSpec, SwingSpec, WindSpec};
@@ -112,7 +114,10 @@ pub struct Description {
     /// Rods, ropes and wires, which solvers keep exactly.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub constraint: Vec<ConstraintSpec>,
-    /// Rate at which a drift off a constraint is corrected (1/s); 10 if not given.
+    /// Joints of rigid bodies.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub joint: Vec<JointSpec>,
+    /// Rate at which a drift off a constraint or a joint is corrected (1/s); 10 if not given.
     pub feedback: Option<f64>,
     /// Pins of any particles by number. They come after the pins of the bodies, and override them.
     /// If there is a `state`, pins are at the positions that it gives.

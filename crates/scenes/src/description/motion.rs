@@ -24,7 +24,8 @@ pub enum Spot {
     Last,
 }
 
-/// Pinned particles and their motion. Without a motion they stay where they are.
+/// Pinned particles and their motion. Without a motion they stay where they are, or move with a
+/// rigid body.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Pin {
@@ -34,6 +35,9 @@ pub struct Pin {
     /// Particles, numbered from 0 in their body.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub particles: Vec<usize>,
+    /// Number of the rigid body, counted from 0, to which the particles are attached where they
+    /// are, in place of a motion. They and the body act on each other.
+    pub body: Option<usize>,
     /// Oscillation of the pinned particles.
     pub sine: Option<Sine>,
     /// Displacement of the pinned particles, once; with a turn, that of its axis.

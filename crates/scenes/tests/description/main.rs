@@ -3,6 +3,7 @@
 mod building;
 mod faults;
 mod fluids;
+mod joints;
 mod json;
 mod masses;
 mod solids;

@@ -11,7 +11,15 @@ use crate::sense;
 
 /// Keys of a scene that refer to particles by number. They are added when the number of particles
 /// is known.
-pub const NUMBERED: [&str; 6] = ["springs", "constraint", "pin", "torn", "trail", "state"];
+pub const NUMBERED: [&str; 7] = [
+    "springs",
+    "constraint",
+    "joint",
+    "pin",
+    "torn",
+    "trail",
+    "state",
+];
 
 /// Tables of the bodies, and their keys in a scene.
 pub const BODIES: [&str; 8] = [
@@ -83,7 +91,7 @@ impl Writer<'_> {
     fn is_there(&mut self, table: &str, key: &str) -> bool {
         match (table, key) {
             ("", key) if NUMBERED.contains(&key) || key == "circle" => false,
-            ("", "gravity") => self.chance.once_in(2),
+            ("", "gravity") | ("HingeSpec" | "SliderSpec", _) => self.chance.once_in(2),
             ("", key) if BODIES.contains(&key) => self.chance.once_in(5),
             ("", _) => self.chance.once_in(6),
             _ => self.chance.once_in(4),

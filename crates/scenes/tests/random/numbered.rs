@@ -18,13 +18,15 @@ pub fn add(
 ) -> BTreeSet<String> {
     let mut all = BTreeSet::new();
     for key in NUMBERED {
-        if !chance.once_in(10) {
+        // Few scenes have bodies that could be joined.
+        if !chance.once_in(if key == "joint" { 3 } else { 10 }) {
             continue;
         }
         let (mut value, keys) = grammar.table(key, chance);
         let is_made = match key {
             "springs" => springs(&mut value, setup, chance),
             "constraint" => constraints(&mut value, setup, chance),
+            "joint" => joints(&mut value, setup, chance),
             "pin" => pins(&mut value, setup, chance),
             "torn" => torn(&mut value, setup, chance),
             "trail" => {
@@ -113,6 +115,39 @@ fn constraints(value: &mut Value, setup: &Setup, chance: &mut Chance) -> bool {
     true
 }
 
+/// Joins bodies that exist, between limits about their places at the start.
+fn joints(value: &mut Value, setup: &Setup, chance: &mut Chance) -> bool {
+    let network = setup.scene.model.network();
+    let count = network.map_or(0, |network| network.bodies().len());
+    for row in rows(value) {
+        let row = row.as_object_mut().unwrap();
+        if count == 0 {
+            return false;
+        }
+        let k = chance.below(count);
+        if row.contains_key("body") {
+            row.insert("body".into(), json!(k));
+        } else if count == 1 {
+            return false;
+        } else {
+            let other = (k + 1 + chance.below(count - 1)) % count;
+            row.insert("bodies".into(), json!([k, other]));
+        }
+        for (key, part) in row {
+            match (key.as_str(), part) {
+                ("fixed", part) => *part = json!(true),
+                (_, Value::Object(part)) => {
+                    if let Some(Value::Array(limits)) = part.get_mut("limits") {
+                        limits[0] = json!(-limits[0].as_f64().unwrap());
+                    }
+                }
+                _ => {}
+            }
+        }
+    }
+    true
+}
+
 fn pins(value: &mut Value, setup: &Setup, chance: &mut Chance) -> bool {
     let network = setup.scene.model.network();
     for row in rows(value) {
@@ -120,6 +155,10 @@ fn pins(value: &mut Value, setup: &Setup, chance: &mut Chance) -> bool {
         // Points of rigid bodies cannot be pinned.
         if network.is_none_or(|network| network.is_carried(i)) {
             return false;
+        }
+        let is_body = network.is_some_and(|network| network.body_of(i).is_some());
+        if is_body || network.is_none_or(|network| network.bodies().is_empty()) {
+            row.as_object_mut().unwrap().remove("body");
         }
         row.as_object_mut().unwrap().remove("at");
         row["particles"] = json!([i]);

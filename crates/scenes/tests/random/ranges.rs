@@ -18,6 +18,7 @@ pub const NUMBERS: &[(&[&str], Range)] = &[
     (&["Jelly.damping", "Cloth.damping"], (1e-5, 0.1, true)),
     (&["Shift.start", "Turn.start"], (0.0, 1.0, false)),
     (&["MeshCloth.damping", "Solid.damping"], (1e-5, 0.1, true)),
+    (&["JointSpec.ball"], PLACE),
     (&["Fluid.strain"], (-2.0, 2.0, false)),
     (&["Cloth.turn", "Turn.angle"], (0.0, 1.0, false)),
     (&["Fluid.density"], (10.0, 3000.0, true)),
@@ -41,6 +42,8 @@ pub const NUMBERS: &[(&[&str], Range)] = &[
     (&["radius", "size", "ball", "box", "capsule"], LENGTH),
     (&["length", "rest_length", "width", "scale"], LENGTH),
     (&["thickness"], (1e-4, 0.01, true)),
+    (&["limits"], (0.1, 2.0, true)),
+    (&["torque", "speed"], (1e-3, 10.0, true)),
     (&["pressure"], (-100.0, 1000.0, false)),
     (&["fill"], (0.9, 1.1, true)),
     (&["rolling_friction"], (1e-4, 0.1, true)),
@@ -80,6 +83,7 @@ pub const COUNTS: &[(&[&str], usize, usize)] = &[
     (&["Fluid.dimensions"], 2, 3),
     (&["particles", "particle", "rod", "rope"], 0, 1),
     (&["springs", "torn", "trail", "seed"], 0, 7),
+    (&["Pin.body", "JointSpec.body", "bodies"], 0, 0),
 ];
 
 /// Texts of keys that are not a choice among names.
@@ -107,6 +111,8 @@ pub const ONE: &[(&str, &[&str])] = &[
         "ConstraintSpec",
         &["rod", "rope", "point", "line", "circle", "sphere"],
     ),
+    ("JointSpec", &["body", "bodies"]),
+    ("JointSpec", &["ball", "hinge", "slider", "fixed"]),
 ];
 
 /// Keys of which a table has at most one.
@@ -117,6 +123,9 @@ pub const ALTERNATIVES: &[&[&str]] = &[
     &["pressure", "fill"],
     &["sine", "shift"],
     &["sine", "turn"],
+    &["body", "sine"],
+    &["body", "shift"],
+    &["body", "turn"],
 ];
 
 /// Keys that a table has if and only if it has another one.
@@ -134,6 +143,7 @@ pub const NEEDS: &[(&str, &str, &str)] = &[
     ("WindSpec", "density", "velocity"),
     ("WindSpec", "drag", "velocity"),
     ("WindSpec", "lift", "velocity"),
+    ("HingeSpec", "speed", "torque"),
     ("", "step", "solver"),
 ];
 

@@ -28,7 +28,7 @@ pub enum Ended {
 
 /// Whether anything does work on a scene except its own forces.
 fn is_driven(text: &str) -> bool {
-    ["sine", "shift", "turn", "wind"]
+    ["sine", "shift", "turn", "wind", "torque"]
         .iter()
         .any(|word| text.contains(word))
 }

@@ -97,8 +97,26 @@ fn particles(table: &mut Map<String, Value>, chance: &mut Chance) {
     }
 }
 
+/// Removes the attachments to rigid bodies from the pins of other bodies, if there are none.
+fn release(table: &mut Map<String, Value>) {
+    let none = !table.contains_key("body");
+    for (key, bodies) in table.iter_mut() {
+        let bodies = match bodies {
+            Value::Array(bodies) => bodies.iter_mut().collect(),
+            other => vec![other],
+        };
+        let pins = bodies.into_iter().filter_map(|body| body.get_mut("pin"));
+        for pin in pins.flat_map(|pins| pins.as_array_mut().unwrap()) {
+            if none || key == "body" {
+                pin.as_object_mut().unwrap().remove("body");
+            }
+        }
+    }
+}
+
 /// Moves most bodies apart, and gives all fluids the same liquid.
 fn scene(table: &mut Map<String, Value>, chance: &mut Chance) {
+    release(table);
     if let Some(Value::Array(fluids)) = table.get_mut("fluid") {
         fluids.truncate(1);
         if chance.once_in(3) {

@@ -293,8 +293,10 @@ impl Show {
         if let Some(network) = network {
             let points = &self.points;
             let at = |i: usize| [points[i][0], points[i][1], points[i][2]];
+            let pose = |k: usize| network.pose(k, simulation.state());
+            let unit = f64::from(self.unit);
             self.lines
-                .extend(wires::lines(network, at, f64::from(self.unit), STEEL));
+                .extend(wires::lines(network, at, pose, unit, STEEL));
         }
         let fluid = network.and_then(Network::fluid);
         for i in self.parts.single().to_vec() {

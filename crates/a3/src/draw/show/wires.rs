@@ -1,6 +1,7 @@
-//! Constraints as lines: rods, ropes, and the wires that particles slide on.
+//! Constraints as lines: rods, ropes, the wires that particles slide on, and the axes of joints.
 
-use a3_core::{Constraint, Network, Vector3};
+use a3_core::constraints::{Joint, JointKind};
+use a3_core::{Constraint, Network, Pose, Vector3};
 use a3_render::Line;
 
 use super::vectors::{perpendicular, to_f32};
@@ -12,11 +13,18 @@ const ROPE_PIECES: usize = 32;
 /// Length of a straight wire to either side of its point, in units of length of the scene.
 const HALF_LENGTH: f64 = 20.0;
 
+/// Length of the pin of a hinge to either side, and of the rail of a slider, over the size of its
+/// body; and radius of a ball joint.
+const PIN: f64 = 0.25;
+const RAIL: f64 = 0.8;
+const BALL: f64 = 0.06;
+
 /// Returns lines for the constraints of a network. `at` gives the positions of particles (m), and
-/// `unit` is the unit of length of the scene (m).
+/// `pose` the place and orientation of body k; `unit` is the unit of length of the scene (m).
 pub fn lines(
     network: &Network,
     at: impl Fn(usize) -> [f32; 3],
+    pose: impl Fn(usize) -> Pose,
     unit: f64,
     color: [f32; 4],
 ) -> impl Iterator<Item = Line> {
@@ -51,8 +59,31 @@ pub fn lines(
                 let circles = normals.map(|normal| circle(center, normal, radius, faint));
                 circles.concat()
             }
-            Constraint::Point { .. } => vec![],
+            Constraint::Joint(joint) => {
+                let body = network.body_of(joint.first);
+                body.map_or_else(Vec::new, |k| pin(&joint, &pose(k), color))
+            }
+            Constraint::Point { .. } | Constraint::Stop(_) => vec![],
         })
+}
+
+/// Returns the lines of a joint whose first body has this pose: its axis, or a ball.
+fn pin(joint: &Joint, pose: &Pose, color: [f32; 4]) -> Vec<Line> {
+    let place = pose.of(joint.anchors[0]).position;
+    let axes = [0, 1, 2].map(|k| pose.outwards(joint.axes[0].column(k).into_owned()));
+    let along = |share: f64, width: f32| {
+        let way = axes[0] * (share * joint.length);
+        vec![Line::new(to_f32(place - way), to_f32(place + way), width, color).with_shadow()]
+    };
+    match joint.kind {
+        JointKind::Ball => {
+            let circles = axes.map(|normal| circle(place, normal, BALL * joint.length, color));
+            circles.concat()
+        }
+        JointKind::Hinge => along(PIN, 6.0),
+        JointKind::Slider => along(RAIL, 2.4),
+        JointKind::Fixed => vec![],
+    }
 }
 
 /// Returns the lines of a rope of a length (m) between two points. It hangs in a parabola, whose
@@ -92,6 +123,24 @@ fn circle(center: Vector3<f64>, normal: Vector3<f64>, radius: f64, color: [f32; 
 mod tests {
     use super::*;
 
+    fn still(_: usize) -> Pose {
+        Pose {
+            place: a3_core::Path::Still(Vector3::new(1.0, 2.0, 3.0)).at(0.0),
+            orientation: None,
+        }
+    }
+
+    #[test]
+    fn a_hinge_has_a_pin_along_its_axis() {
+        let (own, at) = (still(0), Vector3::new(1.5, 2.0, 3.0));
+        let joint = Joint::new(JointKind::Hinge, ((0, &own), None), (at, Vector3::y()), 2.0);
+        let lines = pin(&joint.unwrap(), &own, [0.0; 4]);
+        assert_eq!(
+            (lines[0].from, lines[0].to),
+            ([1.5, 1.5, 3.0], [1.5, 2.5, 3.0])
+        );
+    }
+
     #[test]
     fn a_rope_keeps_about_its_length_where_it_hangs() {
         let mut network = Network::new(vec![1.0; 2]).unwrap();
@@ -104,7 +153,7 @@ mod tests {
         network.add_constraint(rope).unwrap();
         for (distance, error) in [(1.1, 0.01), (1e-4, 1e-3), (0.6, 0.15), (1.2, 1e-6)] {
             let at = |i: usize| [i as f32 * distance, 0.0, 0.0];
-            let lines = lines(&network, at, 1.0, [0.0; 4]);
+            let lines = lines(&network, at, still, 1.0, [0.0; 4]);
             let of_line = |line: Line| (Vector3::from(line.to) - Vector3::from(line.from)).norm();
             let length: f32 = lines.map(of_line).sum();
             assert!((length - 1.2).abs() < error, "{distance}: {length}");
@@ -130,7 +179,7 @@ mod tests {
             network.add_constraint(constraint).unwrap();
         }
         let at = |i: usize| [i as f32, 0.0, 0.0];
-        let lines: Vec<_> = lines(&network, at, 1.0, [0.0; 4]).collect();
+        let lines: Vec<_> = lines(&network, at, still, 1.0, [0.0; 4]).collect();
         assert_eq!((lines[0].from, lines[0].to), (at(0), at(1)));
         assert_eq!(lines.len(), 1 + PIECES);
         for line in &lines[1..] {

@@ -46,6 +46,8 @@ impl Integrator for ImplicitEuler {
         let Self { stage, base } = self;
         check_dim(base.len(), y)?;
         base.copy_from_slice(y);
-        stage.solve(system, t + h, h, base, y, Newton::Once)
+        let work = stage.solve(system, t + h, h, base, y, Newton::Once)?;
+        stage.project_bodies(system, y);
+        Ok(work)
     }
 }

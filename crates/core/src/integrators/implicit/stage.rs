@@ -6,7 +6,7 @@ use super::mechanical::Mechanical;
 use super::newton::Newton;
 use crate::error::Error;
 use crate::refusal::Refusal;
-use crate::system::{Mechanics, ParticleSystem};
+use crate::system::{Mechanics, ParticleSystem, rigid_of};
 use crate::work::Work;
 
 /// Solver of the implicit stages of one system.
@@ -52,8 +52,16 @@ impl StageSolver {
         matches!(self, Self::Mechanical(stage) if stage.joined.is_some())
     }
 
+    /// Moves a state to where all joints of rigid bodies are met and stay so: the stages do not.
+    pub(super) fn project_bodies(&self, system: &dyn ParticleSystem, y: &mut [f64]) {
+        if let (Self::Dense(_), Some(rigid)) = (self, rigid_of(system)) {
+            rigid.project(y);
+        }
+    }
+
     /// Moves a state to where all constraints are met and stay so.
     pub(super) fn project(&self, system: &dyn ParticleSystem, y: &mut [f64]) {
+        self.project_bodies(system, y);
         let linearized = system.mechanics().and_then(Mechanics::linearized);
         if let (Self::Mechanical(_), Some(linearized)) = (self, linearized) {
             project(linearized, y.split_at_mut(y.len() / 2).into());

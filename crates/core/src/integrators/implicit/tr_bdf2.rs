@@ -75,6 +75,7 @@ impl Integrator for TrBdf2 {
             *last += W / G * (y - base);
         }
         work += stage.solve(system, t + h, G * h, last, y, Newton::Full)?;
+        stage.project_bodies(system, y);
         Ok(work)
     }
 }

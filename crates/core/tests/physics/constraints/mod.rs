@@ -3,13 +3,17 @@
 
 mod bodies;
 mod implicit;
+mod joint_ends;
+mod jointed;
 mod limits;
 mod motion;
 
 use std::f64::consts::PI;
 
 use crate::common::method;
-use a3_core::{Constraint, Network, Path, Spring, SpringKind, SpringLaw, Vector3};
+use a3_core::{
+    Constraint, Network, Path, Scene, Simulation, Spring, SpringKind, SpringLaw, Vector3,
+};
 
 pub const G: f64 = 9.81;
 
@@ -143,4 +147,38 @@ pub fn driven(damping: f64) -> (Network, Vec<f64>) {
     let (p, v) = (place.position, place.velocity);
     let x = [p, p + vector(0.8, 0.0, 0.0), p + vector(0.8, -0.6, 0.8)];
     (network, state(&x, &[v; 3]))
+}
+
+/// Run of a scene by a method with its step or tolerance, until a time (s).
+pub fn simulated(scene: &Scene, name: &str, value: f64, until: f64) -> Simulation {
+    let method = method(name);
+    let mut run = Simulation::new(scene.clone(), method, method.control(value)).unwrap();
+    run.advance_to(until).unwrap();
+    run
+}
+
+pub fn velocity_of(run: &Simulation, i: usize) -> Vector3<f64> {
+    of(&run.state()[..6 * run.model().particles()], i)[1]
+}
+
+pub fn joint_error(run: &Simulation) -> f64 {
+    let network = run.model().network().unwrap();
+    network.constraint_error(run.state()).unwrap()
+}
+
+pub fn energy(run: &Simulation) -> f64 {
+    run.energy().unwrap().total()
+}
+
+/// Momentum and angular momentum about the origin.
+pub fn momenta(run: &Simulation) -> (Vector3<f64>, Vector3<f64>) {
+    let network = run.model().network().unwrap();
+    let (mut p, mut l) = (ZERO, ZERO);
+    for (k, body) in network.bodies().iter().enumerate() {
+        let i = body.center();
+        let moved = velocity_of(run, i) * network.masses()[i];
+        p += moved;
+        l += run.position(i).cross(&moved) + network.rotation(k, run.state()).momentum;
+    }
+    (p, l)
 }

@@ -1,0 +1,199 @@
+//! Joints of rigid bodies, and particles that are attached to them.
+
+use a3_core::constraints::{Joint, JointKind, Stop};
+use a3_core::rigid::Motor;
+use a3_core::{Constraint, Network, Path, Pose, Vector3};
+
+use super::pins::Pinned;
+use crate::budget::{Budget, RODS};
+use crate::check::{at, key_of};
+use crate::description::{Description, HingeSpec, JointSpec};
+use crate::fault::Fault;
+
+/// Largest numbers of joints and of attached particles: the time of a step may grow with the square
+/// of these.
+const MAX_JOINTS: usize = 1000;
+const MAX_ATTACHED: usize = 10_000;
+
+/// Number of rods that take as much memory as a joint with its limits.
+const RODS_PER_JOINT: usize = 6;
+
+/// Adds the joints of the description, and the attached particles, where they are in a state.
+pub(super) fn add(
+    description: &Description,
+    budget: &mut Budget,
+    pins: &Pinned,
+    network: &mut Network,
+    state: &[f64],
+) -> Result<(), Fault> {
+    let all = &description.joint;
+    for (key, count, most, what) in [
+        ("joint", all.len(), MAX_JOINTS, "joints"),
+        (
+            "pin.body",
+            pins.attached.len(),
+            MAX_ATTACHED,
+            "particles that are attached to bodies",
+        ),
+    ] {
+        if count > most {
+            let why = format!("the scene has {count} {what}; at most {most} are allowed");
+            return Err(Fault::new(key, why));
+        }
+    }
+    budget.spend("joint", RODS_PER_JOINT * all.len(), RODS)?;
+    for (k, spec) in all.iter().enumerate() {
+        let added = join(spec, network, state);
+        added.map_err(|fault| fault.within(&key_of("joint", k, all.len())))?;
+    }
+    let n = network.particles();
+    for &(i, k) in &pins.attached {
+        at("pin.body", check_body(network, k))?;
+        let there = Vector3::new(state[i], state[n + i], state[2 * n + i]);
+        let own = Pose {
+            place: Path::Still(there).at(0.0),
+            orientation: None,
+        };
+        let (center, pose) = (network.bodies()[k].center(), network.pose(k, state));
+        let sides = ((i, &own), Some((center, &pose)));
+        let length = network.bodies()[k].radius();
+        let joint = Joint::new(JointKind::Ball, sides, (there, Vector3::x()), length);
+        let joint = at("pin.body", joint)?;
+        at("pin.body", network.add_constraint(Constraint::Joint(joint)))?;
+    }
+    Ok(())
+}
+
+/// Adds a joint, with its limits and its motor.
+fn join(spec: &JointSpec, network: &mut Network, state: &[f64]) -> Result<(), Fault> {
+    let (moved, other) = match (spec.body, spec.bodies) {
+        (Some(k), None) => (k, None),
+        (None, Some([other, k])) => (k, Some(other)),
+        _ => {
+            let why =
+                "give either `body`, for a joint with the world, or `bodies` with two numbers";
+            return Err(Fault::new("", why));
+        }
+    };
+    let key = if other.is_some() { "bodies" } else { "body" };
+    for k in other.into_iter().chain([moved]) {
+        at(key, check_body(network, k))?;
+    }
+    let pose = |k: usize| (network.bodies()[k].center(), network.pose(k, state));
+    let (own, against) = (pose(moved), other.map(pose));
+    let center = own.1.place.position;
+    let vector = |of: &[f64; 3]| Vector3::from(*of);
+    let (key, kind, place) = match spec {
+        JointSpec {
+            ball: Some(there),
+            hinge: None,
+            slider: None,
+            fixed: false,
+            ..
+        } => ("ball", JointKind::Ball, (vector(there), Vector3::x())),
+        JointSpec {
+            ball: None,
+            hinge: Some(hinge),
+            slider: None,
+            fixed: false,
+            ..
+        } => {
+            let place = (vector(&hinge.at), vector(&hinge.axis));
+            ("hinge.axis", JointKind::Hinge, place)
+        }
+        JointSpec {
+            ball: None,
+            hinge: None,
+            slider: Some(slider),
+            fixed: false,
+            ..
+        } => {
+            let place = (center, vector(&slider.axis));
+            ("slider.axis", JointKind::Slider, place)
+        }
+        JointSpec {
+            ball: None,
+            hinge: None,
+            slider: None,
+            fixed: true,
+            ..
+        } => ("fixed", JointKind::Fixed, (center, Vector3::x())),
+        _ => {
+            let why = "give one of `ball`, `hinge`, `slider` and `fixed = true`";
+            return Err(Fault::new("", why));
+        }
+    };
+    let sides = (
+        (own.0, &own.1),
+        against.as_ref().map(|(i, pose)| (*i, pose)),
+    );
+    let length = network.bodies()[moved].radius();
+    let joint = at(key, Joint::new(kind, sides, place, length))?;
+    at("", network.add_constraint(Constraint::Joint(joint)))?;
+    let (key, limits) = match (&spec.hinge, &spec.slider) {
+        (Some(hinge), _) => ("hinge.limits", hinge.limits),
+        (_, slider) => ("slider.limits", slider.as_ref().and_then(|it| it.limits)),
+    };
+    if let Some(limits) = limits {
+        at(key, limit(network, joint, limits))?;
+    }
+    if let Some(hinge) = &spec.hinge {
+        drive(network, hinge, (moved, other), &joint)?;
+    }
+    Ok(())
+}
+
+/// Adds the limits of a joint.
+fn limit(network: &mut Network, joint: Joint, limits: [f64; 2]) -> Result<(), String> {
+    if !(limits[0] <= 0.0 && limits[1] >= 0.0) {
+        let [least, most] = limits;
+        return Err(format!(
+            "the first must be at most 0 and the second at least 0, because the joint is at 0 \
+             where the bodies are as described, not {least} and {most}"
+        ));
+    }
+    for is_upper in [false, true] {
+        let stop = Stop {
+            joint,
+            limits,
+            is_upper,
+        };
+        let added = network.add_constraint(Constraint::Stop(stop));
+        added.map_err(|e| e.to_string())?;
+    }
+    Ok(())
+}
+
+/// Adds the motor of a hinge, if it has one.
+fn drive(
+    network: &mut Network,
+    hinge: &HingeSpec,
+    (first, second): (usize, Option<usize>),
+    joint: &Joint,
+) -> Result<(), Fault> {
+    let Some(torque) = hinge.torque else {
+        return match hinge.speed {
+            None => Ok(()),
+            Some(_) => Err(Fault::new("hinge.speed", "a motor also needs its `torque`")),
+        };
+    };
+    let motor = Motor {
+        first,
+        second,
+        axis: joint.axes[0].column(0).into_owned(),
+        torque,
+        speed: hinge.speed,
+    };
+    at("hinge.torque", network.add_motor(motor))
+}
+
+fn check_body(network: &Network, k: usize) -> Result<(), String> {
+    match network.bodies().len() {
+        count if k < count => Ok(()),
+        0 => Err("there is no rigid body".into()),
+        count => Err(format!(
+            "there is no rigid body {k}: they are numbered 0 to {}",
+            count - 1
+        )),
+    }
+}
