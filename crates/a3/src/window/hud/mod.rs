@@ -2,10 +2,14 @@
 //! knobs and plots.
 
 mod all;
+mod axes;
 mod bar;
 mod blow_up;
 #[cfg(not(target_arch = "wasm32"))]
 mod caption;
+#[cfg(not(target_arch = "wasm32"))]
+mod charts;
+mod docked;
 mod help;
 mod hint;
 pub mod layout;
