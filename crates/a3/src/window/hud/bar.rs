@@ -192,6 +192,11 @@ fn others(session: &Session) -> Vec<Button> {
             ..Button::new(film, does, window(WindowAction::Record))
         });
     }
+    // A page plots nothing.
+    if !cfg!(target_arch = "wasm32") {
+        let about = "Plot particles, bodies and springs (F3)";
+        buttons.insert(5, Button::new("🗠", about, run(RunAction::Plots)));
+    }
     buttons.push(Button::new(
         "?",
         "Help, and everything else (h)",

@@ -23,7 +23,11 @@ mod pane_buttons;
 pub mod panel;
 mod panes;
 mod picture;
+#[cfg_attr(target_arch = "wasm32", path = "no_plotting.rs")]
+pub mod plotting;
 mod question;
+#[cfg(not(target_arch = "wasm32"))]
+mod ruler;
 mod selection;
 mod single;
 mod style;

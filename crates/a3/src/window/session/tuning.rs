@@ -5,6 +5,7 @@ use a3_scenes::{Defaults, Part, PartChange, Setup};
 
 use super::lessons::Lessons;
 use super::origin::Origin;
+use super::traces::PlotSettings;
 use crate::files::ending::Ending;
 
 /// The original scene, and what the panel changes of it: factors, and parts that are left out.
@@ -60,6 +61,8 @@ pub struct PanelState {
     pub open: bool,
     /// The lessons, in whose place the panel opens.
     pub lessons: Lessons,
+    /// The pane of plots, which opens in its place too.
+    pub plotting: PlotSettings,
     /// Whether fingers are used, for which buttons are larger.
     pub touch: bool,
     /// Number of the chosen row in the table of knobs, which keys turn.
@@ -83,6 +86,7 @@ impl Default for PanelState {
         Self {
             open: false,
             lessons: Lessons::default(),
+            plotting: PlotSettings::default(),
             touch: false,
             row: 0,
             dark: None,
