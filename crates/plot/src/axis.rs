@@ -40,6 +40,23 @@ impl Axis {
         }
     }
 
+    /// A linear axis around all finite values, with a margin. A nearly constant value is in its
+    /// middle, and its rounding errors are not magnified.
+    #[must_use]
+    pub fn around(values: impl Iterator<Item = f64>) -> Self {
+        let finite = values.filter(|value| value.is_finite());
+        let [low, high] = finite.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], value| {
+            [low.min(value), high.max(value)]
+        });
+        if low > high {
+            return Self::linear([0.0, 1.0]);
+        }
+        let gap = (0.08 * (high - low))
+            .max(0.02 * high.abs().max(low.abs()))
+            .max(1e-9);
+        Self::linear([low - gap, high + gap])
+    }
+
     /// A logarithmic axis around two positive numbers, which ends at 1, 2 or 5 times powers of ten.
     #[must_use]
     pub fn log(low: f64, high: f64) -> Self {

@@ -2,8 +2,8 @@
 //! folder.
 
 use crate::{
-    Curve, CurveStyle, Error, Figure, Marker, Measurement, Problem, Region, StabilityRegions,
-    WorkPrecision,
+    Curve, CurveStyle, Error, Figure, Line, LineChart, LinePanel, Marker, Measurement, Problem,
+    Region, StabilityRegions, WorkPrecision,
 };
 
 const SIZES: [[f64; 2]; 4] = [
@@ -320,6 +320,44 @@ fn eigenvalues_outside_the_region_are_crosses_or_rings() {
     // The growth by Heun's method is the root of 1 + y^4 / 4: at 0.5 it is 1.0078, at 0.6 it is
     // 1.016.
     assert_eq!(rings(vec![[0.0, 0.5], [0.0, 0.6], [-0.5, 0.5]]), 1);
+}
+
+/// A chart of sines in panels below one another.
+fn line_chart(panels: usize, lines: usize) -> LineChart {
+    let line = |k: usize| Line {
+        name: format!("particle {k} by the classical Runge-Kutta method"),
+        pieces: vec![
+            (0..200)
+                .map(|n| 0.1 * f64::from(n))
+                .map(|t| [t, 1e-3 * (t + k as f64).sin() - 7.0])
+                .collect(),
+        ],
+        dots: k % 3 == 2,
+        ..Line::default()
+    };
+    let panel = |k: usize| LinePanel {
+        x_label: "time (s)".into(),
+        y_label: format!("kinetic energy of part {k} (J)"),
+        ends: k.is_multiple_of(2).then_some([0.0, 20.0]),
+        lines: (0..lines).map(line).collect(),
+    };
+    LineChart {
+        title: "double-pendulum".into(),
+        subtitle: "explicit trapezoid (Heun), step 0.01 s".into(),
+        panels: (0..panels).map(panel).collect(),
+        foot: "Positions are measured from the origin of the scene.".into(),
+    }
+}
+
+#[test]
+fn no_text_of_a_line_chart_covers_another() {
+    for (panels, lines) in [(1, 1), (1, 8), (3, 6)] {
+        let chart = line_chart(panels, lines);
+        check(&format!("lines-{panels}-{lines}"), &|w, h| chart.draw(w, h));
+    }
+    let svg = line_chart(3, 6).draw(1280.0, 720.0).unwrap().svg();
+    assert_eq!(svg.matches("time (s)").count(), 1);
+    assert!(LineChart::default().draw(800.0, 600.0).is_err());
 }
 
 #[test]

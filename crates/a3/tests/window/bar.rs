@@ -36,11 +36,11 @@ fn the_bar_does_what_keys_do() {
     still("59", BAR);
     app.expect("scrubbed", "true");
     // Scenes and solvers, by their lists. A second press closes a list.
-    still("908", BAR);
+    still("874", BAR);
     app.expect("list", "true");
-    still("908", BAR);
+    still("874", BAR);
     app.expect("list", "false");
-    still("908", BAR);
+    still("874", BAR);
     app.expect("list", "true");
     still("450", "390");
     app.expect("list", "false");
@@ -49,7 +49,7 @@ fn the_bar_does_what_keys_do() {
     app.press_for("Prior", "scene", "pendulum");
     app.press_for("Prior", "scene", "simple");
     app.press_for("Prior", "scene", "cloth");
-    still("1085", BAR);
+    still("1051", BAR);
     app.expect("panel", "true");
     app.press_for("Tab", "panel", "false");
     // A row of the help is a button, too; a click beside the help closes it.

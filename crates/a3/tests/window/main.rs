@@ -18,6 +18,7 @@ mod lessons;
 mod measuring;
 mod mouse;
 mod panel;
+mod plotting;
 mod remembering;
 mod screen;
 mod surface;

@@ -7,8 +7,8 @@ use winit::event_loop::ActiveEventLoop;
 
 use super::graphics::FrameOutcome;
 use super::state::App;
-use crate::window::hud::lessons;
 use crate::window::hud::panel::{self, Request};
+use crate::window::hud::{lessons, plotting};
 use crate::window::session::{Action, RunAction};
 
 /// Delay after which a skipped frame is drawn again.
@@ -66,6 +66,7 @@ impl App {
                     Some(Request::Learn(request)) if lessons::apply(session, request) => {
                         self.scene_changed();
                     }
+                    Some(Request::Plot(request)) => plotting::apply(session, request),
                     _ => {}
                 }
                 if let Some(status) = &mut self.status {

@@ -18,9 +18,11 @@ impl Mouse {
             Drag::Pull(_) => (CursorIcon::Grabbing, None),
             Drag::Orbit => (CursorIcon::AllScroll, None),
             Drag::Pan => (CursorIcon::Move, None),
-            Drag::Select { .. } => (CursorIcon::Crosshair, None),
+            Drag::Select { .. } | Drag::Rule => (CursorIcon::Crosshair, None),
             Drag::None if !pointer.is_over_picture(session, screen) => (CursorIcon::Default, None),
-            Drag::None if shift => (CursorIcon::Crosshair, None),
+            Drag::None if shift || session.panel.plotting.is_ruling() => {
+                (CursorIcon::Crosshair, None)
+            }
             Drag::None => match pointer.hit(session, screen, at).map(|(target, _)| target) {
                 Some(target @ Target::Particle(_)) => (CursorIcon::Grab, Some(target)),
                 Some(target @ Target::Obstacle(_)) => (CursorIcon::Move, Some(target)),

@@ -9,7 +9,8 @@ use super::pick::Grip;
 use super::pointer::Pointer;
 use super::screen::Screen;
 use crate::draw::show::{self, Target};
-use crate::window::session::{Selection, Session, looks};
+use crate::window::hud::plotting;
+use crate::window::session::{RulerEnd, Selection, Session, looks};
 
 /// Angle by which the camera turns when the pointer moves by the height of the picture (rad).
 const ORBIT_ANGLE: f32 = 4.0;
@@ -27,6 +28,8 @@ pub enum Drag {
     Orbit,
     /// Move the camera.
     Pan,
+    /// Move an end of the ruler.
+    Rule,
     /// Pin or free the particles in a box between the corner `from` (px) and the pointer.
     Select { from: [f32; 2], pinned: bool },
 }
@@ -77,10 +80,16 @@ impl Mouse {
         };
         let drag = match button {
             MouseButton::Left | MouseButton::Right if shift => select(button == MouseButton::Left),
+            MouseButton::Left if session.panel.plotting.is_ruling() => {
+                let end = self.ruler_end(session, screen, pane);
+                session.panel.plotting.begin_end(end);
+                Drag::Rule
+            }
             MouseButton::Left => {
                 if double {
                     let particle = hit.and_then(|(target, _)| target.particle());
                     looks::show_springs_of(&mut session.runs.panes, particle);
+                    plotting::pick(session, particle);
                 }
                 match hit {
                     Some((Target::Particle(i), grip)) if session.runs.grab(i) => Drag::Pull(grip),
@@ -205,13 +214,36 @@ impl Mouse {
         let ([x, y], [was_x, was_y]) = (tile.place(position), tile.place(self.pointer.position));
         let (dx, dy, aspect) = (x - was_x, y - was_y, tile.aspect());
         self.pointer.position = position;
+        if self.drag == Drag::Rule && !self.pointer.is_click() {
+            let end = self.ruler_end(session, screen, self.pane);
+            session.panel.plotting.move_end(end);
+        }
         let camera = &mut session.view.camera;
         match self.drag {
             Drag::Orbit => camera.orbit(-ORBIT_ANGLE * dx * aspect, ORBIT_ANGLE * dy),
             Drag::Pan => camera.pan(-dx * aspect, dy),
             Drag::Select { .. } => self.show_selection(session, screen),
-            Drag::Pull(_) | Drag::None => {}
+            Drag::Pull(_) | Drag::Rule | Drag::None => {}
         }
+    }
+
+    /// Returns the end of the ruler at the pointer: a particle, or a point in the plane of the
+    /// other end, or else of the centre of the view, that is parallel to the picture.
+    fn ruler_end(&self, session: &Session, screen: &Screen, pane: usize) -> RulerEnd {
+        let hit = self.pointer.hit(session, screen, pane);
+        if let Some(i) = hit.and_then(|(target, _)| target.particle()) {
+            return RulerEnd::Particle(i);
+        }
+        let (tile, camera) = (screen.tile(session, pane), &session.view.camera);
+        let ruler = session.panel.plotting.ruler.as_deref().unwrap_or_default();
+        let run = &session.runs.panes[pane].simulation;
+        let other = ruler.first().and_then(|end| end.place(run));
+        let through = other.map_or(camera.target().coords.into(), show::to_f32);
+        let distance = camera.project(through, tile.aspect());
+        let distance = distance.map_or(1.0, |(_, distance)| distance);
+        let at = tile.place(self.pointer.position);
+        let point = camera.unproject(at, distance, tile.aspect());
+        RulerEnd::Point(Vector3::from(point).cast())
     }
 
     /// Zooms towards the pointer by the notches of the wheel.

@@ -18,7 +18,7 @@ use super::status::Status;
 use super::touch::Fingers;
 use crate::base::failure::Failure;
 use crate::files::output;
-use crate::window::hud::{lessons, panel};
+use crate::window::hud::{lessons, panel, plotting};
 use crate::window::session::{Action, RunAction, Session, WindowAction};
 use crate::window::settings::Settings;
 use crate::window::{command_line, keep};
@@ -144,6 +144,9 @@ impl App {
             }
             return;
         }
+        if key.is_some_and(|key| plotting::press(&mut self.session, key)) {
+            return;
+        }
         let shift = self.modifiers.shift_key();
         if key.is_some_and(|key| panel::press(&mut self.session, key, shift)) {
             return;
@@ -199,6 +202,8 @@ impl App {
         let message = match action {
             WindowAction::Quit if std::mem::take(&mut session.readings.help) => None,
             WindowAction::Quit if std::mem::take(&mut session.measuring.open) => None,
+            WindowAction::Quit if session.panel.plotting.ruler.take().is_some() => None,
+            WindowAction::Quit if std::mem::take(&mut session.panel.plotting.open) => None,
             WindowAction::Quit if platform::CAN_QUIT => {
                 session.readings.asks_to_quit = true;
                 None
@@ -230,6 +235,10 @@ impl App {
                 let particle = hit.and_then(|(target, _)| target.particle());
                 let panes = &session.runs.panes;
                 Some(session.view.follow(panes, pane, particle))
+            }
+            WindowAction::WritePlots if plotting::is_shown(session) => {
+                let written = plotting::write(session);
+                Some(written.unwrap_or_else(|failure| failure.to_string()))
             }
             WindowAction::WritePlots => Some(said("Wrote", write_plots(session))),
             WindowAction::Record => {
@@ -266,6 +275,7 @@ impl App {
     /// Ends drags and live films, and shows another scene.
     pub fn scene_changed(&mut self) {
         self.mouse.abort();
+        plotting::begin_scene(&mut self.session);
         self.platform.films.finish_live(&mut self.session);
         self.screen.set_scene(&self.session);
     }

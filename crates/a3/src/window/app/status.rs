@@ -50,7 +50,7 @@ impl Status {
             values.join(",")
         };
         let state = format!(
-            "scene={} solver={} step={} style={:?} wind={} swing={} paused={} help={} asks={} hint={} panel={} measure={} known={} lesson={} list={} film={} cursor={cursor:?} followed={} parallel={} scale={} dark={} blown={} grabbed={grabbed} \
+            "scene={} solver={} step={} style={:?} wind={} swing={} paused={} help={} asks={} hint={} panel={} measure={} known={} lesson={} plots={} list={} film={} cursor={cursor:?} followed={} parallel={} scale={} dark={} blown={} grabbed={grabbed} \
              colour={} arrows={} slowness={} scrubbed={} pins={} springs_of={} size={}x{} visible={} devices={}",
             run.scene().name,
             run.method().name,
@@ -66,6 +66,7 @@ impl Status {
             session.measuring.open,
             session.measuring.known().is_some(),
             lesson(session),
+            plots(session),
             session.list.is_some(),
             readings.film.is_some(),
             session
@@ -134,5 +135,15 @@ fn lesson(session: &Session) -> String {
         _ if !lessons.open => "-".into(),
         None => "list".into(),
         Some(step) => format!("{}.{}", lessons.chosen + 1, step + 1),
+    }
+}
+
+/// Returns the number of things that are plotted, if the plots are open.
+fn plots(session: &Session) -> String {
+    let count = session.runs.panes[0].traces.len();
+    if session.panel.plotting.open {
+        count.to_string()
+    } else {
+        "-".into()
     }
 }

@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use egui::{Context, TextureId};
 
 use super::panel::{self, Request};
-use super::{bar, hint, lessons, list, measure, pane_buttons, text};
+use super::{bar, hint, lessons, list, measure, pane_buttons, plotting, text};
 use crate::window::session::Session;
 
 /// Draws text, panel, bar and the open list, with `pictures` of scenes by their names. Returns the
@@ -17,10 +17,14 @@ pub fn show_all(
 ) -> Option<Request> {
     hint::show(ctx, session);
     let on_text = text::show(ctx, &session.runs.panes, &session.readings);
+    let on_offer = plotting::offer(ctx, session);
+    #[cfg(not(target_arch = "wasm32"))]
+    super::ruler::show(ctx, session);
     let on_panel = panel::show(ctx, session);
     let on_measure = measure::show(ctx, session);
     let on_panes = pane_buttons::show(ctx, session);
     let on_lessons = lessons::show(ctx, session).map(Request::Learn);
+    let on_plots = plotting::show(ctx, session).map(Request::Plot);
     let on_bar = bar::show(ctx, session);
     let on_list = list::show(ctx, session, pictures).map(Request::Change);
     on_list
@@ -28,6 +32,8 @@ pub fn show_all(
         .or(on_panel)
         .or(on_measure)
         .or(on_lessons)
+        .or(on_plots)
         .or(on_panes)
+        .or(on_offer)
         .or(on_text)
 }

@@ -1,7 +1,8 @@
 //! The bar below the picture: what a user does most, as buttons, and the timeline.
 
-use egui::{Align2, Area, Color32, Context, FontId, Id, Rect, Response, Sense, Ui, pos2, vec2};
+use egui::{Align2, Color32, Context, FontId, Id, Rect, Response, Sense, Ui, pos2, vec2};
 
+use super::docked::docked;
 use super::panel::{Request, is_shown};
 use super::style::{ALARM, FAINT, TEXT};
 use super::{layout, measure, timeline};
@@ -13,10 +14,6 @@ const SYMBOL_WIDTHS: [f32; 2] = [34.0, 44.0];
 const MIN_WIDTH_OF_ALL: f32 = 480.0;
 /// Smallest width of the timeline (points).
 const MIN_TIMELINE_WIDTH: f32 = 90.0;
-/// Colour of the bar.
-const SHEET: Color32 = Color32::from_rgb(226, 226, 224);
-/// Colour of the bar's edge.
-const EDGE: Color32 = Color32::from_rgb(188, 189, 192);
 /// Colour of the button under the pointer.
 const HOVERED: Color32 = Color32::from_rgb(207, 211, 218);
 
@@ -79,8 +76,8 @@ impl Button {
 pub fn show(ctx: &Context, session: &Session) -> Option<Request> {
     let (window, picture) = (ctx.viewport_rect(), ctx.content_rect());
     let height = layout::bar_height(session, [window.width(), window.height()]);
-    let docked = is_shown(session) || measure::is_shown(session);
-    let covered = docked && picture.right() >= window.right();
+    let beside = is_shown(session) || measure::is_shown(session);
+    let covered = beside && picture.right() >= window.right();
     if height == 0.0 || covered {
         return None;
     }
@@ -88,21 +85,9 @@ pub fn show(ctx: &Context, session: &Session) -> Option<Request> {
         pos2(picture.left(), window.bottom() - height),
         pos2(picture.right(), window.bottom()),
     );
-    let mut request = None;
-    Area::new(Id::unique("controls"))
-        .fixed_pos(rect.min)
-        // An area that was moved would grow to reach from there to the bar, for good.
-        .constrain_to(window)
-        .constrain(false)
-        .fade_in(false)
-        .show(ctx, |ui| {
-            ui.allocate_rect(rect, Sense::click());
-            ui.painter().rect_filled(rect, 0.0, SHEET);
-            ui.painter()
-                .hline(rect.x_range(), rect.top(), egui::Stroke::new(1.0, EDGE));
-            request = contents(ui, rect.shrink2(vec2(8.0, 0.0)), session);
-        });
-    request
+    docked(ctx, "controls", rect, |ui| {
+        contents(ui, rect.shrink2(vec2(8.0, 0.0)), session)
+    })
 }
 
 /// Draws the buttons at both ends of a rectangle, and the timeline between them.
@@ -211,6 +196,11 @@ fn others(session: &Session) -> Vec<Button> {
             colour: ALARM.colour,
             ..Button::new(film, does, window(WindowAction::Record))
         });
+    }
+    // A page plots nothing.
+    if !cfg!(target_arch = "wasm32") {
+        let about = "Plot particles, bodies and springs (F3)";
+        buttons.insert(5, Button::new("🗠", about, run(RunAction::Plots)));
     }
     buttons.push(Button::new(
         "?",

@@ -2,7 +2,7 @@
 
 use a3_render::Tile;
 
-use super::{lessons, measure, panel};
+use super::{lessons, measure, panel, plotting};
 use crate::window::session::Session;
 
 /// Distance between panes (points).
@@ -25,8 +25,8 @@ pub fn bar_height(session: &Session, [width, height]: [f32; 2]) -> f32 {
     }
 }
 
-/// Returns the size (px) of the picture beside the panel or the lessons, and above the bar, in a
-/// window of `size` (px) at `scale` pixels per point.
+/// Returns the size (px) of the picture beside the panel, the lessons or the plots, and above the
+/// bar, in a window of `size` (px) at `scale` pixels per point.
 pub fn picture_size(session: &Session, size: (u32, u32), scale: f32) -> (u32, u32) {
     let (width, height) = if measure::is_shown(session) {
         measure::picture_size(size, scale)
@@ -34,7 +34,11 @@ pub fn picture_size(session: &Session, size: (u32, u32), scale: f32) -> (u32, u3
         panel::picture_size(session, size, scale)
     };
     let window = [size.0, size.1].map(|side| side as f32 / scale);
-    let [right, below] = lessons::taken(session, window);
+    let beside = [
+        lessons::taken(session, window),
+        plotting::taken(session, window),
+    ];
+    let [right, below] = [0, 1].map(|k| beside[0][k] + beside[1][k]);
     let [right, below] =
         [right, below + bar_height(session, window)].map(|a| (a * scale).round() as u32);
     (

@@ -2,10 +2,14 @@
 //! knobs and plots.
 
 mod all;
+mod axes;
 mod bar;
 mod blow_up;
 #[cfg(not(target_arch = "wasm32"))]
 mod caption;
+#[cfg(not(target_arch = "wasm32"))]
+mod charts;
+mod docked;
 mod help;
 mod hint;
 pub mod layout;
@@ -19,7 +23,11 @@ mod pane_buttons;
 pub mod panel;
 mod panes;
 mod picture;
+#[cfg_attr(target_arch = "wasm32", path = "no_plotting.rs")]
+pub mod plotting;
 mod question;
+#[cfg(not(target_arch = "wasm32"))]
+mod ruler;
 mod selection;
 mod single;
 mod style;

@@ -23,6 +23,12 @@ pub fn digits(number: f64) -> String {
     }
 }
 
+/// Formats any number as [`digits`] does.
+pub fn signed(number: f64) -> String {
+    let sign = if number < 0.0 { "-" } else { "" };
+    format!("{sign}{}", digits(number.abs()))
+}
+
 /// Returns the scene's name, and its grid if it has one.
 pub fn scene(simulation: &Simulation) -> String {
     let scene = simulation.scene();

@@ -51,6 +51,8 @@ pub enum RunAction {
     /// Show questions about the scene and their answers, or hide them.
     Measure,
     Lessons,
+    /// Show plots of what is picked, or hide them.
+    Plots,
     WriteScene,
     Help,
 }

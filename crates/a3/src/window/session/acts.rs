@@ -10,6 +10,8 @@ use super::history::Change;
 use super::list::{List, TextKey, Topic, solvers};
 use super::looks;
 use super::panes;
+#[cfg(not(target_arch = "wasm32"))]
+use super::plotting;
 use super::runs::KEY_BUDGET;
 use super::save;
 use super::state::Session;
@@ -98,7 +100,7 @@ impl Session {
             RunAction::Projection => self.readings.say(self.view.toggle_projection()),
             RunAction::SeeAll => self.view.see_all(&self.runs.panes),
             RunAction::NextView => self.readings.say(self.view.next_view()),
-            RunAction::Panel | RunAction::Measure | RunAction::Lessons => {
+            RunAction::Panel | RunAction::Measure | RunAction::Lessons | RunAction::Plots => {
                 self.toggle_beside(action);
             }
             RunAction::WriteScene => {
@@ -114,8 +116,8 @@ impl Session {
         false
     }
 
-    /// Opens the panel, the measurements or the lessons beside the picture, or closes it; the
-    /// others are closed then.
+    /// Opens the panel, the measurements, the lessons or the plots beside the picture, or closes
+    /// it; the others are closed then.
     fn toggle_beside(&mut self, action: RunAction) {
         if action == RunAction::Measure && self.measuring.answerer.is_none() {
             let why = "Only the program measures: key y copies the command line for it.";
@@ -125,9 +127,14 @@ impl Session {
             (RunAction::Panel, &mut self.panel.open),
             (RunAction::Measure, &mut self.measuring.open),
             (RunAction::Lessons, &mut self.panel.lessons.open),
+            (RunAction::Plots, &mut self.panel.plotting.open),
         ];
         for (own, open) in panes {
             *open = own == action && !*open;
+        }
+        #[cfg(not(target_arch = "wasm32"))]
+        if self.panel.plotting.open {
+            plotting::pick_first(&mut self.runs.panes);
         }
         if action != RunAction::Panel {
             self.readings.help = false;

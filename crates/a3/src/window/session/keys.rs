@@ -86,11 +86,12 @@ pub static GROUPS: [Group; 8] = [
     },
     Group {
         purpose: "Measure",
-        bindings: &[run(
-            &["q"],
-            RunAction::Measure,
-            "chart, limits, choice, parts",
-        )],
+        bindings: &[
+            run(&["q"], RunAction::Measure, "chart, limits, choice, parts"),
+            // In a browser, the key searches the page.
+            #[cfg(not(target_arch = "wasm32"))]
+            run(&["F3"], RunAction::Plots, "plot particles, springs"),
+        ],
     },
     Group {
         purpose: "Keep",
@@ -124,7 +125,7 @@ pub static MOUSE: &[(&str, &str)] = &[
     ("right click", "pin, or release"),
     ("Shift and left", "pin all in a box"),
     ("Shift and right", "release all in a box"),
-    ("double click", "list springs"),
+    ("double click", "list springs; plot (F3)"),
     ("wheel", "zoom to the pointer"),
 ];
 

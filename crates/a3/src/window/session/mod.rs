@@ -21,6 +21,8 @@ mod meter;
 mod origin;
 mod pane;
 pub mod panes;
+#[cfg(not(target_arch = "wasm32"))]
+pub mod plotting;
 mod predictability;
 mod question;
 mod readings;
@@ -32,6 +34,8 @@ mod save;
 mod scenes;
 mod state;
 mod timeline;
+#[cfg_attr(target_arch = "wasm32", path = "no_traces.rs")]
+mod traces;
 mod tuning;
 mod view;
 
@@ -55,6 +59,9 @@ pub use samples::{SPAN, Sample, Samples};
 pub use save::write_scene;
 pub use state::{Beginning, Session};
 pub use timeline::TimelinePosition;
+#[cfg(not(target_arch = "wasm32"))]
+pub use traces::{Kind, Mode, Pick, PlotFile, Row, SPANS, Trigger, Variable};
+pub use traces::{PlotRequest, RulerEnd};
 pub use tuning::{DEFAULT_FILM_SECONDS, Tuning};
 
 #[cfg(test)]

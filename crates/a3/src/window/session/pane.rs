@@ -9,6 +9,7 @@ use a3_scenes::{Defaults, Presentation};
 
 use super::limit::LimitWatch;
 use super::samples::Samples;
+use super::traces::Traces;
 use crate::base::progress;
 use crate::draw::show::Show;
 
@@ -38,6 +39,8 @@ pub struct Pane {
     pub cost: Option<Cost>,
     /// Samples for the plots.
     pub samples: Samples,
+    /// What the user plots.
+    pub traces: Traces,
     /// Number of times that the scene of the run was changed while it went on.
     exchanges: usize,
     /// Computing time of steps.
@@ -68,6 +71,7 @@ impl Pane {
             error: None,
             cost: None,
             samples: Samples::default(),
+            traces: Traces::default(),
             exchanges: 0,
             computing: Duration::ZERO,
             counted: (simulation.time(), simulation.work().total(), Duration::ZERO),
@@ -99,7 +103,7 @@ impl Pane {
         let step = self.slice();
         let due = ((time - self.simulation.time()) / step + 1e-9).floor() as u64;
         if !self.alive() {
-        } else if adaptive && !self.show.has_trail() {
+        } else if adaptive && !self.is_followed() {
             // The state at `time` is interpolated within the last step.
             let _ = self.simulation.advance_to(time);
         } else if adaptive {
@@ -109,8 +113,8 @@ impl Pane {
                 self.follow();
             }
         } else if due > 0 {
-            // A trail has a point per slice, or per step if steps are longer.
-            let at_once = if self.show.has_trail() {
+            // Trails and plots have a point per slice, or per step if steps are longer.
+            let at_once = if self.is_followed() {
                 ((ADAPTIVE_SLICE / step) as u64).max(1)
             } else {
                 due
@@ -147,10 +151,16 @@ impl Pane {
         self.read_cost();
     }
 
-    /// Adds the present position to the trail, unless the run has diverged.
+    /// Returns whether each state on the way is needed: for a trail or for plots.
+    fn is_followed(&self) -> bool {
+        self.show.has_trail() || !self.traces.is_empty()
+    }
+
+    /// Adds the present state to the trail and to the plots, unless the run has diverged.
     pub fn follow(&mut self) {
         if self.alive() {
             self.show.follow(&self.simulation);
+            self.traces.take(&self.simulation);
         }
     }
 
@@ -244,6 +254,7 @@ impl Pane {
         self.simulation.release();
         self.simulation.release_obstacle();
         self.wanted = self.simulation.method();
+        self.traces.forget();
         self.show.clear_trail();
         self.forces_changed();
         Ok(())
@@ -252,6 +263,7 @@ impl Pane {
     /// Resets the run to the initial state.
     pub fn reset(&mut self) {
         self.simulation.reset();
+        self.traces.forget();
         self.show.clear_trail();
         self.set_errors(vec![]);
         self.restart_cost();
@@ -281,6 +293,7 @@ impl Pane {
         self.simulation = simulation;
         self.show.set_presentation(presentation);
         self.samples.clear();
+        self.traces = Traces::default();
         self.set_errors(vec![]);
         self.cost = None;
         self.limit = LimitWatch::default();

@@ -40,9 +40,11 @@ pub fn add(
     let mut show = beside.show.clone();
     show.clear_trail();
     show.hovered = None;
+    let mut next = Pane::new(simulation, show);
+    next.traces = beside.traces.without_values();
     session
         .runs
-        .add_pane(Pane::new(simulation, show))
+        .add_pane(next)
         .map_err(|failure| failure.to_string())?;
     session
         .readings

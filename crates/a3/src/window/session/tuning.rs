@@ -6,6 +6,7 @@ use a3_scenes::{Defaults, Part, PartChange, Setup};
 use super::hidden::Hidden;
 use super::lessons::Lessons;
 use super::origin::Origin;
+use super::traces::PlotSettings;
 use crate::files::ending::Ending;
 
 /// The original scene, and what the panel changes of it: factors, and parts that are left out.
@@ -63,6 +64,8 @@ pub struct PanelState {
     pub lessons: Lessons,
     /// The actions that are left out.
     pub hidden: Hidden,
+    /// The pane of plots, which opens in its place too.
+    pub plotting: PlotSettings,
     /// Whether fingers are used, for which buttons are larger.
     pub touch: bool,
     /// Number of the chosen row in the table of knobs, which keys turn.
@@ -87,6 +90,7 @@ impl Default for PanelState {
             open: false,
             lessons: Lessons::default(),
             hidden: Hidden::default(),
+            plotting: PlotSettings::default(),
             touch: false,
             row: 0,
             dark: None,

@@ -2,7 +2,8 @@
 
 use egui::{Align2, Color32, FontId, Rect, Response, Stroke, StrokeKind, Ui};
 
-use super::super::panel::{EDGE, HOVERED, INK};
+use super::super::docked::EDGE;
+use super::super::panel::{HOVERED, INK};
 use super::super::style::TEXT;
 
 /// Draws a button with its label in the middle; one that `is_due` stands out.

@@ -4,7 +4,8 @@ use egui::{
     Align2, Color32, CursorIcon, FontId, Id, Rect, Sense, Stroke, StrokeKind, Ui, pos2, vec2,
 };
 
-use super::super::panel::{CHOSEN, EDGE, HOVERED, INK, TRACK};
+use super::super::docked::EDGE;
+use super::super::panel::{CHOSEN, HOVERED, INK, TRACK};
 use super::super::style::{FAINT, SAFE, TEXT, WARNING};
 use super::button::button;
 use super::marked::job;

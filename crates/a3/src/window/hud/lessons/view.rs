@@ -1,14 +1,15 @@
 //! Drawing of the lessons: their sheet, the heading, and what scrolls below it.
 
 use egui::{
-    Align2, Area, Context, CursorIcon, FontId, Id, Rect, ScrollArea, Sense, Stroke, Ui, UiBuilder,
-    pos2, vec2,
+    Align2, Context, CursorIcon, FontId, Id, Rect, ScrollArea, Sense, Stroke, Ui, UiBuilder, pos2,
+    vec2,
 };
 
-use super::super::panel::{EDGE, INK, SHEET};
+use super::super::docked::docked;
+use super::super::panel::INK;
 use super::super::style::{FAINT, TEXT};
 use super::button::button;
-use super::place::{self, is_shown};
+use super::place::{PLACE, is_shown};
 use super::request::{next, previous};
 use super::{contents, step};
 use crate::window::session::{LessonRequest, Session};
@@ -25,54 +26,42 @@ pub fn show(ctx: &Context, session: &Session) -> Option<LessonRequest> {
     if !is_shown(session) {
         return None;
     }
-    let (window, rect) = (ctx.viewport_rect(), place::rect(ctx, session));
+    let rect = PLACE.rect(ctx);
     let lessons = &session.panel.lessons;
-    let mut request = None;
-    Area::new(Id::unique("lessons"))
-        .fixed_pos(rect.min)
-        .constrain_to(window)
-        .constrain(false)
-        .fade_in(false)
-        .show(ctx, |ui| {
-            ui.allocate_rect(rect, Sense::click());
-            ui.style_mut().interaction.selectable_labels = false;
-            let (painter, edge) = (ui.painter(), Stroke::new(1.0, EDGE));
-            painter.rect_filled(rect, 0.0, SHEET);
-            painter.vline(rect.left(), rect.y_range(), edge);
-            painter.hline(rect.x_range(), rect.top(), edge);
-            let inner = rect.shrink2(vec2(MARGIN, 0.0));
-            request = heading(ui, inner, session);
-            let shown = lessons.shown();
-            let foot = match shown {
-                Some(_) => BUTTONS_HEIGHTS[usize::from(session.panel.touch)],
-                None => 8.0,
-            };
-            let body = Rect::from_min_max(
-                pos2(inner.left(), inner.top() + HEADING_HEIGHT),
-                pos2(inner.right() + MARGIN - 4.0, inner.bottom() - foot),
-            );
-            let salt = shown.map(|_| (lessons.chosen, lessons.step));
-            let scrolled = ui.scope_builder(UiBuilder::new().max_rect(body), |ui| {
-                ScrollArea::vertical()
-                    .id_salt(("lessons", salt))
-                    .auto_shrink([false, false])
-                    .show(ui, |ui| {
-                        ui.set_width(inner.width());
-                        ui.spacing_mut().item_spacing = vec2(0.0, 0.0);
-                        match shown {
-                            Some((lesson, step)) => step::show(ui, session, lesson, step),
-                            None => contents::show(ui, lessons),
-                        }
-                    })
-                    .inner
-            });
-            request = scrolled.inner.or(request);
-            if shown.is_some() {
-                let row = inner.with_min_y(inner.bottom() - foot);
-                request = buttons(ui, row.shrink2(vec2(0.0, 8.0)), session).or(request);
-            }
+    docked(ctx, "lessons", rect, |ui| {
+        let inner = rect.shrink2(vec2(MARGIN, 0.0));
+        let mut request = heading(ui, inner, session);
+        let shown = lessons.shown();
+        let foot = match shown {
+            Some(_) => BUTTONS_HEIGHTS[usize::from(session.panel.touch)],
+            None => 8.0,
+        };
+        let body = Rect::from_min_max(
+            pos2(inner.left(), inner.top() + HEADING_HEIGHT),
+            pos2(inner.right() + MARGIN - 4.0, inner.bottom() - foot),
+        );
+        let salt = shown.map(|_| (lessons.chosen, lessons.step));
+        let scrolled = ui.scope_builder(UiBuilder::new().max_rect(body), |ui| {
+            ScrollArea::vertical()
+                .id_salt(("lessons", salt))
+                .auto_shrink([false, false])
+                .show(ui, |ui| {
+                    ui.set_width(inner.width());
+                    ui.spacing_mut().item_spacing = vec2(0.0, 0.0);
+                    match shown {
+                        Some((lesson, step)) => step::show(ui, session, lesson, step),
+                        None => contents::show(ui, lessons),
+                    }
+                })
+                .inner
         });
-    request
+        request = scrolled.inner.or(request);
+        if shown.is_some() {
+            let row = inner.with_min_y(inner.bottom() - foot);
+            request = buttons(ui, row.shrink2(vec2(0.0, 8.0)), session).or(request);
+        }
+        request
+    })
 }
 
 /// Draws the title: of the list, or of the lesson, with the way back to the list. Returns the

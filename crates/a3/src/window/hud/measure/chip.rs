@@ -2,12 +2,9 @@
 
 use egui::{Align2, Color32, CursorIcon, FontId, Rect, Response, Stroke, StrokeKind, Ui};
 
+use super::super::docked::{EDGE, SHEET};
 use super::super::style::TEXT;
 
-/// Colour of the pane.
-pub const SHEET: Color32 = Color32::from_rgb(226, 226, 224);
-/// Colour of edges.
-pub const EDGE: Color32 = Color32::from_rgb(188, 189, 192);
 /// Colour of the chosen button, and of the finished part of a progress bar.
 pub const INK: Color32 = Color32::from_rgb(38, 84, 132);
 /// Colour under the pointer.

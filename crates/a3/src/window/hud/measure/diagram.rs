@@ -7,19 +7,16 @@ use egui::{
     Ui, pos2, vec2,
 };
 
+use super::super::axes;
+use super::super::charts::{self, GRID, GROUND, colour, dashes};
 use super::super::style::{FAINT, TEXT};
 use super::super::words::digits;
 use super::plot::{Plot, Point};
 use crate::window::session::{Diagram, MeasureRequest, MethodSetting};
 
-/// Colours of the area between the axes, of its grid, of errors that the reference cannot tell from
-/// 0, and of the front.
-const GROUND: Color32 = Color32::from_rgb(247, 247, 246);
-const GRID: Color32 = Color32::from_rgb(217, 217, 217);
+/// Colours of errors that the reference cannot tell from 0, and of the front.
 const SHADE: Color32 = Color32::from_rgb(226, 231, 239);
 const FRONT: Color32 = Color32::from_rgb(248, 221, 134);
-/// Size of the numbers at the axes (points).
-const NUMBER: f32 = 11.0;
 /// Radius of a marker (points).
 const MARKER: f32 = 4.2;
 /// Height of a line of the legend (points).
@@ -85,16 +82,11 @@ pub fn show(
         8.0,
         Stroke::new(1.5, colour(plot.problem.curves[pointed.curve].style)),
     );
-    note(painter, room, &plot, &pointed, &diagram.chart);
+    note_run(painter, room, &plot, &pointed, &diagram.chart);
     let Point { curve, run, .. } = pointed;
     response
         .clicked()
         .then_some(MeasureRequest::RunBeside { curve, run })
-}
-
-/// Returns the colour of a style.
-fn colour(style: CurveStyle) -> Color32 {
-    Color32::from_hex(style.colour).unwrap_or(TEXT)
 }
 
 /// Draws the axes, the shade and the front.
@@ -105,24 +97,7 @@ fn ground(painter: &Painter, plot: &Plot, chart: &WorkPrecision) {
     if x.is_inside(trusted) {
         painter.rect_filled(area.with_max_x(x.at(trusted) as f32), 0.0, SHADE);
     }
-    for named in [false, true] {
-        for (axis, gap) in [(x, 34.0), (y, 20.0)] {
-            let ticks = axis.ticks(gap).into_iter();
-            for tick in ticks.filter(|tick| tick.label.is_empty() != named) {
-                let at = axis.at(tick.value) as f32;
-                let stroke = Stroke::new(if named { 1.0 } else { 0.5 }, GRID);
-                if gap > 30.0 {
-                    painter.vline(at, area.y_range(), stroke);
-                    let below = pos2(at, area.bottom() + 4.0);
-                    number(painter, below, Align2::CENTER_TOP, &tick.label);
-                } else {
-                    painter.hline(area.x_range(), at, stroke);
-                    let left = pos2(area.left() - 5.0, at);
-                    number(painter, left, Align2::RIGHT_CENTER, &tick.label);
-                }
-            }
-        }
-    }
+    GRID.draw(painter, area, [x, y], Some(""));
     let frame = Stroke::new(1.0, FAINT.gamma_multiply(0.6));
     painter.rect_stroke(area, 0.0, frame, StrokeKind::Middle);
     let say = |at, align, words: &str| {
@@ -139,7 +114,8 @@ fn ground(painter: &Painter, plot: &Plot, chart: &WorkPrecision) {
     if let Some(lost) = plot.points.iter().find(|point| point.lost) {
         let top = pos2(lost.at.x, area.top() - 4.0);
         say(top, Align2::CENTER_BOTTOM, "blew up");
-        painter.vline(area.right() + 5.0, area.y_range(), Stroke::new(0.5, GRID));
+        let stroke = Stroke::new(0.5, GRID.colour);
+        painter.vline(area.right() + 5.0, area.y_range(), stroke);
     }
     let front: Vec<_> = plot.problem.front().into_iter().collect();
     let places = front.iter().map(|[curve, run]| {
@@ -149,24 +125,10 @@ fn ground(painter: &Painter, plot: &Plot, chart: &WorkPrecision) {
     painter.add(Shape::line(places.collect(), Stroke::new(9.0, FRONT)));
 }
 
-/// Writes the label of a tick, whose exponent is between braces.
-fn number(painter: &Painter, at: Pos2, align: Align2, label: &str) {
-    let (base, power) = label.split_once("^{").unwrap_or((label, ""));
-    let power = power.trim_end_matches('}');
-    let lay =
-        |words: &str, size| painter.layout_no_wrap(words.into(), FontId::proportional(size), FAINT);
-    let (base, power) = (lay(base, NUMBER), lay(power, 0.75 * NUMBER));
-    let size = base.size() + vec2(power.size().x, 0.0);
-    let rect = align.anchor_size(at, size);
-    let raised = rect.min + vec2(base.size().x, -2.0);
-    painter.galley(rect.min, base, FAINT);
-    painter.galley(raised, power, FAINT);
-}
-
 /// Draws the line and the markers of a curve.
 fn draw_curve(painter: &Painter, plot: &Plot, k: usize, opacity: f32) {
     let style = plot.problem.curves[k].style;
-    line(painter, &plot.line(k), style, opacity);
+    line(painter, plot.line(k), style, opacity);
     for point in plot.points.iter().filter(|point| point.curve == k) {
         let held = plot.problem.curves[k].runs[point.run].held;
         marker(painter, point.at, style, opacity, !point.lost && !held);
@@ -174,20 +136,9 @@ fn draw_curve(painter: &Painter, plot: &Plot, k: usize, opacity: f32) {
 }
 
 /// Draws a line in a style.
-fn line(painter: &Painter, places: &[Pos2], style: CurveStyle, opacity: f32) {
+fn line(painter: &Painter, places: Vec<Pos2>, style: CurveStyle, opacity: f32) {
     let stroke = Stroke::new(1.6, colour(style).gamma_multiply(opacity));
-    if style.dash.is_empty() {
-        painter.add(Shape::line(places.to_vec(), stroke));
-        return;
-    }
-    let dashes = style.dash.chunks(2).map(|dash| {
-        let [dash, gap] = [0, 1].map(|k| 1.6 * dash[k.min(dash.len() - 1)] as f32);
-        (dash, gap)
-    });
-    let (dashes, gaps): (Vec<_>, Vec<_>) = dashes.unzip();
-    painter.extend(Shape::dashed_line_with_offset(
-        places, stroke, &dashes, &gaps, 0.0,
-    ));
+    axes::line(painter, places, stroke, &dashes(style, 1.6));
 }
 
 /// Draws a marker, filled or open.
@@ -263,7 +214,7 @@ fn signs(painter: &Painter, plot: &Plot, legend: Rect) {
 fn entry(painter: &Painter, at: Pos2, curve: &Curve, opacity: f32) {
     let y = at.y + 0.5 * LEGEND_LINE;
     let ends = [pos2(at.x + 2.0, y), pos2(at.x + 26.0, y)];
-    line(painter, &ends, curve.style, opacity);
+    line(painter, ends.into(), curve.style, opacity);
     marker(painter, pos2(at.x + 14.0, y), curve.style, opacity, true);
     let place = pos2(at.x + 32.0, y);
     let font = FontId::proportional(12.0);
@@ -272,7 +223,7 @@ fn entry(painter: &Painter, at: Pos2, curve: &Curve, opacity: f32) {
 }
 
 /// Writes the method, the step, the error and the cost of a run beside its point, within a room.
-fn note(painter: &Painter, room: Rect, plot: &Plot, point: &Point, chart: &WorkPrecision) {
+fn note_run(painter: &Painter, room: Rect, plot: &Plot, point: &Point, chart: &WorkPrecision) {
     let curve = &plot.problem.curves[point.curve];
     let run = &curve.runs[point.run];
     let error = if point.lost {
@@ -296,26 +247,5 @@ fn note(painter: &Painter, room: Rect, plot: &Plot, point: &Point, chart: &WorkP
         (cost, 12.5, TEXT),
         ("click: run it beside".into(), 11.5, FAINT),
     ];
-    let lay = |(words, size, colour): (String, f32, Color32)| {
-        painter.layout_no_wrap(words, FontId::proportional(size), colour)
-    };
-    let lines = lines.map(lay);
-    let width = lines.iter().map(|line| line.size().x).fold(0.0, f32::max);
-    let height: f32 = lines.iter().map(|line| line.size().y + 1.0).sum();
-    let size = vec2(width + 20.0, height + 12.0);
-    let x = if point.at.x + 14.0 + size.x < room.right() {
-        point.at.x + 14.0
-    } else {
-        (point.at.x - 14.0 - size.x).max(room.left())
-    };
-    let y = (point.at.y - 0.5 * size.y).clamp(room.top(), (room.bottom() - size.y).max(room.top()));
-    let rect = Rect::from_min_size(pos2(x, y), size);
-    let edge = Stroke::new(1.2, colour(curve.style));
-    painter.rect(rect, 6.0, Color32::WHITE, edge, StrokeKind::Inside);
-    let mut at = rect.min + vec2(10.0, 6.0);
-    for line in lines {
-        let step = line.size().y + 1.0;
-        painter.galley(at, line, TEXT);
-        at.y += step;
-    }
+    charts::note(painter, room, point.at, colour(curve.style), lines.into());
 }

@@ -6,4 +6,5 @@ mod diagram;
 mod plot;
 mod view;
 
+pub use chip::chip;
 pub use view::{is_shown, picture_size, show};

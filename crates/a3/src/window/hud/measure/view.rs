@@ -1,11 +1,12 @@
 //! The pane of questions: a button for each, what it is asked about, and its answer.
 
-use egui::{Align2, Area, Color32, Context, FontId, Id, Rect, Sense, Stroke, Ui, pos2, vec2};
+use egui::{Align2, Color32, Context, FontId, Id, Rect, Sense, Ui, pos2, vec2};
 
+use super::super::docked::docked;
 use super::super::panel::{PanelRequest, Request, button};
 use super::super::style::{FAINT, TEXT};
 use super::answer;
-use super::chip::{EDGE, INK, SHEET, chip};
+use super::chip::{INK, chip};
 use crate::window::session::{MeasureRequest, Progress, Question, Session};
 
 /// Smallest and largest width of the pane (points), and its share of the window's width between
@@ -59,22 +60,10 @@ pub fn show(ctx: &Context, session: &Session) -> Option<Request> {
         pos2(window.right() - width(window.width()), window.top()),
         window.right_bottom(),
     );
-    let mut request = None;
-    Area::new(Id::unique("measure"))
-        .fixed_pos(rect.min)
-        .constrain_to(window)
-        .constrain(false)
-        .fade_in(false)
-        .show(ctx, |ui| {
-            ui.allocate_rect(rect, Sense::click());
-            ui.set_clip_rect(rect);
-            ui.painter().rect_filled(rect, 0.0, SHEET);
-            let edge = Stroke::new(1.0, EDGE);
-            ui.painter().vline(rect.left(), rect.y_range(), edge);
-            ui.style_mut().interaction.selectable_labels = false;
-            let inner = rect.shrink2(vec2(MARGIN, 0.0));
-            request = contents(ui, inner, session);
-        });
+    let request = docked(ctx, "measure", rect, |ui| {
+        ui.set_clip_rect(rect);
+        contents(ui, rect.shrink2(vec2(MARGIN, 0.0)), session)
+    });
     request.map(|request| Request::Change(PanelRequest::Measure(request)))
 }
 

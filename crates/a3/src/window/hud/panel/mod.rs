@@ -17,7 +17,7 @@ mod view;
 pub use measure::update;
 pub use plots::csv;
 pub use request::{PanelKey, PanelRequest, Request, apply, is_shown, press, press_text};
-pub use row::{CHOSEN, EDGE, HOVERED, INK, SHEET, TRACK, button};
+pub use row::{CHOSEN, HOVERED, INK, TRACK, button};
 pub use tune::{tune, tuned};
 pub use undo::undo;
 pub use view::{picture_size, show};

@@ -1,10 +1,11 @@
 //! Plots of the last seconds of a run.
 
 use a3_plot::Axis;
-use egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Shape, Stroke, pos2};
+use egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Stroke, pos2};
 
+use super::super::axes::{Grid, line};
 use super::super::style::{FAINT, TEXT};
-use super::super::words::digits;
+use super::super::words::signed;
 use crate::window::session::{Pane, SPAN, Sample, Samples};
 
 /// Smallest height of a plot (points).
@@ -17,15 +18,19 @@ const TITLE_HEIGHT: f32 = 17.0;
 const TICK_LABEL_HEIGHT: f32 = 15.0;
 /// Width of the numbers on the left (points).
 const TICK_LABEL_WIDTH: f32 = 40.0;
-/// Size of the numbers (points).
-const TICK_LABEL_SIZE: f32 = 10.5;
 /// Length of the sample of a curve before its name (points).
 const LEGEND_LINE_LENGTH: f32 = 14.0;
 
 const TEAL: Color32 = Color32::from_rgb(0, 122, 128);
 const AMBER: Color32 = Color32::from_rgb(190, 106, 0);
 const VIOLET: Color32 = Color32::from_rgb(112, 62, 158);
-const GRID: Color32 = Color32::from_rgb(196, 197, 200);
+/// The grid of the plots.
+const GRID: Grid = Grid {
+    colour: Color32::from_rgb(196, 197, 200),
+    width: 0.7,
+    gaps: [44.0, 18.0],
+    size: 10.5,
+};
 
 /// A curve of a plot.
 #[derive(Clone, Copy)]
@@ -186,7 +191,6 @@ impl Plot {
         words(rect.left_top(), Align2::LEFT_TOP, &title, 11.5, FAINT);
         let mut right = rect.right();
         for curve in self.curves.iter().rev() {
-            let signed = |v: f64| format!("{}{}", if v < 0.0 { "-" } else { "" }, digits(v.abs()));
             let value = pointed.and_then(curve.of).map(signed);
             let Some(said) = value.or((!curve.name.is_empty()).then(|| curve.name.into())) else {
                 continue;
@@ -195,7 +199,7 @@ impl Plot {
             right = words(at, Align2::RIGHT_TOP, &said, 11.5, curve.colour).left() - 7.0;
             if !curve.name.is_empty() {
                 let ends = [right + 4.0 - LEGEND_LINE_LENGTH, right + 4.0];
-                curve.draw(painter, &ends.map(|x| pos2(x, rect.top() + 7.5)));
+                curve.draw(painter, ends.map(|x| pos2(x, rect.top() + 7.5)).into());
                 right = ends[0] - 5.0;
             }
         }
@@ -207,34 +211,9 @@ impl Plot {
             let each = self.curves.iter();
             each.flat_map(|curve| samples.iter().filter_map(curve.of))
         };
-        let [low, high] = ends(values());
         let x = Axis::linear(time).between(area.left().into(), area.right().into());
-        let y = Axis::linear([low, high]).between(area.bottom().into(), area.top().into());
-        let rule = Stroke::new(0.7, GRID);
-        for tick in y.ticks(18.0) {
-            let at = y.at(tick.value) as f32;
-            painter.hline(area.x_range(), at, rule);
-            let place = pos2(area.left() - 5.0, at);
-            let label = label(tick.value, tick.label);
-            words(place, Align2::RIGHT_CENTER, &label, TICK_LABEL_SIZE, FAINT);
-        }
-        for tick in x.ticks(44.0) {
-            let at = x.at(tick.value) as f32;
-            painter.vline(at, area.y_range(), rule);
-            if last {
-                let unit = if at > area.right() - 30.0 { " s" } else { "" };
-                let (place, anchor) = if unit.is_empty() {
-                    (pos2(at, area.bottom() + 2.0), Align2::CENTER_TOP)
-                } else {
-                    (
-                        pos2(area.right() + 2.0, area.bottom() + 2.0),
-                        Align2::RIGHT_TOP,
-                    )
-                };
-                let label = format!("{}{unit}", tick.label);
-                words(place, anchor, &label, TICK_LABEL_SIZE, FAINT);
-            }
-        }
+        let y = Axis::around(values()).between(area.bottom().into(), area.top().into());
+        GRID.draw(painter, area, [x, y], last.then_some(" s"));
         if let Some(sample) = pointed {
             let at = x.at(sample.time) as f32;
             painter.vline(at, area.y_range(), Stroke::new(1.0, FAINT));
@@ -249,48 +228,14 @@ impl Plot {
                 let value = (curve.of)(sample)?;
                 Some(pos2(x.at(sample.time) as f32, y.at(value) as f32))
             });
-            curve.draw(painter, &points.collect::<Vec<_>>());
+            curve.draw(painter, points.collect());
         }
     }
 }
 
 impl Curve {
-    fn draw(&self, painter: &Painter, points: &[Pos2]) {
-        let stroke = Stroke::new(1.4, self.colour);
-        if self.dashes.is_empty() {
-            painter.add(Shape::line(points.to_vec(), stroke));
-        } else {
-            let (lengths, gaps): (Vec<_>, Vec<_>) =
-                self.dashes.chunks(2).map(|dash| (dash[0], dash[1])).unzip();
-            painter.extend(Shape::dashed_line_with_offset(
-                points, stroke, &lengths, &gaps, 0.0,
-            ));
-        }
-    }
-}
-
-/// Returns the ends of an axis around all values, with a margin.
-fn ends(values: impl Iterator<Item = f64>) -> [f64; 2] {
-    let finite = values.filter(|v| v.is_finite());
-    let [low, high] = finite.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], v| {
-        [low.min(v), high.max(v)]
-    });
-    if low > high {
-        return [0.0, 1.0];
-    }
-    // Show a nearly constant value as a level line, not as magnified rounding errors.
-    let gap = (0.08 * (high - low))
-        .max(0.02 * high.abs().max(low.abs()))
-        .max(1e-9);
-    [low - gap, high + gap]
-}
-
-/// Returns the label of a tick, in exponential notation if it is too long for the margin.
-fn label(value: f64, label: String) -> String {
-    if label.chars().count() > 6 {
-        format!("{value:.1e}")
-    } else {
-        label
+    fn draw(&self, painter: &Painter, points: Vec<Pos2>) {
+        line(painter, points, Stroke::new(1.4, self.colour), self.dashes);
     }
 }
 

@@ -5,7 +5,7 @@ use super::knobs::{KNOBS, Knob, is_left_out};
 use super::values::pane;
 use super::{measure, parts};
 use crate::window::session::{
-    Action, LessonRequest, MeasureRequest, Session, TextKey, Topic, asking, panes,
+    Action, LessonRequest, MeasureRequest, PlotRequest, Session, TextKey, Topic, asking, panes,
 };
 
 /// A request of the mouse.
@@ -17,6 +17,8 @@ pub enum Request {
     Change(PanelRequest),
     /// Go on in a lesson.
     Learn(LessonRequest),
+    /// Change the plots.
+    Plot(PlotRequest),
 }
 
 /// A request of the mouse to the panel, the open list or the timeline.

@@ -4,6 +4,7 @@ use egui::{
     Align2, Color32, CursorIcon, FontId, Id, Rect, Response, Sense, Stroke, Ui, pos2, vec2,
 };
 
+use super::super::docked::{EDGE, SHEET};
 use super::super::style::{FAINT, TEXT};
 use super::dial::{Dial, DialScale, Turn};
 use super::knobs::Knob;
@@ -12,10 +13,6 @@ use crate::base::rounding::short;
 
 /// Height of a row (points).
 pub const HEIGHT: f32 = 23.0;
-/// Colour of the panel.
-pub const SHEET: Color32 = Color32::from_rgb(226, 226, 224);
-/// Colour of the panel's edge.
-pub const EDGE: Color32 = Color32::from_rgb(188, 189, 192);
 /// Colour of values that differ from the scene's own, and of controls.
 pub const INK: Color32 = Color32::from_rgb(38, 84, 132);
 /// Colour of the empty part of a track, and of a switch that is off.

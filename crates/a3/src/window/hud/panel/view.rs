@@ -1,7 +1,8 @@
 //! Drawing of the panel: a row for each knob, plots if they fit, and buttons.
 
-use egui::{Align2, Area, Context, FontId, Id, Rect, Sense, Stroke, pos2, vec2};
+use egui::{Align2, Context, FontId, Id, Rect, Sense, Stroke, pos2, vec2};
 
+use super::super::docked::docked;
 use super::super::style::{FAINT, TEXT};
 use super::request::{self, PanelRequest, Request, is_shown, rows};
 use super::row::{self, Row};
@@ -60,39 +61,29 @@ pub fn show(ctx: &Context, session: &Session) -> Option<Request> {
         pos2(window.right() - width(window.width()), window.top()),
         window.right_bottom(),
     );
-    let mut request = None;
-    Area::new(Id::unique("panel"))
-        .fixed_pos(rect.min)
-        .constrain_to(window)
-        .constrain(false)
-        .fade_in(false)
-        .show(ctx, |ui| {
-            ui.allocate_rect(rect, Sense::click());
-            ui.painter().rect_filled(rect, 0.0, row::SHEET);
-            ui.painter()
-                .vline(rect.left(), rect.y_range(), Stroke::new(1.0, row::EDGE));
-            let inner = rect.shrink2(vec2(MARGIN, 0.0));
-            request = title(ui, inner, session).map(Request::Change);
-            let room = Rect::from_min_max(
-                pos2(inner.left(), inner.top() + TITLE_HEIGHT),
-                pos2(inner.right(), inner.bottom() - BUTTONS_HEIGHT),
-            );
-            let (top, turned) = if request::shows_parts(session) {
-                part_rows::show(ui, room, session)
-            } else {
-                knobs(ui, room, session)
-            };
-            request = turned.map(Request::Change).or(request);
-            request = buttons(ui, inner, session).or(request);
-            let room = Rect::from_min_max(
-                pos2(inner.left(), top + 12.0),
-                pos2(inner.right(), inner.bottom() - BUTTONS_HEIGHT),
-            );
-            let pane = &session.runs.panes[pane(session)];
-            let pointer = ui.ctx().pointer_latest_pos();
-            plots::draw(ui.painter(), room, &pane.samples, pointer);
-        });
-    request
+    docked(ctx, "panel", rect, |ui| {
+        let inner = rect.shrink2(vec2(MARGIN, 0.0));
+        let request = title(ui, inner, session).map(Request::Change);
+        let room = Rect::from_min_max(
+            pos2(inner.left(), inner.top() + TITLE_HEIGHT),
+            pos2(inner.right(), inner.bottom() - BUTTONS_HEIGHT),
+        );
+        let (top, turned) = if request::shows_parts(session) {
+            part_rows::show(ui, room, session)
+        } else {
+            knobs(ui, room, session)
+        };
+        let request = turned.map(Request::Change).or(request);
+        let request = buttons(ui, inner, session).or(request);
+        let room = Rect::from_min_max(
+            pos2(inner.left(), top + 12.0),
+            pos2(inner.right(), inner.bottom() - BUTTONS_HEIGHT),
+        );
+        let pane = &session.runs.panes[pane(session)];
+        let pointer = ui.ctx().pointer_latest_pos();
+        plots::draw(ui.painter(), room, &pane.samples, pointer);
+        request
+    })
 }
 
 /// Draws the rows of the knobs from the top of a room. Returns the bottom of the last row, and the

@@ -1,0 +1,13 @@
+//! Plots of what a user picks, beside the picture (key F3).
+
+mod chart;
+mod draw;
+mod files;
+mod flow;
+mod request;
+mod rows;
+mod view;
+
+pub use files::write;
+pub use request::{apply, begin_scene, is_shown, offer, pick, press, taken};
+pub use view::show;

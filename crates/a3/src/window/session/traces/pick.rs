@@ -1,0 +1,206 @@
+//! Particles, rigid bodies and springs, and their values in a state of a run.
+
+use a3_core::elements::{Buckling, Cords};
+use a3_core::{Element, Network, Simulation, Spring, Vector3};
+
+use super::row::{Row, VALUES};
+use super::variable::Kind;
+
+/// A particle, a rigid body or a spring, by the numbers of its run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Pick {
+    Particle(usize),
+    Body(usize),
+    /// The spring between two particles.
+    Spring(usize, usize),
+}
+
+impl Pick {
+    /// Returns the pick at a particle: the body that it belongs to, or the particle itself.
+    pub fn at(run: &Simulation, i: usize) -> Self {
+        let network = run.model().network();
+        let body = network.and_then(|network| network.body_of(i));
+        body.map_or(Self::Particle(i), Self::Body)
+    }
+
+    pub fn kind(self) -> Kind {
+        match self {
+            Self::Particle(_) => Kind::Particle,
+            Self::Body(_) => Kind::Body,
+            Self::Spring(..) => Kind::Spring,
+        }
+    }
+
+    /// Returns the name.
+    pub fn name(self) -> String {
+        match self {
+            Self::Particle(i) => format!("particle {i}"),
+            Self::Body(k) => format!("body {k}"),
+            Self::Spring(i, j) => format!("spring {i} to {j}"),
+        }
+    }
+
+    /// Returns the values in the present state of a run; NaN if it has no such thing.
+    pub fn read(self, run: &Simulation) -> Row {
+        let network = run.model().network();
+        let values = match (self, network) {
+            (Self::Particle(i), Some(network)) if i < network.particles() => {
+                moving(network, run, i, spring_energy(network, run, i))
+            }
+            (Self::Particle(i), None) if i < run.particles() => path(run, i),
+            (Self::Body(k), Some(network)) if k < network.bodies().len() => {
+                let body = &network.bodies()[k];
+                let mut values = moving(network, run, body.center(), 0.0);
+                values[6] += body.energy(&network.rotation(k, run.state()));
+                if let Some(turning) = network.pose(k, run.state()).orientation {
+                    values[8..].copy_from_slice(turning.spin.as_slice());
+                }
+                values
+            }
+            (Self::Spring(i, j), Some(network)) => spring(network, run, i, j),
+            _ => [f64::NAN; VALUES],
+        };
+        Row {
+            time: run.time(),
+            values,
+        }
+    }
+}
+
+/// Returns the values of particle i of a network, whose springs have some energy (J).
+fn moving(network: &Network, run: &Simulation, i: usize, of_springs: f64) -> [f64; VALUES] {
+    let (x, v, mass) = (
+        run.position(i),
+        velocity(network, run, i),
+        network.masses()[i],
+    );
+    let gravity = network.gravity().unwrap_or_default();
+    let mut values = [f64::NAN; VALUES];
+    values[..3].copy_from_slice(x.as_slice());
+    values[3..6].copy_from_slice(v.as_slice());
+    values[6] = 0.5 * mass * v.norm_squared();
+    values[7] = of_springs - mass * gravity.dot(&x);
+    values
+}
+
+/// Returns position and velocity of point i of a first-order system.
+fn path(run: &Simulation, i: usize) -> [f64; VALUES] {
+    let (n, rates) = (run.particles(), run.velocities());
+    let mut values = [f64::NAN; VALUES];
+    values[..3].copy_from_slice(run.position(i).as_slice());
+    for axis in 0..3 {
+        values[3 + axis] = rates[axis * n + i];
+    }
+    values
+}
+
+/// Returns the velocity of particle i (m/s).
+fn velocity(network: &Network, run: &Simulation, i: usize) -> Vector3<f64> {
+    let (n, (_, v)) = (network.particles(), network.halves(run.state()));
+    Vector3::new(v[i], v[n + i], v[2 * n + i])
+}
+
+/// Returns length, strain and force of the spring between particles i and j.
+fn spring(network: &Network, run: &Simulation, i: usize, j: usize) -> [f64; VALUES] {
+    let mut values = [f64::NAN; VALUES];
+    let Some((alone, rest)) = alone(network, i, j) else {
+        return values;
+    };
+    let [x, v] = [
+        [run.position(i), run.position(j)],
+        [velocity(network, run, i), velocity(network, run, j)],
+    ]
+    .map(|ends| columns(&ends));
+    let mut force = [0.0; 6];
+    alone.spring_forces(&x, &v, &mut force);
+    let way = run.position(j) - run.position(i);
+    let length = way.norm();
+    let pull = Vector3::new(force[0], force[2], force[4]);
+    values[0] = length;
+    values[1] = if rest > 0.0 {
+        length / rest - 1.0
+    } else {
+        f64::NAN
+    };
+    values[2] = if length > 0.0 {
+        pull.dot(&way) / length
+    } else {
+        0.0
+    };
+    values
+}
+
+/// Returns the energy (J) of the springs of particle i: all of those to pins, and half of the
+/// others, so that the energies of all particles that move add up to that of the network.
+fn spring_energy(network: &Network, run: &Simulation, i: usize) -> f64 {
+    let of = |s: &Spring, energy: f64| {
+        let other = s.i + s.j - i;
+        energy * if network.is_pinned(other) { 1.0 } else { 0.5 }
+    };
+    let stretch = |s: &Spring| {
+        let length = (run.position(s.i) - run.position(s.j)).norm();
+        length - s.law.rest_length
+    };
+    let touches = |s: &Spring| s.i == i || s.j == i;
+    let plain = network.springs().filter(touches);
+    let plain = plain.map(|s| of(&s, 0.5 * s.law.stiffness * stretch(&s).powi(2)));
+    let slack = cords(network).filter(touches);
+    let slack = slack.map(|s| of(&s, 0.5 * s.law.stiffness * stretch(&s).max(0.0).powi(2)));
+    let strips = network.buckling().filter(|b| b.i == i || b.j == i);
+    let bent = strips.filter_map(|b| {
+        let share = if network.is_pinned(b.i + b.j - i) {
+            1.0
+        } else {
+            0.5
+        };
+        let x = columns(&[run.position(b.i), run.position(b.j)]);
+        let mut alone = Network::new(vec![1.0; 2]).ok()?;
+        alone.add_buckling(Buckling { i: 0, j: 1, ..b }).ok()?;
+        Some(share * alone.energy(&x, &[0.0; 6]).elastic)
+    });
+    plain.chain(slack).sum::<f64>() + bent.sum::<f64>()
+}
+
+/// Returns the springs of a network that only pull.
+fn cords(network: &Network) -> impl Iterator<Item = Spring> {
+    let all = network
+        .elements()
+        .iter()
+        .filter_map(|element| match element {
+            Element::Cords(cords) => Some(cords.springs()),
+            _ => None,
+        });
+    all.flatten()
+}
+
+/// Returns all that is elastic between particles i and j in a network of its own, from particle 0
+/// to 1, and its rest length (m).
+fn alone(network: &Network, i: usize, j: usize) -> Option<(Network, f64)> {
+    let is = |a: usize, b: usize| (a, b) == (i, j) || (a, b) == (j, i);
+    let at_ends = |s: Spring| Spring { i: 0, j: 1, ..s };
+    let (mut pair, mut rest) = (Network::new(vec![1.0; 2]).ok()?, None);
+    for spring in network.springs().filter(|s| is(s.i, s.j)) {
+        rest = Some(spring.law.rest_length);
+        pair.add_spring(at_ends(spring)).ok()?;
+    }
+    for strip in network.buckling().filter(|b| is(b.i, b.j)) {
+        rest = Some(strip.rest_length);
+        pair.add_buckling(Buckling {
+            i: 0,
+            j: 1,
+            ..strip
+        })
+        .ok()?;
+    }
+    let cords: Vec<_> = cords(network).filter(|s| is(s.i, s.j)).collect();
+    if let Some(cord) = cords.last() {
+        rest = Some(cord.law.rest_length);
+        pair.add(Cords::new(cords.into_iter().map(at_ends))).ok()?;
+    }
+    Some((pair, rest?))
+}
+
+/// Returns two vectors as the columns of a network of two particles.
+fn columns([a, b]: &[Vector3<f64>; 2]) -> [f64; 6] {
+    [a.x, b.x, a.y, b.y, a.z, b.z]
+}

@@ -1,0 +1,142 @@
+//! The settings of plots, and what a user asks of them.
+
+use a3_core::{Simulation, Vector3};
+
+use super::pick::Pick;
+use super::section::Trigger;
+use super::variable::Variable;
+
+/// Simulated times that plots can show (s).
+pub const SPANS: [f64; 3] = [5.0, 20.0, 60.0];
+
+/// What is on the axes.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Mode {
+    /// Variables over time.
+    #[default]
+    Time,
+    /// A variable over another one.
+    Phase,
+    /// The same, at the points of a Poincaré section alone.
+    Section,
+}
+
+impl Mode {
+    /// All modes, in the order of their buttons.
+    pub const ALL: [Self; 3] = [Self::Time, Self::Phase, Self::Section];
+
+    /// Returns the name of the mode.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Time => "over time",
+            Self::Phase => "phase plane",
+            Self::Section => "section",
+        }
+    }
+
+    /// Returns the mode `by` places after this one, or before it if `by` is negative.
+    pub fn neighbour(self, by: isize) -> Self {
+        let count = Self::ALL.len() as isize;
+        Self::ALL[(self as isize + by).rem_euclid(count) as usize]
+    }
+}
+
+/// The settings of plots.
+pub struct PlotSettings {
+    /// Whether the pane of plots is open.
+    pub open: bool,
+    pub mode: Mode,
+    /// The variables that are shown over time.
+    pub shown: Vec<Variable>,
+    /// The variables on the horizontal and on the vertical axis otherwise.
+    pub axes: [Variable; 2],
+    /// Simulated time that is shown (s).
+    pub span: f64,
+    /// The ends of the ruler that are chosen so far, if there is one.
+    pub ruler: Option<Vec<RulerEnd>>,
+}
+
+impl PlotSettings {
+    /// Returns whether the mouse draws the ruler: an end is missing.
+    pub fn is_ruling(&self) -> bool {
+        self.ruler.as_ref().is_some_and(|ends| ends.len() < 2)
+    }
+
+    /// Chooses the next end of the ruler.
+    pub fn begin_end(&mut self, end: RulerEnd) {
+        self.ruler.get_or_insert_default().push(end);
+    }
+
+    /// Moves the second end of the ruler, while the mouse drags it.
+    pub fn move_end(&mut self, end: RulerEnd) {
+        let ends = self.ruler.get_or_insert_default();
+        ends.truncate(1);
+        ends.push(end);
+    }
+}
+
+/// An end of the ruler.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum RulerEnd {
+    /// A particle, which the end follows.
+    Particle(usize),
+    /// A point at rest (m).
+    Point(Vector3<f64>),
+}
+
+impl Default for PlotSettings {
+    fn default() -> Self {
+        Self {
+            open: false,
+            mode: Mode::Time,
+            shown: vec![Variable::X, Variable::Y, Variable::Length, Variable::Force],
+            axes: [Variable::X, Variable::VelocityX],
+            span: SPANS[1],
+            ruler: None,
+        }
+    }
+}
+
+/// A file of what is plotted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PlotFile {
+    /// A table, as CSV.
+    Table,
+    /// A picture, as PNG.
+    Picture,
+}
+
+/// A request of the user to the pane of plots.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum PlotRequest {
+    /// Close the pane.
+    Close,
+    /// Plot something, or no longer. The pane opens.
+    Toggle(Pick),
+    /// Change what is on the axes.
+    Mode(Mode),
+    /// Show a variable over time, or no longer.
+    Show(Variable),
+    /// Put a variable on the horizontal (0) or on the vertical axis (1).
+    Axis(usize, Variable),
+    /// Take the points of the section at another event.
+    Trigger(Trigger),
+    /// Show another span of time (s).
+    Span(f64),
+    /// Forget all values so far.
+    Clear,
+    /// Draw a ruler in the picture, or remove it.
+    Ruler,
+    /// Write a file.
+    Write(PlotFile),
+}
+
+impl RulerEnd {
+    /// Returns the place of the end in a run (m), if it has one.
+    pub fn place(self, run: &Simulation) -> Option<Vector3<f64>> {
+        match self {
+            Self::Particle(i) => (i < run.particles()).then(|| run.position(i)),
+            Self::Point(at) => Some(at),
+        }
+    }
+}
