@@ -46,6 +46,8 @@ pub struct Show {
     pub hovered: Option<Target>,
     /// Point to which the mouse pulls (m).
     pub hand: Option<Vector3<f64>>,
+    /// A particle, and the point (m) to which a line from it is drawn.
+    pub joining: Option<(usize, Vector3<f64>)>,
     /// Path of the particle that leaves a trail.
     trail: Trail,
     parts: Parts,
@@ -78,6 +80,7 @@ impl Show {
             orthographic: manner.orthographic,
             hovered: None,
             hand: None,
+            joining: None,
             trail: Trail::default(),
             parts: Parts::default(),
             points: vec![],
@@ -162,6 +165,11 @@ impl Show {
         }
     }
 
+    /// Returns the height of the floor or the ground in the picture composed last (m).
+    pub fn ground(&self) -> Option<f64> {
+        self.floor.as_ref().map(|floor| f64::from(floor.height))
+    }
+
     /// Composes the picture of the present state of the run.
     pub fn compose(&mut self, simulation: &Simulation) {
         let n = simulation.particles();
@@ -208,6 +216,11 @@ impl Show {
             self.draw_springs_of(simulation, i);
         }
         self.highlight(simulation);
+        if let Some((i, to)) = self.joining.filter(|(i, _)| *i < n) {
+            self.ball(i, 0.055, AMBER);
+            let line = Line::new(self.at(i), to_f32(to), 3.0, AMBER);
+            self.lines.push(line);
+        }
         if let Some(i) = simulation.grabbed() {
             self.ball(i, 0.055, AMBER);
             if let Some((line, ball)) = self
@@ -375,8 +388,8 @@ impl Show {
                 self.ball(i, 0.045, AMBER);
             }
             (Some(Target::Obstacle(k)), Some(network)) => {
-                let rings = obstacles::rings(network, k, simulation.time(), AMBER);
-                self.lines.extend(rings);
+                let outline = obstacles::outline(network, k, simulation.time(), AMBER);
+                self.lines.extend(outline);
             }
             _ => {}
         }

@@ -17,6 +17,7 @@ pub fn action(key: &Key) -> Option<Action> {
         Key::Named(NamedKey::PageUp) => session::action("PgUp"),
         Key::Named(NamedKey::PageDown) => session::action("PgDn"),
         Key::Named(NamedKey::F1) => session::action("F1"),
+        Key::Named(NamedKey::F2) => session::action("F2"),
         Key::Character(text) if text == " " => session::action("Space"),
         Key::Character(text) if text.chars().count() == 1 => session::action(text),
         _ => None,
@@ -95,6 +96,7 @@ mod tests {
                     "PgUp" => Key::Named(NamedKey::PageUp),
                     "PgDn" => Key::Named(NamedKey::PageDown),
                     "F1" => Key::Named(NamedKey::F1),
+                    "F2" => Key::Named(NamedKey::F2),
                     key => Key::Character(key.into()),
                 };
                 assert_eq!(action(&typed), Some(binding.action));
@@ -106,7 +108,7 @@ mod tests {
         );
         assert_eq!(action(&Key::Character("10".into())), None);
         assert_eq!(action(&Key::Character("Tab".into())), None);
-        assert_eq!(action(&Key::Named(NamedKey::F2)), None);
+        assert_eq!(action(&Key::Named(NamedKey::F3)), None);
     }
 
     #[test]

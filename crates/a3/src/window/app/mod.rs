@@ -23,6 +23,7 @@ mod start;
 mod state;
 mod status;
 mod thumbnails;
+mod tool;
 mod touch;
 #[cfg(not(target_arch = "wasm32"))]
 mod watch;

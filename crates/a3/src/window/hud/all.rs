@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use egui::{Context, TextureId};
 
 use super::panel::{self, Request};
-use super::{bar, hint, lessons, list, measure, pane_buttons, text};
+use super::{bar, edit, hint, lessons, list, measure, pane_buttons, text};
 use crate::window::session::Session;
 
 /// Draws text, panel, bar and the open list, with `pictures` of scenes by their names. Returns the
@@ -21,6 +21,7 @@ pub fn show_all(
     let on_measure = measure::show(ctx, session);
     let on_panes = pane_buttons::show(ctx, session);
     let on_lessons = lessons::show(ctx, session).map(Request::Learn);
+    let on_tools = edit::show(ctx, session).map(Request::Change);
     let on_bar = bar::show(ctx, session);
     let on_list = list::show(ctx, session, pictures).map(Request::Change);
     on_list
@@ -29,5 +30,6 @@ pub fn show_all(
         .or(on_measure)
         .or(on_lessons)
         .or(on_panes)
+        .or(on_tools)
         .or(on_text)
 }

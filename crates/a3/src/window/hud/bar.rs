@@ -212,6 +212,7 @@ fn others(session: &Session) -> Vec<Button> {
         "Help, and everything else (h)",
         run(RunAction::Help),
     ));
+    let edit = Button::new("✏", "Throw, add, join, delete (F2)", run(RunAction::Edit));
     if session.measuring.open {
         buttons[2].colour = FAINT;
     }
@@ -220,6 +221,14 @@ fn others(session: &Session) -> Vec<Button> {
     }
     if session.measuring.answerer.is_none() {
         buttons.remove(2);
+    }
+    if first.model().network().is_some() {
+        let colour = if session.panel.editor.open {
+            FAINT
+        } else {
+            TEXT
+        };
+        buttons.insert(2, Button { colour, ..edit });
     }
     buttons
 }

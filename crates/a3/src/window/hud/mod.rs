@@ -6,6 +6,7 @@ mod bar;
 mod blow_up;
 #[cfg(not(target_arch = "wasm32"))]
 mod caption;
+pub mod edit;
 mod help;
 mod hint;
 pub mod layout;

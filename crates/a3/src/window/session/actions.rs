@@ -51,6 +51,8 @@ pub enum RunAction {
     /// Show questions about the scene and their answers, or hide them.
     Measure,
     Lessons,
+    /// Show the tools that edit the scene, or hide them.
+    Edit,
     WriteScene,
     Help,
 }

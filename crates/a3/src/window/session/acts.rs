@@ -97,6 +97,15 @@ impl Session {
             RunAction::Panel | RunAction::Measure | RunAction::Lessons => {
                 self.toggle_beside(action);
             }
+            RunAction::Edit if self.runs.first().model().network().is_none() => {
+                let why = "Only scenes of masses can be edited.";
+                self.readings.say(why);
+            }
+            RunAction::Edit => {
+                self.panel.editor.toggle(&self.runs);
+                self.readings.help = false;
+                self.list = None;
+            }
             RunAction::WriteScene => {
                 let pane = &self.runs.panes[at.min(self.runs.panes.len() - 1)];
                 let said = match save::write_scene(self, &pane.simulation) {
@@ -364,6 +373,7 @@ impl Session {
                 self.effects.forget();
                 self.measuring.forget();
                 self.readings.left_out.clear();
+                self.panel.editor.forget(&self.runs);
                 self.view.stop_following();
                 self.history.clear();
                 self.readings.read_reference(self.runs.reference.as_ref());

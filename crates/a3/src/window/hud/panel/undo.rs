@@ -1,7 +1,7 @@
 //! Undo and redo of the user's changes.
 
 use super::knobs::KNOBS;
-use super::parts;
+use super::{edit, parts};
 use crate::window::session::{Change, Session};
 
 /// Undoes the last change, or with `redo` redoes the one undone last, and shows a message.
@@ -42,6 +42,13 @@ pub fn undo(session: &mut Session, redo: bool) {
                 return session.readings.say(why);
             }
             parts::name(session, part)
+        }
+        Change::Edit(change) => {
+            if let Err(why) = edit::repeat(session, &change, redo) {
+                session.history.step(!redo);
+                return session.readings.say(why);
+            }
+            change.name.clone()
         }
         Change::Knob {
             row,
