@@ -236,15 +236,16 @@ impl Edited {
             return Err(why);
         }
         // Springs that were added by hand go; those of a body are torn.
-        let all = pairs.len();
-        let between = &self.description.springs;
-        let others = between.iter().filter(|it| it.0 == i || it.1 == i);
-        let others: Vec<_> = others.map(|it| [it.0.min(it.1), it.0.max(it.1)]).collect();
-        let listed = self.remove_listed(network, |a, b| a == i || b == i);
-        if listed < all {
-            pairs.retain(|pair| !others.contains(pair));
-            self.description.torn.extend(pairs);
+        for it in &self.description.springs {
+            let ends = [it.0.min(it.1), it.0.max(it.1)];
+            if let Some(k) = pairs.iter().position(|pair| *pair == ends) {
+                pairs.swap_remove(k);
+            }
         }
+        self.remove_listed(network, |a, b| a == i || b == i);
+        pairs.sort_unstable();
+        pairs.dedup();
+        self.description.torn.extend(pairs);
         Ok(())
     }
 

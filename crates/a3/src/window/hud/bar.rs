@@ -222,7 +222,8 @@ fn others(session: &Session) -> Vec<Button> {
     if session.measuring.answerer.is_none() {
         buttons.remove(2);
     }
-    if first.model().network().is_some() {
+    // A page edits no scenes.
+    if !cfg!(target_arch = "wasm32") && first.model().network().is_some() {
         let colour = if session.panel.editor.open {
             FAINT
         } else {

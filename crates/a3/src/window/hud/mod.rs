@@ -6,6 +6,7 @@ mod bar;
 mod blow_up;
 #[cfg(not(target_arch = "wasm32"))]
 mod caption;
+#[cfg_attr(target_arch = "wasm32", path = "no_edit.rs")]
 pub mod edit;
 mod help;
 mod hint;

@@ -97,6 +97,9 @@ impl Session {
             RunAction::Panel | RunAction::Measure | RunAction::Lessons => {
                 self.toggle_beside(action);
             }
+            RunAction::Edit if cfg!(target_arch = "wasm32") => {
+                self.readings.say("Only the program edits scenes.");
+            }
             RunAction::Edit if self.runs.first().model().network().is_none() => {
                 let why = "Only scenes of masses can be edited.";
                 self.readings.say(why);

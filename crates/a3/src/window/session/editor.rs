@@ -1,5 +1,10 @@
 //! The tools that edit the scene, and the sizes, speeds and masses of what they add.
 
+#![cfg_attr(
+    target_arch = "wasm32",
+    allow(dead_code, reason = "the page has no tools")
+)]
+
 use a3_core::Network;
 
 use super::runs::Runs;

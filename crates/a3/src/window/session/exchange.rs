@@ -34,11 +34,17 @@ type ObstacleId = (usize, usize);
 pub fn leave_out(session: &mut Session, left_out: Vec<usize>) -> Result<Former, String> {
     let (origin, parts) = (session.scenes.shown.clone(), session.tuning.parts.clone());
     let passage = Passage::default();
-    go_on(session, origin, (parts, left_out), &passage)
+    go_on(session, origin, (parts, left_out), (&passage, &[]))
 }
 
-/// Continues all runs, as [`leave_out`] does, in an edited scene, without the same parts as before.
-pub fn edit(session: &mut Session, origin: Origin, passage: &Passage) -> Result<Former, String> {
+/// Continues all runs, as [`leave_out`] does, in an edited scene, without the same parts as before;
+/// or from their states `then` in that scene, the last of which is for all further runs.
+pub fn edit(
+    session: &mut Session,
+    origin: Origin,
+    passage: &Passage,
+    then: &[Checkpoint],
+) -> Result<Former, String> {
     let whole = origin.build().map_err(|error| error.to_string())?;
     let parts = origin.parts(&whole.scene);
     let tuning = &session.tuning;
@@ -46,7 +52,7 @@ pub fn edit(session: &mut Session, origin: Origin, passage: &Passage) -> Result<
     let left_out = names.filter_map(|name| parts.iter().position(|part| part.name == *name));
     let parts = (parts.clone(), left_out.collect());
     session.release();
-    go_on(session, origin, parts, passage)
+    go_on(session, origin, parts, (passage, then))
 }
 
 /// Continues all runs in a scene, without some of its parts.
@@ -54,7 +60,7 @@ fn go_on(
     session: &mut Session,
     origin: Origin,
     (parts, left_out): (Vec<Part>, Vec<usize>),
-    passage: &Passage,
+    (passage, then): (&Passage, &[Checkpoint]),
 ) -> Result<Former, String> {
     if !session.runs.panes.iter().all(Pane::alive) {
         return Err("A run has blown up: reset it (key r) before you change its parts.".into());
@@ -78,8 +84,11 @@ fn go_on(
         ..tuning.clone()
     };
     let changes = [tuning.changes(), next.changes()];
-    let runs = session.runs.all();
-    let runs = runs.map(|run| continued(run, &setup.scene, &changes, passage));
+    let runs = session.runs.all().enumerate();
+    let runs = runs.map(|(k, run)| {
+        let then = then.get(k).or(then.last());
+        continued(run, &setup.scene, &changes, (passage, then))
+    });
     let simulations: Result<Vec<_>, String> = runs.collect();
     let next = Former {
         simulations: simulations?,
@@ -134,7 +143,7 @@ fn continued(
     run: &Simulation,
     scene: &Scene,
     changes: &[Vec<PartChange>; 2],
-    passage: &Passage,
+    (passage, then): (&Passage, Option<&Checkpoint>),
 ) -> Result<Simulation, String> {
     if !passage.fits(run.state().len(), scene) {
         return Err("Without this part, the scene has other particles.".into());
@@ -147,7 +156,14 @@ fn continued(
     let go_on = || -> Result<Simulation, Error> {
         let mut next = Simulation::new(scene, method, control)?;
         let mut moment = run.moment();
-        fit(&mut moment, run, &next, changes, passage);
+        if let Some(then) = then {
+            moment = then.clone();
+            let (time, state) = (moment.time(), &mut moment.run);
+            (state.method, state.control) = (method, control);
+            (state.since, state.taken, state.shown) = (time, 0, None);
+        } else {
+            fit(&mut moment, run, &next, changes, passage);
+        }
         next.restore(&moment)?;
         // The energy of a part that comes or goes is no gain of the solver.
         next.set_method(method, control)?;

@@ -61,7 +61,7 @@ impl Runs {
 
     /// Advances several panes to exactly the same time, by a shortened step if need be, so that an
     /// interaction starts at the same time in all.
-    pub(super) fn align(&mut self) {
+    pub fn align(&mut self) {
         if self.panes.len() < 2 {
             return;
         }

@@ -39,8 +39,12 @@ pub enum Change {
     },
     /// A part of the scene was left out, or brought back: its index, and whether it is in since.
     Part { part: usize, is_in: bool },
-    /// The scene was edited.
-    Edit(Arc<EditChange>),
+    /// The scene was edited. If something was deleted, `before` are the states of all runs at that
+    /// time, while they are kept.
+    Edit {
+        edit: Arc<EditChange>,
+        before: Option<Arc<[Checkpoint]>>,
+    },
 }
 
 /// An edit of the scene, as a change that can be undone.
@@ -100,6 +104,7 @@ impl History {
         }
         self.done.push(change);
         self.forget_states(MAX_STATES);
+        self.forget_deletions();
         if self.done.len() > MAX_CHANGES {
             self.done.remove(0);
         }
@@ -136,6 +141,19 @@ impl History {
                 *before = None;
             }
         }
+    }
+
+    /// Forgets the states before all but the latest deletions.
+    fn forget_deletions(&mut self) {
+        let states = self
+            .done
+            .iter_mut()
+            .rev()
+            .filter_map(|change| match change {
+                Change::Edit { before, .. } => before.is_some().then_some(before),
+                _ => None,
+            });
+        states.skip(MAX_STATES).for_each(|before| *before = None);
     }
 
     /// Clears the history.

@@ -48,7 +48,7 @@ pub use list::{Entry, TextKey, Topic};
 pub use measuring::Progress;
 pub use origin::Origin;
 pub use pane::Pane;
-pub use passage::{Passage, Removed};
+pub use passage::Passage;
 pub use question::{Answer, Answerer, Diagram, MethodSetting, Question, Task};
 pub use readings::{FilmProgress, Readings, Selection};
 pub use replace::replace;

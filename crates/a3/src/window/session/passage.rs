@@ -1,7 +1,6 @@
-//! Passage of a run from a scene to the same scene after an edit: which particles stay, and where
-//! those begin that are added.
+//! Passage of a run from a scene to the same scene after an edit: which particles stay.
 
-use a3_core::{Checkpoint, Constraint, Network, Path, Scene, Simulation};
+use a3_core::{Checkpoint, Constraint, Network, Scene, Simulation};
 use a3_scenes::Splice;
 
 /// Numbers that the state has for each particle: its position (m) and its velocity (m/s).
@@ -16,39 +15,8 @@ pub struct Passage {
     pub particles: Splice,
     /// How rigid bodies are numbered there.
     pub bodies: Splice,
-    /// State of the particles and the bodies that are added, where it is not that at the start.
-    pub returning: Option<Removed>,
     /// Whether surfaces touch there; `None` if they do as before.
     pub touching: Option<bool>,
-}
-
-/// State of what an edit removed.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Removed {
-    /// Positions (m) and velocities (m/s) of its particles.
-    particles: Vec<[f64; PARTICLE]>,
-    /// Quaternions and angular momenta of its bodies (kg m2/s).
-    bodies: Vec<[f64; BODY]>,
-    /// Pins, by the numbers of their particles.
-    pins: Vec<(usize, Path)>,
-}
-
-impl Removed {
-    /// Reads what these splices remove from a run.
-    pub fn from(run: &Simulation, particles: Splice, bodies: Splice) -> Self {
-        let (y, n) = (run.state(), run.particles());
-        let numbers = |it: Splice| it.at..it.at + it.removed;
-        let particle = |i: usize| std::array::from_fn(|axis| y[axis * n + i]);
-        let body = |k: usize| std::array::from_fn(|axis| y[PARTICLE * n + BODY * k + axis]);
-        let pins = run.model().network().into_iter().flat_map(Network::pins);
-        Self {
-            particles: numbers(particles).map(particle).collect(),
-            bodies: numbers(bodies).map(body).collect(),
-            pins: pins
-                .filter(|(i, _)| numbers(particles).contains(i))
-                .collect(),
-        }
-    }
 }
 
 impl Passage {
@@ -85,8 +53,9 @@ impl Passage {
         moment.pins = pins
             .filter_map(|(i, path)| Some((number(*i)?, *path)))
             .collect();
-        let returning = self.returning.iter().flat_map(|it| &it.pins);
-        moment.pins.extend(returning);
+        let back = self.particles.back();
+        let added = new.pins().filter(|(i, _)| back.number(*i).is_none());
+        moment.pins.extend(added);
         let ends = |k: &usize| {
             let (i, j) = old.constraints().get(*k)?.ends();
             pair([i, j?])
@@ -103,30 +72,16 @@ impl Passage {
     /// Returns the state in the edited scene from that of n particles before it.
     fn state(&self, y: &[f64], n: usize, next: &Simulation) -> Vec<f64> {
         let (m, mut state) = (next.particles(), next.state().to_vec());
-        let returning = self.returning.as_ref();
-        for i in 0..m {
-            let added = i.wrapping_sub(self.particles.at);
-            let kept = self.particles.back().number(i);
-            let removed = returning.and_then(|it| it.particles.get(added));
+        let before = |j: usize| self.particles.back().number(j);
+        for (j, i) in (0..m).filter_map(|j| Some((j, before(j)?))) {
             for axis in 0..PARTICLE {
-                let own = &mut state[axis * m + i];
-                *own = match (kept, removed) {
-                    (Some(before), _) => y[axis * n + before],
-                    (None, Some(row)) => row[axis],
-                    (None, None) => *own,
-                };
+                state[axis * m + j] = y[axis * n + i];
             }
         }
-        for (k, own) in state[PARTICLE * m..].chunks_exact_mut(BODY).enumerate() {
-            let added = k.wrapping_sub(self.bodies.at);
-            let removed = returning.and_then(|it| it.bodies.get(added));
-            match (self.bodies.back().number(k), removed) {
-                (Some(before), _) => {
-                    let first = PARTICLE * n + BODY * before;
-                    own.copy_from_slice(&y[first..first + BODY]);
-                }
-                (None, Some(row)) => own.copy_from_slice(row),
-                (None, None) => {}
+        let (old, new) = (&y[PARTICLE * n..], &mut state[PARTICLE * m..]);
+        for (l, own) in new.chunks_exact_mut(BODY).enumerate() {
+            if let Some(k) = self.bodies.back().number(l) {
+                own.copy_from_slice(&old[BODY * k..BODY * (k + 1)]);
             }
         }
         state

@@ -15,13 +15,18 @@ mod undo;
 mod values;
 mod view;
 
+#[cfg(not(target_arch = "wasm32"))]
 pub use dial::{Dial, DialScale, Turn};
+#[cfg(not(target_arch = "wasm32"))]
 pub use edit::{edit, of_one_body};
 pub use measure::update;
+#[cfg(not(target_arch = "wasm32"))]
 pub use parts::turn as turn_part;
 pub use plots::csv;
 pub use request::{PanelKey, PanelRequest, Request, apply, is_shown, press, press_text};
-pub use row::{CHOSEN, EDGE, HOVERED, INK, SHEET, TRACK, button, slider};
+#[cfg(not(target_arch = "wasm32"))]
+pub use row::slider;
+pub use row::{CHOSEN, EDGE, HOVERED, INK, SHEET, TRACK, button};
 pub use tune::{tune, tuned};
 pub use undo::undo;
 pub use view::{picture_size, show};

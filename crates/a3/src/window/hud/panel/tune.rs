@@ -85,7 +85,9 @@ pub fn turn_knobs(session: &mut Session, tuned: &[(String, f64)]) {
 /// on and the scene stays tuned. Fails, and changes nothing, if there is no such scene, or if
 /// self-collision is on and surfaces would cross.
 pub fn leave_out(session: &mut Session, parts: Vec<usize>) -> Result<(), String> {
-    go_on(session, None, |session| exchange::leave_out(session, parts))
+    go_on(session, None, &mut |session| {
+        exchange::leave_out(session, parts.clone())
+    })
 }
 
 /// Exchanges the scene, while the motion goes on and the scene stays tuned. `touching` says whether
@@ -94,7 +96,7 @@ pub fn leave_out(session: &mut Session, parts: Vec<usize>) -> Result<(), String>
 pub fn go_on(
     session: &mut Session,
     touching: Option<bool>,
-    exchange: impl FnOnce(&mut Session) -> Result<exchange::Former, String>,
+    exchange: &mut dyn FnMut(&mut Session) -> Result<exchange::Former, String>,
 ) -> Result<(), String> {
     let mut values = tuned(session);
     if let Some(on) = touching {

@@ -1,7 +1,7 @@
 //! Undo and redo of the user's changes.
 
 use super::knobs::KNOBS;
-use super::{edit, parts};
+use super::parts;
 use crate::window::session::{Change, Session};
 
 /// Undoes the last change, or with `redo` redoes the one undone last, and shows a message.
@@ -43,12 +43,12 @@ pub fn undo(session: &mut Session, redo: bool) {
             }
             parts::name(session, part)
         }
-        Change::Edit(change) => {
-            if let Err(why) = edit::repeat(session, &change, redo) {
+        Change::Edit { edit, before } => {
+            if let Err(why) = super::edit::repeat(session, &edit, before.as_deref(), redo) {
                 session.history.step(!redo);
                 return session.readings.say(why);
             }
-            change.name.clone()
+            edit.name.clone()
         }
         Change::Knob {
             row,
