@@ -1,5 +1,5 @@
-//! Hovering: the shape of the pointer tells the effect of a press, and the particle, body or obstacle
-//! that a press would grab is highlighted.
+//! Hovering: the shape of the pointer tells the effect of a press, and the particle, body or
+//! obstacle that a press would take is highlighted.
 
 use egui::CursorIcon;
 
