@@ -41,8 +41,16 @@ pub enum PanelRequest {
     /// Remove the pane of a number.
     RemovePane(usize),
     /// Choose a tool.
+    #[cfg_attr(
+        target_arch = "wasm32",
+        allow(dead_code, reason = "the page has no tools")
+    )]
     Tool(Tool),
     /// Set a quantity of what the tools add.
+    #[cfg_attr(
+        target_arch = "wasm32",
+        allow(dead_code, reason = "the page has no tools")
+    )]
     SetMeasure(Measure, f64),
 }
 
