@@ -49,7 +49,7 @@ fn the_bar_does_what_keys_do() {
     app.press_for("Prior", "scene", "pendulum");
     app.press_for("Prior", "scene", "simple");
     app.press_for("Prior", "scene", "cloth");
-    still("1085", BAR);
+    still("1051", BAR);
     app.expect("panel", "true");
     app.press_for("Tab", "panel", "false");
     // A row of the help is a button, too; a click beside the help closes it.

@@ -229,7 +229,10 @@ fn others(session: &Session) -> Vec<Button> {
         } else {
             TEXT
         };
-        buttons.insert(2, Button { colour, ..edit });
+        // In a narrow bar it goes before the lessons.
+        let undo = buttons.iter().position(|it| it.face == "⮪");
+        let at = undo.unwrap_or(buttons.len() - 1);
+        buttons.insert(at, Button { colour, ..edit });
     }
     buttons
 }
