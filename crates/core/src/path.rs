@@ -244,6 +244,31 @@ impl Path {
         }
     }
 
+    /// Returns the same motion elsewhere, displaced by a vector (m).
+    #[must_use]
+    pub fn moved(mut self, by: Vector3<f64>) -> Self {
+        match &mut self {
+            Self::Still(position) => *position += by,
+            Self::Sine { center, .. } => *center += by,
+            Self::Line { from, to, .. } | Self::Turn { from, to, .. } => {
+                *from += by;
+                *to += by;
+            }
+        }
+        self
+    }
+
+    /// Whether the point is at rest at time t (s) and ever after.
+    #[must_use]
+    pub fn is_still_from(&self, t: f64) -> bool {
+        match self {
+            Self::Still(_) => true,
+            Self::Sine { .. } => false,
+            Self::Line { end, .. } => t >= *end,
+            Self::Turn { turn, end, .. } => t >= *end && turn.end.is_some_and(|end| t >= end),
+        }
+    }
+
     /// Returns the length (m) of the motion: its amplitude, or the distance of its ends.
     pub(crate) fn length(&self) -> f64 {
         match *self {

@@ -60,13 +60,12 @@ impl Renderer {
         self.prepared = 0;
     }
 
-    /// Replaces the topology of picture k only, for cloth that is torn in it. The particles must be
-    /// the same.
-    ///
-    /// # Panics
-    /// Panics if the number of particles differs.
+    /// Replaces the topology of picture k only, for cloth that is torn in it. If the number of
+    /// particles differs, that of all pictures is replaced.
     pub fn set_topology_of(&mut self, gpu: &Gpu, k: usize, topology: &Topology) {
-        assert_eq!(topology.points, self.mesh.points, "particles of a scene");
+        if topology.points != self.mesh.points {
+            self.set_topology(gpu, topology);
+        }
         while self.views.len() <= k {
             self.views.push(View::new(gpu, &self.layout, &self.mesh));
         }

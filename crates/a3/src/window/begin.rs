@@ -113,6 +113,7 @@ fn origin(request: Request, limits: StepLimits) -> Origin {
         source: request.source,
         grid: request.options.grid,
         limits,
+        edited: false,
     }
 }
 

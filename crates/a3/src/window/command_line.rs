@@ -126,7 +126,9 @@ fn recreates(words: &[String], session: &Session) -> bool {
         begun.is_ok_and(|begun| begun == made.moment())
     };
     let mut pairs = session.runs.panes.iter().zip(&made.runs.panes);
+    let described = |session: &Session| session.scenes.shown.source.description.clone();
     panel::tuned(session).is_empty()
+        && (!session.scenes.shown.edited || described(session) == described(&made))
         && session.view.camera.shows_as(&made.view.camera)
         && pairs.all(|(now, made)| begins_alike(&now.simulation, &made.simulation))
 }

@@ -11,6 +11,7 @@ use crate::window::session::Session;
 /// Saves the run of pane `at` under the first free name, in the folder of its scene file if it has
 /// one, and returns the path. Fails if the file cannot be written.
 pub fn save(session: &mut Session, at: usize) -> Result<PathBuf, Failure> {
+    check_unedited(session)?;
     let run = &session.runs.panes[at.min(session.runs.panes.len() - 1)].simulation;
     let origin = &session.scenes.shown;
     let folder = origin.source.path.as_deref().and_then(Path::parent);
@@ -30,6 +31,7 @@ pub fn load(session: &mut Session, path: &Path) -> Result<(), Failure> {
             "a checkpoint holds one run, so it cannot be loaded into a comparison",
         ));
     }
+    check_unedited(session)?;
     let kept = Kept::read(path)?;
     let origin = &session.scenes.shown;
     kept.check(path, &origin.source, origin.grid, session.runs.first())?;
@@ -38,6 +40,15 @@ pub fn load(session: &mut Session, path: &Path) -> Result<(), Failure> {
     let taken = session.restore(&kept.checkpoint);
     taken.map_err(|why| Failure::usage(format!("{}: {why}", path.display())))?;
     session.scenes.checkpoint = Some(path.into());
+    Ok(())
+}
+
+/// Checks that the scene was not edited: a checkpoint holds no scene.
+fn check_unedited(session: &Session) -> Result<(), Failure> {
+    if session.scenes.shown.edited {
+        let why = "a checkpoint holds no edited scene: write this one by key f, or undo the edits";
+        return Err(Failure::usage(why));
+    }
     Ok(())
 }
 

@@ -12,6 +12,7 @@ mod bar;
 mod choosing;
 mod comparing;
 mod display;
+mod editing;
 mod filming;
 mod keys;
 mod lessons;

@@ -1,6 +1,7 @@
 //! Scenes as text: reading and writing them, building them, and their faults.
 
 mod building;
+mod edits;
 mod faults;
 mod fluids;
 mod joints;

@@ -15,6 +15,7 @@ mod picture;
 mod pull;
 mod quantity;
 mod springs;
+mod tanks;
 mod trail;
 mod vectors;
 mod view;

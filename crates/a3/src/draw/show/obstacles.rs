@@ -169,22 +169,59 @@ pub fn meridians(network: &Network, time: f64) -> impl Iterator<Item = Line> {
     turning.flat_map(move |(radius, axis, pose)| great_circles(share * radius, axis, pose, INK))
 }
 
-/// Returns great circles around a sphere among the obstacles, in a colour.
-pub fn rings(
-    network: &Network,
-    k: usize,
-    time: f64,
-    color: [f32; 4],
-) -> impl Iterator<Item = Line> {
+/// Returns lines around an obstacle, by its number, in a colour: great circles of round ones, and
+/// else the edges of a box around it.
+pub fn outline(network: &Network, k: usize, time: f64, color: [f32; 4]) -> Vec<Line> {
     let share = f64::from(drawn_radius(network));
-    let sphere = network.obstacles().get(k).and_then(|obstacle| {
-        let Shape::Sphere { radius } = obstacle.shape else {
-            return None;
-        };
-        Some((share * radius, obstacle.at(time)))
-    });
-    let rings = move |(radius, pose)| great_circles(radius, Vector3::y(), pose, color);
-    sphere.into_iter().flat_map(rings)
+    let Some(obstacle) = network.obstacles().get(k) else {
+        return vec![];
+    };
+    let pose = obstacle.at(time);
+    match &obstacle.shape {
+        Shape::Floor => vec![],
+        Shape::Sphere { radius } => {
+            great_circles(share * radius, Vector3::y(), pose, color).collect()
+        }
+        Shape::Capsule { ends, radius } => {
+            let axis = (ends[1] - ends[0]).try_normalize(0.0);
+            let axis = axis.unwrap_or(Vector3::y());
+            let circles = ends.iter().flat_map(|end| {
+                let place = pose.of(*end);
+                great_circles(share * radius, axis, Pose { place, ..pose }, color)
+            });
+            circles.collect()
+        }
+        &Shape::Box { half_extents, axes } => box_edges(Vector3::zeros(), half_extents, axes, pose)
+            .map(|[a, b]| Line::new(a, b, 1.6, color))
+            .collect(),
+        Shape::Mesh(mesh) => {
+            let corners = mesh.points();
+            let low = corners.iter().fold(corners[0], |low, point| low.inf(point));
+            let high = corners.iter().fold(low, |high, point| high.sup(point));
+            let axes = [Vector3::x(), Vector3::y(), Vector3::z()];
+            box_edges(0.5 * (low + high), 0.5 * (high - low), axes, pose)
+                .map(|[a, b]| Line::new(a, b, 1.6, color))
+                .collect()
+        }
+    }
+}
+
+/// Returns the ends of the edges of a box around a point of a body (m).
+fn box_edges(
+    middle: Vector3<f64>,
+    half_extents: Vector3<f64>,
+    axes: [Vector3<f64>; 3],
+    pose: Pose,
+) -> impl Iterator<Item = [[f32; 3]; 2]> {
+    let corner = move |k: usize| {
+        let along = |axis: usize| if k >> axis & 1 == 1 { 1.002 } else { -1.002 };
+        let arm = (0..3).map(|axis| axes[axis] * (along(axis) * half_extents[axis]));
+        to_f32(pose.of(middle + arm.sum::<Vector3<f64>>()).position)
+    };
+    (0..3).flat_map(move |axis| {
+        let from = (0..8).filter(move |k| k >> axis & 1 == 0);
+        from.map(move |k| [corner(k), corner(k | 1 << axis)])
+    })
 }
 
 /// Returns three great circles through the poles of a sphere.

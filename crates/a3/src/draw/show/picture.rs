@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use a3_core::{Network, Simulation, SpringKind, Vector3};
 use a3_render::{Ball, Camera, Floor, Line, Picture, Solid, Style, Topology};
-use a3_scenes::{Presentation, TANK_LAYERS};
+use a3_scenes::Presentation;
 
 use super::arrows::Field;
 use super::coil::coil;
@@ -17,7 +17,7 @@ use super::pull::pull;
 use super::springs::{KINDS, has_springs, kind_look, springs_of};
 use super::trail::Trail;
 use super::vectors::to_f32;
-use super::{bodies, ground, obstacles, view, wires};
+use super::{bodies, ground, obstacles, tanks, view, wires};
 
 /// Largest number of springs or particles without a surface that are drawn as coils and balls. More
 /// of them are drawn as lines and small balls, because a coil has 170 lines.
@@ -46,6 +46,8 @@ pub struct Show {
     pub hovered: Option<Target>,
     /// Point to which the mouse pulls (m).
     pub hand: Option<Vector3<f64>>,
+    /// A particle, and the point (m) to which a line from it is drawn.
+    pub joining: Option<(usize, Vector3<f64>)>,
     /// Path of the particle that leaves a trail.
     trail: Trail,
     parts: Parts,
@@ -78,6 +80,7 @@ impl Show {
             orthographic: manner.orthographic,
             hovered: None,
             hand: None,
+            joining: None,
             trail: Trail::default(),
             parts: Parts::default(),
             points: vec![],
@@ -162,6 +165,12 @@ impl Show {
         }
     }
 
+    /// Returns the height of the floor or the ground in the picture composed last (m).
+    #[cfg(not(target_arch = "wasm32"))]
+    pub fn ground(&self) -> Option<f64> {
+        self.floor.as_ref().map(|floor| f64::from(floor.height))
+    }
+
     /// Composes the picture of the present state of the run.
     pub fn compose(&mut self, simulation: &Simulation) {
         let n = simulation.particles();
@@ -208,6 +217,11 @@ impl Show {
             self.draw_springs_of(simulation, i);
         }
         self.highlight(simulation);
+        if let Some((i, to)) = self.joining.filter(|(i, _)| *i < n) {
+            self.ball(i, 0.055, AMBER);
+            let line = Line::new(self.at(i), to_f32(to), 3.0, AMBER);
+            self.lines.push(line);
+        }
         if let Some(i) = simulation.grabbed() {
             self.ball(i, 0.055, AMBER);
             if let Some((line, ball)) = self
@@ -330,41 +344,14 @@ impl Show {
         }
     }
 
-    /// Draws the edges of the space inside each tank, which is open at the top.
+    /// Draws the edges of the space inside each tank.
     fn draw_tanks(&mut self, simulation: &Simulation) {
         let fluid = simulation.model().network().and_then(Network::fluid);
-        let Some(spacing) = fluid.map(|fluid| fluid.law().spacing as f32) else {
-            return;
-        };
-        for tank in &self.presentation.tanks {
-            let points = self.points[tank.clone()]
-                .iter()
-                .map(|[x, y, z, _]| [*x, *y, *z]);
-            let (mut low, mut high) = ([f32::INFINITY; 3], [f32::NEG_INFINITY; 3]);
-            for point in points {
-                for axis in 0..3 {
-                    low[axis] = low[axis].min(point[axis]);
-                    high[axis] = high[axis].max(point[axis]);
-                }
-            }
-            // The walls are as thick as their layers; in two dimensions there are none across z.
-            let wall = (TANK_LAYERS as f32 - 0.5) * spacing;
-            for axis in 0..3 {
-                let flat = high[axis] - low[axis] < wall;
-                low[axis] += if flat { -0.5 * spacing } else { wall };
-                high[axis] += match axis {
-                    1 => 0.5 * spacing,
-                    _ if flat => 0.5 * spacing,
-                    _ => -wall,
-                };
-            }
-            let corner =
-                |k: usize| [0, 1, 2].map(|a| if k >> a & 1 == 1 { high[a] } else { low[a] });
-            for axis in 0..3 {
-                for from in (0..8).filter(|k| k >> axis & 1 == 0) {
-                    let ends = [from, from | 1 << axis].map(corner);
-                    self.lines.push(Line::new(ends[0], ends[1], 1.6, STEEL));
-                }
+        if let Some(fluid) = fluid {
+            let spacing = fluid.law().spacing as f32;
+            for tank in &self.presentation.tanks {
+                let walls = &self.points[tank.clone()];
+                self.lines.extend(tanks::edges(walls, spacing));
             }
         }
     }
@@ -377,8 +364,8 @@ impl Show {
                 self.ball(i, 0.045, AMBER);
             }
             (Some(Target::Obstacle(k)), Some(network)) => {
-                let rings = obstacles::rings(network, k, simulation.time(), AMBER);
-                self.lines.extend(rings);
+                let outline = obstacles::outline(network, k, simulation.time(), AMBER);
+                self.lines.extend(outline);
             }
             _ => {}
         }

@@ -1,4 +1,4 @@
-//! Rigid bodies as triangles.
+//! Rigid bodies and obstacles as triangles.
 
 use std::f64::consts::{PI, TAU};
 
@@ -19,6 +19,15 @@ pub struct Tessellation {
 }
 
 impl Tessellation {
+    /// Tessellates a shape at a place.
+    pub fn at(shape: &Shape, pose: &Pose) -> Self {
+        let mut placed = Self::of(shape);
+        for point in &mut placed.points {
+            *point = pose.of(*point).position;
+        }
+        placed
+    }
+
     fn of(shape: &Shape) -> Self {
         match shape {
             Shape::Sphere { radius } => capsule([Vector3::zeros(); 2], *radius),
@@ -111,13 +120,7 @@ pub fn placed<'a>(
     network: &'a Network,
     y: &'a [f64],
 ) -> impl Iterator<Item = (usize, Tessellation)> + 'a {
-    parts(network, y).map(|(k, part, pose)| {
-        let mut placed = Tessellation::of(&part.shape);
-        for point in &mut placed.points {
-            *point = pose.of(*point).position;
-        }
-        (k, placed)
-    })
+    parts(network, y).map(|(k, part, pose)| (k, Tessellation::at(&part.shape, &pose)))
 }
 
 /// Returns each part of each body, with the body's number and the place of the part in the state y.

@@ -1,10 +1,11 @@
-//! Hovering: the shape of the pointer tells the effect of a press, and the particle, body or sphere
-//! that a press would grab is highlighted.
+//! Hovering: the shape of the pointer tells the effect of a press, and the particle, body or
+//! obstacle that a press would take is highlighted.
 
 use egui::CursorIcon;
 
 use super::mouse::{Drag, Mouse};
 use super::screen::Screen;
+use super::tool;
 use crate::draw::show::Target;
 use crate::window::session::Session;
 
@@ -19,10 +20,18 @@ impl Mouse {
             Drag::Orbit => (CursorIcon::AllScroll, None),
             Drag::Pan => (CursorIcon::Move, None),
             Drag::Select { .. } | Drag::Rule => (CursorIcon::Crosshair, None),
+            Drag::Tool(_) => (
+                CursorIcon::Crosshair,
+                tool::target(pointer, session, screen, at),
+            ),
             Drag::None if !pointer.is_over_picture(session, screen) => (CursorIcon::Default, None),
             Drag::None if shift || session.panel.plotting.is_ruling() => {
                 (CursorIcon::Crosshair, None)
             }
+            Drag::None if session.panel.editor.open => (
+                CursorIcon::Crosshair,
+                tool::target(pointer, session, screen, at),
+            ),
             Drag::None => match pointer.hit(session, screen, at).map(|(target, _)| target) {
                 Some(target @ Target::Particle(_)) => (CursorIcon::Grab, Some(target)),
                 Some(target @ Target::Obstacle(_)) => (CursorIcon::Move, Some(target)),

@@ -18,6 +18,7 @@ pub fn action(key: &Key) -> Option<Action> {
         Key::Named(NamedKey::PageDown) => session::action("PgDn"),
         Key::Named(NamedKey::F1) => session::action("F1"),
         Key::Named(NamedKey::F3) => session::action("F3"),
+        Key::Named(NamedKey::F2) => session::action("F2"),
         Key::Character(text) if text == " " => session::action("Space"),
         Key::Character(text) if text.chars().count() == 1 => session::action(text),
         _ => None,
@@ -97,6 +98,7 @@ mod tests {
                     "PgDn" => Key::Named(NamedKey::PageDown),
                     "F1" => Key::Named(NamedKey::F1),
                     "F3" => Key::Named(NamedKey::F3),
+                    "F2" => Key::Named(NamedKey::F2),
                     key => Key::Character(key.into()),
                 };
                 assert_eq!(action(&typed), Some(binding.action));
@@ -108,7 +110,7 @@ mod tests {
         );
         assert_eq!(action(&Key::Character("10".into())), None);
         assert_eq!(action(&Key::Character("Tab".into())), None);
-        assert_eq!(action(&Key::Named(NamedKey::F2)), None);
+        assert_eq!(action(&Key::Named(NamedKey::F3)), None);
     }
 
     #[test]

@@ -23,6 +23,8 @@ mod start;
 mod state;
 mod status;
 mod thumbnails;
+#[cfg_attr(target_arch = "wasm32", path = "no_tool.rs")]
+mod tool;
 mod touch;
 #[cfg(not(target_arch = "wasm32"))]
 mod watch;

@@ -8,6 +8,7 @@ use winit::event::{MouseButton, MouseScrollDelta};
 use super::pick::Grip;
 use super::pointer::Pointer;
 use super::screen::Screen;
+use super::tool;
 use crate::draw::show::{self, Target};
 use crate::window::hud::plotting;
 use crate::window::session::{RulerEnd, Selection, Session, looks};
@@ -30,6 +31,8 @@ pub enum Drag {
     Pan,
     /// Move an end of the ruler.
     Rule,
+    /// Edit the scene by a click, or join a particle to another one by a drag.
+    Tool(Option<usize>),
     /// Pin or free the particles in a box between the corner `from` (px) and the pointer.
     Select { from: [f32; 2], pinned: bool },
 }
@@ -85,6 +88,11 @@ impl Mouse {
                 session.panel.plotting.begin_end(end);
                 Drag::Rule
             }
+            MouseButton::Left if session.panel.editor.open => {
+                let joins = session.panel.editor.tool.joins();
+                let particle = hit.and_then(|(target, _)| target.particle());
+                Drag::Tool(particle.filter(|_| joins))
+            }
             MouseButton::Left => {
                 if double {
                     let particle = hit.and_then(|(target, _)| target.particle());
@@ -118,14 +126,20 @@ impl Mouse {
         {
             session.toggle_pin(i);
         }
+        if let Drag::Tool(from) = self.drag {
+            tool::release(&self.pointer, from, session, screen, self.pane);
+        }
         self.finish(session, screen);
     }
 
     /// Ends the drag: pins or frees the particles in the box, and releases a grabbed particle or
-    /// sphere.
+    /// obstacle.
     pub fn finish(&mut self, session: &mut Session, screen: &Screen) {
         self.apply_selection(session, screen);
         session.release();
+        for pane in &mut session.runs.panes {
+            pane.show.joining = None;
+        }
         self.abort();
     }
 
@@ -211,6 +225,9 @@ impl Mouse {
         if self.pointer.is_click() && self.drag == Drag::Pan {
             return;
         }
+        if self.drag == Drag::Tool(None) && !self.pointer.is_click() {
+            self.drag = Drag::Orbit;
+        }
         let ([x, y], [was_x, was_y]) = (tile.place(position), tile.place(self.pointer.position));
         let (dx, dy, aspect) = (x - was_x, y - was_y, tile.aspect());
         self.pointer.position = position;
@@ -223,7 +240,8 @@ impl Mouse {
             Drag::Orbit => camera.orbit(-ORBIT_ANGLE * dx * aspect, ORBIT_ANGLE * dy),
             Drag::Pan => camera.pan(-dx * aspect, dy),
             Drag::Select { .. } => self.show_selection(session, screen),
-            Drag::Pull(_) | Drag::Rule | Drag::None => {}
+            Drag::Tool(Some(i)) => tool::drag(&self.pointer, i, session, screen, self.pane),
+            Drag::Pull(_) | Drag::Tool(None) | Drag::Rule | Drag::None => {}
         }
     }
 

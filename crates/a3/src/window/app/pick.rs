@@ -27,7 +27,7 @@ impl Grip {
     }
 }
 
-/// Returns the particle or the sphere under the pointer, the nearer one to the eye. On a surface,
+/// Returns the particle or the obstacle under the pointer, the nearer one to the eye. On a surface,
 /// the particle is the closest corner of the nearest triangle, and on a rigid body the closest of
 /// its particles. Elsewhere it is the closest one on the screen within `reach`, a share of the
 /// picture's height.
@@ -77,7 +77,7 @@ pub fn pick(
     // On a rigid body, take the nearest of its particles.
     let on_body = tessellation::placed(network, simulation.state())
         .filter_map(|(k, part)| {
-            let depth = depth_of(&part, camera, pointer, aspect)?;
+            let (depth, _) = meet_part(&part, camera, pointer, aspect)?;
             let body = &network.bodies()[k];
             let own = body.points().chain([body.center()]);
             let i = own.min_by(|a, b| near(a).total_cmp(&near(b)))?;
@@ -92,39 +92,84 @@ pub fn pick(
         let (at, distance) = places[i]?;
         Some((depth, Target::Particle(i), at, distance))
     });
-    let obstacles = network.obstacles().iter().enumerate();
-    let sphere = obstacles.filter_map(|(k, obstacle)| {
-        let Shape::Sphere { radius } = obstacle.shape else {
-            return None;
-        };
-        let c = obstacle.path.at(simulation.time()).position;
-        let c = [c.x as f32, c.y as f32, c.z as f32];
-        let (at, distance) = camera.project(c, aspect)?;
-        let surface = ball_hit(
-            camera,
-            pointer,
-            aspect,
-            c,
-            show::drawn_radius(network) * radius as f32,
-        )?;
-        let (_, depth) = camera.project(surface, aspect)?;
+    let obstacles = (0..network.obstacles().len()).filter_map(|k| {
+        let place = network.obstacles()[k].path.at(simulation.time()).position;
+        let (at, distance) = camera.project(to_f32(place), aspect)?;
+        let (depth, _) = meet_obstacle(simulation, k, camera, pointer, aspect)?;
         Some((depth, Target::Obstacle(k), at, distance))
     });
-    let (_, target, at, distance) = sphere.chain(particle).min_by(|a, b| a.0.total_cmp(&b.0))?;
+    let (_, target, at, distance) = obstacles
+        .chain(particle)
+        .min_by(|a, b| a.0.total_cmp(&b.0))?;
     let offset = [at[0] - pointer[0], at[1] - pointer[1]];
     Some((target, Grip { distance, offset }))
 }
 
+/// Returns the depth (m) at which the line of sight through the pointer first meets a surface, a
+/// rigid body or an obstacle, and the normal there.
+#[cfg(not(target_arch = "wasm32"))]
+pub fn meet(
+    simulation: &Simulation,
+    camera: &Camera,
+    pointer: [f32; 2],
+    aspect: f32,
+) -> Option<(f32, Vector3<f64>)> {
+    let network = simulation.model().network()?;
+    let points = (0..simulation.particles()).map(|i| simulation.position(i));
+    let surface = Tessellation {
+        points: points.collect(),
+        triangles: whole_triangles(simulation).collect(),
+    };
+    let bodies = tessellation::placed(network, simulation.state()).map(|(_, part)| part);
+    let parts = bodies.chain([surface]);
+    let parts = parts.filter_map(|part| meet_part(&part, camera, pointer, aspect));
+    let obstacles = 0..network.obstacles().len();
+    let obstacles = obstacles.filter_map(|k| meet_obstacle(simulation, k, camera, pointer, aspect));
+    parts.chain(obstacles).min_by(|a, b| a.0.total_cmp(&b.0))
+}
+
+/// Returns the depth (m) at which the line of sight through the pointer first meets obstacle k, and
+/// the normal there; `None` for a floor.
+fn meet_obstacle(
+    simulation: &Simulation,
+    k: usize,
+    camera: &Camera,
+    pointer: [f32; 2],
+    aspect: f32,
+) -> Option<(f32, Vector3<f64>)> {
+    let network = simulation.model().network()?;
+    let obstacle = network.obstacles().get(k)?;
+    let pose = obstacle.at(simulation.time());
+    match &obstacle.shape {
+        Shape::Floor => None,
+        Shape::Sphere { radius } => {
+            let center = pose.place.position;
+            let radius = show::drawn_radius(network) * *radius as f32;
+            let surface = ball_hit(camera, pointer, aspect, to_f32(center), radius)?;
+            let (_, depth) = camera.project(surface, aspect)?;
+            Some((depth, (Vector3::from(surface).cast() - center).normalize()))
+        }
+        shape => meet_part(&Tessellation::at(shape, &pose), camera, pointer, aspect),
+    }
+}
+
 /// Returns the depth (m) at which the line of sight through the pointer first meets a part of a
-/// body.
-fn depth_of(part: &Tessellation, camera: &Camera, pointer: [f32; 2], aspect: f32) -> Option<f32> {
-    let project = |p: &Vector3<f64>| camera.project(to_f32(*p), aspect);
-    let places: Vec<_> = part.points.iter().map(project).collect();
+/// body or an obstacle, and the normal there.
+fn meet_part(
+    part: &Tessellation,
+    camera: &Camera,
+    pointer: [f32; 2],
+    aspect: f32,
+) -> Option<(f32, Vector3<f64>)> {
+    let project = camera.projection(aspect);
+    let places: Vec<_> = part.points.iter().map(|p| project(to_f32(*p))).collect();
     let hits = part.triangles.iter().filter_map(|corners| {
         let [a, b, c] = corners.map(|i| places[i as usize]);
-        depth_in(pointer, [a?, b?, c?])
+        Some((depth_in(pointer, [a?, b?, c?])?, corners))
     });
-    hits.min_by(f32::total_cmp)
+    let (depth, corners) = hits.min_by(|a, b| a.0.total_cmp(&b.0))?;
+    let [a, b, c] = corners.map(|i| part.points[i as usize]);
+    Some((depth, (b - a).cross(&(c - a)).normalize()))
 }
 
 /// Returns the depth (m) of a triangle at the pointer, if that is inside. The triangle is given by

@@ -201,6 +201,7 @@ impl App {
         let (session, graphics) = (&mut self.session, self.screen.graphics.as_ref());
         let message = match action {
             WindowAction::Quit if std::mem::take(&mut session.readings.help) => None,
+            WindowAction::Quit if std::mem::take(&mut session.panel.editor.open) => None,
             WindowAction::Quit if std::mem::take(&mut session.measuring.open) => None,
             WindowAction::Quit if session.panel.plotting.ruler.take().is_some() => None,
             WindowAction::Quit if std::mem::take(&mut session.panel.plotting.open) => None,

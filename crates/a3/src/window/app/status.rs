@@ -31,7 +31,7 @@ impl Status {
         let run = session.runs.first();
         let readings = &session.readings;
         let panes = &session.runs.panes;
-        let grabbed = run.grabbed().map_or("-".into(), |i| i.to_string());
+        let grabbed = number(run.grabbed());
         // Position of the grabbed particle in the window (px).
         let place = |pane: &Pane, tile: Tile| {
             let p = pane.simulation.position(pane.simulation.grabbed()?);
@@ -50,7 +50,7 @@ impl Status {
             values.join(",")
         };
         let state = format!(
-            "scene={} solver={} step={} style={:?} wind={} swing={} paused={} help={} asks={} hint={} panel={} measure={} known={} lesson={} plots={} list={} film={} cursor={cursor:?} followed={} parallel={} scale={} dark={} blown={} grabbed={grabbed} \
+            "scene={} solver={} step={} style={:?} wind={} swing={} paused={} help={} asks={} hint={} panel={} measure={} known={} lesson={} plots={} list={} film={} cursor={cursor:?} followed={} parallel={} scale={} dark={} tools={} particles={} blown={} grabbed={grabbed} \
              colour={} arrows={} slowness={} scrubbed={} pins={} springs_of={} size={}x{} visible={} devices={}",
             run.scene().name,
             run.method().name,
@@ -69,23 +69,19 @@ impl Status {
             plots(session),
             session.list.is_some(),
             readings.film.is_some(),
-            session
-                .view
-                .followed()
-                .map_or("-".into(), |i| i.to_string()),
+            number(session.view.followed()),
             session.view.camera.is_parallel(),
             graphics.scale(),
             panes[0].show.dark,
+            session.panel.editor.open,
+            run.particles(),
             run.blow_up().is_some(),
             panes[0].show.colouring.quantity.map_or("-", Quantity::name),
             panes[0].show.field.arrows.map_or("-", Arrows::name),
             readings.slowness,
             readings.rewound(),
             run.model().network().map_or(0, |n| n.pins().count()),
-            panes[0]
-                .show
-                .springs_of
-                .map_or("-".into(), |i| i.to_string()),
+            number(panes[0].show.springs_of),
             graphics.size().0,
             graphics.size().1,
             screen.visible,
@@ -126,6 +122,11 @@ impl Status {
         self.state = state;
         self.said = Some(now);
     }
+}
+
+/// Returns the number of a particle, or `-`.
+fn number(particle: Option<usize>) -> String {
+    particle.map_or("-".into(), |i| i.to_string())
 }
 
 /// Returns the lesson and the step that are shown, as in `1.2`, and `list` for the list of lessons.

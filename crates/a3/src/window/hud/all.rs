@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use egui::{Context, TextureId};
 
 use super::panel::{self, Request};
-use super::{bar, hint, lessons, list, measure, pane_buttons, plotting, text};
+use super::{bar, edit, hint, lessons, list, measure, pane_buttons, plotting, text};
 use crate::window::session::Session;
 
 /// Draws text, panel, bar and the open list, with `pictures` of scenes by their names. Returns the
@@ -25,6 +25,7 @@ pub fn show_all(
     let on_panes = pane_buttons::show(ctx, session);
     let on_lessons = lessons::show(ctx, session).map(Request::Learn);
     let on_plots = plotting::show(ctx, session).map(Request::Plot);
+    let on_tools = edit::show(ctx, session).map(Request::Change);
     let on_bar = bar::show(ctx, session);
     let on_list = list::show(ctx, session, pictures).map(Request::Change);
     on_list
@@ -35,5 +36,6 @@ pub fn show_all(
         .or(on_plots)
         .or(on_panes)
         .or(on_offer)
+        .or(on_tools)
         .or(on_text)
 }

@@ -207,10 +207,18 @@ fn others(session: &Session) -> Vec<Button> {
         "Help, and everything else (h)",
         run(RunAction::Help),
     ));
+    // A page edits no scenes.
+    if !cfg!(target_arch = "wasm32") && first.model().network().is_some() {
+        let edit = Button::new("✏", "Throw, add, join, delete (F2)", run(RunAction::Edit));
+        // In a narrow bar it goes before the lessons.
+        let undo = buttons.iter().position(|it| it.face == "⮪");
+        buttons.insert(undo.unwrap_or(buttons.len() - 1), edit);
+    }
     for button in &mut buttons {
         let is_open = match button.action {
             Action::Run(RunAction::Measure) => session.measuring.open,
             Action::Run(RunAction::Panel) => session.panel.open,
+            Action::Run(RunAction::Edit) => session.panel.editor.open,
             _ => false,
         };
         if is_open {

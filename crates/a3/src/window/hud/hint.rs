@@ -10,7 +10,11 @@ use crate::window::session::Session;
 /// Writes the hint below the body of the first pane, until something was pulled for the first time.
 pub fn show(ctx: &Context, session: &Session) {
     let (run, readings) = (session.runs.first(), &session.readings);
-    let hidden = session.pulled || readings.paused || readings.help || session.list.is_some();
+    let hidden = session.pulled
+        || session.panel.editor.open
+        || readings.paused
+        || readings.help
+        || session.list.is_some();
     let Some(network) = run.model().network().filter(|_| !hidden) else {
         return;
     };

@@ -10,6 +10,8 @@ mod caption;
 #[cfg(not(target_arch = "wasm32"))]
 mod charts;
 mod docked;
+#[cfg_attr(target_arch = "wasm32", path = "no_edit.rs")]
+pub mod edit;
 mod help;
 mod hint;
 pub mod layout;

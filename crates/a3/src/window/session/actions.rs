@@ -53,6 +53,8 @@ pub enum RunAction {
     Lessons,
     /// Show plots of what is picked, or hide them.
     Plots,
+    /// Show the tools that edit the scene, or hide them.
+    Edit,
     WriteScene,
     Help,
 }

@@ -103,6 +103,18 @@ impl Session {
             RunAction::Panel | RunAction::Measure | RunAction::Lessons | RunAction::Plots => {
                 self.toggle_beside(action);
             }
+            RunAction::Edit if cfg!(target_arch = "wasm32") => {
+                self.readings.say("Only the program edits scenes.");
+            }
+            RunAction::Edit if self.runs.first().model().network().is_none() => {
+                let why = "Only scenes of masses can be edited.";
+                self.readings.say(why);
+            }
+            RunAction::Edit => {
+                self.panel.editor.toggle(&self.runs);
+                self.readings.help = false;
+                self.list = None;
+            }
             RunAction::WriteScene => {
                 let pane = &self.runs.panes[at.min(self.runs.panes.len() - 1)];
                 let said = match save::write_scene(self, &pane.simulation) {
@@ -383,6 +395,7 @@ impl Session {
                 self.effects.forget();
                 self.measuring.forget();
                 self.readings.left_out.clear();
+                self.panel.editor.forget(&self.runs);
                 self.view.stop_following();
                 self.history.clear();
                 self.readings.read_reference(self.runs.reference.as_ref());

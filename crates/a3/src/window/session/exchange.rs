@@ -1,21 +1,27 @@
-//! Exchange of the scene of all runs for one without some of its parts, while the motion goes on.
+//! Exchange of the scene of all runs for one without some of its parts, or with others, while the
+//! motion goes on.
 
 use std::collections::HashSet;
 use std::sync::Arc;
 
 use a3_core::contact::Shape;
 use a3_core::{Checkpoint, Error, Network, Path, Scene, Simulation};
-use a3_scenes::{Part, PartChange, Presentation};
+use a3_scenes::{Part, PartChange, Presentation, Splice};
 
+use super::origin::Origin;
 use super::pane::Pane;
+use super::passage::Passage;
 use super::state::Session;
 use super::tuning::Tuning;
 
-/// The runs and the tuning before an exchange.
+/// The runs, their scene and its tuning before an exchange.
 pub struct Former {
     simulations: Vec<Simulation>,
     presentation: Arc<Presentation>,
     tuning: Tuning,
+    origin: Origin,
+    /// How the exchange back to them numbers particles.
+    particles: Splice,
 }
 
 /// An obstacle in the whole scene: its kind, as in [`PartChange::Obstacle`], and its number among
@@ -26,6 +32,36 @@ type ObstacleId = (usize, usize);
 /// state, the time, pins, hands, wind, swing and self-collision stay. The timeline begins again.
 /// Fails, and changes nothing, if a run has diverged, or if there is no such scene for its solver.
 pub fn leave_out(session: &mut Session, left_out: Vec<usize>) -> Result<Former, String> {
+    let (origin, parts) = (session.scenes.shown.clone(), session.tuning.parts.clone());
+    let passage = Passage::default();
+    go_on(session, origin, (parts, left_out), (&passage, &[]))
+}
+
+/// Continues all runs, as [`leave_out`] does, in an edited scene, without the same parts as before;
+/// or from their states `then` in that scene, the last of which is for all further runs.
+pub fn edit(
+    session: &mut Session,
+    origin: Origin,
+    passage: &Passage,
+    then: &[Checkpoint],
+) -> Result<Former, String> {
+    let whole = origin.build().map_err(|error| error.to_string())?;
+    let parts = origin.parts(&whole.scene);
+    let tuning = &session.tuning;
+    let names = tuning.left_out.iter().map(|k| &tuning.parts[*k].name);
+    let left_out = names.filter_map(|name| parts.iter().position(|part| part.name == *name));
+    let parts = (parts.clone(), left_out.collect());
+    session.release();
+    go_on(session, origin, parts, (passage, then))
+}
+
+/// Continues all runs in a scene, without some of its parts.
+fn go_on(
+    session: &mut Session,
+    origin: Origin,
+    (parts, left_out): (Vec<Part>, Vec<usize>),
+    (passage, then): (&Passage, &[Checkpoint]),
+) -> Result<Former, String> {
     if !session.runs.panes.iter().all(Pane::alive) {
         return Err("A run has blown up: reset it (key r) before you change its parts.".into());
     }
@@ -33,12 +69,13 @@ pub fn leave_out(session: &mut Session, left_out: Vec<usize>) -> Result<Former, 
         session.release();
     }
     session.runs.align();
-    let tuning = &session.tuning;
-    let parts: Vec<&Part> = left_out.iter().map(|k| &tuning.parts[*k]).collect();
-    let built = session.scenes.shown.build_without(&parts);
+    let without: Vec<&Part> = left_out.iter().map(|k| &parts[*k]).collect();
+    let built = origin.build_without(&without);
     let setup = built.map_err(|error| error.to_string())?;
+    let tuning = &session.tuning;
     let next = Tuning {
         own: setup.scene.clone(),
+        parts,
         left_out,
         parked: vec![],
         stiffness: 1.0,
@@ -47,13 +84,18 @@ pub fn leave_out(session: &mut Session, left_out: Vec<usize>) -> Result<Former, 
         ..tuning.clone()
     };
     let changes = [tuning.changes(), next.changes()];
-    let runs = session.runs.all();
-    let runs = runs.map(|run| continued(run, &setup.scene, &changes));
+    let runs = session.runs.all().enumerate();
+    let runs = runs.map(|(k, run)| {
+        let then = then.get(k).or(then.last());
+        continued(run, &setup.scene, &changes, (passage, then))
+    });
     let simulations: Result<Vec<_>, String> = runs.collect();
     let next = Former {
         simulations: simulations?,
         presentation: setup.presentation,
         tuning: next,
+        origin,
+        particles: passage.particles,
     };
     Ok(exchange(session, next))
 }
@@ -63,19 +105,21 @@ pub fn go_back(session: &mut Session, former: Former) {
     exchange(session, former);
 }
 
-/// Exchanges the runs and the tuning for others, and returns the former ones.
+/// Exchanges the runs, their scene and its tuning for others, and returns the former ones.
 fn exchange(session: &mut Session, next: Former) -> Former {
     let presentation = session.runs.panes[0].show.presentation.clone();
     let runs = &mut session.runs;
     let mut next_runs = next.simulations.into_iter();
     let mut simulations = vec![];
     for (pane, run) in runs.panes.iter_mut().zip(next_runs.by_ref()) {
-        simulations.push(pane.exchange(run, &next.presentation));
+        simulations.push(pane.exchange(run, &next.presentation, next.particles));
     }
     for (reference, run) in runs.reference.iter_mut().zip(next_runs) {
         simulations.push(reference.exchange(run));
     }
+    session.view.renumber(next.particles);
     let tuning = std::mem::replace(&mut session.tuning, next.tuning);
+    let origin = std::mem::replace(&mut session.scenes.shown, next.origin);
     let parts = &session.tuning.parts;
     let names = session
         .tuning
@@ -88,17 +132,20 @@ fn exchange(session: &mut Session, next: Former) -> Former {
         simulations,
         presentation,
         tuning,
+        origin,
+        particles: next.particles.back(),
     }
 }
 
-/// Creates a run that continues another one in a scene without some parts. `changes` are those of
+/// Creates a run that continues another one in a scene with other parts. `changes` are those of
 /// the parts that are left out before and afterwards.
 fn continued(
     run: &Simulation,
     scene: &Scene,
     changes: &[Vec<PartChange>; 2],
+    (passage, then): (&Passage, Option<&Checkpoint>),
 ) -> Result<Simulation, String> {
-    if scene.state.len() != run.state().len() {
+    if !passage.fits(run.state().len(), scene) {
         return Err("Without this part, the scene has other particles.".into());
     }
     let scene = Scene {
@@ -109,7 +156,14 @@ fn continued(
     let go_on = || -> Result<Simulation, Error> {
         let mut next = Simulation::new(scene, method, control)?;
         let mut moment = run.moment();
-        fit(&mut moment, run, &next, changes);
+        if let Some(then) = then {
+            moment = then.clone();
+            let (time, state) = (moment.time(), &mut moment.run);
+            (state.method, state.control) = (method, control);
+            (state.since, state.taken, state.shown) = (time, 0, None);
+        } else {
+            fit(&mut moment, run, &next, changes, passage);
+        }
         next.restore(&moment)?;
         // The energy of a part that comes or goes is no gain of the solver.
         next.set_method(method, control)?;
@@ -125,24 +179,25 @@ fn fit(
     run: &Simulation,
     next: &Simulation,
     [before, after]: &[Vec<PartChange>; 2],
+    passage: &Passage,
 ) {
     let (Some(old), Some(new)) = (run.model().network(), next.model().network()) else {
         return;
     };
-    let known = ids(old, before);
+    let known = obstacle_ids(old, before);
     let path_of = |id: ObstacleId| -> Option<Path> {
         let (k, _) = known.iter().find(|(_, known)| *known == id)?;
         Some(old.obstacles()[*k].path)
     };
-    let obstacles = ids(new, after).into_iter();
+    let obstacles = obstacle_ids(new, after).into_iter();
     moment.obstacles = obstacles
         .map(|(k, id)| (k, path_of(id).unwrap_or(new.obstacles()[k].path)))
         .collect();
+    passage.take(moment, run, next);
     if !moment.torn.is_empty() {
-        let ends = new
-            .all_springs()
-            .map(|spring| [spring.i.min(spring.j), spring.i.max(spring.j)]);
-        let there: HashSet<_> = ends.collect();
+        let whole = new.all_springs();
+        let ends = whole.map(|spring| [spring.i.min(spring.j), spring.i.max(spring.j)]);
+        let there: HashSet<_> = ends.chain(new.torn().iter().copied()).collect();
         moment.torn.retain(|ends| there.contains(ends));
     }
     moment.wind = next.scene().wind.filter(|_| moment.wind.is_some());
@@ -151,7 +206,7 @@ fn fit(
 
 /// Returns the indices of the obstacles of a network, except floors, with their places in the
 /// whole scene. The obstacles of a kind are in the order of the scene.
-fn ids(network: &Network, left_out: &[PartChange]) -> Vec<(usize, ObstacleId)> {
+pub fn obstacle_ids(network: &Network, left_out: &[PartChange]) -> Vec<(usize, ObstacleId)> {
     let mut next = [0; 4];
     let obstacles = network.obstacles().iter().enumerate();
     obstacles

@@ -61,7 +61,7 @@ impl Runs {
 
     /// Advances several panes to exactly the same time, by a shortened step if need be, so that an
     /// interaction starts at the same time in all.
-    pub(super) fn align(&mut self) {
+    pub fn align(&mut self) {
         if self.panes.len() < 2 {
             return;
         }
@@ -111,7 +111,7 @@ impl Runs {
         grabbed
     }
 
-    /// Grabs the sphere that is obstacle k in every run, and returns whether any run allowed it.
+    /// Grabs obstacle k in every run, and returns whether any run allowed it.
     pub fn grab_obstacle(&mut self, k: usize) -> bool {
         self.align();
         self.pushed = self.obstacle_path(k).map(|path| (k, path));
@@ -122,7 +122,7 @@ impl Runs {
         grabbed
     }
 
-    /// Pulls the grabbed particle or sphere towards the same point (m) in every run.
+    /// Pulls the grabbed particle or obstacle towards the same point (m) in every run.
     pub fn pull(&mut self, target: Vector3<f64>) {
         self.running().for_each(|run| {
             run.pull(target);
@@ -133,7 +133,7 @@ impl Runs {
         }
     }
 
-    /// Releases the grabbed particle or sphere. Returns the push of a sphere, if it moved it.
+    /// Releases the grabbed particle or obstacle. Returns the push of an obstacle, if it moved it.
     pub(super) fn release(&mut self) -> Option<Change> {
         let held = |run: &Simulation| run.grabbed().is_some() || run.grabbed_obstacle().is_some();
         if self.running().any(|run| held(run)) {
@@ -146,8 +146,17 @@ impl Runs {
         self.hide_hand();
         let (obstacle, from) = self.pushed.take()?;
         let now = self.first().time();
-        let to = self.obstacle_path(obstacle)?;
-        (to.at(now).position != from.at(now).position).then(|| Change::Push {
+        let mut to = self.obstacle_path(obstacle)?;
+        let way = to.at(now).position - from.at(now).position;
+        if !from.is_still_from(now) {
+            // It goes on moving as before, about its new place.
+            to = from.moved(way);
+            for run in self.all_mut() {
+                // The obstacle exists, because it was pushed.
+                let _ = run.set_obstacle_path(obstacle, to);
+            }
+        }
+        (way != Vector3::zeros()).then(|| Change::Push {
             obstacle,
             paths: Box::new([from, to]),
         })

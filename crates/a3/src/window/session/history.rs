@@ -5,6 +5,9 @@ use web_time::{Duration, Instant};
 
 use a3_core::{Checkpoint, Path};
 
+use super::origin::Origin;
+use super::passage::Passage;
+
 /// Largest number of changes in the history.
 const MAX_CHANGES: usize = 200;
 /// Largest number of the latest changes whose states are kept.
@@ -36,6 +39,34 @@ pub enum Change {
     },
     /// A part of the scene was left out, or brought back: its index, and whether it is in since.
     Part { part: usize, is_in: bool },
+    /// The scene was edited. If something was deleted, `before` are the states of all runs at that
+    /// time, while they are kept.
+    Edit {
+        edit: Arc<EditChange>,
+        before: Option<Arc<[Checkpoint]>>,
+    },
+}
+
+/// An edit of the scene, as a change that can be undone.
+pub struct EditChange {
+    /// What was done, in words.
+    pub name: String,
+    /// The scene before the edit, and after it.
+    pub origins: [Origin; 2],
+    /// Passages of the runs back to the scene before the edit, and to the one after it.
+    pub passages: [Passage; 2],
+}
+
+impl PartialEq for EditChange {
+    fn eq(&self, other: &Self) -> bool {
+        (&self.name, &self.passages) == (&other.name, &other.passages)
+    }
+}
+
+impl std::fmt::Debug for EditChange {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(&self.name)
+    }
 }
 
 /// Changes that were made, and those that were undone, the latest last.
@@ -73,6 +104,7 @@ impl History {
         }
         self.done.push(change);
         self.forget_states(MAX_STATES);
+        self.forget_deletions();
         if self.done.len() > MAX_CHANGES {
             self.done.remove(0);
         }
@@ -109,6 +141,19 @@ impl History {
                 *before = None;
             }
         }
+    }
+
+    /// Forgets the states before all but the latest deletions.
+    fn forget_deletions(&mut self) {
+        let states = self
+            .done
+            .iter_mut()
+            .rev()
+            .filter_map(|change| match change {
+                Change::Edit { before, .. } => before.is_some().then_some(before),
+                _ => None,
+            });
+        states.skip(MAX_STATES).for_each(|before| *before = None);
     }
 
     /// Clears the history.

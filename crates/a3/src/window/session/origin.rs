@@ -1,7 +1,9 @@
 //! The origin of a scene: its source and the options that change it.
 
-use a3_core::{Grid, Scene, StepLimits};
-use a3_scenes::{Description, Part, PartChange, Setup, parts, without};
+use std::collections::HashSet;
+
+use a3_core::{Grid, Network, Scene, StepLimits};
+use a3_scenes::{Description, Edit, Part, PartChange, Setup, Splice, parts, without};
 
 use crate::base::input_error::InputError;
 use crate::files::scene_file::Source;
@@ -15,6 +17,8 @@ pub struct Origin {
     pub grid: Option<Grid>,
     /// Limits of adaptive steps, where they differ from the scene's own.
     pub limits: StepLimits,
+    /// Whether the scene was edited in the window.
+    pub edited: bool,
 }
 
 impl Origin {
@@ -29,7 +33,21 @@ impl Origin {
             source,
             grid: None,
             limits: StepLimits::default(),
+            edited: false,
         }
+    }
+
+    /// Edits the scene, whose network is `network`. Returns the edited scene, and how its particles
+    /// and its rigid bodies are numbered. Fails if the scene does not allow that.
+    pub fn edit(&self, edit: &Edit, network: &Network) -> Result<(Self, [Splice; 2]), String> {
+        let edited = edit.apply(&self.with_grid(), network)?;
+        let origin = Self {
+            source: self.source.described(edited.description),
+            grid: None,
+            limits: self.limits,
+            edited: true,
+        };
+        Ok((origin, [edited.particles, edited.bodies]))
     }
 
     /// Builds the scene. Fails if its description is invalid.
@@ -53,12 +71,25 @@ impl Origin {
         if parts.is_empty() {
             return self.build();
         }
-        let reduced = Self {
-            source: self.source.described(self.described_without(parts)),
+        let reduced = |description: Description| Self {
+            source: self.source.described(description),
             grid: None,
-            limits: self.limits,
+            ..self.clone()
         };
-        reduced.build()
+        let mut description = self.described_without(parts);
+        if !description.torn.is_empty() {
+            // Springs that are left out cannot be torn.
+            let torn = std::mem::take(&mut description.torn);
+            let whole = reduced(description.clone()).build()?.scene;
+            let springs = whole.model.network().into_iter();
+            let ends = springs
+                .flat_map(Network::all_springs)
+                .map(|it| [it.i, it.j]);
+            let there: HashSet<_> = ends.flat_map(|[i, j]| [[i, j], [j, i]]).collect();
+            description.torn = torn;
+            description.torn.retain(|ends| there.contains(ends));
+        }
+        reduced(description).build()
     }
 
     /// Describes the scene with its grid, without some of its [`parts`](Self::parts).
@@ -75,14 +106,20 @@ impl Origin {
 
     /// Describes the scene with its grid, with wind if it has any, and with self-collision.
     fn described(&self) -> Description {
-        let mut description = Description::clone(&self.source.description);
-        if let (Some(grid), Some(cloth)) = (self.grid, description.cloth.first_mut()) {
-            cloth.grid = [grid.rows(), grid.cols()];
-        }
+        let mut description = self.with_grid();
         if let Some(wind) = &mut description.wind {
             wind.on = true;
         }
         description.self_collision = true;
+        description
+    }
+
+    /// Describes the scene with its grid.
+    fn with_grid(&self) -> Description {
+        let mut description = Description::clone(&self.source.description);
+        if let (Some(grid), Some(cloth)) = (self.grid, description.cloth.first_mut()) {
+            cloth.grid = [grid.rows(), grid.cols()];
+        }
         description
     }
 }

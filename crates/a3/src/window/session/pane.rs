@@ -5,7 +5,7 @@ use web_time::{Duration, Instant};
 
 use a3_core::{Checkpoint, Control, Error, Method, Simulation};
 use a3_render::Topology;
-use a3_scenes::{Defaults, Presentation};
+use a3_scenes::{Defaults, Presentation, Splice};
 
 use super::limit::LimitWatch;
 use super::samples::Samples;
@@ -269,12 +269,13 @@ impl Pane {
         self.restart_cost();
     }
 
-    /// Replaces the run by one of a changed scene with the same particles, which goes on from the
-    /// same state, and returns the former run. The camera stays.
+    /// Replaces the run by one of a changed scene, which goes on from the same state, and returns
+    /// the former run. The camera stays.
     pub fn exchange(
         &mut self,
         simulation: Simulation,
         presentation: &Arc<Presentation>,
+        particles: Splice,
     ) -> Simulation {
         let before = std::mem::replace(&mut self.simulation, simulation);
         let viewpoint = self.show.presentation.viewpoint;
@@ -283,6 +284,10 @@ impl Pane {
             ..Presentation::clone(presentation)
         });
         self.show.hovered = None;
+        self.show.springs_of = self.show.springs_of.and_then(|i| particles.number(i));
+        if particles != Splice::default() {
+            self.set_errors(vec![]);
+        }
         self.exchanges += 1;
         self.forces_changed();
         before

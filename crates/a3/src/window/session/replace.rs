@@ -10,6 +10,7 @@ pub fn replace(session: &mut Session, next: Session) {
     looks::set_dark(&mut session.runs.panes, dark);
     session.panel = former.panel;
     (session.panel.pane, session.panel.typed) = (0, None);
+    session.panel.editor.forget(&session.runs);
     session.pulled = former.pulled;
     session.scenes.adopt(former.scenes);
     session.readings.in_window = former.readings.in_window;

@@ -64,7 +64,7 @@ impl Runs {
     }
 
     /// Returns all runs, the reference last.
-    pub(super) fn all(&self) -> impl Iterator<Item = &Simulation> {
+    pub fn all(&self) -> impl Iterator<Item = &Simulation> {
         let panes = self.panes.iter().map(|pane| &pane.simulation);
         panes.chain(self.reference.as_ref().map(ReferenceRun::simulation))
     }

@@ -3,6 +3,7 @@
 use a3_core::Scene;
 use a3_scenes::{Defaults, Part, PartChange, Setup};
 
+use super::editor::Editor;
 use super::hidden::Hidden;
 use super::lessons::Lessons;
 use super::origin::Origin;
@@ -82,6 +83,8 @@ pub struct PanelState {
     pub film_seconds: f64,
     /// The pane whose settings the panel shows: the last one under the pointer.
     pub pane: usize,
+    /// The tools that edit the scene.
+    pub editor: Editor,
 }
 
 impl Default for PanelState {
@@ -99,6 +102,7 @@ impl Default for PanelState {
             film: Ending::default(),
             film_seconds: DEFAULT_FILM_SECONDS,
             pane: 0,
+            editor: Editor::default(),
         }
     }
 }

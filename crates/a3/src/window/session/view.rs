@@ -3,6 +3,7 @@
 use std::f32::consts::FRAC_PI_2;
 
 use a3_render::Camera;
+use a3_scenes::Splice;
 
 use super::pane::Pane;
 use crate::draw::show;
@@ -78,6 +79,17 @@ impl View {
     /// Stops following a particle.
     pub fn stop_following(&mut self) {
         self.followed = None;
+    }
+
+    /// Follows the same particle by its number since an edit, or stops if it was removed.
+    pub fn renumber(&mut self, particles: Splice) {
+        self.followed = self.followed.and_then(|followed| {
+            let particle = particles.number(followed.particle)?;
+            Some(Followed {
+                particle,
+                ..followed
+            })
+        });
     }
 
     /// Returns the particle that the camera follows.

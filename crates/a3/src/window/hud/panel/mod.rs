@@ -1,6 +1,7 @@
 //! The panel beside the picture, with knobs and plots (key Tab).
 
 mod dial;
+mod edit;
 mod knobs;
 mod measure;
 mod part_rows;
@@ -14,9 +15,17 @@ mod undo;
 mod values;
 mod view;
 
+#[cfg(not(target_arch = "wasm32"))]
+pub use dial::{Dial, DialScale, Turn};
+#[cfg(not(target_arch = "wasm32"))]
+pub use edit::{edit, of_one_body};
 pub use measure::update;
+#[cfg(not(target_arch = "wasm32"))]
+pub use parts::turn as turn_part;
 pub use plots::csv;
 pub use request::{PanelKey, PanelRequest, Request, apply, is_shown, press, press_text};
+#[cfg(not(target_arch = "wasm32"))]
+pub use row::slider;
 pub use row::{CHOSEN, HOVERED, INK, TRACK, button};
 pub use tune::{tune, tuned};
 pub use undo::undo;

@@ -5,7 +5,8 @@ use super::knobs::{KNOBS, Knob, is_left_out};
 use super::values::pane;
 use super::{measure, parts};
 use crate::window::session::{
-    Action, LessonRequest, MeasureRequest, PlotRequest, Session, TextKey, Topic, asking, panes,
+    Action, LessonRequest, Measure, MeasureRequest, PlotRequest, Session, TextKey, Tool, Topic,
+    asking, panes,
 };
 
 /// A request of the mouse.
@@ -42,6 +43,18 @@ pub enum PanelRequest {
     AddPane(usize),
     /// Remove the pane of a number.
     RemovePane(usize),
+    /// Choose a tool.
+    #[cfg_attr(
+        target_arch = "wasm32",
+        allow(dead_code, reason = "the page has no tools")
+    )]
+    Tool(Tool),
+    /// Set a quantity of what the tools add.
+    #[cfg_attr(
+        target_arch = "wasm32",
+        allow(dead_code, reason = "the page has no tools")
+    )]
+    SetMeasure(Measure, f64),
 }
 
 /// A key of the panel.
@@ -166,6 +179,8 @@ pub fn apply(session: &mut Session, request: PanelRequest) -> bool {
         PanelRequest::Measure(request) => return asking::apply(session, request, at),
         PanelRequest::AddPane(pane) => session.toggle_list(Topic::Beside { pane }),
         PanelRequest::RemovePane(pane) => return panes::remove(session, pane),
+        PanelRequest::Tool(tool) => session.panel.editor.tool = tool,
+        PanelRequest::SetMeasure(measure, value) => session.panel.editor.set(measure, value),
     }
     false
 }

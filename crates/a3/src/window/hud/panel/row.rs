@@ -123,7 +123,7 @@ impl Row<'_> {
 }
 
 /// Draws a track with a thumb, and a mark at the scene's own value. Returns the turn by the mouse.
-fn slider(ui: &Ui, room: Rect, id: Id, dial: &Dial) -> Option<Turn> {
+pub fn slider(ui: &Ui, room: Rect, id: Id, dial: &Dial) -> Option<Turn> {
     let response = ui.interact(room, id, Sense::click_and_drag());
     if response.hovered() || response.dragged() {
         ui.set_cursor_icon(CursorIcon::ResizeHorizontal);

@@ -8,6 +8,8 @@ use crate::window::session::{RunAction, Session, exchange};
 
 /// Begins the name of a value that says that a part is left out.
 const WITHOUT: &str = "without ";
+/// Name of the knob that lets surfaces touch.
+const TOUCHING: &str = "self-collision";
 
 /// Returns the names and values of all knobs that tune the scene and differ from its own values,
 /// and the parts that are left out.
@@ -83,10 +85,27 @@ pub fn turn_knobs(session: &mut Session, tuned: &[(String, f64)]) {
 /// on and the scene stays tuned. Fails, and changes nothing, if there is no such scene, or if
 /// self-collision is on and surfaces would cross.
 pub fn leave_out(session: &mut Session, parts: Vec<usize>) -> Result<(), String> {
+    go_on(session, None, &mut |session| {
+        exchange::leave_out(session, parts.clone())
+    })
+}
+
+/// Exchanges the scene, while the motion goes on and the scene stays tuned. `touching` says whether
+/// surfaces touch then, if that changes. Fails, and changes nothing, if the exchange does, or if
+/// surfaces touch and would cross.
+pub fn go_on(
+    session: &mut Session,
+    touching: Option<bool>,
+    exchange: &mut dyn FnMut(&mut Session) -> Result<exchange::Former, String>,
+) -> Result<(), String> {
     let mut values = tuned(session);
+    if let Some(on) = touching {
+        values.retain(|(name, _)| name != TOUCHING);
+        values.push((TOUCHING.into(), f64::from(u8::from(on))));
+    }
     let own = |session: &Session| sphere(session, 0).map(|dial| dial.own);
     let first = own(session);
-    let former = exchange::leave_out(session, parts)?;
+    let former = exchange(session)?;
     // Other spheres grow in proportion to the first, which may be another one now.
     if let (Some(before), Some(now)) = (first, own(session)) {
         let radii = values.iter_mut().filter(|(name, _)| name == "sphere");

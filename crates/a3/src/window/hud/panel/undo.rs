@@ -43,6 +43,13 @@ pub fn undo(session: &mut Session, redo: bool) {
             }
             parts::name(session, part)
         }
+        Change::Edit { edit, before } => {
+            if let Err(why) = super::edit::repeat(session, &edit, before.as_deref(), redo) {
+                session.history.step(!redo);
+                return session.readings.say(why);
+            }
+            edit.name.clone()
+        }
         Change::Knob {
             row,
             pane,

@@ -1,0 +1,11 @@
+//! The tools that edit the scene (key F2): their palette, and what they do.
+
+mod act;
+mod icons;
+mod palette;
+
+pub use act::{Aim, click, join};
+pub use palette::show;
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,89 @@
+//! Passage of a run from a scene to the same scene after an edit: which particles stay.
+
+use a3_core::{Checkpoint, Constraint, Network, Scene, Simulation};
+use a3_scenes::Splice;
+
+/// Numbers that the state has for each particle: its position (m) and its velocity (m/s).
+const PARTICLE: usize = 6;
+/// Numbers that the state has for each rigid body: its quaternion and its angular momentum.
+const BODY: usize = 7;
+
+/// Passage of runs to an edited scene.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Passage {
+    /// How particles are numbered there.
+    pub particles: Splice,
+    /// How rigid bodies are numbered there.
+    pub bodies: Splice,
+    /// Whether surfaces touch there; `None` if they do as before.
+    pub touching: Option<bool>,
+}
+
+impl Passage {
+    /// Whether a state of `dim` numbers passes to one of the scene.
+    pub fn fits(&self, dim: usize, scene: &Scene) -> bool {
+        let change = |it: Splice, each: usize| [it.added * each, it.removed * each];
+        let [more, fewer] = change(self.particles, PARTICLE);
+        let [more_turned, fewer_turned] = change(self.bodies, BODY);
+        dim + more + more_turned == scene.state.len() + fewer + fewer_turned
+    }
+
+    /// Passes a moment of a run to `next`, which is at the start of the edited scene.
+    pub fn take(&self, moment: &mut Checkpoint, run: &Simulation, next: &Simulation) {
+        let (Some(old), Some(new)) = (run.model().network(), next.model().network()) else {
+            return;
+        };
+        let number = |i: usize| self.particles.number(i);
+        let pair = |[i, j]: [usize; 2]| Some([number(i)?, number(j)?]);
+        // What the old scene itself had torn is not torn for good: the new scene says what is.
+        let scene = run.scene().model.network();
+        let own = scene.map_or(&[][..], Network::torn);
+        moment.torn.retain(|ends| own.binary_search(ends).is_err());
+        moment.torn = moment.torn.iter().filter_map(|ends| pair(*ends)).collect();
+        moment.torn.extend_from_slice(new.torn());
+        moment.torn.sort_unstable();
+        moment.torn.dedup();
+        if let Some(touching) = self.touching {
+            moment.touching = touching;
+        }
+        if (self.particles, self.bodies) != (Splice::default(), Splice::default()) {
+            moment.run.y = self.state(&moment.run.y, run.particles(), next);
+        }
+        let pins = moment.pins.iter();
+        moment.pins = pins
+            .filter_map(|(i, path)| Some((number(*i)?, *path)))
+            .collect();
+        let back = self.particles.back();
+        let added = new.pins().filter(|(i, _)| back.number(*i).is_none());
+        moment.pins.extend(added);
+        let ends = |k: &usize| {
+            let (i, j) = old.constraints().get(*k)?.ends();
+            pair([i, j?])
+        };
+        let ropes: Vec<_> = moment.taut.iter().filter_map(ends).collect();
+        let is_taut = |rope: &Constraint| match *rope {
+            Constraint::Rope { i, j, .. } => ropes.contains(&[i, j]),
+            _ => false,
+        };
+        let all = new.constraints().iter().enumerate();
+        moment.taut = all.filter(|(_, it)| is_taut(it)).map(|(k, _)| k).collect();
+    }
+
+    /// Returns the state in the edited scene from that of n particles before it.
+    fn state(&self, y: &[f64], n: usize, next: &Simulation) -> Vec<f64> {
+        let (m, mut state) = (next.particles(), next.state().to_vec());
+        let before = |j: usize| self.particles.back().number(j);
+        for (j, i) in (0..m).filter_map(|j| Some((j, before(j)?))) {
+            for axis in 0..PARTICLE {
+                state[axis * m + j] = y[axis * n + i];
+            }
+        }
+        let (old, new) = (&y[PARTICLE * n..], &mut state[PARTICLE * m..]);
+        for (l, own) in new.chunks_exact_mut(BODY).enumerate() {
+            if let Some(k) = self.bodies.back().number(l) {
+                own.copy_from_slice(&old[BODY * k..BODY * (k + 1)]);
+            }
+        }
+        state
+    }
+}

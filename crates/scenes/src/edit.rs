@@ -1,0 +1,366 @@
+//! Edits of a scene: bodies, particles, springs, rods and ropes that come or go.
+
+use a3_core::Network;
+
+use crate::description::{
+    ConstraintSpec, Description, Particles, Pin, RigidBody, SpringSpec, State, Triple,
+};
+use crate::splice::{Splice, keep};
+
+/// Edit of a scene. Particles have the numbers that they have before the edit.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Edit {
+    /// A rigid body is added.
+    AddBody(RigidBody),
+    /// A particle at rest is added: its position (m) and its mass (kg).
+    AddParticle {
+        /// Position (m).
+        position: Triple,
+        /// Mass (kg).
+        mass: f64,
+    },
+    /// A spring is added.
+    AddSpring(SpringSpec),
+    /// A rod or a rope is added.
+    AddConstraint(ConstraintSpec),
+    /// What joins two particles is removed: rods and ropes or, where there are none, springs.
+    Disjoin([usize; 2]),
+    /// A single particle is removed with all that is joined to it. One of a cloth or of another
+    /// body of springs stays, but its springs are torn.
+    RemoveParticle(usize),
+    /// A rigid body is removed, by its number, with all that is joined to it.
+    RemoveBody(usize),
+}
+
+/// An edited scene, and the numbers of its particles and rigid bodies.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Edited {
+    /// The scene.
+    pub description: Description,
+    /// How particles are numbered since the edit.
+    pub particles: Splice,
+    /// How rigid bodies are numbered since the edit.
+    pub bodies: Splice,
+}
+
+impl Edit {
+    /// Edits a scene whose network is `network`.
+    ///
+    /// # Errors
+    /// The scene does not allow this edit. The text is a sentence for the user.
+    pub fn apply(&self, scene: &Description, network: &Network) -> Result<Edited, String> {
+        let mut edited = Edited {
+            description: scene.clone(),
+            particles: Splice::default(),
+            bodies: Splice::default(),
+        };
+        match self {
+            Self::AddBody(body) => edited.add_body(body, network)?,
+            Self::AddParticle { position, mass } => {
+                edited.add_particle(*position, *mass, network);
+            }
+            Self::AddSpring(spring) => {
+                check_ends(network, [spring.0, spring.1])?;
+                if network.is_torn(spring.0, spring.1) {
+                    let why =
+                        "Springs between these particles are torn, and a new one would be too.";
+                    return Err(why.into());
+                }
+                edited.description.springs.push(*spring);
+            }
+            Self::AddConstraint(joint) => {
+                check_ends(network, joint.rod.or(joint.rope).unwrap_or_default())?;
+                edited.description.constraint.push(joint.clone());
+            }
+            Self::Disjoin(ends) => edited.disjoin(*ends, network)?,
+            Self::RemoveParticle(i) => edited.remove_particle(*i, network)?,
+            Self::RemoveBody(k) => {
+                let body = network.bodies().get(*k).ok_or("There is no such body.")?;
+                edited.description.body.remove(*k);
+                edited.remove(body.center(), 1 + body.points().len());
+                edited.remove_body_state(*k);
+            }
+        }
+        Ok(edited)
+    }
+}
+
+/// Checks that two particles can be joined.
+fn check_ends(network: &Network, [i, j]: [usize; 2]) -> Result<(), String> {
+    if i == j {
+        return Err("Two particles are needed to join.".into());
+    }
+    let fluid = network.fluid();
+    if fluid.is_some_and(|fluid| fluid.contains(i) || fluid.contains(j)) {
+        return Err("Particles of a fluid cannot be joined.".into());
+    }
+    Ok(())
+}
+
+/// Returns the number of the first particle of the fluids, which are the last.
+fn first_of_fluid(network: &Network) -> usize {
+    let n = network.particles();
+    let fluid = network.fluid();
+    let first = fluid.and_then(|fluid| fluid.particles().iter().min());
+    first.map_or(n, |i| *i as usize)
+}
+
+/// Returns the number after that of the last single particle: rigid bodies and fluids follow.
+fn end_of_single(network: &Network) -> usize {
+    let body = network.bodies().first();
+    body.map_or_else(|| first_of_fluid(network), a3_core::rigid::Body::center)
+}
+
+impl Edited {
+    fn add_body(&mut self, body: &RigidBody, network: &Network) -> Result<(), String> {
+        if network.fluid().is_some() {
+            return Err("A rigid body does not touch a fluid: it would fall through.".into());
+        }
+        let alone = Description {
+            body: vec![body.clone()],
+            ..Description::default()
+        };
+        let mut no_file = |_: &str| Err("a file has no place here".into());
+        let alone = alone.build(None, &mut no_file);
+        let alone = alone.map_err(|fault| fault.to_string())?.scene;
+        let n = alone.model.particles();
+        self.description.body.push(body.clone());
+        let rows = |half: &[f64]| -> Vec<Triple> {
+            (0..n)
+                .map(|i| [half[i], half[n + i], half[2 * n + i]])
+                .collect()
+        };
+        let mut halves = alone.state.chunks_exact(3 * n);
+        let mut next = || halves.next().map(rows).unwrap_or_default();
+        self.insert(network.particles(), (next(), next()));
+        self.bodies = Splice {
+            at: network.bodies().len(),
+            removed: 0,
+            added: 1,
+        };
+        if let Some(State {
+            orientations,
+            angular_momenta,
+            ..
+        }) = &mut self.description.state
+        {
+            let turned = &alone.state[6 * n..];
+            if !orientations.is_empty() {
+                orientations.push([0, 1, 2, 3].map(|k| turned[k]));
+            }
+            if !angular_momenta.is_empty() {
+                angular_momenta.push([4, 5, 6].map(|k| turned[k]));
+            }
+        }
+        Ok(())
+    }
+
+    fn add_particle(&mut self, position: Triple, mass: f64, network: &Network) {
+        let own = self.description.particles.get_or_insert_default();
+        let before = own.positions.len();
+        own.positions.push(position);
+        if !own.velocities.is_empty() {
+            own.velocities.push([0.0; 3]);
+        }
+        match own.mass {
+            None if own.masses.is_empty() => own.mass = Some(mass),
+            None => own.masses.push(mass),
+            Some(same) if same == mass => {}
+            Some(other) => {
+                own.masses = vec![other; before];
+                own.masses.push(mass);
+                own.mass = None;
+            }
+        }
+        self.insert(end_of_single(network), (vec![position], vec![[0.0; 3]]));
+    }
+
+    fn disjoin(&mut self, ends: [usize; 2], network: &Network) -> Result<(), String> {
+        let [i, j] = ends;
+        let joins = |a: usize, b: usize| [a, b] == ends || [b, a] == ends;
+        let all = &mut self.description.constraint;
+        let count = all.len();
+        all.retain(|it| !(it.rod.or(it.rope)).is_some_and(|[a, b]| joins(a, b)));
+        if all.len() < count {
+            return Ok(());
+        }
+        let springs = network.all_springs();
+        let there = springs.filter(|it| joins(it.i, it.j)).count();
+        if there == 0 {
+            return Err(format!(
+                "Nothing that could be removed joins the particles {i} and {j}."
+            ));
+        }
+        let listed = self.remove_listed(network, joins);
+        if listed < there {
+            self.description.torn.push([i.min(j), i.max(j)]);
+        }
+        Ok(())
+    }
+
+    /// Removes those springs of the lists whose ends `joins` chooses, and returns their number.
+    fn remove_listed(&mut self, network: &Network, joins: impl Fn(usize, usize) -> bool) -> usize {
+        let between = &mut self.description.springs;
+        let mut count = between.len();
+        between.retain(|it| !joins(it.0, it.1));
+        count -= between.len();
+        if let Some(own) = &mut self.description.particles {
+            let first = end_of_single(network) - own.positions.len();
+            count += own.springs.len();
+            own.springs.retain(|it| !joins(first + it.0, first + it.1));
+            count -= own.springs.len();
+        }
+        count
+    }
+
+    fn remove_particle(&mut self, i: usize, network: &Network) -> Result<(), String> {
+        let single = self.description.particles.as_ref();
+        let count = single.map_or(0, |own| own.positions.len());
+        let end = end_of_single(network);
+        let own = i.checked_sub(end - count).filter(|own| *own < count);
+        if let Some((own, all)) = own.zip(self.description.particles.as_mut()) {
+            all.remove(own);
+            if all.positions.is_empty() {
+                self.description.particles = None;
+            }
+            self.remove(i, 1);
+            return Ok(());
+        }
+        let springs = network.springs_of(i);
+        let mut pairs: Vec<_> = springs.map(|it| [it.i.min(it.j), it.i.max(it.j)]).collect();
+        if pairs.is_empty() {
+            return Err(format!("Particle {i} cannot be removed from its body."));
+        }
+        if network.is_held(i) {
+            let why = format!("Rods or ropes hold particle {i}: remove these first.");
+            return Err(why);
+        }
+        // Springs that were added by hand go; those of a body are torn.
+        for it in &self.description.springs {
+            let ends = [it.0.min(it.1), it.0.max(it.1)];
+            if let Some(k) = pairs.iter().position(|pair| *pair == ends) {
+                pairs.swap_remove(k);
+            }
+        }
+        self.remove_listed(network, |a, b| a == i || b == i);
+        pairs.sort_unstable();
+        pairs.dedup();
+        self.description.torn.extend(pairs);
+        Ok(())
+    }
+
+    /// Adds rows of particles to the state, and numbers all others anew.
+    fn insert(&mut self, at: usize, (positions, velocities): (Vec<Triple>, Vec<Triple>)) {
+        self.renumber(Splice {
+            at,
+            removed: 0,
+            added: positions.len(),
+        });
+        if let Some(state) = &mut self.description.state {
+            let moves = velocities.iter().any(|v| *v != [0.0; 3]);
+            if state.velocities.is_empty() && moves {
+                state.velocities = vec![[0.0; 3]; state.positions.len()];
+            }
+            if !state.positions.is_empty() {
+                self.particles.of(&mut state.positions, positions);
+            }
+            if !state.velocities.is_empty() {
+                self.particles.of(&mut state.velocities, velocities);
+            }
+        }
+    }
+
+    /// Removes particles from the state and from all that is joined to them, and numbers the others
+    /// anew.
+    fn remove(&mut self, at: usize, removed: usize) {
+        self.renumber(Splice {
+            at,
+            removed,
+            added: 0,
+        });
+        if let Some(state) = &mut self.description.state {
+            for rows in [&mut state.positions, &mut state.velocities] {
+                if !rows.is_empty() {
+                    self.particles.of(rows, []);
+                }
+            }
+        }
+    }
+
+    /// Removes the rotation of body k from the state.
+    fn remove_body_state(&mut self, k: usize) {
+        self.bodies = Splice {
+            at: k,
+            removed: 1,
+            added: 0,
+        };
+        if let Some(state) = &mut self.description.state {
+            if !state.orientations.is_empty() {
+                self.bodies.of(&mut state.orientations, []);
+            }
+            if !state.angular_momenta.is_empty() {
+                self.bodies.of(&mut state.angular_momenta, []);
+            }
+        }
+    }
+
+    /// Numbers all particles anew that the scene names, and forgets what names a removed one.
+    fn renumber(&mut self, particles: Splice) {
+        self.particles = particles;
+        let number = |i: usize| particles.number(i);
+        let pair = |[i, j]: [usize; 2]| Some([number(i)?, number(j)?]);
+        let Description {
+            springs,
+            constraint,
+            pin,
+            torn,
+            trail,
+            ..
+        } = &mut self.description;
+        keep(springs, |it| {
+            let [i, j] = pair([it.0, it.1])?;
+            Some((i, j, it.2, it.3, it.4))
+        });
+        keep(torn, |it| pair(*it));
+        keep(constraint, |it| {
+            let mut it = it.clone();
+            for ends in [&mut it.rod, &mut it.rope].into_iter().flatten() {
+                *ends = pair(*ends)?;
+            }
+            if let Some(i) = &mut it.particle {
+                *i = number(*i)?;
+            }
+            Some(it)
+        });
+        for Pin { particles, .. } in pin.iter_mut() {
+            keep(particles, |i| number(*i));
+        }
+        pin.retain(|pin| !pin.particles.is_empty());
+        *trail = trail.and_then(number);
+    }
+}
+
+impl Particles {
+    /// Removes a particle, by its number in this body, with its springs and pins.
+    fn remove(&mut self, i: usize) {
+        let one = Splice {
+            at: i,
+            removed: 1,
+            added: 0,
+        };
+        self.positions.remove(i);
+        if !self.velocities.is_empty() {
+            self.velocities.remove(i);
+        }
+        if !self.masses.is_empty() {
+            self.masses.remove(i);
+        }
+        keep(&mut self.springs, |it| {
+            Some((one.number(it.0)?, one.number(it.1)?, it.2, it.3, it.4))
+        });
+        for pin in &mut self.pin {
+            keep(&mut pin.particles, |k| one.number(*k));
+        }
+        self.pin.retain(|pin| !pin.particles.is_empty());
+    }
+}

@@ -1,0 +1,179 @@
+//! Edits of scenes: what stays has the same state, and names the same particles.
+
+use a3_core::{Network, Scene};
+use a3_scenes::{ConstraintSpec, Description, Edit, PartSpec, RigidBody};
+
+/// A scene with bodies of many kinds, which name one another's particles.
+const MANY: &str = "trail = 21\n\
+    springs = [[2, 9, 8, 0.5, 0.1], [13, 18, 5, 1, 0], [4, 0, 3, 1, 0]]\n\
+    torn = [[0, 1]]\n\
+    pin = [{ particles = [15, 16] }]\n\
+    constraint = [{ rope = [11, 12], length = 5 }, { rod = [14, 15], length = 1 }, \
+    { particle = 13, point = [6, 1, 0] }]\n\
+    [[cloth]]\ngrid = [3, 3]\nwidth = 1\nat = [0, 2, 0]\nmass = 0.1\nstiffness = [40, 20, 10]\n\
+    pin = [{ at = ['top'] }]\n\
+    [[chain]]\nparticles = 3\nfrom = [3, 1, 0]\nto = [4, 1, 0]\nmass = 0.1\nstiffness = 50\n\
+    [particles]\npositions = [[3.5, 0.5, 0], [6, 1, 0], [6, 2, 0], [7, 2, 0]]\n\
+    velocities = [[1, 0, 0], [0, 0, 0], [0, 2, 0], [0, 2, 0]]\nmasses = [0.1, 0.2, 0.3, 0.4]\n\
+    springs = [[1, 2, 30, 1, 0.1], [0, 3, 2, 1, 0]]\npin = [{ particles = [2] }]\n\
+    [[body]]\nparts = [{ ball = 0.3 }]\nmass = 1\nat = [-3, 1, 0]\nspin = [0, 3, 0]\n\
+    [[body]]\nparts = [{ box = [0.4, 0.4, 0.4] }]\nmass = 2\nat = [-5, 1, 0]\nspin = [1, 0, 0]\n";
+
+fn built(description: &Description) -> Scene {
+    let built = description.build(None, &mut |_| Err("no file".into()));
+    built.unwrap_or_else(|fault| panic!("{fault}")).scene
+}
+
+fn network(scene: &Scene) -> &Network {
+    scene.model.network().unwrap()
+}
+
+/// What belongs to a particle: its state, its mass, and its pin.
+fn particle(scene: &Scene, i: usize) -> ([f64; 6], f64, bool) {
+    let (n, network) = (scene.model.particles(), network(scene));
+    let row = std::array::from_fn(|axis| scene.state[axis * n + i]);
+    (row, network.masses()[i], network.is_pinned(i))
+}
+
+/// The ends of all springs, rods and ropes, in order.
+fn joints(scene: &Scene, number: impl Fn(usize) -> Option<usize>) -> Vec<[usize; 2]> {
+    let network = network(scene);
+    let springs = network.all_springs().map(|it| [it.i, it.j]);
+    let constraints = network.constraints().iter();
+    let constraints = constraints.filter_map(|it| Some([it.ends().0, it.ends().1?]));
+    let all = springs.chain(constraints);
+    let mut all: Vec<_> = all
+        .filter_map(|[i, j]| Some([number(i)?, number(j)?]))
+        .collect();
+    all.sort_unstable();
+    all
+}
+
+fn ball(at: [f64; 3]) -> RigidBody {
+    RigidBody {
+        parts: vec![PartSpec {
+            ball: Some(0.2),
+            ..PartSpec::default()
+        }],
+        mass: Some(0.5),
+        at: Some(at),
+        velocity: Some([1.0, 2.0, 3.0]),
+        spin: Some([0.0, 1.0, 0.0]),
+        ..RigidBody::default()
+    }
+}
+
+/// Every edit of a scene that begins as it is built, and of one that begins in a given state.
+#[test]
+fn an_edit_leaves_all_else_as_it_was() {
+    let own = Description::parse(MANY).unwrap();
+    let scene = built(&own);
+    let n = scene.model.particles();
+    let mut given = own.clone();
+    let rows = |half: &[f64]| {
+        (0..n)
+            .map(|i| [0, 1, 2].map(|axis| half[axis * n + i]))
+            .collect()
+    };
+    let rotations = scene.state[6 * n..].chunks_exact(7);
+    given.state = Some(a3_scenes::State {
+        positions: rows(&scene.state[..3 * n]),
+        velocities: rows(&scene.state[3 * n..]),
+        orientations: rotations
+            .clone()
+            .map(|r| [r[0], r[1], r[2], r[3]])
+            .collect(),
+        angular_momenta: rotations.map(|r| [r[4], r[5], r[6]]).collect(),
+    });
+    let rope = ConstraintSpec {
+        rope: Some([3, 17]),
+        length: Some(20.0),
+        ..ConstraintSpec::default()
+    };
+    // Each with the particles, bodies and joints that come or go.
+    let edits = [
+        (Edit::AddBody(ball([0.0, 5.0, 0.0])), 2, 1, 0),
+        (
+            Edit::AddParticle {
+                position: [0.0, 4.0, 0.0],
+                mass: 0.7,
+            },
+            1,
+            0,
+            0,
+        ),
+        (Edit::AddSpring((3, 17, 1.0, 1.0, 0.0)), 0, 0, 1),
+        (Edit::AddConstraint(rope), 0, 0, 1),
+        (Edit::Disjoin([12, 11]), 0, 0, -1),
+        (Edit::Disjoin([13, 14]), 0, 0, -1),
+        (Edit::Disjoin([3, 4]), 0, 0, -1),
+        (Edit::Disjoin([0, 4]), 0, 0, -2),
+        (Edit::RemoveParticle(13), -1, 0, -2),
+        (Edit::RemoveParticle(15), -1, 0, -2),
+        (Edit::RemoveParticle(4), 0, 0, -9),
+        (Edit::RemoveBody(0), -2, -1, 0),
+        (Edit::RemoveBody(1), -9, -1, -1),
+    ];
+    for (own, scene) in [(&own, built(&own)), (&given, built(&given))] {
+        for (edit, particles, bodies, joined) in &edits {
+            let edited = edit.apply(own, network(&scene)).unwrap();
+            let after = built(&edited.description);
+            let m = after.model.particles();
+            assert_eq!(m as i32 - n as i32, *particles, "{edit:?}");
+            let turned = (after.state.len() - 6 * m) as i32 / 7;
+            assert_eq!(turned - 2, *bodies, "{edit:?}");
+            let number = |i| edited.particles.number(i);
+            for (i, j) in (0..n).filter_map(|i| Some((i, number(i)?))) {
+                assert_eq!(particle(&scene, i), particle(&after, j), "{edit:?}: {i}");
+                assert_eq!(edited.particles.back().number(j), Some(i));
+            }
+            let rotation = |scene: &Scene, k: usize| {
+                let first = 6 * scene.model.particles() + 7 * k;
+                scene.state[first..first + 7].to_vec()
+            };
+            for (k, l) in (0..2).filter_map(|k| Some((k, edited.bodies.number(k)?))) {
+                assert_eq!(rotation(&scene, k), rotation(&after, l), "{edit:?}");
+            }
+            let (before, now) = (joints(&scene, number), joints(&after, Some));
+            let lost = joints(&scene, Some).len() as i32 - before.len() as i32;
+            let more = now.len() as i32 - before.len() as i32 - lost;
+            assert_eq!(more, *joined, "{edit:?}");
+            let [few, many] = if *joined > 0 {
+                [&before, &now]
+            } else {
+                [&now, &before]
+            };
+            assert!(few.iter().all(|ends| many.contains(ends)), "{edit:?}");
+            if *particles < 0 {
+                assert_eq!(before, now, "{edit:?}");
+            }
+        }
+    }
+    let body = Edit::AddBody(ball([0.0, 5.0, 0.0]))
+        .apply(&given, network(&scene))
+        .unwrap();
+    let added = built(&body.description);
+    assert_eq!(particle(&added, n).0, [0.0, 5.0, 0.0, 1.0, 2.0, 3.0]);
+    assert_eq!(body.description.trail, Some(21));
+    let fewer = Edit::RemoveParticle(13)
+        .apply(&own, network(&scene))
+        .unwrap();
+    assert_eq!(fewer.description.trail, Some(20));
+}
+
+#[test]
+fn an_edit_that_makes_no_sense_is_refused() {
+    let own = Description::parse(MANY).unwrap();
+    let scene = built(&own);
+    for (edit, why) in [
+        (Edit::AddSpring((3, 3, 1.0, 1.0, 0.0)), "Two particles"),
+        (Edit::AddSpring((1, 0, 1.0, 1.0, 0.0)), "are torn"),
+        (Edit::Disjoin([0, 20]), "Nothing that could be removed"),
+        (Edit::RemoveParticle(11), "Rods or ropes hold"),
+        (Edit::RemoveParticle(17), "cannot be removed"),
+        (Edit::RemoveBody(2), "no such body"),
+    ] {
+        let said = edit.apply(&own, network(&scene)).unwrap_err();
+        assert!(said.contains(why), "{said}");
+    }
+}
