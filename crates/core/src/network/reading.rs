@@ -253,8 +253,7 @@ impl Network {
         })
     }
 
-    /// Returns the largest error |C| (m) of the constraints in the state y, if there are any. Where
-    /// none is a joint, the positions are enough.
+    /// Returns the largest error |C| (m) of constraints in y; without joints, positions are enough.
     #[must_use]
     pub fn constraint_error(&self, y: &[f64]) -> Option<f64> {
         holding::error(self, y)

@@ -15,8 +15,8 @@ const SAME: f64 = 1e-6;
 
 /// Lists the points of a body of a volume (m3) that a fluid touches, relative to the body's origin
 /// (m): those of a lattice of the fluid's spacing around the middle of its parts, up to a few
-/// layers below its surface. There are as many as the volume has cells, so that the body displaces its
-/// volume. In two dimensions, the points in the plane of the origin and in the parts are taken.
+/// layers below its surface. There are as many as the volume has cells, so that the body displaces
+/// its volume. In two dimensions, the points in the plane of the origin and in the parts are taken.
 pub(super) fn soaked(
     parts: &[Part],
     volume: f64,

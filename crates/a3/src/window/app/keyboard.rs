@@ -110,7 +110,7 @@ mod tests {
         );
         assert_eq!(action(&Key::Character("10".into())), None);
         assert_eq!(action(&Key::Character("Tab".into())), None);
-        assert_eq!(action(&Key::Named(NamedKey::F3)), None);
+        assert_eq!(action(&Key::Named(NamedKey::F5)), None);
     }
 
     #[test]

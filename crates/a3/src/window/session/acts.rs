@@ -6,12 +6,11 @@ use a3_core::{Network, integrators};
 use a3_scenes::Setup;
 
 use super::actions::RunAction;
+use super::beside;
 use super::history::Change;
 use super::list::{List, TextKey, Topic, solvers};
 use super::looks;
 use super::panes;
-#[cfg(not(target_arch = "wasm32"))]
-use super::plotting;
 use super::runs::KEY_BUDGET;
 use super::save;
 use super::state::Session;
@@ -31,12 +30,9 @@ impl Session {
         }
         match action {
             RunAction::NextScene | RunAction::PreviousScene => {
-                let by = if action == RunAction::NextScene {
-                    1
-                } else {
-                    -1
-                };
-                self.show_scene(self.scenes.neighbour(by));
+                let is_next = action == RunAction::NextScene;
+                let number = self.scenes.neighbour(if is_next { 1 } else { -1 });
+                self.show_scene(number);
                 return true;
             }
             RunAction::Scenes => self.toggle_list(Topic::Scenes),
@@ -101,7 +97,7 @@ impl Session {
             RunAction::SeeAll => self.view.see_all(&self.runs.panes),
             RunAction::NextView => self.readings.say(self.view.next_view()),
             RunAction::Panel | RunAction::Measure | RunAction::Lessons | RunAction::Plots => {
-                self.toggle_beside(action);
+                beside::toggle(self, action);
             }
             RunAction::Edit if cfg!(target_arch = "wasm32") => {
                 self.readings.say("Only the program edits scenes.");
@@ -126,32 +122,6 @@ impl Session {
             RunAction::Help => self.readings.help = !self.readings.help,
         }
         false
-    }
-
-    /// Opens the panel, the measurements, the lessons or the plots beside the picture, or closes
-    /// it; the others are closed then.
-    fn toggle_beside(&mut self, action: RunAction) {
-        if action == RunAction::Measure && self.measuring.answerer.is_none() {
-            let why = "Only the program measures: key y copies the command line for it.";
-            return self.readings.say(why);
-        }
-        let panes = [
-            (RunAction::Panel, &mut self.panel.open),
-            (RunAction::Measure, &mut self.measuring.open),
-            (RunAction::Lessons, &mut self.panel.lessons.open),
-            (RunAction::Plots, &mut self.panel.plotting.open),
-        ];
-        for (own, open) in panes {
-            *open = own == action && !*open;
-        }
-        #[cfg(not(target_arch = "wasm32"))]
-        if self.panel.plotting.open {
-            plotting::pick_first(&mut self.runs.panes);
-        }
-        if action != RunAction::Panel {
-            self.readings.help = false;
-            self.list = None;
-        }
     }
 
     /// Resets all runs to the initial state of their scene.

@@ -59,6 +59,7 @@ pub static GROUPS: [Group; 8] = [
         purpose: "Change",
         bindings: &[
             run(&["Tab"], RunAction::Panel, "tune and plot"),
+            #[cfg(not(target_arch = "wasm32"))]
             run(&["F2"], RunAction::Edit, "throw, add, join, delete"),
             run(&["d"], RunAction::Wind, "wind"),
             run(&["s"], RunAction::Swing, "swing the pins"),
@@ -169,6 +170,6 @@ mod tests {
         assert_eq!(action("3"), Some(Action::Run(RunAction::Solver(2))));
         assert_eq!(action("0"), Some(Action::Run(RunAction::Solver(9))));
         assert_eq!(action("10"), None);
-        assert_eq!(action("F3"), None);
+        assert_eq!(action("F5"), None);
     }
 }

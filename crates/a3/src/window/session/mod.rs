@@ -4,6 +4,7 @@
 mod actions;
 mod acts;
 pub mod asking;
+mod beside;
 mod continued;
 mod editor;
 mod effects;

@@ -58,7 +58,7 @@ pub fn set(session: &mut Session, part: usize, to: bool) -> Result<(), String> {
         parts.push(part);
         parts.sort_unstable();
     }
-    leave_out(session, parts)
+    leave_out(session, &parts)
 }
 
 /// Leaves out a part of the scene or brings it back, by a turn of its switch, and records that in

@@ -84,9 +84,9 @@ pub fn turn_knobs(session: &mut Session, tuned: &[(String, f64)]) {
 /// Leaves out parts, by their indices in order, and brings back all others, while the motion goes
 /// on and the scene stays tuned. Fails, and changes nothing, if there is no such scene, or if
 /// self-collision is on and surfaces would cross.
-pub fn leave_out(session: &mut Session, parts: Vec<usize>) -> Result<(), String> {
+pub fn leave_out(session: &mut Session, parts: &[usize]) -> Result<(), String> {
     go_on(session, None, &mut |session| {
-        exchange::leave_out(session, parts.clone())
+        exchange::leave_out(session, parts.to_vec())
     })
 }
 
