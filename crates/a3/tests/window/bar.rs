@@ -55,7 +55,7 @@ fn the_bar_does_what_keys_do() {
     // A row of the help is a button, too; a click beside the help closes it.
     still("1255", BAR);
     app.expect("help", "true");
-    still("280", "341");
+    still("280", "320");
     app.expect("wind", "true");
     app.expect("help", "false");
     app.press_for("h", "help", "true");

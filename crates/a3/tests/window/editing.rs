@@ -33,7 +33,7 @@ fn a_ball_is_thrown_at_the_cloth_and_deleted() {
     app.press_for("z", "particles", "400");
     app.press_for("Z", "particles", "402");
     // A click on a tool is none on the scene. This one adds a particle.
-    display.xdotool(&["mousemove", "--window", &app.window, "640", "620"]);
+    display.xdotool(&["mousemove", "--window", &app.window, "640", "595"]);
     app.expect_frames();
     display.xdotool(&["click", "1"]);
     app.expect("cursor", "Default");

@@ -154,10 +154,14 @@ impl Graphics {
         if !is_press && !matches!(event, WindowEvent::MouseWheel { .. }) {
             return consumed;
         }
+        self.covers(position) || self.overlay.context.egui_is_using_pointer()
+    }
+
+    /// Whether text or a button is at a position (px), so that presses there are not for the scene.
+    pub fn covers(&self, position: [f32; 2]) -> bool {
         let (context, scale) = (&self.overlay.context, self.scale());
         let layer = context.layer_id_at(position.map(|px| px / scale).into());
-        let is_over = layer.is_some_and(|layer| layer.order != egui::Order::Background);
-        is_over || context.egui_is_using_pointer()
+        layer.is_some_and(|layer| layer.order != egui::Order::Background)
     }
 
     /// Has the text drawn again in the next frame, because it may have changed.

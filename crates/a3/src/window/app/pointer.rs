@@ -88,6 +88,7 @@ impl Pointer {
             return false;
         };
         let inside = self.is_in_picture(session, graphics.size(), graphics.scale());
-        inside && self.inside && session.list.is_none() && !session.readings.help
+        let is_free = session.list.is_none() && !session.readings.help;
+        inside && self.inside && is_free && !graphics.covers(self.position)
     }
 }
