@@ -91,6 +91,7 @@ mod system;
 #[cfg(test)]
 mod testing;
 mod threads;
+mod vectors;
 mod views;
 mod work;
 

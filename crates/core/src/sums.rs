@@ -9,9 +9,10 @@
 use std::array;
 use std::ops::Range;
 
-use pulp::{Arch, Simd, WithSimd};
+use pulp::{Simd, WithSimd};
 
 use crate::threads::{Columns, split_off};
+use crate::vectors::Arch;
 
 /// Task on a block of rows, with N columns of them, that returns M numbers.
 pub(crate) trait OnBlock<const N: usize, const M: usize>: Sync {

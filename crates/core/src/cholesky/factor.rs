@@ -6,10 +6,11 @@
     reason = "what is inlined into pulp's dispatch is compiled for the vectors that it found; zipped iterators are not"
 )]
 
-use pulp::{Arch, Simd, WithSimd};
+use pulp::{Simd, WithSimd};
 
 use super::pattern::{Pattern, Place};
 use crate::fused::mul_add;
+use crate::vectors::Arch;
 
 /// Columns of a matrix of B x B numbers, each padded with zeros to the length P.
 pub(crate) type Block<const B: usize, const P: usize> = [[f64; P]; B];

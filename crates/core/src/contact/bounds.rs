@@ -10,10 +10,11 @@
 )]
 
 use nalgebra::Vector3;
-use pulp::{Arch, Simd, WithSimd};
+use pulp::{Simd, WithSimd};
 
 use crate::geometry::PairKind;
 use crate::lanes::Lanes;
+use crate::vectors::Arch;
 
 /// Number of pairs in a block, a multiple of the lengths of all SIMD vectors.
 pub(super) const LANES: usize = 8;

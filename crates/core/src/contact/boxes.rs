@@ -9,10 +9,11 @@
 )]
 
 use nalgebra::Vector3;
-use pulp::{Arch, Simd, WithSimd};
+use pulp::{Simd, WithSimd};
 
 use super::surface::Surface;
 use crate::geometry::bvh::{Aabb, Bvh};
+use crate::vectors::Arch;
 
 /// Number of boxes in a block, a multiple of the lengths of all SIMD vectors.
 const LANES: usize = 16;

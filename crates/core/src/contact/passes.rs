@@ -11,10 +11,11 @@
 )]
 
 use nalgebra::Vector3;
-use pulp::{Arch, Simd, WithSimd};
+use pulp::{Simd, WithSimd};
 
 use super::contact_pair::{ContactPair, limited_to};
 use super::solids::{Field, Masses};
+use crate::vectors::Arch;
 
 /// Largest number of passes of friction between surfaces that the contact force keeps apart.
 const MAX_PASSES: usize = 20;

@@ -10,13 +10,14 @@
 use std::ops::Range;
 
 use nalgebra::Vector3;
-use pulp::{Arch, Simd, WithSimd};
+use pulp::{Simd, WithSimd};
 
 use super::air::Air;
 use super::force::{At, Force};
 use super::wind::{BLOCK, Wind};
 use crate::columns::columns_mut;
 use crate::threads::{Columns, fork, threads};
+use crate::vectors::Arch;
 
 /// A wind whose air streams past the triangles of a network.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -9,12 +9,13 @@
 
 use std::ops::Range;
 
-use pulp::{Arch, Simd, WithSimd};
+use pulp::{Simd, WithSimd};
 
 use super::inverse_root::inverse_root;
 use crate::coupling::{Diagonal, Matrix};
 use crate::fused::{mul_adds, negate_mul_adds};
 use crate::spring::{Spring, SpringLaw};
+use crate::vectors::Arch;
 
 /// Number of springs in a chunk, whose numbers fit into the first-level cache.
 const CHUNK: usize = 64;

@@ -6,8 +6,9 @@
 )]
 
 use crate::fused::mul_adds;
+use crate::vectors::Arch;
 use nalgebra::Vector3;
-use pulp::{Arch, Simd, WithSimd};
+use pulp::{Simd, WithSimd};
 
 /// The flow over a time h, as a linear map. With a = c h / m, phi = (1 - e^-a) / a and psi = (1 -
 /// phi) / a it is v -> v + h phi (g - (c/m) v) and x -> x + h phi v + h2 psi g. The coefficients

@@ -9,7 +9,7 @@
 )]
 
 use nalgebra::Vector3;
-use pulp::{Arch, Simd, WithSimd};
+use pulp::{Simd, WithSimd};
 use serde::{Deserialize, Serialize};
 
 use super::air::Air;
@@ -21,6 +21,7 @@ use crate::fused::mul_add;
 use crate::random::SplitMix;
 use crate::sine::{sine, sines};
 use crate::threads::{fork, threads};
+use crate::vectors::Arch;
 
 const WAVES: usize = 4;
 

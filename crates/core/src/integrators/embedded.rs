@@ -4,7 +4,7 @@
 
 use std::ops::Range;
 
-use pulp::{Arch, Simd, WithSimd};
+use pulp::{Simd, WithSimd};
 
 use super::error_norm::{BLOCK, ErrorNorm};
 use super::integrator::{Integrator, check_dim};
@@ -13,6 +13,7 @@ use crate::error::Error;
 use crate::sums::{OnBlock, add_up, dot};
 use crate::system::ParticleSystem;
 use crate::threads::{Columns, fork, threads};
+use crate::vectors::Arch;
 use crate::work::Work;
 
 /// Coefficients of a pair. Its stages are followed by k = f(t + h, y1), the first stage of the next

@@ -2,7 +2,7 @@
 //! y), k2 = f(t + c2 h, y + c2 h k1), k3 = f(t + c3 h, y + c3 h k2), ..., y1 = y + h (b1 k1 + b2 k2
 //! + ...).
 
-use pulp::{Arch, Simd, WithSimd};
+use pulp::{Simd, WithSimd};
 
 use super::integrator::{Integrator, check_dim};
 use super::sweep::Sweeper;
@@ -10,6 +10,7 @@ use crate::error::Error;
 use crate::fused::mul_adds;
 use crate::rows::{Next, Stage, Terms};
 use crate::system::{ParticleSystem, rows_of};
+use crate::vectors::Arch;
 use crate::work::Work;
 
 /// Coefficients (c, b) of each stage.

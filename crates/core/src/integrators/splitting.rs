@@ -2,8 +2,6 @@
 //! at fixed x. If forces depend on v too, as those of damped springs do, a method has other kicks:
 //! each is a step of an explicit Runge-Kutta method in v, or uses forces at velocities ahead of v.
 
-use pulp::Arch;
-
 use super::arithmetic::add_scaled;
 use super::integrator::{Integrator, check_dim};
 use super::runge_kutta::{Combine, Table, stages};
@@ -15,6 +13,7 @@ use crate::system::{
     Mechanics, ParticleSystem, Rigid, divide_by_masses, kick_reads_velocity, place_pins, rigid_of,
     rows_of,
 };
+use crate::vectors::Arch;
 use crate::work::Work;
 
 /// Largest number of stages in a sweep through several kicks: with more, the rows no longer fit in

@@ -187,33 +187,32 @@ fn others(session: &Session) -> Vec<Button> {
         Button::new("⮪", "Undo (z)", window(WindowAction::Undo)),
         Button::new("📷", "Save a picture (p)", window(WindowAction::Picture)),
     ];
-    // A page makes no films, and a telephone has no key that fills the screen.
+    // A page makes no films, plots nothing and edits no scenes; a telephone has no key that fills
+    // the screen. In a narrow bar all these go before the lessons.
+    let after_lessons = 5;
     if cfg!(target_arch = "wasm32") {
         let whole = Button::new("⛶", "Full screen (F11)", window(WindowAction::FullScreen));
-        buttons.insert(5, whole);
+        buttons.insert(after_lessons, whole);
     } else {
         buttons.push(Button {
             colour: ALARM.colour,
             ..Button::new(film, does, window(WindowAction::Record))
         });
-    }
-    // A page plots nothing.
-    if !cfg!(target_arch = "wasm32") {
+        if first.model().network().is_some() {
+            let edit = Button::new("✏", "Throw, add, join, delete (F2)", run(RunAction::Edit));
+            buttons.insert(after_lessons, edit);
+        }
         let about = "Plot particles, bodies and springs (F3)";
-        buttons.insert(5, Button::new("🗠", about, run(RunAction::Plots)));
+        buttons.insert(
+            after_lessons,
+            Button::new("🗠", about, run(RunAction::Plots)),
+        );
     }
     buttons.push(Button::new(
         "?",
         "Help, and everything else (h)",
         run(RunAction::Help),
     ));
-    // A page edits no scenes.
-    if !cfg!(target_arch = "wasm32") && first.model().network().is_some() {
-        let edit = Button::new("✏", "Throw, add, join, delete (F2)", run(RunAction::Edit));
-        // In a narrow bar it goes before the lessons.
-        let undo = buttons.iter().position(|it| it.face == "⮪");
-        buttons.insert(undo.unwrap_or(buttons.len() - 1), edit);
-    }
     for button in &mut buttons {
         let is_open = match button.action {
             Action::Run(RunAction::Measure) => session.measuring.open,

@@ -16,14 +16,13 @@ mod window;
 
 use std::ops::Range;
 
-use pulp::Arch;
-
 use super::force::At;
 use crate::columns::columns_mut;
 use crate::coupling::Matrix;
 use crate::scratch::Scratch;
 use crate::spring::Spring;
 use crate::threads::{Columns, split_off, threads};
+use crate::vectors::Arch;
 use laws::Quantity;
 use order::{Order, TILE};
 use window::Window;

@@ -9,7 +9,7 @@
 use std::mem::swap;
 use std::ops::Range;
 
-use pulp::{Arch, Simd, WithSimd};
+use pulp::{Simd, WithSimd};
 
 use super::super::finish::Finish;
 use super::kernel::{
@@ -21,6 +21,7 @@ use super::model::Sheet;
 use crate::columns::columns_mut;
 use crate::rows::{PAD, REACH, stride};
 use crate::threads::{fork, threads};
+use crate::vectors::Arch;
 
 /// Largest numbers of columns of a strip, whose numbers fit into a cache and are cleared only once.
 const WIDTHS: [usize; 3] = [32, 128, 512];

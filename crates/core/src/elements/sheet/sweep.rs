@@ -6,7 +6,7 @@
     reason = "what is inlined into pulp's dispatch is compiled for the vectors that it found, and nothing else"
 )]
 
-use pulp::{Arch, Simd, WithSimd};
+use pulp::{Simd, WithSimd};
 
 use super::super::finish::Finish;
 use super::super::flow::Flow;
@@ -15,6 +15,7 @@ use super::lanes::{ColumnsMut, Lanes, PlacesMut, Point, Vectors, plus, put};
 use super::laws;
 use super::model::Sheet;
 use crate::rows::{Next, Registers, Stage, SweepScratch, Terms, stride};
+use crate::vectors::Arch;
 
 /// Prepares the scratch of a sweep over a sheet, with its laws as they are now.
 pub(crate) fn begin(sheet: &Sheet, scratch: &mut SweepScratch) {

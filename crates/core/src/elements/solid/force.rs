@@ -6,7 +6,7 @@
     reason = "what is inlined into pulp's dispatch is compiled for the vectors that it found, and nothing else"
 )]
 
-use pulp::{Arch, Simd, WithSimd};
+use pulp::{Simd, WithSimd};
 
 use super::body::Solid;
 use super::material::Material;
@@ -18,6 +18,7 @@ use crate::elements::force::{At, Cost, Force, Matter, check_particle};
 use crate::energy::Energy;
 use crate::error::Error;
 use crate::lanes::Lanes;
+use crate::vectors::Arch;
 
 /// Prices of a tetrahedron's forces, without viscosity and with it, and of the assembly of its
 /// couplings, in evaluations of one single spring.
