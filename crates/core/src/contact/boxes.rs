@@ -1,7 +1,6 @@
 //! Courses of vertices, and trees of the boxes around primitives on them.
 //!
-//! The leaves of a tree are blocks of sixteen boxes, which are compared with another box at once,
-//! in SIMD vectors. Boxes are kept in single precision, a little larger than they have to be.
+//! The leaves are blocks of sixteen boxes in single precision, which SIMD vectors compare at once.
 
 #![expect(
     clippy::inline_always,

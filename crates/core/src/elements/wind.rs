@@ -1,7 +1,6 @@
 //! A gentle wind in gusts: a steady breeze and a few plane waves whose directions, lengths and
-//! periods come from a seed. It is a pure function of seed, time and position, so that every stage
-//! of a step has the same wind and a run can be repeated. Its value is a force on each particle, or
-//! the velocity of air that streams past triangles.
+//! periods come from a seed. It depends on seed, time and position alone, so that a run can be
+//! repeated. Its value is a force on each particle, or the velocity of air past triangles.
 
 #![expect(
     clippy::inline_always,
