@@ -1,4 +1,4 @@
-//! The tools at the pointer: what is under it, and what a click or a drag edits.
+//! The tools at the pointer: the targets of clicks and drags, and the edits that they make.
 
 use a3_core::{Simulation, Vector3};
 use a3_render::Camera;
@@ -76,7 +76,7 @@ pub fn target(pointer: &Pointer, session: &Session, screen: &Screen, at: usize) 
     }
 }
 
-/// Returns what is under the pointer in pane `at`.
+/// Returns the particle, body, spring or obstacle under the pointer in pane `at`.
 fn aim(pointer: &Pointer, session: &Session, screen: &Screen, at: usize) -> Aim {
     let tile = screen.tile(session, at);
     let (place, aspect) = (tile.place(pointer.position), tile.aspect());

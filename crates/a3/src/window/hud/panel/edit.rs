@@ -1,4 +1,4 @@
-//! Edits of the scene in the window, each of which is one change for undo and redo.
+//! Edits of the scene in the window. Each edit is one change for undo and redo.
 
 #![cfg_attr(
     target_arch = "wasm32",

@@ -46,7 +46,7 @@ pub fn run_name(pane: &Pane) -> String {
     format!("{} {}", run.method().name, run.control().value())
 }
 
-/// Returns the kinds of what is plotted.
+/// Returns the kinds of the picked particles, bodies and springs.
 pub fn kinds(session: &Session) -> Vec<Kind> {
     let traces = &session.runs.panes[0].traces;
     traces.iter().map(|(pick, _)| pick.kind()).collect()
@@ -98,7 +98,7 @@ pub fn place(variables: [Option<Variable>; 2], row: &Row) -> [f64; 2] {
     variables.map(|variable| variable.map_or(row.time, |it| it.of(row)))
 }
 
-/// Returns the chart of what is plotted, with about `detail` points on a curve.
+/// Returns the chart of all picks, with about `detail` points on a curve.
 pub fn plotted(session: &Session, detail: usize) -> Plotted {
     let (settings, panes) = (&session.panel.plotting, &session.runs.panes);
     let variables = variables(session);

@@ -1,4 +1,4 @@
-//! Files of what is plotted: a table and a picture.
+//! Files of the plots: a table and a picture.
 
 use std::path::PathBuf;
 

@@ -1,5 +1,4 @@
-//! The rows of the pane above the chart: what is plotted, the variables, and when points of a
-//! section are taken.
+//! The rows above the chart: the picks, their variables, and the times of points of a section.
 
 use egui::{Align2, CursorIcon, FontId, Id, Rect, Sense, Stroke, Ui, pos2, vec2};
 
