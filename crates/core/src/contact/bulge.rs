@@ -14,7 +14,8 @@ const BULGE: f64 = 4.0 / 27.0;
 pub(crate) fn bulge(layer: &ContactLayer, (t, h): (f64, f64), [y0, y1]: [&[f64]; 2]) -> f64 {
     let (surface, obstacles) = (layer.surface(), layer.obstacles());
     let is_soft = |vertex: &&u32| surface.solid(**vertex).is_none();
-    let soft = surface.bodies.vertices.iter().filter(is_soft);
+    let bodies = surface.bodies.vertices.iter().filter(is_soft);
+    let soft = bodies.chain(&surface.drops.vertices);
     if soft.clone().next().is_none() {
         return 0.0;
     }

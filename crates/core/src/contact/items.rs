@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-/// Vertices, edges and triangles of bodies or of obstacles.
+/// Vertices, edges and triangles of bodies or of obstacles, or the drops of a fluid.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Items {
     /// Corners of the triangles, and then of those edges and points that are in none of them. The
@@ -10,7 +10,7 @@ pub(super) struct Items {
     pub corners: Vec<[u32; 3]>,
     /// Number of triangles.
     triangles: usize,
-    /// Rank of each of these by its corners, among those of bodies and then of obstacles.
+    /// Rank of each of these by its corners, after those of other items.
     pub ranks: Vec<u32>,
     /// Vertices.
     pub vertices: Vec<u32>,
@@ -19,17 +19,17 @@ pub(super) struct Items {
     pub edges: Vec<[u32; 2]>,
     /// Number of edges of triangles.
     sides: usize,
-    /// Rank of each edge by its ends, among those of bodies and then of obstacles.
+    /// Rank of each edge by its ends, after those of other items.
     pub edge_ranks: Vec<u32>,
 }
 
 impl Items {
     /// The vertices, edges and sides of these triangles, and those edges and points that are in
-    /// none of them. They rank after the items of `others`.
+    /// none of them. They rank after all items of `others`.
     pub fn new(
         triangles: impl IntoIterator<Item = [u32; 3]>,
         edges: impl IntoIterator<Item = [u32; 2]>,
-        others: &Self,
+        others: &[&Self],
     ) -> Self {
         let mut items = Self::default();
         let (mut seen_vertices, mut seen_edges) = (BTreeSet::new(), BTreeSet::new());
@@ -51,8 +51,9 @@ impl Items {
         let all = items.corners.iter().flatten();
         let new = all.filter(|i| seen_vertices.insert(**i));
         items.vertices.extend(new);
-        items.ranks = ranks(&items.corners, others.corners.len());
-        items.edge_ranks = ranks(&items.edges, others.edges.len());
+        let before = |count: fn(&Self) -> usize| others.iter().map(|items| count(items)).sum();
+        items.ranks = ranks(&items.corners, before(|items| items.corners.len()));
+        items.edge_ranks = ranks(&items.edges, before(|items| items.edges.len()));
         items
     }
 

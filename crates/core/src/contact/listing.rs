@@ -87,6 +87,7 @@ impl Trees {
 pub(super) struct Listing {
     bodies: Trees,
     obstacles: Trees,
+    drops: Trees,
     around: Vec<Bounds>,
     blocks: Vec<[u32; 2]>,
 }
@@ -103,6 +104,7 @@ impl Listing {
         pairs: &mut Vec<Listed>,
     ) {
         let (bodies, obstacles) = (&surface.bodies, &surface.obstacles);
+        let drops = &surface.drops;
         let query = Query {
             surface,
             course,
@@ -125,8 +127,10 @@ impl Listing {
         }
         self.bodies.take(bodies, &self.around, reach, &is_new);
         self.obstacles.take(obstacles, &self.around, reach, &is_new);
+        self.drops.take(drops, &self.around, reach, &is_new);
         let own = (bodies, &self.bodies);
         let others = (obstacles, &self.obstacles);
+        let wet = (drops, &self.drops);
         let blocks = &mut self.blocks;
         if surface.touches_itself {
             query.touching([own; 2], blocks, pairs);
@@ -137,8 +141,14 @@ impl Listing {
             query.touching([others, own], blocks, pairs);
             query.crossing([own, others], blocks, pairs);
         }
+        for (side, touch) in [(own, surface.touches_itself), (others, true)] {
+            if touch && !drops.vertices.is_empty() && !side.0.vertices.is_empty() {
+                query.touching([wet, side], blocks, pairs);
+                query.crossing([wet, side], blocks, pairs);
+            }
+        }
         for &floor in &surface.floors {
-            for &i in &bodies.vertices {
+            for &i in bodies.vertices.iter().chain(&drops.vertices) {
                 let points = [i, floor, floor, floor];
                 if is_new(&points) {
                     pairs.extend(query.pair(PairKind::VertexFloor, [i, floor], points));

@@ -35,6 +35,8 @@ pub struct Surface {
     anchors: Vec<Vec<Vector3<f64>>>,
     pub(super) bodies: Items,
     pub(super) obstacles: Items,
+    /// Particles of a fluid, as points, in order.
+    pub(super) drops: Items,
     /// Edges of rigid shapes between coplanar triangles, sorted.
     flat: Vec<[u32; 2]>,
     /// Whether each particle has no triangles and no edges, and belongs to no rigid body.
@@ -101,7 +103,7 @@ impl Surface {
                 first += points;
             }
         }
-        surface.bodies = Items::new(faces, sides, &Items::default());
+        surface.bodies = Items::new(faces, sides, &[]);
         let (mut faces, mut sides) = (vec![], vec![]);
         for obstacle in obstacles {
             let first = surface.skins.len() as u32;
@@ -134,20 +136,33 @@ impl Surface {
             surface.anchors.push(simplices.points);
         }
         surface.flat.sort_unstable();
-        surface.obstacles = Items::new(faces, sides, &surface.bodies);
-        let touching = surface
-            .bodies
-            .vertices
-            .iter()
-            .chain(&surface.obstacles.vertices);
+        surface.obstacles = Items::new(faces, sides, &[&surface.bodies]);
+        surface.measure();
+        surface
+    }
+
+    /// The same surface, with particles of a fluid, as edges with equal ends. They touch soft
+    /// bodies and obstacles, but neither one another nor rigid bodies.
+    pub(crate) fn with_drops(mut self, drops: &[[u32; 2]]) -> Self {
+        let others = [&self.bodies, &self.obstacles];
+        let mut drops = drops.to_vec();
+        drops.sort_unstable();
+        self.drops = Items::new([], drops, &others);
+        self.measure();
+        self
+    }
+
+    /// Finds the least and the largest thickness of the vertices that touch.
+    fn measure(&mut self) {
+        let all = [&self.bodies, &self.obstacles, &self.drops];
+        let touching = all.into_iter().flat_map(|items| &items.vertices);
         let thicknesses = touching
-            .chain(&surface.floors)
-            .map(|i| surface.skins[*i as usize].thickness);
-        (surface.thinnest, surface.thickest) = thicknesses
+            .chain(&self.floors)
+            .map(|i| self.skins[*i as usize].thickness);
+        (self.thinnest, self.thickest) = thicknesses
             .fold((f64::INFINITY, 0.0), |(least, most): (f64, f64), d| {
                 (least.min(d), most.max(d))
             });
-        surface
     }
 
     /// The same surface, in which pairs of bodies, named by their centres, and of particles with
@@ -226,12 +241,15 @@ impl Surface {
         self.radius(vertex) > 0.0 || is_alone()
     }
 
-    /// Whether two primitives, given by their vertices, do not touch: on the same rigid body, or
-    /// where a joint joins them.
+    /// Whether two primitives, given by their vertices, do not touch: on the same rigid body, where
+    /// a joint joins them, or as a fluid and a rigid body.
     pub(super) fn are_one(&self, a: &[u32], b: &[u32]) -> bool {
-        let solid = self.solid(a[0]);
-        if solid.is_some() && solid == self.solid(b[0]) {
-            return true;
+        let solids = [self.solid(a[0]), self.solid(b[0])];
+        let is_drop = |i: u32| self.drops.vertices.binary_search(&i).is_ok();
+        match solids {
+            [Some(a), Some(b)] if a == b => return true,
+            [None, Some(_)] if is_drop(a[0]) => return true,
+            _ => {}
         }
         let owner = |i: u32| self.solid(i).map_or(i, |k| self.rigid[k].center() as u32);
         let joined = |[i, j]: [u32; 2]| self.joined.binary_search(&[i.min(j), i.max(j)]).is_ok();

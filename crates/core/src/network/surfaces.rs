@@ -14,13 +14,16 @@ use crate::rigid::Body;
 /// Rigid bodies, with the constraints that may join them.
 pub(super) type Jointed<'a> = (&'a [Body], &'a [Constraint]);
 
-/// Contact properties of a network: skins, loose edges, and self-contact.
+/// Contact properties of a network: skins, loose edges, drops, and self-contact.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Touch {
     /// Skin of each particle.
     pub skins: Vec<Skin>,
     /// Edges that are in no triangle, such as those of a rope. An edge with equal ends is a point.
     pub edges: Vec<[u32; 2]>,
+    /// Particles of a fluid, which touch soft bodies and obstacles, but neither one another nor
+    /// rigid bodies.
+    pub drops: Vec<u32>,
     /// Whether surfaces touch one another and themselves, or only obstacles.
     pub bodies: bool,
 }
@@ -51,7 +54,7 @@ impl Surfaces {
                 });
             }
             touch.skins.iter().try_for_each(Skin::check)?;
-            for i in touch.edges.iter().flatten() {
+            for i in touch.edges.iter().flatten().chain(&touch.drops) {
                 particles.check(*i as usize)?;
             }
         }
@@ -106,21 +109,21 @@ impl Surfaces {
         self.touch.as_ref().map(|touch| {
             let is_whole = |[a, b]: &[u32; 2]| !tears.is_torn(*a as usize, *b as usize);
             let edges: Vec<_> = touch.edges.iter().copied().filter(is_whole).collect();
-            self.contact(&touch.skins, &edges, bodies, touch.bodies)
+            let drops: Vec<_> = touch.drops.iter().map(|i| [*i; 2]).collect();
+            self.contact((&touch.skins, touch.bodies), [&edges, &drops], bodies)
         })
     }
 
     /// Creates the contact of all surfaces of n particles and of bodies, also if contact is off.
     pub fn layer_of_all(&self, bodies: Jointed, n: usize) -> ContactLayer {
-        self.contact(&vec![Skin::default(); n], &[], bodies, true)
+        self.contact((&vec![Skin::default(); n], true), [&[]; 2], bodies)
     }
 
     fn contact(
         &self,
-        skins: &[Skin],
-        edges: &[[u32; 2]],
+        (skins, touches_itself): (&[Skin], bool),
+        [edges, drops]: [&[[u32; 2]]; 2],
         (bodies, constraints): Jointed,
-        touches_itself: bool,
     ) -> ContactLayer {
         let obstacles = &self.obstacles;
         let surface = Surface::new(
@@ -137,7 +140,8 @@ impl Surfaces {
                 Constraint::Joint(joint) => joint.second.map(|second| [joint.first, second]),
                 _ => None,
             });
-        ContactLayer::new(surface.with_joined(joined), obstacles.clone())
+        let surface = surface.with_joined(joined).with_drops(drops);
+        ContactLayer::new(surface, obstacles.clone())
     }
 }
 

@@ -26,8 +26,6 @@ pub(super) struct Phases {
     pub contact: ContactPhase,
     /// Excess length of the longest limited spring at the beginning of the step, if it is needed.
     excess: f64,
-    /// Inverse mass of each particle of a fluid that is free (1/kg), and 0 for all others.
-    drops: Vec<f64>,
 }
 
 /// Result of the phases after a step.
@@ -46,7 +44,6 @@ impl Phases {
             limiter: StrainLimiter::new(dim),
             contact: ContactPhase::new(dim),
             excess: 0.0,
-            drops: Vec::with_capacity(dim / 6),
         }
     }
 
@@ -177,17 +174,6 @@ impl Phases {
             network.hold(t + h, y1);
             return Ok(met);
         };
-        if let Some(fluid) = network.fluid() {
-            // Surfaces do not touch a fluid, but obstacles keep it out.
-            self.drops.clear();
-            self.drops.resize(network.particles(), 0.0);
-            let free = fluid.particles().iter().map(|i| *i as usize);
-            for i in free.filter(|i| !network.is_wall(*i)) {
-                self.drops[i] = inverse_masses[i];
-            }
-            let y0 = self.contact.y0();
-            resolve(network.obstacles(), &self.drops, &Step { t, h, y0 }, y1);
-        }
         network.hold(t + h, y1);
         // A state that is not finite is reported afterwards.
         if y1.iter().any(|y| !y.is_finite()) {

@@ -23,4 +23,5 @@ mod sweeps;
 mod tearing;
 mod threads;
 mod turning;
+mod wet;
 mod wind;

@@ -35,6 +35,7 @@ fn system(on_floor: bool) -> (Network, Vec<f64>) {
     let touch = Touch {
         skins: vec![skin; count],
         edges: vec![[0, 0]],
+        drops: vec![],
         bodies: true,
     };
     network.set_touch(Some(touch)).unwrap();

@@ -33,6 +33,7 @@ fn flight(ways: &[[[f64; 3]; 2]; 5], led: &[usize]) -> Simulation {
     let touch = Touch {
         skins: vec![skin; 5],
         edges: vec![[0, 1]],
+        drops: vec![],
         bodies: true,
     };
     network.set_touch(Some(touch)).unwrap();

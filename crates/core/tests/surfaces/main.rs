@@ -43,6 +43,7 @@ fn bead_above_floor(mass: f64, gravity: f64, [thickness, stiffness]: [f64; 2]) -
     let touch = Touch {
         skins: vec![skin],
         edges: vec![[0, 0]],
+        drops: vec![],
         bodies: false,
     };
     network.set_touch(Some(touch)).unwrap();

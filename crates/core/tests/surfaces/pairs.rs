@@ -75,6 +75,7 @@ impl Kind {
         let touch = Touch {
             skins: vec![skin; count],
             edges: edges.to_vec(),
+            drops: vec![],
             bodies: true,
         };
         network.set_touch(Some(touch)).unwrap();

@@ -81,6 +81,8 @@ pub(super) struct Assembly {
     pub skins: Vec<Skin>,
     /// Edges that are in no triangle, and such points, as edges with equal ends.
     pub edges: Vec<[u32; 2]>,
+    /// Particles of fluids that are not in walls.
+    pub drops: Vec<u32>,
     pub pins: Pinned,
     /// Bodies whose strain is limited: key, particles and limit.
     pub strain_limits: Vec<(String, Range<usize>, f64)>,

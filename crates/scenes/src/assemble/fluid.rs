@@ -7,6 +7,7 @@ use a3_core::elements::{Fluid as Liquid, FluidLaw};
 use a3_core::{Network, Path, Vector3};
 
 use super::assembly::{Assembly, Body, Counts};
+use super::skins::point_skin;
 use crate::check::{at, at_least, positive};
 use crate::description::{Fluid, FluidShape, Pin, Spot};
 use crate::fault::Fault;
@@ -14,6 +15,9 @@ use crate::fault::Fault;
 /// Number of layers of particles in a wall: with three, the fluid particles next to a wall have all
 /// their neighbours.
 pub const LAYERS: u32 = 3;
+
+/// Thickness of the skin of a particle, relative to the spacing.
+const THICKNESS: f64 = 1.0;
 
 /// Smallest initial distance of two particles of a fluid, relative to the spacing. Nearer ones
 /// would repel each other violently.
@@ -222,7 +226,14 @@ impl Body for Fluid {
             assembly.velocities.push(Vector3::zeros());
         }
         let all = assembly.positions.len();
-        assembly.masses.resize(all, self.law().mass());
+        let (mass, thickness) = (self.law().mass(), THICKNESS * self.spacing);
+        assembly.masses.resize(all, mass);
+        // As stiff as the fluid itself; against soft bodies, theirs counts.
+        let stiffness = mass * (self.sound / self.spacing).powi(2);
+        let skin = point_skin(mass, thickness, Some(stiffness), [0.0; 2])?;
+        assembly.skins.resize(free, skin);
+        assembly.drops.extend(first as u32..free as u32);
+        // Surfaces do not touch walls.
         assembly.skins.resize(all, Skin::default());
         if all > free {
             assembly.tanks.push(free..all);

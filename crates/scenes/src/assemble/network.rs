@@ -114,6 +114,7 @@ pub(super) fn build(
     let touch = Touch {
         skins: assembly.skins,
         edges: assembly.edges,
+        drops: assembly.drops,
         bodies: true,
     };
     if touches(description) {

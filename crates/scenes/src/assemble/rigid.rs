@@ -8,7 +8,7 @@ use a3_core::{Vector3, rotation};
 use nalgebra::{Matrix3, Rotation3, UnitQuaternion};
 
 use super::assembly::{Assembly, Body, Counts};
-use super::skins::rigid_skin;
+use super::skins::point_skin;
 use super::soaked::soaked;
 use crate::budget::{Budget, FACES, TRIANGLES};
 use crate::check::{at, at_least, key_of, one_of, positive};
@@ -143,8 +143,9 @@ impl Body for LoadedBody<'_> {
         at("rolling_friction", at_least(0.0, "it", rolling))?;
         let skin = Skin {
             rolling,
-            ..rigid_skin(
-                properties.mass,
+            // A face rests on several points.
+            ..point_skin(
+                0.25 * properties.mass,
                 thickness,
                 body.contact_stiffness,
                 [body.friction, body.restitution],

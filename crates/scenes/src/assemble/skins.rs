@@ -20,9 +20,9 @@ const ACCELERATION: f64 = 100.0;
 /// Damping of contact, relative to that of a spring of the same stiffness.
 const DAMPING: f64 = 4.0;
 
-/// Damping of the contact of rigid bodies: the speed that a body gains over its thickness at
+/// Damping of the contact of rigid bodies and of fluids: the speed that a body gains over its thickness at
 /// `ACCELERATION`, relative to the speed at which damping counts fully.
-const RIGID_DAMPING: f64 = 1.5;
+const POINT_DAMPING: f64 = 1.5;
 
 /// Material of a body and the keys that describe its skin.
 pub(super) struct SkinSpec {
@@ -96,8 +96,8 @@ impl SkinSpec {
     }
 }
 
-/// Creates the skin of the points of a rigid body of this mass (kg).
-pub(super) fn rigid_skin(
+/// Creates the skin of a point of a rigid body, or of a fluid, of this mass (kg).
+pub(super) fn point_skin(
     mass: f64,
     thickness: f64,
     contact_stiffness: Option<f64>,
@@ -113,8 +113,7 @@ pub(super) fn rigid_skin(
     };
     spec.check()?;
     Ok(Skin {
-        damping: RIGID_DAMPING / (ACCELERATION * thickness).sqrt(),
-        // A face rests on several points.
-        ..spec.skin(0.25 * mass, thickness)
+        damping: POINT_DAMPING / (ACCELERATION * thickness).sqrt(),
+        ..spec.skin(mass, thickness)
     })
 }

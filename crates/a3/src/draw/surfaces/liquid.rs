@@ -1,17 +1,21 @@
-//! The surface of a fluid: an isosurface of a field, the sum of a bump around each particle. It is
-//! meshed by naive surface nets: a vertex in each cell of a grid through which the surface passes,
-//! and two triangles across each edge of the grid that it cuts (Gibson, *Constrained elastic
-//! surface nets*, 1998).
+//! The surface of a fluid: the places at a fixed distance from the weighted mean of the particles
+//! around them (Zhu, Bridson, *Animating sand as a fluid*, 2005), so that a level surface lies half a
+//! spacing beyond its particles, and a single particle is a ball of about its volume. It is meshed
+//! by naive surface nets: a vertex in each cell of a grid through which the surface passes, and two
+//! triangles across each edge of the grid that it cuts (Gibson, *Constrained elastic surface nets*,
+//! 1998).
 
 use a3_core::Simulation;
 
-/// Radius of the bump around a particle, in spacings.
-const RADIUS: f64 = 1.8;
-/// Value of the field at the surface. The field of a single particle is 1 at its centre, and
-/// particles at their spacing have a little more than twice that at a level surface.
-const LEVEL: f32 = 0.6;
+/// Distance up to which particles count, in spacings.
+const REACH: f64 = 2.0;
+/// Distance of the surface from the mean of the particles around it, in spacings.
+const RADIUS: f32 = 0.6;
+/// Least sum of the weights of particles within the surface: less than at the surface of a single
+/// particle, and more than halfway between two that are farther apart than 2.2 spacings.
+const LEAST_WEIGHT: f32 = 0.7;
 /// Width of a cell of the grid, in spacings.
-const CELL_WIDTH: f64 = 0.7;
+const CELL_WIDTH: f64 = 0.55;
 /// Largest number of nodes of the grid: it is coarser where drops have flown far apart.
 const MAX_NODES: f64 = 3e6;
 
@@ -41,8 +45,10 @@ struct Field {
     /// Position of the first node, and the distance of nodes (m).
     origin: [f64; 3],
     cell: f64,
-    values: Vec<f32>,
-    /// Sum of the bumps, each times the value that colours its particle; empty without colours.
+    /// Sum of the weights of the particles around each node, and of their places from there, in
+    /// spacings, times their weights.
+    sums: Vec<[f32; 4]>,
+    /// Sum of the weights, each times the value that colours its particle; empty without colours.
     coloured: Vec<f32>,
 }
 
@@ -86,7 +92,7 @@ impl Field {
             }
         }
         let nodes = |cell: f64| {
-            let reach = RADIUS / CELL_WIDTH * cell + cell;
+            let reach = REACH / CELL_WIDTH * cell + cell;
             let count = |axis: usize| ((high[axis] - low[axis] + 2.0 * reach) / cell).ceil() + 1.0;
             [0, 1, 2].map(count)
         };
@@ -95,12 +101,12 @@ impl Field {
             cell *= 1.1;
         }
         let counts = nodes(cell).map(|count| count as usize);
-        let radius = RADIUS / CELL_WIDTH * cell;
+        let radius = REACH / CELL_WIDTH * cell;
         let mut field = Self {
             counts,
             origin: low.map(|low| low - radius - cell),
             cell,
-            values: vec![0.0; counts.iter().product()],
+            sums: vec![[0.0; 4]; counts.iter().product()],
             coloured: vec![0.0; values.map_or(0, |_| counts.iter().product())],
         };
         for (k, place) in places.iter().enumerate() {
@@ -113,7 +119,14 @@ impl Field {
         (k * self.counts[1] + j) * self.counts[0] + i
     }
 
-    /// Adds the bump (1 - r^2 / radius^2)^3 around a particle, with the value that colours it.
+    /// Returns the depth of a node below the surface, in spacings; negative outside.
+    fn depth(&self, node: usize) -> f32 {
+        let [weight, x, y, z] = self.sums[node];
+        let distance = (x * x + y * y + z * z).sqrt() / weight.max(f32::MIN_POSITIVE);
+        (RADIUS - distance).min(weight - LEAST_WEIGHT)
+    }
+
+    /// Adds a particle with its weight (1 - r^2 / reach^2)^3 and the value that colours it.
     fn add(&mut self, place: &[f64; 3], radius: f64, value: f32) {
         let at: [f64; 3] = std::array::from_fn(|a| (place[a] - self.origin[a]) / self.cell);
         let reach = radius / self.cell;
@@ -129,10 +142,14 @@ impl Field {
                     let d = [i as f64 - at[0], j as f64 - at[1], k as f64 - at[2]];
                     let square = (d[0] * d[0] + d[1] * d[1] + d[2] * d[2]) / (reach * reach);
                     let node = self.index([i, j, k]);
-                    let bump = (1.0 - square).max(0.0).powi(3) as f32;
-                    self.values[node] += bump;
+                    let weight = (1.0 - square).max(0.0).powi(3) as f32;
+                    let [x, y, z] = d.map(|d| (d * CELL_WIDTH) as f32);
+                    let parts = [1.0, x, y, z].map(|part| weight * part);
+                    for (sum, part) in self.sums[node].iter_mut().zip(parts) {
+                        *sum += part;
+                    }
                     if let Some(sum) = self.coloured.get_mut(node) {
-                        *sum += bump * value;
+                        *sum += weight * value;
                     }
                 }
             }
@@ -146,7 +163,7 @@ impl Field {
         let nodes: [usize; 8] = std::array::from_fn(|corner| {
             self.index([0, 1, 2].map(|axis| cell[axis] + (corner >> axis & 1)))
         });
-        let values = nodes.map(|node| self.values[node] - LEVEL);
+        let values = nodes.map(|node| self.depth(node));
         let inside = values.iter().filter(|value| **value > 0.0).count();
         if inside == 0 || inside == 8 {
             return None;
@@ -180,19 +197,20 @@ impl Field {
         })
     }
 
-    /// Returns the mean of the values around some nodes, weighted by the bumps; -1 without colours.
+    /// Returns the mean of the values around some nodes, weighted as they are; -1 without colours.
     fn colour(&self, nodes: [usize; 8]) -> f32 {
         if self.coloured.is_empty() {
             return -1.0;
         }
-        let sum = |of: &[f32]| nodes.iter().map(|node| of[*node]).sum::<f32>();
-        sum(&self.coloured) / sum(&self.values)
+        let coloured: f32 = nodes.iter().map(|node| self.coloured[*node]).sum();
+        let weights: f32 = nodes.iter().map(|node| self.sums[*node][0]).sum();
+        coloured / weights
     }
 
     fn surface(&self) -> Liquid {
         let mut liquid = Liquid::default();
         // Number of the vertex of each cell.
-        let mut vertices = vec![u32::MAX; self.values.len()];
+        let mut vertices = vec![u32::MAX; self.sums.len()];
         let [x, y, z] = self.counts.map(|count| 0..count - 1);
         for k in z.clone() {
             for j in y.clone() {
@@ -211,7 +229,7 @@ impl Field {
                     for axis in 0..3 {
                         let mut next = node;
                         next[axis] += 1;
-                        let [a, b] = [node, next].map(|n| self.values[self.index(n)] > LEVEL);
+                        let [a, b] = [node, next].map(|n| self.depth(self.index(n)) > 0.0);
                         if a == b {
                             continue;
                         }
