@@ -70,12 +70,33 @@ pub fn kinds() -> Vec<Kind> {
             "rods, ropes, wires on rigid bodies",
             format!("constraint = [{{ rod = [0, 2] }}]\n{}", balls(2)),
         ),
+        Kind::new(
+            "joints of rigid bodies",
+            format!(
+                "joint = [{{ bodies = [0, 1], ball = [0.5, 0, 0] }}]\n{}",
+                balls(2)
+            ),
+        ),
         Kind::new("gas at constant pressure", balloon("pressure = 50")),
         Kind::new("an amount of gas", balloon("fill = 1.02")),
         Kind::new("elastic solids", solid("")),
         Kind::new("damped elastic solids", solid("damping = 0.004")),
         Kind::new("liquids", liquid("")),
         Kind::new("viscous liquids", liquid("viscosity = 0.02")),
+        Kind::new(
+            "liquids on surfaces that touch",
+            format!(
+                "{touching}\n{}\n{}",
+                liquid(""),
+                cloth("damping_ratio = 0.1")
+            ),
+        ),
+        Kind::new(
+            "rigid bodies in liquids",
+            "body = [{ parts = [{ box = [0.5, 0.25, 1] }], density = 500, at = [0, 0.5, 0] }]\n"
+                .to_owned()
+                + &liquid("").replace("[0.5, 0.5, 0]", "[2, 1.75, 0]"),
+        ),
     ]
 }
 
@@ -112,7 +133,7 @@ fn solid(keys: &str) -> String {
 
 fn liquid(keys: &str) -> String {
     format!(
-        "fluid = [{{ dimensions = 2, size = [0.5, 0.5, 0], spacing = 0.125, at = [0, 0, 0], \
+        "fluid = [{{ dimensions = 2, size = [0.5, 0.5, 0], spacing = 0.125, at = [0, 2, 0], \
          density = 1000, sound = 20, {keys} }}]"
     )
 }
