@@ -20,8 +20,8 @@ const ACCELERATION: f64 = 100.0;
 /// Damping of contact, relative to that of a spring of the same stiffness.
 const DAMPING: f64 = 4.0;
 
-/// Damping of the contact of rigid bodies and of fluids: the speed that a body gains over its thickness at
-/// `ACCELERATION`, relative to the speed at which damping counts fully.
+/// Damping of the contact of rigid bodies and of fluids: the speed that they gain over their
+/// thickness at `ACCELERATION`, relative to the speed at which damping counts fully.
 const POINT_DAMPING: f64 = 1.5;
 
 /// Material of a body and the keys that describe its skin.

@@ -1,5 +1,5 @@
 //! The surface of a fluid: the places at a fixed distance from the weighted mean of the particles
-//! around them (Zhu, Bridson, *Animating sand as a fluid*, 2005), so that a level surface lies half a
+//! around them (Zhu, Bridson, *Animating sand as a fluid*, 2005). So a level surface lies half a
 //! spacing beyond its particles, and a single particle is a ball of about its volume. It is meshed
 //! by naive surface nets: a vertex in each cell of a grid through which the surface passes, and two
 //! triangles across each edge of the grid that it cuts (Gibson, *Constrained elastic surface nets*,
