@@ -32,6 +32,8 @@ const STEPS: u32 = 300;
 const TOUCHING: (f64, u32) = (2.5e-3, 60);
 /// Step (s) and steps in scenes whose rigid bodies touch: implicit methods take long there.
 const RIGID: (f64, u32) = (1e-3, 20);
+/// Steps of adaptive methods in scenes with friction, where they locate each slide and each stop.
+const SLIDING: u32 = 60;
 
 struct Run {
     scene: String,
@@ -134,6 +136,7 @@ fn runs() -> Vec<Run> {
             );
             let check = toml.lines().any(|line| line == "self_collision = true");
             let rigid = toml.contains("[[body]]") && toml.contains("gravity");
+            let slides = toml.contains("friction");
             let (step, steps) = match (check, rigid) {
                 (true, _) => TOUCHING,
                 (_, true) => RIGID,
@@ -150,7 +153,11 @@ fn runs() -> Vec<Run> {
                 } else {
                     step.to_string()
                 },
-                until: f64::from(steps) * step,
+                until: f64::from(if slides && method.is_adaptive() {
+                    steps.min(SLIDING)
+                } else {
+                    steps
+                }) * step,
                 threads,
                 check,
             })
