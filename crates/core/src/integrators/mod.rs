@@ -13,6 +13,7 @@ mod error_norm;
 mod euler;
 mod heun;
 mod implicit;
+mod implicit_damping;
 mod integrator;
 mod method;
 mod midpoint;

@@ -3,7 +3,8 @@
 use super::method::Method;
 use super::registry;
 use super::{
-    dop853, dormand_prince, dprkn86, dprkn1210, euler, heun, implicit, midpoint, pefrl, rk4, rkf45,
+    dop853, dormand_prince, dprkn86, dprkn1210, euler, heun, implicit, implicit_damping, midpoint,
+    pefrl, rk4, rkf45,
 };
 use super::{srkn11, symplectic_euler, vbd, verlet, verner65, xpbd};
 
@@ -30,6 +31,7 @@ pub static METHODS: &[Method] = &[
     xpbd::METHOD,
     xpbd::TEN,
     vbd::METHOD,
+    implicit_damping::METHOD,
 ];
 
 /// Method with this letter, name or alias: one of the table or, failing that, an own method that

@@ -3,6 +3,7 @@
 
 mod block;
 mod conjugate_gradients;
+mod damping;
 mod direct;
 mod ends;
 mod multigrid;
@@ -10,19 +11,19 @@ mod saddle;
 mod tangent;
 
 use conjugate_gradients::ConjugateGradients;
+pub(crate) use damping::DampingSolver;
 use direct::Direct;
 use multigrid::Multigrid;
 pub(crate) use saddle::Saddle;
 pub(crate) use tangent::Tangent;
 
+use crate::products::ITERATION;
 use crate::system::Linearized;
 use crate::work::Work;
 
-/// Price of an iteration of conjugate gradients, in evaluations of the system's forces. It and the
+/// Number of iterations of conjugate gradients, over sqrt(1 + a2 w2) ln(2/tolerance). This and the
 /// prices below were measured on cloth of 20 x 20 to 128 x 128 particles and on chains (see the
 /// tests).
-const ITERATION: f64 = 2.4;
-/// Number of iterations of conjugate gradients, over sqrt(1 + a2 w2) ln(2/tolerance).
 const SPREAD: f64 = 0.3;
 /// Prices of an iteration with multigrid and of the preparation of a matrix for it, in evaluations
 /// of the system's forces.
