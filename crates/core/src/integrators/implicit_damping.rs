@@ -22,7 +22,7 @@ use super::arithmetic::add_scaled;
 use super::implicit::Dense;
 use super::integrator::{Integrator, check_dim};
 use super::method::{Create, Method, View};
-use super::splitting::{drift, kick, reads_velocity};
+use super::splitting::{drift, kick};
 use super::verlet;
 use crate::control::Control;
 use crate::error::Error;
@@ -30,7 +30,7 @@ use crate::linear::DampingSolver;
 use crate::measure::Measure;
 use crate::refusal::Refusal;
 use crate::rows::Terms;
-use crate::system::{Linearized, Mechanics, ParticleSystem, rigid_of};
+use crate::system::{Linearized, Mechanics, ParticleSystem, reads_velocity, rigid_of};
 use crate::work::Work;
 
 pub(super) const METHOD: Method = Method {

@@ -10,7 +10,7 @@ use super::trial::Trial;
 use crate::control::Control;
 use crate::error::{Error, positive};
 use crate::refusal::Refusal;
-use crate::system::{Linearized, ParticleSystem};
+use crate::system::{Linearized, ParticleSystem, reads_velocity};
 
 /// Largest state (numbers) for which implicit methods compute the Jacobian of f.
 pub(super) const MAX_DENSE: usize = 1024;
@@ -104,6 +104,13 @@ impl Method {
     #[must_use]
     pub fn solves_linear_systems(&self) -> bool {
         matches!(self.view, View::Tangent | View::Damping)
+    }
+
+    /// Whether another method of the table takes the same steps on a system: implicit damping is
+    /// velocity Verlet where no force of a kick depends on velocities.
+    #[must_use]
+    pub fn repeats_another(&self, system: &dyn ParticleSystem) -> bool {
+        self.view == View::Damping && !reads_velocity(system)
     }
 
     /// Whether the method needs forces and masses, instead of an arbitrary f(t, y).

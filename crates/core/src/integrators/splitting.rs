@@ -10,7 +10,7 @@ use crate::error::Error;
 use crate::refusal::Refusal;
 use crate::rows::{Next, Stage, Terms};
 use crate::system::{
-    Mechanics, ParticleSystem, Rigid, divide_by_masses, kick_reads_velocity, place_pins, rigid_of,
+    Mechanics, ParticleSystem, Rigid, divide_by_masses, place_pins, reads_velocity, rigid_of,
     rows_of,
 };
 use crate::vectors::Arch;
@@ -248,14 +248,6 @@ impl SplittingMethod {
             }
         }
     }
-}
-
-/// Whether kicks depend on v; true if unknown.
-pub(super) fn reads_velocity(system: &dyn ParticleSystem) -> bool {
-    if let Some(rigid) = rigid_of(system) {
-        return rigid.kick_reads_velocity();
-    }
-    system.mechanics().is_none_or(kick_reads_velocity)
 }
 
 /// Writes the accelerations (m/s2) of a kick at time t (s) to a.

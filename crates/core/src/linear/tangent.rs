@@ -90,23 +90,27 @@ impl Tangent {
     pub fn list(&mut self, system: &dyn Linearized) {
         if !self.listed {
             self.listed = true;
-            self.collect(0, |t, x, clamped, visit| {
+            self.collect((0, false), |t, x, clamped, visit| {
                 system.couplings(t, x, clamped, visit);
             });
         }
     }
 
-    /// Puts couplings in the lists, axial ones after the first `left`, which stay.
+    /// Puts couplings in the lists, axial ones after the first `left`, which stay. With `skips`,
+    /// those of two pinned particles are left out.
     fn collect(
         &mut self,
-        left: usize,
+        (left, skips): (usize, bool),
         visit: impl FnOnce(f64, &[f64], bool, &mut dyn FnMut(Coupling)),
     ) {
-        let (axial, blocks) = (&mut self.axial, &mut self.blocks);
+        let (axial, blocks, free) = (&mut self.axial, &mut self.blocks, &self.free);
+        // Walls of a fluid have many couplings of two pinned particles, which act on nothing.
+        let idle = |c: &AxialCoupling| skips && free[c.i] + free[c.j] == 0.0;
         let counts = [axial.len(), blocks.len()];
         let (mut axial_count, mut block_count, mut same) = (left, 0, true);
         visit(self.t, &self.x, self.clamped, &mut |coupling| {
             let block = match coupling {
+                Coupling::Axial(new) if idle(&new) => return,
                 Coupling::Axial(new) => {
                     same &= put(axial, axial_count, new, |c| [c.i, c.j]);
                     axial_count += 1;
@@ -195,7 +199,8 @@ impl Tangent {
         });
         self.listed = false;
         if fast == self.fast && fast <= self.axial.len() {
-            self.collect(fast, |t, x, clamped, visit| match products {
+            let skips = self.only_damping;
+            self.collect((fast, skips), |t, x, clamped, visit| match products {
                 Some(products) => products.other_couplings(t, x, clamped, visit),
                 None => system.couplings(t, x, clamped, visit),
             });

@@ -41,13 +41,14 @@ fn a_vortex_spreads_as_in_its_closed_form() {
     let step = 0.4 * spacing / law.sound;
     let own = method("implicit-damping");
     let mut run = Simulation::new(scene, own, Control::Step(step)).unwrap();
-    let start = core * core / (4.0 * viscosity);
+    // On the lattice the viscous force of a shear is that of 0.794 nu along its axes, and of 1.112
+    // nu along its diagonals: the sums of 4 m W' / (rho r) x^2 y^2 / (r^2 + s^2).
+    let start = core * core / (4.0 * 0.5 * (0.794 + 1.112) * viscosity);
     for stretch in [1.5, 2.0] {
         run.advance_to((stretch - 1.0) * start).unwrap();
         let left = energy(run.state()) / begun;
         let error = left * stretch * stretch - 1.0;
-        println!("{error} {:?}", run.work());
-        assert!(error.abs() < 0.05, "{stretch}: {error}");
+        assert!(error.abs() < 0.03, "{stretch}: {error}");
     }
 }
 
@@ -67,49 +68,34 @@ fn column(viscosity: f64) -> Scene {
     ))
 }
 
+/// Verlet's method blows up in steps that sound would allow, and in steps short enough for the
+/// viscosity goes where the own method goes. Where the viscosity is high, that takes more work.
 #[test]
 fn honey_takes_steps_of_sound() {
-    let scene = column(2.0);
-    let end = 0.4;
-    let run = |name: &str, step: f64| {
-        let mut run = Simulation::new(scene.clone(), method(name), Control::Step(step)).unwrap();
-        let ended = run.advance_to(end);
-        (
-            ended.is_ok(),
-            run.state()[..scene.state.len() / 2].to_vec(),
-            run.work(),
-        )
-    };
     let sound = 0.4 * 0.05 / 20.0;
-    let (ends, exact, _) = run("verlet", sound / 16.0);
-    assert!(ends);
-    assert!(!run("verlet", sound).0);
-    let error = |share: f64| {
-        let (ends, own, _) = run("implicit-damping", share * sound);
-        assert!(ends);
-        distance(&own, &exact)
-    };
-    let errors = [error(1.0), error(0.5)];
-    println!("{errors:?}");
-    let cpu = || {
-        let s = std::fs::read_to_string("/proc/self/schedstat").unwrap();
-        s.split(' ').next().unwrap().parse::<f64>().unwrap() * 1e-9
-    };
-    for (name, d) in [
-        ("verlet", 4.0),
-        ("implicit-damping", 1.0),
-        ("implicit-damping", 8.0),
-    ] {
-        let mut best = f64::INFINITY;
-        let mut work = None;
-        for _ in 0..3 {
-            let t = std::time::Instant::now();
-            work = Some(run(name, sound / d).2);
-            best = best.min(t.elapsed().as_secs_f64());
-        }
-        println!("{name} {d} {best} {work:?}");
+    for (viscosity, most, least_order) in [(2.0, 3e-3, 1.7), (10.0, 0.04, 1.4)] {
+        let scene = column(viscosity);
+        let half = scene.state.len() / 2;
+        let run = |name: &str, step: f64| {
+            let control = Control::Step(step);
+            let mut run = Simulation::new(scene.clone(), method(name), control).unwrap();
+            run.advance_to(0.4)
+                .map(|()| (run.state()[..half].to_vec(), run.work().total()))
+        };
+        assert!(run("verlet", sound).is_err());
+        let (exact, expensive) = run("verlet", sound / 16.0).unwrap();
+        let moved = distance(&exact, &scene.state[..half]);
+        let errors = [1.0, 0.5].map(|share| {
+            let (own, work) = run("implicit-damping", share * sound).unwrap();
+            assert!(share < 1.0 || 2.0 * work < expensive, "{work}");
+            distance(&own, &exact) / moved
+        });
+        let order = (errors[0] / errors[1]).log2();
+        assert!(
+            errors[0] < most && order > least_order,
+            "{viscosity}: {errors:?}"
+        );
     }
-    let _ = cpu;
 }
 
 /// A free drop keeps its momentum and its angular momentum to rounding, in steps by which viscosity
@@ -161,12 +147,10 @@ fn momentum_is_kept_to_rounding() {
             Simulation::new(scene, method("implicit-damping"), Control::Step(2e-3)).unwrap();
         run.take_steps(50).unwrap();
         for (now, begun) in momenta(run.state()).into_iter().zip(begun) {
-            println!("{dimensions} {:e}", (now - begun) / size);
             assert!(
                 (now - begun).abs() < 1e-13 * size,
                 "{now} instead of {begun}"
             );
         }
-        println!("{:?}", run.work());
     }
 }
