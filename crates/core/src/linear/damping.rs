@@ -5,8 +5,7 @@
 //! rotations of the whole, and so neither do the residual and the iterates: momentum and angular
 //! momentum are those of b to rounding, however few the iterations.
 
-use super::MAX_ITERATIONS;
-use super::conjugate_gradients::ConjugateGradients;
+use super::conjugate_gradients::{ConjugateGradients, MAX_ITERATIONS};
 use super::tangent::Tangent;
 use crate::error::Error;
 use crate::sums::dot;

@@ -10,7 +10,7 @@ mod multigrid;
 mod saddle;
 mod tangent;
 
-use conjugate_gradients::ConjugateGradients;
+use conjugate_gradients::{ConjugateGradients, MAX_ITERATIONS};
 pub(crate) use damping::DampingSolver;
 use direct::Direct;
 use multigrid::Multigrid;
@@ -34,9 +34,6 @@ const MULTIGRID_SPREAD: f64 = 0.45;
 /// dimensions, over the root of the number of particles. If even that is too expensive, the pattern
 /// is not analysed.
 const PLANAR: f64 = 3.0;
-/// Largest number of iterations.
-const MAX_ITERATIONS: u64 = 10_000;
-
 /// Solver of linear systems with the tangent of one system.
 pub(crate) struct Solver {
     pub tangent: Tangent,
