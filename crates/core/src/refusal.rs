@@ -62,8 +62,8 @@ impl fmt::Display for Refusal {
             ),
             Self::TooLarge { numbers, most } => write!(
                 f,
-                "supports rigid bodies and systems without masses up to a state of {most} numbers, \
-                 but this one has {numbers}: use an explicit solver"
+                "computes the Jacobian of such a system by differences, for a state of up to {most} \
+                 numbers, but this one has {numbers}: use an explicit solver"
             ),
         }
     }

@@ -288,6 +288,14 @@ pub(crate) fn kick_reads_velocity<M: Mechanics + ?Sized>(system: &M) -> bool {
     splitting.is_none_or(Splitting::kick_reads_velocity)
 }
 
+/// Whether kicks depend on v; true if unknown.
+pub(crate) fn reads_velocity(system: &dyn ParticleSystem) -> bool {
+    if let Some(rigid) = rigid_of(system) {
+        return rigid.kick_reads_velocity();
+    }
+    system.mechanics().is_none_or(kick_reads_velocity)
+}
+
 /// Converts forces (N) to accelerations (m/s2).
 pub(crate) fn divide_by_masses(inverse_masses: &[f64], f: &mut [f64]) {
     for column in f.chunks_exact_mut(inverse_masses.len()) {

@@ -5,6 +5,7 @@ use nalgebra::Vector3;
 use crate::coupling::{Coupling, Diagonal, Matrix};
 use crate::energy::Energy;
 use crate::error::Error;
+use crate::products::ITERATION;
 use crate::spring::Spring;
 
 /// The time, the state and the particles for which a force is evaluated.
@@ -139,6 +140,12 @@ pub(crate) trait Force {
     /// Returns the price of the assembly of the couplings, in evaluations of one single spring.
     fn assembly(&self) -> f64 {
         ASSEMBLY * self.cost().couplings
+    }
+
+    /// Returns the price of an iteration of conjugate gradients with the damping of the force, in
+    /// evaluations of the force.
+    fn iteration(&self) -> f64 {
+        ITERATION
     }
 
     /// Returns gravity and drag, if the force consists of these.

@@ -10,7 +10,7 @@ use super::trial::Trial;
 use crate::control::Control;
 use crate::error::{Error, positive};
 use crate::refusal::Refusal;
-use crate::system::{Linearized, ParticleSystem};
+use crate::system::{Linearized, ParticleSystem, reads_velocity};
 
 /// Largest state (numbers) for which implicit methods compute the Jacobian of f.
 pub(super) const MAX_DENSE: usize = 1024;
@@ -48,6 +48,8 @@ pub enum View {
     Tangent,
     /// Kicks of the velocities by forces, and drifts of the positions.
     Kicks,
+    /// Kicks and drifts, and the change of the forces with the velocities: a kick solves equations.
+    Damping,
     /// Accelerations that depend on positions and time alone, except for viscous drag.
     Accelerations,
     /// Springs one by one, solved by a fixed number of iterations in a step. In a long step the
@@ -91,10 +93,24 @@ impl Method {
         self.letter.is_some_and(is_letter) || self.name == name || self.aliases.contains(&name)
     }
 
-    /// Whether a step solves equations, by linear algebra in addition to the evaluations.
+    /// Whether a step solves equations for the positions, so that no stiffness limits its length.
     #[must_use]
     pub fn is_implicit(&self) -> bool {
         matches!(self.view, View::Tangent | View::Springs)
+    }
+
+    /// Whether a step solves linear systems in addition to the evaluations, if any force depends on
+    /// the velocity.
+    #[must_use]
+    pub fn solves_linear_systems(&self) -> bool {
+        matches!(self.view, View::Tangent | View::Damping)
+    }
+
+    /// Whether another method of the table takes the same steps on a system: implicit damping is
+    /// velocity Verlet where no force of a kick depends on velocities.
+    #[must_use]
+    pub fn repeats_another(&self, system: &dyn ParticleSystem) -> bool {
+        self.view == View::Damping && !reads_velocity(system)
     }
 
     /// Whether the method needs forces and masses, instead of an arbitrary f(t, y).
@@ -137,6 +153,7 @@ impl Method {
                 View::Derivative => None,
                 View::Tangent => refusal_by_size(system),
                 View::Kicks if system.rigid().is_some() => None,
+                View::Damping if system.rigid().is_some() => refusal_by_size(system),
                 _ if system.rigid().is_some() => Some(Refusal::Rotates),
                 _ => Some(Refusal::LacksMasses),
             };
@@ -152,7 +169,8 @@ impl Method {
             View::Tangent | View::Springs if !lists_all_couplings => Some(Refusal::HidesCouplings),
             View::Springs if mechanics.compliant().is_none() => Some(Refusal::LacksSprings),
             View::Accelerations if !mechanics.is_positional() => Some(Refusal::ReadsVelocity),
-            View::Tangent if linearized.is_none() => refusal_by_size(system),
+            View::Tangent | View::Damping if linearized.is_none() => refusal_by_size(system),
+            View::Damping if holds_constraints => refusal_by_size(system),
             _ => None,
         }
     }

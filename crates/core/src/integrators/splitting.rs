@@ -10,7 +10,7 @@ use crate::error::Error;
 use crate::refusal::Refusal;
 use crate::rows::{Next, Stage, Terms};
 use crate::system::{
-    Mechanics, ParticleSystem, Rigid, divide_by_masses, kick_reads_velocity, place_pins, rigid_of,
+    Mechanics, ParticleSystem, Rigid, divide_by_masses, place_pins, reads_velocity, rigid_of,
     rows_of,
 };
 use crate::vectors::Arch;
@@ -203,13 +203,7 @@ impl SplittingMethod {
             if stage.first && stage.next.is_from_y() {
                 self.y.copy_from_slice(v);
             }
-            match mechanics.splitting() {
-                Some(splitting) if terms == Terms::KickForces => {
-                    splitting.kick_forces(stage.t, x, v, &mut self.a);
-                    divide_by_masses(mechanics.inverse_masses(), &mut self.a);
-                }
-                _ => mechanics.accelerations(stage.t, x, v, &mut self.a),
-            }
+            kick(mechanics, terms, stage.t, x, v, &mut self.a);
             Arch::new().dispatch(Combine {
                 stage,
                 y: &mut self.y,
@@ -256,16 +250,33 @@ impl SplittingMethod {
     }
 }
 
-/// Whether kicks depend on v; true if unknown.
-fn reads_velocity(system: &dyn ParticleSystem) -> bool {
-    if let Some(rigid) = rigid_of(system) {
-        return rigid.kick_reads_velocity();
+/// Writes the accelerations (m/s2) of a kick at time t (s) to a.
+pub(super) fn kick(
+    mechanics: &dyn Mechanics,
+    terms: Terms,
+    t: f64,
+    x: &[f64],
+    v: &[f64],
+    a: &mut [f64],
+) {
+    match mechanics.splitting() {
+        Some(splitting) if terms == Terms::KickForces => {
+            splitting.kick_forces(t, x, v, a);
+            divide_by_masses(mechanics.inverse_masses(), a);
+        }
+        _ => mechanics.accelerations(t, x, v, a),
     }
-    system.mechanics().is_none_or(kick_reads_velocity)
 }
 
 /// Drifts x and v from t to t + h (s), and moves pins to their places at its end.
-fn drift(mechanics: &dyn Mechanics, terms: Terms, t: f64, h: f64, x: &mut [f64], v: &mut [f64]) {
+pub(super) fn drift(
+    mechanics: &dyn Mechanics,
+    terms: Terms,
+    t: f64,
+    h: f64,
+    x: &mut [f64],
+    v: &mut [f64],
+) {
     if h == 0.0 {
         return;
     }

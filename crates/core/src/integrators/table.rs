@@ -1,5 +1,7 @@
 //! The table of all methods.
 
+#[cfg(not(target_arch = "wasm32"))]
+use super::implicit_damping;
 use super::method::Method;
 use super::registry;
 use super::{
@@ -30,6 +32,8 @@ pub static METHODS: &[Method] = &[
     xpbd::METHOD,
     xpbd::TEN,
     vbd::METHOD,
+    #[cfg(not(target_arch = "wasm32"))]
+    implicit_damping::METHOD,
 ];
 
 /// Method with this letter, name or alias: one of the table or, failing that, an own method that

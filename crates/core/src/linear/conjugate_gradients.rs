@@ -1,8 +1,8 @@
 //! Conjugate gradients, preconditioned by the inverse of each particle's own 3 x 3 block and by
-//! multigrid where that pays. They are filtered as in Baraff and Witkin, *Large Steps in Cloth
-//! Simulation*, 1998, so that pinned particles stay exactly. The sum of both preconditioners is a
-//! preconditioner, too (Bramble, Pasciak, Xu, *Parallel multilevel preconditioners*, 1990), and
-//! takes no further product with the matrix.
+//! multigrid where that pays; for damping alone, by the masses. They are filtered as in Baraff and
+//! Witkin, *Large Steps in Cloth Simulation*, 1998, so that pinned particles stay exactly. The sum
+//! of both preconditioners is a preconditioner, too (Bramble, Pasciak, Xu, *Parallel multilevel
+//! preconditioners*, 1990), and takes no further product with the matrix.
 
 #![expect(
     clippy::inline_always,
@@ -20,6 +20,8 @@ use crate::sums::{self, OnBlock, dot};
 use crate::system::Linearized;
 use crate::threads::{Columns, threads};
 
+/// Largest number of iterations.
+pub(super) const MAX_ITERATIONS: u64 = 10_000;
 /// Number of particles in a block, whose numbers fit into the first-level cache.
 const BLOCK: usize = 256;
 
@@ -106,8 +108,14 @@ impl ConjugateGradients {
         self.version = tangent.version();
         let diagonal = tangent.diagonal();
         for (i, m) in tangent.masses().iter().enumerate() {
-            let block = diagonal.map(|column| column[i]);
-            let inverse = if *m == 0.0 { [0.0; 6] } else { inverse(block) };
+            let inverse = if *m == 0.0 {
+                [0.0; 6]
+            } else if tangent.is_only_damping() {
+                let w = 1.0 / m;
+                [w, w, w, 0.0, 0.0, 0.0]
+            } else {
+                inverse(diagonal.map(|column| column[i]))
+            };
             for (column, part) in self.inverses.iter_mut().zip(inverse) {
                 column[i] = part;
             }

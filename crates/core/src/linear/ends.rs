@@ -1,4 +1,4 @@
-//! Contributions of couplings at both of their ends.
+//! Lists of couplings by their ends, and contributions of couplings at both of their ends.
 
 use super::block::Block;
 use crate::coupling::{AxialCoupling, Diagonal, GeneralCoupling};
@@ -55,5 +55,18 @@ fn add(i: usize, j: usize, force: impl Fn(usize) -> f64, out: &mut [f64]) {
     for axis in 0..3 {
         out[axis * n + i] += force(axis);
         out[axis * n + j] -= force(axis);
+    }
+}
+
+/// Puts a coupling in its place in a list. Returns whether there was one of the same ends.
+#[inline]
+pub fn put<C>(list: &mut Vec<C>, place: usize, new: C, ends: impl Fn(&C) -> [usize; 2]) -> bool {
+    if let Some(old) = list.get_mut(place) {
+        let same = ends(old) == ends(&new);
+        *old = new;
+        same
+    } else {
+        list.push(new);
+        false
     }
 }

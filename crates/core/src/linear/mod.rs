@@ -3,26 +3,27 @@
 
 mod block;
 mod conjugate_gradients;
+mod damping;
 mod direct;
 mod ends;
 mod multigrid;
 mod saddle;
 mod tangent;
 
-use conjugate_gradients::ConjugateGradients;
+use conjugate_gradients::{ConjugateGradients, MAX_ITERATIONS};
+pub(crate) use damping::DampingSolver;
 use direct::Direct;
 use multigrid::Multigrid;
 pub(crate) use saddle::Saddle;
 pub(crate) use tangent::Tangent;
 
+use crate::products::ITERATION;
 use crate::system::Linearized;
 use crate::work::Work;
 
-/// Price of an iteration of conjugate gradients, in evaluations of the system's forces. It and the
+/// Number of iterations of conjugate gradients, over sqrt(1 + a2 w2) ln(2/tolerance). This and the
 /// prices below were measured on cloth of 20 x 20 to 128 x 128 particles and on chains (see the
 /// tests).
-const ITERATION: f64 = 2.4;
-/// Number of iterations of conjugate gradients, over sqrt(1 + a2 w2) ln(2/tolerance).
 const SPREAD: f64 = 0.3;
 /// Prices of an iteration with multigrid and of the preparation of a matrix for it, in evaluations
 /// of the system's forces.
@@ -33,9 +34,6 @@ const MULTIGRID_SPREAD: f64 = 0.45;
 /// dimensions, over the root of the number of particles. If even that is too expensive, the pattern
 /// is not analysed.
 const PLANAR: f64 = 3.0;
-/// Largest number of iterations.
-const MAX_ITERATIONS: u64 = 10_000;
-
 /// Solver of linear systems with the tangent of one system.
 pub(crate) struct Solver {
     pub tangent: Tangent,

@@ -4,7 +4,7 @@
 //! are those of the identity, and solutions are zero there.
 
 use super::block::{Block, symmetric};
-use super::ends::{add_axial, add_block, add_own};
+use super::ends::{add_axial, add_block, add_own, put};
 use crate::columns::columns_mut;
 use crate::coupling::{AxialCoupling, Coupling, Diagonal, GeneralCoupling, Matrix, full};
 use crate::system::Linearized;
@@ -23,6 +23,8 @@ pub(crate) struct Tangent {
     free: Vec<f64>,
     /// Whether couplings are clamped.
     clamped: bool,
+    /// Whether A is without K, and without the drag that drifts solve.
+    only_damping: bool,
     /// Number of changes of the pattern, the pairs of coupled particles.
     pattern: u64,
     /// Number of assemblies.
@@ -42,8 +44,29 @@ pub(crate) struct Tangent {
 impl Tangent {
     /// Creates a matrix with room for all couplings of the system, if their pattern is fixed.
     pub fn new(system: &dyn Linearized) -> Self {
-        let n = system.inverse_masses().len();
+        let mut tangent = Self::empty(system);
+        if system.hints().pattern_is_fixed() {
+            tangent.list(system);
+        }
+        tangent
+    }
+
+    /// As [`new`](Self::new), for the matrix A = M + a C, with a D if drifts do not solve drag.
+    pub fn of_damping(system: &dyn Linearized) -> Self {
         let mut tangent = Self {
+            only_damping: true,
+            ..Self::empty(system)
+        };
+        // The pattern of a fluid changes.
+        if system.hints().pattern_is_fixed() && system.lists_all_couplings() {
+            tangent.list(system);
+        }
+        tangent
+    }
+
+    fn empty(system: &dyn Linearized) -> Self {
+        let n = system.inverse_masses().len();
+        Self {
             axial: vec![],
             blocks: vec![],
             fast: 0,
@@ -51,6 +74,7 @@ impl Tangent {
             masses: vec![0.0; n],
             free: vec![0.0; n],
             clamped: false,
+            only_damping: false,
             pattern: 0,
             version: 0,
             t: 0.0,
@@ -59,34 +83,34 @@ impl Tangent {
             diagonal: vec![0.0; 7 * n],
             scratch: vec![0.0; 3 * n],
             zeros: vec![0.0; n],
-        };
-        if system.hints().pattern_is_fixed() {
-            tangent.list(system);
         }
-        tangent
     }
 
     /// Lists all couplings in the state of the last assembly, unless they are listed.
     pub fn list(&mut self, system: &dyn Linearized) {
         if !self.listed {
             self.listed = true;
-            self.collect(0, |t, x, clamped, visit| {
+            self.collect((0, false), |t, x, clamped, visit| {
                 system.couplings(t, x, clamped, visit);
             });
         }
     }
 
-    /// Puts couplings in the lists, axial ones after the first `left`, which stay.
+    /// Puts couplings in the lists, axial ones after the first `left`, which stay. With `skips`,
+    /// those of two pinned particles are left out.
     fn collect(
         &mut self,
-        left: usize,
+        (left, skips): (usize, bool),
         visit: impl FnOnce(f64, &[f64], bool, &mut dyn FnMut(Coupling)),
     ) {
-        let (axial, blocks) = (&mut self.axial, &mut self.blocks);
+        let (axial, blocks, free) = (&mut self.axial, &mut self.blocks, &self.free);
+        // Walls of a fluid have many couplings of two pinned particles, which act on nothing.
+        let idle = |c: &AxialCoupling| skips && free[c.i] + free[c.j] == 0.0;
         let counts = [axial.len(), blocks.len()];
         let (mut axial_count, mut block_count, mut same) = (left, 0, true);
         visit(self.t, &self.x, self.clamped, &mut |coupling| {
             let block = match coupling {
+                Coupling::Axial(new) if idle(&new) => return,
                 Coupling::Axial(new) => {
                     same &= put(axial, axial_count, new, |c| [c.i, c.j]);
                     axial_count += 1;
@@ -141,7 +165,12 @@ impl Tangent {
         (self.t, self.a, self.clamped) = (t, a, clamped);
         self.x.copy_from_slice(x);
         self.version += 1;
-        let drag = a * system.drag_coefficient();
+        let drifts = self.only_damping && system.splitting().is_some();
+        let drag = if drifts {
+            0.0
+        } else {
+            a * system.drag_coefficient()
+        };
         let particles = self.masses.iter_mut().zip(&mut self.free);
         for ((m, free), w) in particles.zip(system.inverse_masses()) {
             (*m, *free) = if *w == 0.0 {
@@ -170,7 +199,8 @@ impl Tangent {
         });
         self.listed = false;
         if fast == self.fast && fast <= self.axial.len() {
-            self.collect(fast, |t, x, clamped, visit| match products {
+            let skips = self.only_damping;
+            self.collect((fast, skips), |t, x, clamped, visit| match products {
                 Some(products) => products.other_couplings(t, x, clamped, visit),
                 None => system.couplings(t, x, clamped, visit),
             });
@@ -200,12 +230,26 @@ impl Tangent {
     fn matrix(&self) -> Matrix<'_> {
         Matrix {
             x: &self.x,
-            stiffness: self.a * self.a,
+            stiffness: self.stiffness_factor(),
             damping: self.a,
             clamped: self.clamped,
             masses: &self.masses,
             free: &self.free,
         }
+    }
+
+    /// Returns the factor of K in A: a2 (s2), or 0.
+    fn stiffness_factor(&self) -> f64 {
+        if self.only_damping {
+            0.0
+        } else {
+            self.a * self.a
+        }
+    }
+
+    /// Whether A is without K.
+    pub fn is_only_damping(&self) -> bool {
+        self.only_damping
     }
 
     /// Returns the columns xx, yy, zz, xy, xz and yz of the blocks on the diagonal of A (kg).
@@ -227,8 +271,8 @@ impl Tangent {
     /// Returns the factors of an axial coupling in A: for all directions, and in addition along it.
     #[inline]
     fn factors(&self, c: &AxialCoupling) -> [f64; 2] {
-        let a = self.a;
-        let (across, along) = (a * a * c.across, a * a * (c.along - c.across));
+        let (a, square) = (self.a, self.stiffness_factor());
+        let (across, along) = (square * c.across, square * (c.along - c.across));
         [across, along + a * c.damping]
     }
 
@@ -248,8 +292,9 @@ impl Tangent {
 
     /// Returns the block of a coupling in A.
     fn block(&self, coupling: &GeneralCoupling) -> [f64; 9] {
-        let (a, [k, c]) = (self.a, [coupling.stiffness, coupling.damping]);
-        std::array::from_fn(|part| a * a * k[part] + a * c[part])
+        let (a, square) = (self.a, self.stiffness_factor());
+        let [k, c] = [coupling.stiffness, coupling.damping];
+        std::array::from_fn(|part| square * k[part] + a * c[part])
     }
 
     /// Visits the ends i and j of each coupling and its 3 x 3 block B in A, row by row: -B is in
@@ -350,18 +395,5 @@ impl Tangent {
                 }
             }
         }
-    }
-}
-
-/// Puts a coupling in its place in a list. Returns whether there was one of the same ends.
-#[inline]
-fn put<C>(list: &mut Vec<C>, place: usize, new: C, ends: impl Fn(&C) -> [usize; 2]) -> bool {
-    if let Some(old) = list.get_mut(place) {
-        let same = ends(old) == ends(&new);
-        *old = new;
-        same
-    } else {
-        list.push(new);
-        false
     }
 }

@@ -4,9 +4,11 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 
+use super::element::Element;
 use super::parts::Network;
 use crate::contact::{self, ContactLayer, Crossed, Freedom, is_crowded};
 use crate::coupling::{AxialCoupling, BlockCoupling, Coupling, GeneralCoupling};
+use crate::elements::force::Matter;
 use crate::error::{Error, Vertex};
 use crate::sets::Sets;
 
@@ -87,11 +89,15 @@ pub fn untangle(network: &Network, y: &mut [f64]) -> Result<(), Error> {
         .map_err(|why| Error::Invalid(format!("they do not come apart: {why}")))
 }
 
-/// Returns the pairs of particles between which forces act, except contact.
+/// Returns the pairs of particles between which forces act, except contact and those of fluids.
 fn links(network: &Network, x: &[f64]) -> Vec<[u32; 2]> {
     let mut links = BTreeSet::new();
     let all = network.elements().iter();
-    for element in all.filter(|element| element.get::<ContactLayer>().is_none()) {
+    let links_lastingly = |element: &&Element| {
+        let flows = element.force().matter() == Some(Matter::Fluid);
+        element.get::<ContactLayer>().is_none() && !flows
+    };
+    for element in all.filter(links_lastingly) {
         element.force().couplings(0.0, x, true, &mut |coupling| {
             let (i, j) = match coupling {
                 Coupling::Axial(AxialCoupling { i, j, .. })

@@ -11,6 +11,7 @@ use crate::elements::force::{ASSEMBLY, At, ByParticle, DriftForces, Force, Matte
 use crate::elements::sheet::{Quantity, set};
 use crate::elements::{Airflow, Drag, Finish, Fluid, Gravity, Sheet, Solid, Wind};
 use crate::error::Error;
+use crate::products::ITERATION;
 
 /// Elements in the order of their types, and those of one type in the order in which they were
 /// added.
@@ -293,6 +294,16 @@ impl Elements {
             self.sum_of(|force| force.assembly()) / price
         } else {
             ASSEMBLY
+        }
+    }
+
+    /// Returns the price of an iteration with the damping alone, in evaluations of the forces.
+    pub fn iteration(&self) -> f64 {
+        let price = self.sum_of(|force| force.cost().price);
+        if price > 0.0 {
+            self.sum_of(|force| force.iteration() * force.cost().price) / price
+        } else {
+            ITERATION
         }
     }
 }

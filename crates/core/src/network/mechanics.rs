@@ -165,6 +165,7 @@ impl Linearized for Network {
             reach: thickest.map_or(f64::INFINITY, |thickness| 0.5 * thickness),
             speed: self.elements.speed(),
             assembly: self.elements.assembly(),
+            iteration: self.elements.iteration(),
         }
     }
 }

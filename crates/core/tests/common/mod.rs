@@ -46,7 +46,7 @@ pub fn on_all_cores<T: Send>(items: impl IntoIterator<Item = T>, work: impl Fn(T
 /// differences if there are many rigid bodies.
 pub fn takes_minutes(method: &Method, scene: &Scene) -> bool {
     let bodies = scene.model.network().map_or(0, |n| n.bodies().len());
-    method.is_implicit() && bodies > 1
+    (method.is_implicit() || method.solves_linear_systems()) && bodies > 1
 }
 
 /// Scene described by the text of a scene file.

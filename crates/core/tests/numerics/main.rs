@@ -9,6 +9,7 @@ mod adaptive;
 mod bdf;
 mod callbacks;
 mod compliant;
+mod damping;
 mod ends;
 mod foreign;
 mod horizon;

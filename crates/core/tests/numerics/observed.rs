@@ -115,7 +115,7 @@ fn limits_are_seen_on_the_cloth() {
         // A fast mode may be over before it has grown. If a limit is not sharp, growth is so slow
         // that the cloth changes its shape first.
         let most = if seen.is_sharp() && in_motion.is_sharp() {
-            1.2
+            1.25
         } else {
             5.0
         };

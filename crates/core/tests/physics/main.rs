@@ -14,6 +14,7 @@ mod fluid;
 mod forces;
 mod friction;
 mod gas;
+mod honey;
 mod networks;
 mod restitution;
 mod rigid;

@@ -8,7 +8,7 @@ use crate::base::failure::Failure;
 use crate::cli::ErrorScope;
 
 /// Returns the methods that were asked for, each once. If none was named, these are all that
-/// support the scene.
+/// support the scene and repeat no other.
 ///
 /// # Errors
 /// A method that was asked for does not support the scene.
@@ -20,6 +20,7 @@ pub fn methods(
         let all = integrators::METHODS.iter();
         return Ok(all
             .filter(|m| m.check(scene.model.system()).is_ok())
+            .filter(|m| !m.repeats_another(scene.model.system()))
             .collect());
     }
     let asked: Vec<_> = asked.iter().copied().flatten().collect();
@@ -27,7 +28,7 @@ pub fn methods(
 }
 
 /// Returns the methods that were asked for, each once. If there are none, these are all of the
-/// table that support the scene.
+/// table that support the scene and repeat no other.
 ///
 /// # Errors
 /// A method does not support the scene, or two methods have one name.

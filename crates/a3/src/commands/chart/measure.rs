@@ -339,7 +339,7 @@ impl Study {
 
 /// Estimates the work of a step, in evaluations.
 fn each(method: &Method) -> f64 {
-    if method.is_implicit() && !method.needs_springs() {
+    if method.solves_linear_systems() {
         IMPLICIT_WORK
     } else {
         f64::from(method.damped_evaluations.max(method.evaluations))

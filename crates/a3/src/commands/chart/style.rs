@@ -114,6 +114,7 @@ fn of(letter: char) -> CurveStyle {
         'o' => ("#5a7f1e", IMPLICIT, Star(3, 0.4)),
         'c' => ("#b3703c", ITERATED, Polygon(8, 0.0)),
         'j' => ("#7a4419", ITERATED, Polygon(8, 0.0625)),
+        'h' => ("#1f4fa8", SYMPLECTIC, Polygon(6, 0.5)),
         'y' => ("#8a8d91", ITERATED, Star(3, 0.4)),
         _ => return CurveStyle::default(),
     };

@@ -146,7 +146,8 @@ impl Search<'_> {
         let scene = self.judged.scene;
         let methods = METHODS
             .iter()
-            .filter(|m| m.check(scene.model.system()).is_ok());
+            .filter(|m| m.check(scene.model.system()).is_ok())
+            .filter(|m| !m.repeats_another(scene.model.system()));
         let schemes = self.schemes(|scheme| scheme.question().is_none());
         methods
             .map(Way::Method)

@@ -169,7 +169,9 @@ impl Judged<'_> {
     pub fn price(&self, way: Way) -> f64 {
         self.size
             * match way {
-                Way::Method(method) if method.is_implicit() => IMPLICIT_WORK,
+                Way::Method(method) if method.is_implicit() || method.solves_linear_systems() => {
+                    IMPLICIT_WORK
+                }
                 Way::Method(method) => f64::from(method.evaluations.max(method.damped_evaluations)),
                 Way::Scheme(scheme, _) => scheme.evaluations(self.scene.model.particles()) as f64,
             }

@@ -64,6 +64,11 @@ fn all() -> String {
             m.order.to_string(),
             if m.is_implicit() && !m.needs_springs() {
                 format!("{} and linear solves", m.evaluations)
+            } else if m.solves_linear_systems() {
+                format!(
+                    "{} ({} and linear solves if springs are damped)",
+                    m.evaluations, m.damped_evaluations
+                )
             } else if m.damped_evaluations == m.evaluations {
                 m.evaluations.to_string()
             } else {

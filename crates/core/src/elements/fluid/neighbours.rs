@@ -4,6 +4,8 @@
 
 use rayon::prelude::*;
 
+use super::triple::{Triple, squared_distance};
+
 /// Distance by which lists go beyond the reach, over the reach. They stay valid until a particle
 /// has moved by half of it.
 const SKIN: f64 = 0.12;
@@ -16,9 +18,6 @@ const CHUNK: usize = 256;
 const MAX_LISTED: usize = 400;
 /// Largest distance from the origin, in cells, at which neighbours are found.
 const MAX_CELL: f64 = 1e12;
-
-/// A position or a velocity.
-pub(super) type Triple = [f64; 3];
 
 /// Lists of the particles that are near each other.
 #[derive(Debug, Default)]
@@ -75,17 +74,12 @@ impl Neighbours {
         find: impl Fn(usize, &[u32]) -> R + Sync,
     ) {
         let chunk = |(k, (out, list)): (usize, (&mut [R], &List))| {
-            let (first, mut found, mut start) = (k * CHUNK, vec![], 0);
-            for (i, out) in (first..).zip(out) {
-                if list.crowded {
-                    self.cells.find(i, &self.at, &mut found);
-                    *out = find(i, &found);
-                } else {
-                    let end = list.ends[i - first] as usize;
-                    *out = find(i, &list.all[start..end]);
-                    start = end;
+            let mut out = out.iter_mut();
+            self.visit_chunk(k, list, |i, near| {
+                if let Some(out) = out.next() {
+                    *out = find(i, near);
                 }
-            }
+            });
         };
         if parallel {
             let chunks = out.par_chunks_mut(CHUNK).zip(&self.lists);
@@ -93,6 +87,29 @@ impl Neighbours {
         } else {
             let chunks = out.chunks_mut(CHUNK).zip(&self.lists);
             chunks.enumerate().for_each(chunk);
+        }
+    }
+
+    /// Visits each particle and those near it, in the order of their numbers, as [`map`](Self::map)
+    /// does.
+    pub fn visit(&self, mut visit: impl FnMut(usize, &[u32])) {
+        for (k, list) in self.lists.iter().enumerate() {
+            self.visit_chunk(k, list, &mut visit);
+        }
+    }
+
+    /// Visits the particles of chunk k, whose list this is.
+    fn visit_chunk(&self, k: usize, list: &List, mut visit: impl FnMut(usize, &[u32])) {
+        let (first, mut found, mut start) = (k * CHUNK, vec![], 0);
+        for i in first..self.at.len().min(first + CHUNK) {
+            if list.crowded {
+                self.cells.find(i, &self.at, &mut found);
+                visit(i, &found);
+            } else {
+                let end = list.ends[i - first] as usize;
+                visit(i, &list.all[start..end]);
+                start = end;
+            }
         }
     }
 }
@@ -228,13 +245,6 @@ impl Cells {
         found.clear();
         self.add(i, x, found);
     }
-}
-
-/// Returns the square of the distance (m2) of two points.
-#[inline]
-pub(super) fn squared_distance(a: &Triple, b: &Triple) -> f64 {
-    let [x, y, z] = [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
-    x * x + y * y + z * z
 }
 
 #[cfg(test)]

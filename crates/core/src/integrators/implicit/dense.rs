@@ -26,7 +26,7 @@ pub(super) fn unknowns(system: &dyn ParticleSystem) -> Vec<usize> {
 
 /// Solver of the implicit stages of a small system, with its scratch. Particles on rigid bodies
 /// stay as they are.
-pub(super) struct Dense {
+pub(in crate::integrators) struct Dense {
     dim: usize,
     unknowns: Vec<usize>,
     /// Unit of each unknown, in which changes are compared, and half the step of its difference
@@ -65,7 +65,7 @@ impl Dense {
     }
 
     /// Solves y = base + a f(t, y), starting from the guess y.
-    pub fn solve(
+    pub(super) fn solve(
         &mut self,
         system: &dyn ParticleSystem,
         t: f64,

@@ -18,6 +18,7 @@ mod stage;
 mod tr_bdf2;
 
 pub(super) use bdf::METHOD as BDF;
+pub(super) use dense::Dense;
 pub(super) use euler::METHOD as EULER;
 pub use formulas::bdf_growth;
 pub(super) use midpoint::METHOD as MIDPOINT;
