@@ -58,21 +58,21 @@ struct ImplicitDamping {
     /// Verlet's method, for forces that do not depend on v.
     verlet: Box<dyn Integrator>,
     /// The solver for forces that do.
-    solver: Option<Box<Solver>>,
+    solver: Option<Solver>,
 }
 
 /// Solver of the equations of a kick, with its scratch.
 enum Solver {
     /// For a linearised system of masses without constraints.
     Sparse {
-        linear: DampingSolver,
+        linear: Box<DampingSolver>,
         /// Forces, and k1 and k2.
         f: Vec<f64>,
         k: [Vec<f64>; 2],
     },
     /// For any other, small system.
     Dense {
-        linear: Dense,
+        linear: Box<Dense>,
         base: Vec<f64>,
         k1: Vec<f64>,
     },
@@ -83,7 +83,7 @@ struct Kicked<'a>(&'a dyn ParticleSystem);
 
 impl ImplicitDamping {
     fn new(system: &dyn ParticleSystem) -> Self {
-        let solver = || Box::new(Solver::new(system));
+        let solver = || Solver::new(system);
         Self {
             dim: system.dim(),
             verlet: verlet::PLAN.integrator(system),
@@ -104,9 +104,7 @@ impl Integrator for ImplicitDamping {
         if !reads_velocity(system) {
             return self.verlet.step(system, t, h, y);
         }
-        let solver = self
-            .solver
-            .get_or_insert_with(|| Box::new(Solver::new(system)));
+        let solver = self.solver.get_or_insert_with(|| Solver::new(system));
         let half = 0.5 * h;
         drift_of(system, t, half, y)?;
         let work = solver.kick(system, t + half, h, y)?;
@@ -122,13 +120,13 @@ impl Solver {
             Some(linearized) => {
                 let length = system.dim() / 2;
                 Self::Sparse {
-                    linear: DampingSolver::new(linearized),
+                    linear: Box::new(DampingSolver::new(linearized)),
                     f: zeros(length),
                     k: [zeros(length), zeros(length)],
                 }
             }
             None => Self::Dense {
-                linear: Dense::new(&Kicked(system)),
+                linear: Box::new(Dense::new(&Kicked(system))),
                 base: zeros(system.dim()),
                 k1: zeros(system.dim()),
             },

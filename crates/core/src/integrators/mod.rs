@@ -15,7 +15,10 @@ mod heun;
 mod implicit;
 #[cfg_attr(
     target_arch = "wasm32",
-    expect(dead_code, reason = "the page, whose size is limited, is without this method")
+    allow(
+        dead_code,
+        reason = "the page, whose size is limited, is without this method"
+    )
 )]
 mod implicit_damping;
 mod integrator;

@@ -26,7 +26,7 @@ pub(super) fn unknowns(system: &dyn ParticleSystem) -> Vec<usize> {
 
 /// Solver of the implicit stages of a small system, with its scratch. Particles on rigid bodies
 /// stay as they are.
-pub(in crate::integrators) struct Dense {
+pub(crate) struct Dense {
     dim: usize,
     unknowns: Vec<usize>,
     /// Unit of each unknown, in which changes are compared, and half the step of its difference
