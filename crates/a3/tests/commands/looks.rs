@@ -1,6 +1,6 @@
-//! Pictures of every built-in scene, drawn by `a3 render`, against golden ones: its first frame, and
-//! one some seconds later. `A3_BLESS=1 cargo test -p a3-simulator --test commands looks` takes them
-//! again; look at them before you commit them.
+//! Pictures of every built-in scene, drawn by `a3 render`, against golden ones: its first frame,
+//! and one some seconds later. `A3_BLESS=1 cargo test -p a3-simulator --test commands looks` takes
+//! them again; look at them before you commit them.
 
 use std::fs::File;
 use std::path::Path;
@@ -31,8 +31,8 @@ const MAX_OFF: usize = 40;
 /// Largest mean difference of all channels, of 255 levels, of which the coarse colours make 0.9.
 const MAX_MEAN: f64 = 1.5;
 
-/// Returns the time of the second picture (s): two seconds, or less where a scene ends before, takes
-/// long, or has more to see.
+/// Returns the time of the second picture (s): two seconds, or less where a scene ends before,
+/// takes long, or has more to see.
 fn later(scene: &str) -> f64 {
     match scene {
         "boxes" => 0.5,
