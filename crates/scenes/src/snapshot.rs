@@ -129,6 +129,14 @@ pub fn begin_with(description: &mut Description, model: &Model, now: &Checkpoint
     description.pin.extend(pins(now));
 }
 
+/// Replaces the pins of a description by those of another one of the same bodies, in its words.
+pub fn pin_as(description: &mut Description, mut other: Description) {
+    for (pins, others) in body_pins(description).zip(body_pins(&mut other)) {
+        std::mem::swap(pins, others);
+    }
+    description.pin = other.pin;
+}
+
 /// Describes the obstacles as they are at time t (s). The obstacles of each kind are in the order
 /// in which they were added. The floor may have been removed.
 fn write_obstacles(description: &mut Description, network: &Network, t: f64) {

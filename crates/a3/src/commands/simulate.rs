@@ -195,12 +195,16 @@ fn resume(path: &Path, options: &Simulate, begun: &mut Run) -> Result<Kept, Fail
     let (source, run) = (&begun.request.source, &mut begun.simulation);
     let (solver, control) = (run.method(), run.control());
     let asked = &options.run;
-    kept.check(path, source, asked.what.grid, run)?;
+    kept.check(path, source, asked.what.grid, run.scene())?;
     let refuse = |why: String| Err(Failure::usage(format!("{}: {why}", path.display())));
     if let Some((row, _)) = kept.tuned.first() {
         return refuse(format!(
             "this run was tuned in the window ({row}): a3 --resume opens it there"
         ));
+    }
+    if kept.edited.is_some() {
+        let why = "the scene of this run was edited in the window: a3 --resume opens it there";
+        return refuse(why.into());
     }
     if let Err(why) = run.restore(&kept.checkpoint) {
         return refuse(why.to_string());

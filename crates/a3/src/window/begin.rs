@@ -9,7 +9,7 @@ use crate::draw::show::{self, Quantity};
 use crate::files::lessons::{self, Step};
 use crate::files::scene_file::Source;
 use crate::files::setup::Request;
-use crate::window::session::{Beginning, Origin, Session};
+use crate::window::session::{Beginning, Origin, Session, begins_crossed, offer_at_start};
 
 /// Creates the session of a window on one run. Fails if an option does not fit the scene.
 pub fn window(options: &WindowOptions) -> Result<Session, Failure> {
@@ -19,8 +19,8 @@ pub fn window(options: &WindowOptions) -> Result<Session, Failure> {
 }
 
 /// Creates the session of a window on one run of a scene that was read already.
-fn window_on(request: Request, options: &WindowOptions) -> Result<Session, Failure> {
-    let source = &request.source;
+fn window_on(mut request: Request, options: &WindowOptions) -> Result<Session, Failure> {
+    let source = request.source.clone();
     if options.watch && (source.path.is_none() || source.is_input()) {
         return Err(Failure::usage(
             "--watch needs a scene file, as in `--scene flag.toml --watch`",
@@ -28,6 +28,13 @@ fn window_on(request: Request, options: &WindowOptions) -> Result<Session, Failu
     }
     let solver = source.solver_or(options.solver);
     let mut setup = request.build()?;
+    let touches = request.source.description.self_collision || request.options.self_collision;
+    let crossed = touches && begins_crossed(&setup.scene);
+    if crossed {
+        request.source = request.source.without_touch();
+        request.options.self_collision = false;
+        setup = request.build()?;
+    }
     setup.scene.limits = options.limits.given().or(setup.scene.limits);
     let simulation = begun(
         request.simulate(&setup, solver, options.step)?,
@@ -39,12 +46,11 @@ fn window_on(request: Request, options: &WindowOptions) -> Result<Session, Failu
         manner: options.look.manner.of(options.springs_of),
         paused: options.look.paused,
     };
-    Session::new(
-        origin(request, options.limits.given()),
-        &setup,
-        vec![simulation],
-        &beginning,
-    )
+    let mut origin = origin(request, options.limits.given());
+    origin.crossed = crossed && !options.look.no_self_collision;
+    let mut session = Session::new(origin, &setup, vec![simulation], &beginning)?;
+    offer_at_start(&mut session);
+    Ok(session)
 }
 
 /// Creates the session of a comparison. Fails if an option does not fit the scene.
@@ -114,6 +120,7 @@ fn origin(request: Request, limits: StepLimits) -> Origin {
         grid: request.options.grid,
         limits,
         edited: false,
+        crossed: false,
     }
 }
 

@@ -19,6 +19,9 @@ pub fn run(why: &str, mut session: Session) -> Result<(), Failure> {
     terminal::warn(&format!(
         "{why}: simulating {SIMULATED_SECONDS} seconds without a window."
     ));
+    if let Some(said) = &session.readings.message {
+        terminal::warn(said);
+    }
     let scene = session.runs.first().scene().name.clone();
     if session.runs.panes.len() > 1 {
         session.run_to(f64::from(SIMULATED_SECONDS));

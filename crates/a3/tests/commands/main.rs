@@ -18,6 +18,7 @@ mod hand_in;
 mod help;
 mod judge;
 mod lessons;
+mod looks;
 mod manual;
 #[cfg(unix)]
 mod outputs;

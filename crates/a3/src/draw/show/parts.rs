@@ -24,6 +24,8 @@ pub struct Parts {
     loose: Vec<Spring>,
     /// Particles that are drawn one by one.
     single: Vec<usize>,
+    /// Particles that were torn out of a body with a surface.
+    crumbs: Vec<usize>,
     /// Kinds of springs in the scene.
     kinds: Vec<SpringKind>,
 }
@@ -48,6 +50,7 @@ impl Parts {
         let is_rigid = |i: &usize| network.is_some_and(|n| n.body_of(*i).is_some());
         let uncovered = surface.particles()..simulation.particles();
         self.single = uncovered.filter(|i| !is_rigid(i)).collect();
+        self.crumbs = network.map_or(vec![], |network| crumbs(network, surface));
     }
 
     /// Returns the springs of particles without a surface, and the springs between bodies.
@@ -58,6 +61,11 @@ impl Parts {
     /// Returns the particles without a surface that belong to no rigid body.
     pub fn single(&self) -> &[usize] {
         &self.single
+    }
+
+    /// Returns the particles that were torn out of a body with a surface.
+    pub fn crumbs(&self) -> &[usize] {
+        &self.crumbs
     }
 
     /// Returns the kinds of springs in the scene, in the order in which they are drawn.
@@ -75,6 +83,22 @@ impl Parts {
             start = end;
         }
     }
+}
+
+/// Returns the particles of a surface that lost all their springs.
+fn crumbs(network: &Network, surface: &Surface) -> Vec<usize> {
+    let mut ends: Vec<_> = network.torn().iter().flatten().copied().collect();
+    if ends.is_empty() {
+        return ends;
+    }
+    let mut holds = vec![false; network.particles()];
+    for spring in network.all_springs() {
+        (holds[spring.i], holds[spring.j]) = (true, true);
+    }
+    ends.sort_unstable();
+    ends.dedup();
+    ends.retain(|i| *i < surface.particles() && !holds[*i]);
+    ends
 }
 
 /// Returns a look for each body. Looks before that of steel are for cloth in their first half, and
@@ -256,6 +280,24 @@ mod tests {
             assert!(points.iter().all(|p| p[3] == look), "{scene}");
             assert_eq!(parts.loose().len(), loose, "{scene}");
         }
+    }
+
+    /// A particle whose springs are all torn is drawn by itself, and one that holds is not.
+    #[test]
+    fn what_is_torn_out_is_seen() {
+        let mut description = a3_scenes::find("flag").unwrap().description().unwrap();
+        let (whole, _) = run("flag");
+        let network = whole.model().network().unwrap();
+        let pairs = |i| network.springs_of(i).map(|s| [s.i.min(s.j), s.i.max(s.j)]);
+        description.torn = pairs(20).chain(pairs(70).skip(1)).collect();
+        let setup = description
+            .build(None, &mut |_| Err("no file".into()))
+            .unwrap();
+        let (method, control) = (integrators::find("t").unwrap(), Control::Step(0.001));
+        let simulation = Simulation::new(setup.scene, method, control).unwrap();
+        let mut parts = Parts::default();
+        parts.update(&setup.presentation, &simulation);
+        assert_eq!(parts.crumbs(), [20]);
     }
 
     /// Returns the number of edges of a closed surface.

@@ -271,7 +271,8 @@ impl Show {
     }
 
     /// Draws springs and particles that have no surface: as coils and balls, or as lines and small
-    /// balls where there are many. Of bodies with a surface it draws only the pins.
+    /// balls where there are many. Of bodies with a surface it draws only the pins, and what was
+    /// torn out.
     fn draw_parts(&mut self, simulation: &Simulation) {
         let network = simulation.model().network();
         let covered = self.presentation.surface.particles();
@@ -279,6 +280,10 @@ impl Show {
             if i < covered {
                 self.ball(i, 0.032, INK);
             }
+        }
+        for i in self.parts.crumbs().to_vec() {
+            let color = self.colouring.of(i, RED);
+            self.ball(i, 0.032, color);
         }
         let many = self.parts.loose().len().max(self.parts.single().len()) > MAX_COILS;
         for spring in self.parts.loose() {

@@ -6,7 +6,7 @@
 use std::fmt::Write;
 use std::path::Path;
 
-use a3_core::{Checkpoint, Grid, Simulation, StepLimits};
+use a3_core::{Checkpoint, Grid, Scene, Simulation, StepLimits};
 use serde::{Deserialize, Serialize};
 
 use super::extremes::Extremes;
@@ -41,6 +41,8 @@ pub struct Kept {
     pub extremes: Option<Extremes>,
     /// Values that were tuned in the panel of the window, by the names of its rows.
     pub tuned: Vec<(String, f64)>,
+    /// The scene as a text in TOML, if it was edited in the window.
+    pub edited: Option<String>,
 }
 
 impl Kept {
@@ -53,10 +55,20 @@ impl Kept {
     ) -> Self {
         Self {
             name: run.scene().name.clone(),
-            scene: identity(source, grid, run),
+            scene: identity(source, grid, run.scene()),
             checkpoint: run.checkpoint(),
             extremes,
             tuned: vec![],
+            edited: None,
+        }
+    }
+
+    /// The same run, of a scene that was edited: its text in TOML, and the scene before that.
+    pub fn of_edited(self, text: String, source: &Source, grid: Option<Grid>, own: &Scene) -> Self {
+        Self {
+            scene: identity(source, grid, own),
+            edited: Some(text),
+            ..self
         }
     }
 
@@ -117,23 +129,23 @@ impl Kept {
         Ok(kept)
     }
 
-    /// Checks that the file at `path` belongs to the scene of a run.
+    /// Checks that the file at `path` belongs to a scene, before its edits.
     pub fn check(
         &self,
         path: &Path,
         source: &Source,
         grid: Option<Grid>,
-        run: &Simulation,
+        scene: &Scene,
     ) -> Result<(), Failure> {
         let refuse = |why: String| Failure::usage(format!("{}: {why}", path.display()));
-        let name = &run.scene().name;
+        let name = &scene.name;
         if self.name != *name {
             return Err(refuse(format!(
                 "this checkpoint is of the scene {}, not of {name}",
                 self.name
             )));
         }
-        if self.scene != identity(source, grid, run) {
+        if self.scene != identity(source, grid, scene) {
             return Err(refuse(format!(
                 "this checkpoint is of another scene {name}: its file, its meshes, its grid or the limits of its steps were others"
             )));
@@ -142,13 +154,13 @@ impl Kept {
     }
 }
 
-/// Returns the identity of the scene of a run among others of its name.
-fn identity(source: &Source, grid: Option<Grid>, run: &Simulation) -> String {
-    let mut identity = source.fingerprint(run.scene());
+/// Returns the identity of a scene among others of its name.
+fn identity(source: &Source, grid: Option<Grid>, scene: &Scene) -> String {
+    let mut identity = source.fingerprint(scene);
     if let Some(grid) = grid {
         let _ = write!(identity, " {}x{}", grid.rows(), grid.cols());
     }
-    let StepLimits { absolute, max_step } = run.scene().limits;
+    let StepLimits { absolute, max_step } = scene.limits;
     for limit in [absolute, max_step].into_iter().flatten() {
         let _ = write!(identity, " {limit}");
     }

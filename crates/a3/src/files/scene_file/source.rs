@@ -117,6 +117,13 @@ impl Source {
         self
     }
 
+    /// The same scene, whose surfaces do not touch from the start.
+    pub fn without_touch(&self) -> Self {
+        let mut description = Description::clone(&self.description);
+        description.self_collision = false;
+        self.described(description)
+    }
+
     /// Reads a scene from a text in TOML.
     pub fn written(text: &str) -> Result<Self, InputError> {
         let (description, places) = parse_toml(text).map_err(in_text)?;

@@ -19,6 +19,8 @@ pub fn show_all(
     let on_text = text::show(ctx, &session.runs.panes, &session.readings);
     let on_offer = plotting::offer(ctx, session);
     #[cfg(not(target_arch = "wasm32"))]
+    let on_offer = super::offer::show(ctx, session).or(on_offer);
+    #[cfg(not(target_arch = "wasm32"))]
     super::ruler::show(ctx, session);
     let on_panel = panel::show(ctx, session);
     let on_measure = measure::show(ctx, session);

@@ -162,9 +162,8 @@ fn others(session: &Session) -> Vec<Button> {
     let (run, window) = (Action::Run, Action::Window);
     let first = session.runs.first();
     let scene = format!("{} ⏷", first.scene().name);
-    let hidden = &session.panel.hidden;
-    let solver = match session.runs.panes.len() {
-        1 if hidden.solvers => first.method().name.into(),
+    let solver: String = match session.runs.panes.len() {
+        1 if session.panel.hidden.solvers => first.method().name.into(),
         1 => format!("{} ⏷", first.method().name),
         _ => "solvers ⏷".into(),
     };
@@ -174,64 +173,65 @@ fn others(session: &Session) -> Vec<Button> {
     } else {
         ("⏺", "Film from now on (m)")
     };
-    let mut buttons = vec![
-        Button::new(&scene, "Choose a scene (o)", run(RunAction::Scenes)),
-        Button::new(&solver, "Choose a solver (e)", run(RunAction::Solvers)),
-        Button::new(
+    [
+        (&*scene, "Choose a scene (o)", run(RunAction::Scenes)),
+        (&*solver, "Choose a solver (e)", run(RunAction::Solvers)),
+        (
             "📈",
             "Measure: chart, limits, choice, parts (q)",
             run(RunAction::Measure),
         ),
-        Button::new("⚙", "Tune and plot (Tab)", run(RunAction::Panel)),
-        Button::new("📖", "Lessons (F1)", run(RunAction::Lessons)),
-        Button::new("⮪", "Undo (z)", window(WindowAction::Undo)),
-        Button::new("📷", "Save a picture (p)", window(WindowAction::Picture)),
-    ];
-    // A page makes no films, plots nothing and edits no scenes; a telephone has no key that fills
-    // the screen. In a narrow bar all these go before the lessons.
-    let after_lessons = 5;
-    if cfg!(target_arch = "wasm32") {
-        let whole = Button::new("⛶", "Full screen (F11)", window(WindowAction::FullScreen));
-        buttons.insert(after_lessons, whole);
-    } else {
-        buttons.push(Button {
-            colour: ALARM.colour,
-            ..Button::new(film, does, window(WindowAction::Record))
-        });
-        if first.model().network().is_some() {
-            let edit = Button::new("✏", "Throw, add, join, delete (F2)", run(RunAction::Edit));
-            buttons.insert(after_lessons, edit);
-        }
-        let about = "Plot particles, bodies and springs (F3)";
-        buttons.insert(
-            after_lessons,
-            Button::new("🗠", about, run(RunAction::Plots)),
-        );
-    }
-    buttons.push(Button::new(
-        "?",
-        "Help, and everything else (h)",
-        run(RunAction::Help),
-    ));
-    for button in &mut buttons {
-        let is_open = match button.action {
-            Action::Run(RunAction::Measure) => session.measuring.open,
-            Action::Run(RunAction::Panel) => session.panel.open,
-            Action::Run(RunAction::Edit) => session.panel.editor.open,
-            _ => false,
-        };
-        if is_open {
-            button.colour = FAINT;
-        }
-    }
-    buttons.retain(|button| match button.action {
+        ("⚙", "Tune and plot (Tab)", run(RunAction::Panel)),
+        ("📖", "Lessons (F1)", run(RunAction::Lessons)),
+        ("⛶", "Full screen (F11)", window(WindowAction::FullScreen)),
+        (
+            "🗠",
+            "Plot particles, bodies and springs (F3)",
+            run(RunAction::Plots),
+        ),
+        ("✏", "Throw, add, join, delete (F2)", run(RunAction::Edit)),
+        ("⮪", "Undo (z)", window(WindowAction::Undo)),
+        ("📷", "Save a picture (p)", window(WindowAction::Picture)),
+        (film, does, window(WindowAction::Record)),
+        ("?", "Help, and everything else (h)", run(RunAction::Help)),
+    ]
+    .into_iter()
+    .filter(|(.., action)| is_there(session, *action))
+    .map(|(face, about, action)| Button {
+        colour: colour(session, action),
+        ..Button::new(face, about, action)
+    })
+    .collect()
+}
+
+/// Whether the bar has the button of an action. A page makes no films, plots nothing and edits no
+/// scenes; a telephone has no key that fills the screen.
+fn is_there(session: &Session, action: Action) -> bool {
+    let is_page = cfg!(target_arch = "wasm32");
+    match action {
         Action::Run(RunAction::Measure) => session.measuring.answerer.is_some(),
         Action::Run(action @ (RunAction::Panel | RunAction::Lessons)) => {
-            hidden.refusal(action).is_none()
+            session.panel.hidden.refusal(action).is_none()
+        }
+        Action::Window(WindowAction::FullScreen) => is_page,
+        Action::Run(RunAction::Plots) | Action::Window(WindowAction::Record) => !is_page,
+        Action::Run(RunAction::Edit) => {
+            !is_page && session.runs.first().model().network().is_some()
         }
         _ => true,
-    });
-    buttons
+    }
+}
+
+/// Returns the colour of the button of an action.
+fn colour(session: &Session, action: Action) -> Color32 {
+    let is_open = match action {
+        Action::Window(WindowAction::Record) => return ALARM.colour,
+        Action::Run(RunAction::Measure) => session.measuring.open,
+        Action::Run(RunAction::Panel) => session.panel.open,
+        Action::Run(RunAction::Edit) => session.panel.editor.open,
+        _ => false,
+    };
+    if is_open { FAINT } else { TEXT }
 }
 
 #[cfg(test)]

@@ -6,6 +6,7 @@ use a3_core::{Network, integrators};
 use a3_scenes::Setup;
 
 use super::actions::RunAction;
+use super::apart;
 use super::beside;
 use super::history::Change;
 use super::list::{List, TextKey, Topic, solvers};
@@ -54,10 +55,7 @@ impl Session {
                 self.runs.align();
                 self.runs.all_mut().for_each(|run| run.set_wind(on));
             }
-            RunAction::Touch => {
-                let done = self.runs.toggle_touch();
-                self.report(done);
-            }
+            RunAction::Touch => apart::toggle_touch(self),
             RunAction::Wireframe => looks::next_style(&mut self.runs.panes),
             RunAction::Colour => self.readings.say(looks::next_colour(&mut self.runs.panes)),
             RunAction::Arrows => self.readings.say(looks::next_arrows(&mut self.runs.panes)),
@@ -130,8 +128,8 @@ impl Session {
         self.runs.reset();
         self.effects.forget();
         if touching && !self.runs.first().touching() {
-            self.readings
-                .say("Surfaces cross in the initial state, so self-collision is off again.");
+            let why = "Surfaces cross in the initial state, so self-collision is off again";
+            self.readings.offer(why);
         }
         self.readings.read_reference(self.runs.reference.as_ref());
         self.begin_new_run();
@@ -358,7 +356,7 @@ impl Session {
     }
 
     /// Starts another scene, and keeps solvers and steps that can integrate it.
-    fn set_scene(&mut self, setup: &Setup) {
+    pub(super) fn set_scene(&mut self, setup: &Setup) {
         let said = match self.runs.set_scene(setup) {
             Ok(said) => {
                 self.tuning = Tuning::of(&self.scenes.shown, setup);
@@ -377,5 +375,6 @@ impl Session {
         if let Some(said) = said {
             self.readings.say(said);
         }
+        apart::offer_at_start(self);
     }
 }

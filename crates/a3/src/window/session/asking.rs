@@ -2,7 +2,8 @@
 
 use std::path::Path;
 
-use a3_core::Simulation;
+use a3_core::{Model, Network, Simulation};
+use a3_scenes::snapshot;
 
 use super::panes;
 use super::question::{MethodSetting, Question, Task};
@@ -127,11 +128,15 @@ pub fn task(session: &Session, at: usize) -> Result<(Task, String), String> {
     let begun = begun.map_err(|why| why.to_string())?;
     let run = begun.as_ref().unwrap_or(run);
     let mut description = save::description(session, run);
-    if from_start && run.state() == session.tuning.own.state {
+    let (own, shown) = (&session.tuning.own, &session.scenes.shown);
+    if from_start && run.state() == own.state {
         // Grids of a scene that begins as it is built can be varied.
         description.state = None;
+        if pins(run.model()) == pins(&own.model) && !run.swinging() {
+            snapshot::pin_as(&mut description, shown.described_without(&[]));
+        }
     }
-    let source = &session.scenes.shown.source;
+    let source = &shown.source;
     let options = What {
         scene: source.typed.clone(),
         grid: None,
@@ -161,6 +166,12 @@ pub fn task(session: &Session, at: usize) -> Result<(Task, String), String> {
     Ok((task, format!("{}{grid}, {from}", scene.name)))
 }
 
+/// Returns the particles that are pinned.
+fn pins(model: &Model) -> Vec<usize> {
+    let network = model.network().into_iter();
+    network.flat_map(Network::pins).map(|(i, _)| i).collect()
+}
+
 /// Returns a run as it is after a reset.
 fn initial(run: &Simulation) -> Result<Simulation, a3_core::Error> {
     let mut begun = Simulation::new(run.scene().clone(), run.method(), run.control())?;
@@ -172,10 +183,12 @@ fn initial(run: &Simulation) -> Result<Simulation, a3_core::Error> {
 #[cfg(test)]
 mod tests {
     use a3_core::{Control, integrators};
+    use a3_scenes::{Description, regridded};
 
     use super::*;
     use crate::base::failure::Failure;
     use crate::base::monitor::Monitor;
+    use crate::files::scene_file::Source;
     use crate::window::hud::panel::{PanelRequest, apply as turn};
     use crate::window::session::question::{Answer, Diagram};
     use crate::window::session::{RunAction, frames, session};
@@ -229,6 +242,43 @@ mod tests {
         let near = |(a, b): (&f64, &f64)| (a - b).abs() <= 1e-12 * b.abs().max(1.0);
         assert!(measured.iter().zip(&run).all(near));
         assert!(!measured.iter().zip(&untuned).all(near));
+    }
+
+    /// The grid of a scene that begins as it was built can be varied where the command varies it,
+    /// also with other springs and after some time.
+    #[test]
+    fn grids_can_be_varied_from_the_beginning() {
+        let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/scenes");
+        let files = std::fs::read_dir(folder).unwrap();
+        let files = files.map(|file| file.unwrap().path());
+        let files = files.filter(|file| file.extension().is_some_and(|it| it == "toml"));
+        let files = files.map(|file| file.to_str().unwrap().to_owned());
+        let built_in = a3_scenes::SCENES.iter().map(|scene| scene.name.to_owned());
+        let mut count = 0;
+        for name in built_in.chain(files) {
+            let own = Source::find(&name).unwrap();
+            let particles = own.build(None).unwrap().scene.model.particles();
+            let varies = |scene: &Description| regridded(scene, 0.5, particles).is_ok();
+            if !varies(&own.description) {
+                continue;
+            }
+            let mut session = session(&["--scene", &name]);
+            frames(&mut session, 0.05);
+            let (now, _) = task(&session, 0).unwrap();
+            session.measuring.from_start = true;
+            let (begun, _) = task(&session, 0).unwrap();
+            let asked = [now, begun].map(|task| varies(&task.request.source.description));
+            assert_eq!(asked, [false, true], "{name}");
+            count += 1;
+        }
+        assert!(count > 5, "{count} scenes have grids");
+        let mut session = session(&["r", "0.005"]);
+        session.tuning.stiffness = 2.0;
+        session.adjust(|network| network.scale_springs(2.0, 1.0).unwrap());
+        frames(&mut session, 0.1);
+        session.measuring.from_start = true;
+        let begun = asked(&session);
+        assert_eq!(pins(&begun.model), pins(&session.tuning.own.model));
     }
 
     #[test]

@@ -39,6 +39,12 @@ pub enum Change {
     },
     /// A part of the scene was left out, or brought back: its index, and whether it is in since.
     Part { part: usize, is_in: bool },
+    /// Surfaces came apart to touch: the states of all runs before and after that, while they are
+    /// kept.
+    Apart {
+        before: Arc<[Option<Checkpoint>]>,
+        after: Arc<[Option<Checkpoint>]>,
+    },
     /// The scene was edited. If something was deleted, `before` are the states of all runs at that
     /// time, while they are kept.
     Edit {
@@ -137,8 +143,10 @@ impl History {
     pub fn forget_states(&mut self, latest: usize) {
         let changes = self.undone.iter_mut().chain(self.done.iter_mut().rev());
         for change in changes.skip(latest) {
-            if let Change::Pins { before, .. } = change {
-                *before = None;
+            match change {
+                Change::Pins { before, .. } => *before = None,
+                Change::Apart { before, after } => (*before, *after) = Default::default(),
+                _ => {}
             }
         }
     }

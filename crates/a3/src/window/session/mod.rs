@@ -3,6 +3,7 @@
 
 mod actions;
 mod acts;
+mod apart;
 pub mod asking;
 mod beside;
 mod continued;
@@ -43,6 +44,7 @@ mod tuning;
 mod view;
 
 pub use actions::{Action, RunAction, WindowAction};
+pub use apart::{go_to, offer_at_start};
 pub use asking::MeasureRequest;
 pub use continued::continue_from;
 pub use editor::{Measure, Tool};
@@ -54,12 +56,12 @@ pub use keys::{Binding, GROUPS, Group, MOUSE, action};
 pub use lessons::{Given, LessonRequest, Lessons};
 pub use list::{Entry, TextKey, Topic};
 pub use measuring::Progress;
-pub use origin::Origin;
+pub use origin::{Origin, begins_crossed};
 pub use pane::Pane;
 pub use passage::Passage;
 pub use question::{Answer, Answerer, Diagram, MethodSetting, Question, Task};
 pub use readings::{FilmProgress, Readings, Selection};
-pub use replace::replace;
+pub use replace::{replace, show_edited};
 pub use samples::{SPAN, Sample, Samples};
 pub use save::write_scene;
 pub use state::{Beginning, Session};

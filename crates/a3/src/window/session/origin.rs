@@ -19,6 +19,8 @@ pub struct Origin {
     pub limits: StepLimits,
     /// Whether the scene was edited in the window.
     pub edited: bool,
+    /// Whether its surfaces begin crossed, so that they do not touch at the start.
+    pub crossed: bool,
 }
 
 impl Origin {
@@ -34,7 +36,20 @@ impl Origin {
             grid: None,
             limits: StepLimits::default(),
             edited: false,
+            crossed: false,
         }
+    }
+
+    /// Builds the scene to begin with it. Its surfaces do not touch if they begin crossed. Fails if
+    /// its description is invalid.
+    pub fn begin(&mut self) -> Result<Setup, InputError> {
+        let setup = self.build()?;
+        if !(self.source.description.self_collision && begins_crossed(&setup.scene)) {
+            return Ok(setup);
+        }
+        self.crossed = true;
+        self.source = self.source.without_touch();
+        self.build()
     }
 
     /// Edits the scene, whose network is `network`. Returns the edited scene, and how its particles
@@ -46,6 +61,7 @@ impl Origin {
             grid: None,
             limits: self.limits,
             edited: true,
+            crossed: false,
         };
         Ok((origin, [edited.particles, edited.bodies]))
     }
@@ -122,4 +138,14 @@ impl Origin {
         }
         description
     }
+}
+
+/// Whether surfaces of a scene cross at the start, or too many are at one place. The page does not
+/// ask: it has to stay small.
+pub fn begins_crossed(scene: &Scene) -> bool {
+    !cfg!(target_arch = "wasm32")
+        && scene.model.network().is_some_and(|network| {
+            let (x, _) = network.halves(&scene.state);
+            network.check_apart(0.0, x).is_err()
+        })
 }

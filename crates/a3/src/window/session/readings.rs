@@ -50,6 +50,8 @@ pub struct Readings {
     pub message: Option<String>,
     /// Time when the message disappears; `None` if it stays.
     pub message_ends: Option<Instant>,
+    /// Whether the message offers to bring surfaces apart.
+    pub offers_apart: bool,
     /// The box that is being drawn.
     pub selection: Option<Selection>,
     /// Progress of the film, if one is being made.
@@ -71,7 +73,7 @@ pub struct Readings {
 impl Readings {
     /// Shows a message, as a sentence, for a few seconds.
     pub fn say(&mut self, message: impl Into<String>) {
-        self.message = Some(sentence(message.into()));
+        self.warn(message);
         self.message_ends = Some(Instant::now() + MESSAGE_DURATION);
     }
 
@@ -79,6 +81,13 @@ impl Readings {
     pub fn warn(&mut self, message: impl Into<String>) {
         self.message = Some(sentence(message.into()));
         self.message_ends = None;
+        self.offers_apart = false;
+    }
+
+    /// Shows a message that surfaces cross, until the next one, and offers to bring them apart.
+    pub fn offer(&mut self, message: impl Into<String>) {
+        self.warn(message);
+        self.offers_apart = true;
     }
 
     /// Removes an expired message, and returns when the shown one expires.

@@ -54,6 +54,16 @@ impl Scenes {
         }
     }
 
+    /// Returns the present scene as it was before it was edited in the window.
+    pub fn unedited(&self) -> Origin {
+        let shown = &self.shown;
+        let typed = &shown.source.typed;
+        let asked = || self.asked(typed).cloned();
+        let found = || Origin::find(typed).ok();
+        let before = shown.edited.then(|| asked().or_else(found)).flatten();
+        before.unwrap_or_else(|| shown.clone())
+    }
+
     /// Adds the scenes that a former session could show, and watches its file.
     pub fn adopt(&mut self, former: Self) {
         let shown = self.shown.source.typed.clone();
@@ -176,8 +186,8 @@ impl Scenes {
         let unknown = || InputError::Unknown("There is no such scene.".into());
         let name = names.get(number).ok_or_else(unknown)?;
         let asked = self.asked(name).cloned();
-        let origin = asked.map_or_else(|| Origin::find(name), Ok)?;
-        let setup = origin.build()?;
+        let mut origin = asked.map_or_else(|| Origin::find(name), Ok)?;
+        let setup = origin.begin()?;
         self.shown = origin;
         self.number = number;
         Ok(setup)
@@ -196,8 +206,8 @@ impl Scenes {
     /// Builds the scene of a file, and makes it the present one. Fails if the file cannot be read
     /// or built.
     pub fn open(&mut self, file: &Path) -> Result<Setup, InputError> {
-        let origin = Origin::find(&file.to_string_lossy())?;
-        let setup = origin.build()?;
+        let mut origin = Origin::find(&file.to_string_lossy())?;
+        let setup = origin.begin()?;
         self.asked
             .retain(|it| it.source.typed != origin.source.typed);
         self.shown = origin;
@@ -214,11 +224,12 @@ impl Scenes {
             return Ok(None);
         };
         let old = self.asked[number].clone();
-        let origin = Origin {
+        let mut origin = Origin {
             source: Source::find(&old.source.typed)?.in_window(),
+            crossed: false,
             ..old
         };
-        let setup = origin.build()?;
+        let setup = origin.begin()?;
         let (new, old) = (&origin.source.description, &old.source.description);
         let ran = (new.solver != old.solver || new.step != old.step).then_some(&setup.defaults);
         let reloaded = Reloaded {

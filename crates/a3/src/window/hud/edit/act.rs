@@ -202,7 +202,9 @@ fn delete(session: &mut Session, aim: &Aim) -> Result<String, String> {
     let stays = session.runs.first().particles() == count;
     Ok(match edits {
         Edit::RemoveParticle(i) if stays => {
-            format!("The springs of particle {i} are torn. Its body needs the particle itself.")
+            format!(
+                "Particle {i} is torn out of its body, which keeps all its particles: it is loose now."
+            )
         }
         _ => format!("Removed: {name}."),
     })

@@ -2,7 +2,7 @@
 
 use super::knobs::KNOBS;
 use super::parts;
-use crate::window::session::{Change, Session};
+use crate::window::session::{Change, Session, go_to};
 
 /// Undoes the last change, or with `redo` redoes the one undone last, and shows a message.
 pub fn undo(session: &mut Session, redo: bool) {
@@ -42,6 +42,10 @@ pub fn undo(session: &mut Session, redo: bool) {
                 return session.readings.say(why);
             }
             parts::name(session, part)
+        }
+        Change::Apart { before, after } => {
+            go_to(session, if redo { &after } else { &before });
+            "surfaces come apart".into()
         }
         Change::Edit { edit, before } => {
             if let Err(why) = super::edit::repeat(session, &edit, before.as_deref(), redo) {
