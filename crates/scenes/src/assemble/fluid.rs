@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use a3_core::contact::Skin;
 use a3_core::elements::{Fluid as Liquid, FluidLaw};
-use a3_core::{Network, Path, Vector3};
+use a3_core::{Network, Path, Pin as Held, Vector3};
 
 use super::assembly::{Assembly, Body, Counts};
 use crate::check::{at, at_least, positive};
@@ -217,7 +217,7 @@ impl Body for Fluid {
         let free = assembly.positions.len();
         for place in walls {
             let i = assembly.positions.len();
-            assembly.pins.paths.push((i, Path::Still(place)));
+            assembly.pins.paths.push(Held::new(i, Path::Still(place)));
             assembly.positions.push(place);
             assembly.velocities.push(Vector3::zeros());
         }

@@ -97,7 +97,8 @@ fn particles(table: &mut Map<String, Value>, chance: &mut Chance) {
     }
 }
 
-/// Removes the attachments to rigid bodies from the pins of other bodies, if there are none.
+/// Removes the attachments to rigid bodies from the pins of other bodies, if there are none. What is
+/// attached is never let go.
 fn release(table: &mut Map<String, Value>) {
     let none = !table.contains_key("body");
     for (key, bodies) in table.iter_mut() {
@@ -107,8 +108,12 @@ fn release(table: &mut Map<String, Value>) {
         };
         let pins = bodies.into_iter().filter_map(|body| body.get_mut("pin"));
         for pin in pins.flat_map(|pins| pins.as_array_mut().unwrap()) {
+            let pin = pin.as_object_mut().unwrap();
             if none || key == "body" {
-                pin.as_object_mut().unwrap().remove("body");
+                pin.remove("body");
+            }
+            if pin.contains_key("body") {
+                pin.remove("until");
             }
         }
     }
