@@ -119,6 +119,13 @@ pub fn begin_with(description: &mut Description, model: &Model, now: &Checkpoint
         wind.on = now.wind.is_some();
         wind.ahead += t;
     }
+    for inflow in description
+        .fluid
+        .iter_mut()
+        .filter_map(|it| it.inflow.as_mut())
+    {
+        inflow.ahead += t;
+    }
     write_obstacles(description, network, t);
     write_strain_limits(description, network);
     // Particles that are attached to rigid bodies stay so.

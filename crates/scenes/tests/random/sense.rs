@@ -77,6 +77,15 @@ fn fluid(table: &mut Map<String, Value>, chance: &mut Chance) {
         tank.insert("size".into(), json!(size));
         tank.insert("at".into(), at);
     }
+    if let Some(Value::Object(inflow)) = table.get_mut("inflow") {
+        let mut size = edges(3, spacing, flat, chance);
+        let (axis, mut velocity) = (chance.below(if flat { 2 } else { 3 }), [0.0; 3]);
+        size[axis] = 0.0;
+        velocity[axis] = [1.0, -2.0][chance.below(2)];
+        inflow.insert("size".into(), json!(size));
+        inflow.insert("velocity".into(), json!(velocity));
+        inflow.insert("duration".into(), json!(0.3));
+    }
 }
 
 /// Makes all lists as long as that of the particles, with springs between them.
