@@ -39,7 +39,7 @@ impl Fluid {
         }
     }
 
-    /// Returns the lattices of the fluid and of the space in its tank, and the column that flows in.
+    /// Returns the lattices of the fluid and of the space in its tank, and what flows in.
     fn places(&self) -> Result<(Option<Places>, Option<Places>, Option<Column>), Fault> {
         for (key, number) in [
             ("spacing", self.spacing),

@@ -75,8 +75,8 @@ impl Column {
         self.places.count(0)
     }
 
-    /// Lists the particles, the first of which has this number, with their velocities (m/s) and the
-    /// pins that hold them at the start.
+    /// Lists the places of the particles before any flowed (m), the first of which has this number,
+    /// with their velocities (m/s) and the pins that hold them at the start.
     pub fn particles(
         &self,
         first: usize,
@@ -98,7 +98,7 @@ impl Column {
                 } else {
                     self.velocity
                 };
-                return (here, velocity, closes);
+                return (place, velocity, closes);
             }
             let path = Path::Line {
                 from: here,
@@ -110,7 +110,7 @@ impl Column {
                 until: (!last).then_some(until),
                 ..Held::new(i, path)
             };
-            (here, self.velocity, Some(held))
+            (place, self.velocity, Some(held))
         })
     }
 

@@ -106,8 +106,8 @@ fn particles(table: &mut Map<String, Value>, chance: &mut Chance) {
     }
 }
 
-/// Removes the attachments to rigid bodies from the pins of other bodies, if there are none. What is
-/// attached is never let go.
+/// Removes the attachments to rigid bodies from the pins of other bodies, if there are none. What
+/// is attached is never let go.
 fn release(table: &mut Map<String, Value>) {
     let none = !table.contains_key("body");
     for (key, bodies) in table.iter_mut() {
