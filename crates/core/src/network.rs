@@ -18,6 +18,7 @@ mod particles;
 mod parts;
 mod project;
 mod reading;
+mod release;
 mod rigid;
 mod ropes;
 mod springs;
@@ -33,6 +34,9 @@ pub(crate) use energies::{add_wind, energy_of_errors, has_motors, is_conservativ
 pub(crate) use holding::{contradiction, is_nearly_singular};
 pub use parts::Network;
 pub(crate) use project::{has_joints, project};
+pub(crate) use release::{
+    forget_released, next_known_time, next_release, pass_to, quarter_period, release_of,
+};
 pub(crate) use ropes::{
     Least, has_ropes, least_tension, open_ends, ropes_of, set_taut, settle, slack, taut, tighten,
 };

@@ -1,6 +1,6 @@
 //! Scenes as lists of masses and springs, for programs that read no scene files.
 
-use a3_core::{Model, Network, Path, Scene};
+use a3_core::{Model, Network, Path, Pin, Scene};
 use serde::Serialize;
 
 use crate::description::{SpringSpec, Triple};
@@ -144,5 +144,7 @@ fn others(network: &Network) -> Vec<&'static str> {
     add(!network.bodies().is_empty(), "rigid bodies");
     let moves = |(_, path): (usize, Path)| !matches!(path, Path::Still(_));
     add(network.pins().any(moves), "pins that move");
+    let lets_go = |pin: Pin| pin.until.is_some();
+    add(network.all_pins().any(lets_go), "pins that let go");
     others
 }

@@ -2,7 +2,7 @@
 //! 0 again: paths and gusts are shifted in time.
 
 use a3_core::contact::Shape;
-use a3_core::{Checkpoint, Model, Network, Path, Pose, rotation};
+use a3_core::{Checkpoint, Model, Network, Path, Pin as Held, Pose, rotation};
 use nalgebra::{Rotation3, UnitQuaternion};
 
 use crate::description::{
@@ -118,6 +118,13 @@ pub fn begin_with(description: &mut Description, model: &Model, now: &Checkpoint
     if let Some(wind) = &mut description.wind {
         wind.on = now.wind.is_some();
         wind.ahead += t;
+    }
+    for inflow in description
+        .fluid
+        .iter_mut()
+        .filter_map(|it| it.inflow.as_mut())
+    {
+        inflow.ahead += t;
     }
     write_obstacles(description, network, t);
     write_strain_limits(description, network);
@@ -263,34 +270,42 @@ fn body_pins(description: &mut Description) -> impl Iterator<Item = &mut Vec<Pin
 /// was pinned before stays pinned where it is.
 fn pins(now: &Checkpoint) -> Vec<Pin> {
     let mut pins: Vec<Pin> = vec![];
+    let t = now.time();
     let held = now.run.grabbed.filter(|grabbed| grabbed.was_pinned);
-    let held = held.map(|grabbed| (grabbed.particle, grabbed.path));
-    let is_pinned = |i: usize| now.pins.iter().any(|(pin, _)| *pin == i);
-    let held = held.filter(|(i, _)| !is_pinned(*i));
-    for (i, path) in now.pins.iter().copied().chain(held) {
-        let Motion { sine, shift, about } =
-            match now.run.grabbed.filter(|grabbed| grabbed.particle == i) {
-                None => motion(&path, now.time()),
-                Some(grabbed) if grabbed.was_pinned => Motion::default(),
-                Some(_) => continue,
-            };
+    let held = held.map(|grabbed| Held::new(grabbed.particle, grabbed.path));
+    let holding = || now.pins.iter().filter(|pin| pin.holds_at(t));
+    let held = held.filter(|held| holding().all(|pin| pin.particle != held.particle));
+    for Held {
+        particle,
+        path,
+        until,
+    } in holding().copied().chain(held)
+    {
+        let grabbed = now.run.grabbed.filter(|it| it.particle == particle);
+        let Motion { sine, shift, about } = match grabbed {
+            None => motion(&path, t),
+            Some(grabbed) if grabbed.was_pinned => Motion::default(),
+            Some(_) => continue,
+        };
         let turn = match path {
-            Path::Turn { turn, .. } if about.is_some() => going_on(turn, about, now.time()),
+            Path::Turn { turn, .. } if about.is_some() => going_on(turn, about, t),
             _ => None,
         };
         let pin = Pin {
             sine,
             shift,
             turn,
+            until: until.map(|until| until - t),
             ..Pin::default()
         };
         let alike = |other: &&mut Pin| {
-            (&other.sine, &other.shift, &other.turn) == (&pin.sine, &pin.shift, &pin.turn)
+            (&other.sine, &other.shift, &other.turn, other.until)
+                == (&pin.sine, &pin.shift, &pin.turn, pin.until)
         };
         match pins.iter_mut().find(alike) {
-            Some(pin) => pin.particles.push(i),
+            Some(pin) => pin.particles.push(particle),
             None => pins.push(Pin {
-                particles: vec![i],
+                particles: vec![particle],
                 ..pin
             }),
         }

@@ -112,7 +112,8 @@ impl Request {
         let setup = self.source.build(options.grid)?;
         if let Some(network) = setup.scene.model.network() {
             let count = network.particles();
-            if count > 1 && network.pins().count() == count {
+            let held = network.pins().count();
+            if count > 1 && held == count && network.all_pins().all(|pin| pin.until.is_none()) {
                 terminal::warn(&format!(
                     "note: all {count} particles of the scene {} are pinned",
                     setup.scene.name

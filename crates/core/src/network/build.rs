@@ -18,6 +18,7 @@ use crate::contact::{ContactLayer, Obstacle, Shape};
 use crate::elements::{Buckling, Wind};
 use crate::error::{Error, at_least, positive};
 use crate::path::Path;
+use crate::pin::Pin;
 use crate::rigid::{Body, Motor};
 use crate::spring::Spring;
 
@@ -48,12 +49,11 @@ impl Network {
         self.elements.add(element.into())
     }
 
-    /// Pins particle i to `path` from now on, whether it was pinned before or not.
+    /// Pins particle i to `path` for good, whether it was pinned before or not.
     ///
     /// # Errors
     /// There is no such particle, or a rigid body carries it.
     pub fn pin(&mut self, i: usize, path: Path) -> Result<(), Error> {
-        self.particles.check(i)?;
         self.check_kinematic(i)?;
         if self.particles.pin(i, path) {
             self.strain_limits.forget();
@@ -61,15 +61,15 @@ impl Network {
         Ok(())
     }
 
-    /// Pins particles to paths, like [`pin`](Self::pin). If one is named several times, its last
-    /// path counts.
+    /// Adds pins. If a particle is named several times, its last pin counts.
     ///
     /// # Errors
-    /// There is no such particle, or a rigid body carries it; none is pinned then.
-    pub fn pin_all(&mut self, pins: Vec<(usize, Path)>) -> Result<(), Error> {
-        for (i, _) in &pins {
-            self.particles.check(*i)?;
-            self.check_kinematic(*i)?;
+    /// There is no such particle, or a rigid body carries it, or a pin lets go at no time above 0;
+    /// none is added then.
+    pub fn pin_all(&mut self, pins: Vec<Pin>) -> Result<(), Error> {
+        for pin in &pins {
+            self.check_kinematic(pin.particle)?;
+            positive("the time at which a pin lets go", pin.until.unwrap_or(1.0))?;
         }
         self.particles.pin_all(pins);
         self.strain_limits.forget();
@@ -88,8 +88,9 @@ impl Network {
         self.particles.lead_pins(path);
     }
 
-    /// Checks that particle i can be pinned, because no rigid body carries it.
+    /// Checks that particle i can be pinned: it exists, and no rigid body carries it.
     pub(crate) fn check_kinematic(&self, i: usize) -> Result<(), Error> {
+        self.particles.check(i)?;
         self.bodies.check_free(&self.particles, i)
     }
 
@@ -348,8 +349,7 @@ impl Network {
         Ok(())
     }
 
-    /// Adds an obstacle. Particles are moved out of obstacles in the order in which these were
-    /// added.
+    /// Adds an obstacle. Obstacles move particles out in the order in which they were added.
     ///
     /// # Errors
     /// Its shape has no size, or its friction is negative; or a number is not finite.

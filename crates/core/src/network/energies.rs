@@ -75,7 +75,7 @@ pub(crate) fn is_conservative(network: &Network) -> bool {
         let force = element.force();
         force.is_driven() || force.reads_velocity()
     };
-    let mut paths = network.pins().map(|(_, path)| path);
+    let mut paths = network.all_pins().map(|pin| pin.path);
     !network.elements().iter().any(loses)
         && paths.all(|path| matches!(path, Path::Still(_)))
         && network.obstacles().iter().all(Obstacle::is_still)

@@ -104,7 +104,7 @@ pub(super) fn free_motion(
     let centered = || network.bodies().iter().position(|body| body.center() == i);
     let acceleration = if w == 0.0 {
         let pin = particles.pins_of(i..i + 1).first();
-        pin.map_or_else(Vector3::zeros, |pin| pin.path.at(t).acceleration)
+        pin.map_or_else(Vector3::zeros, |pin| pin.at(t).acceleration)
     } else if let Some(k) = centered() {
         bodies(k, f).1
     } else {

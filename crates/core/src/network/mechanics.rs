@@ -48,7 +48,7 @@ impl Mechanics for Network {
 
     fn pins(&self, t: f64, visit: &mut dyn FnMut(usize, Place)) {
         for pin in self.particles.pins() {
-            visit(pin.particle, pin.path.at(t));
+            visit(pin.particle, pin.at(t));
         }
     }
 

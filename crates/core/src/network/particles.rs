@@ -5,13 +5,7 @@ use std::ops::Range;
 use crate::elements::force::check_particle;
 use crate::error::{Error, positive};
 use crate::path::Path;
-
-/// A pinned particle and its path.
-#[derive(Clone, Debug, PartialEq)]
-pub(super) struct Pin {
-    pub particle: usize,
-    pub path: Path,
-}
+use crate::pin::Pin;
 
 /// Masses and pins.
 #[derive(Clone, Debug)]
@@ -21,9 +15,16 @@ pub(super) struct Particles {
     uniform_inverse_mass: Option<f64>,
     /// One over the mass of each particle (1/kg), 0 where it is pinned.
     inverse_masses: Vec<f64>,
-    /// Pins in the order of their particles.
+    /// Pins that hold, in the order of their particles.
     pins: Vec<Pin>,
+    /// Pins that have let go.
+    released: Vec<Pin>,
+    /// Times (s) from which on and before which these are the pins that hold.
+    span: [f64; 2],
 }
+
+/// Times of pins that never let go.
+const ALWAYS: [f64; 2] = [f64::NEG_INFINITY, f64::INFINITY];
 
 impl Particles {
     /// Creates free particles of these masses (kg).
@@ -41,6 +42,8 @@ impl Particles {
             inverse_masses: masses.iter().map(|m| 1.0 / m).collect(),
             uniform_inverse_mass: uniform.then(|| 1.0 / masses[0]),
             pins: vec![],
+            released: vec![],
+            span: ALWAYS,
             masses,
         })
     }
@@ -79,48 +82,103 @@ impl Particles {
         self.uniform_inverse_mass = None;
     }
 
-    /// Pins particle i to a path. Returns whether it was free.
+    /// Pins particle i to a path for good. Returns whether it was free.
     pub fn pin(&mut self, i: usize, path: Path) -> bool {
+        let pin = Pin::new(i, path);
         self.inverse_masses[i] = 0.0;
         match self.pins.binary_search_by_key(&i, |pin| pin.particle) {
             Ok(k) => {
-                self.pins[k].path = path;
+                let before = std::mem::replace(&mut self.pins[k], pin);
+                self.forget_end(before);
                 false
             }
             Err(k) => {
-                self.pins.insert(k, Pin { particle: i, path });
+                self.pins.insert(k, pin);
                 true
             }
         }
     }
 
-    /// Pins particles to paths. If one is named several times, its last path counts.
-    pub fn pin_all(&mut self, pins: Vec<(usize, Path)>) {
-        for &(i, _) in &pins {
-            self.inverse_masses[i] = 0.0;
+    /// Adds pins. If a particle is named several times, its last pin counts.
+    pub fn pin_all(&mut self, pins: Vec<Pin>) {
+        for pin in &pins {
+            self.inverse_masses[pin.particle] = 0.0;
         }
-        let pins = pins
-            .into_iter()
-            .map(|(particle, path)| Pin { particle, path });
         self.pins.extend(pins);
         self.pins.sort_by_key(|pin| pin.particle);
         self.pins.dedup_by(|later, first| {
             let same = later.particle == first.particle;
             if same {
-                first.path = later.path;
+                *first = *later;
             }
             same
         });
+        self.find_span();
     }
 
     /// Frees particle i. Returns whether it was pinned.
     pub fn unpin(&mut self, i: usize) -> bool {
         let found = self.pins.binary_search_by_key(&i, |pin| pin.particle);
         if let Ok(k) = found {
-            self.pins.remove(k);
+            let before = self.pins.remove(k);
             self.inverse_masses[i] = 1.0 / self.masses[i];
+            self.forget_end(before);
         }
         found.is_ok()
+    }
+
+    /// Forgets the pins that have let go: none of them holds again at an earlier time.
+    pub fn forget_released(&mut self) {
+        self.released.clear();
+        self.find_span();
+    }
+
+    /// Lets the pins hold that hold at time t (s), and lets go of all others. Returns whether that
+    /// changes any.
+    pub fn pass_to(&mut self, t: f64) -> bool {
+        if self.span[0] <= t && t < self.span[1] {
+            return false;
+        }
+        let mut all = std::mem::take(&mut self.pins);
+        let held = all.len();
+        all.append(&mut self.released);
+        // A particle that was pinned again since keeps its later pin.
+        all.sort_by_key(|pin| pin.particle);
+        all.dedup_by_key(|pin| pin.particle);
+        for pin in all {
+            let i = pin.particle;
+            if pin.holds_at(t) {
+                self.inverse_masses[i] = 0.0;
+                self.pins.push(pin);
+            } else {
+                self.inverse_masses[i] = 1.0 / self.masses[i];
+                self.released.push(pin);
+            }
+        }
+        self.find_span();
+        held != self.pins.len()
+    }
+
+    /// Finds the times between which the same pins hold.
+    fn find_span(&mut self) {
+        let first = self.pins.iter().filter_map(|pin| pin.until);
+        let last = self.released.iter().filter_map(|pin| pin.until);
+        self.span = [
+            last.fold(ALWAYS[0], f64::max),
+            first.fold(ALWAYS[1], f64::min),
+        ];
+    }
+
+    /// Finds these times again if a pin that lets go was removed.
+    fn forget_end(&mut self, removed: Pin) {
+        if removed.until.is_some() {
+            self.find_span();
+        }
+    }
+
+    /// Returns the first time (s) at which a pin lets go; infinite if none does.
+    pub fn next_release(&self) -> f64 {
+        self.span[1]
     }
 
     /// Replaces the path of each pin by the result of `path` for it.
@@ -132,6 +190,11 @@ impl Particles {
 
     pub fn pins(&self) -> &[Pin] {
         &self.pins
+    }
+
+    /// Returns the pins that have let go.
+    pub fn released(&self) -> &[Pin] {
+        &self.released
     }
 
     /// Returns the pins among some particles.

@@ -15,6 +15,7 @@ use crate::elements::{Buckling, Finish, Fluid, Sheet, Wind};
 use crate::energy::Energy;
 use crate::error::{Error, Unmet};
 use crate::path::{Path, Pose};
+use crate::pin::Pin;
 use crate::rigid::{Body, Rotation};
 use crate::spring::Spring;
 
@@ -39,10 +40,16 @@ impl Network {
         self.particles.check(i)
     }
 
-    /// Returns the pinned particles and their paths.
+    /// Returns the particles that pins hold now, and their paths.
     pub fn pins(&self) -> impl Iterator<Item = (usize, Path)> {
         let pins = self.particles.pins().iter();
         pins.map(|pin| (pin.particle, pin.path))
+    }
+
+    /// Returns all pins: those that have let go, and then those that hold.
+    pub fn all_pins(&self) -> impl Iterator<Item = Pin> {
+        let released = self.particles.released().iter();
+        released.chain(self.particles.pins()).copied()
     }
 
     /// Whether particle i is pinned.
@@ -322,22 +329,10 @@ impl Network {
         self.surfaces.check_obstacle(k)
     }
 
-    /// Whether pins or obstacles move at any time.
+    /// Whether pins or obstacles move at any time, or pins let go.
     #[must_use]
     pub fn moves_by_itself(&self) -> bool {
         prescribed(self).moves()
-    }
-
-    /// Returns the first time after t (s) at which a path or a turn begins or ends; infinite if
-    /// there is none.
-    pub(crate) fn next_known_time(&self, t: f64) -> f64 {
-        prescribed(self).next_known_time(t)
-    }
-
-    /// Returns the longest step (s) that resolves the prescribed motion and the wind from time t
-    /// (s) to `end` (s): a quarter of the shortest period.
-    pub(crate) fn quarter_period(&self, t: f64, end: f64) -> f64 {
-        prescribed(self).quarter_period(t, end)
     }
 
     /// Returns the contact properties of surfaces, if they can touch.

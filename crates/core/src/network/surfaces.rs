@@ -9,6 +9,7 @@ use crate::contact::{ContactLayer, Obstacle, Shape, Skin, Surface};
 use crate::elements::Wind;
 use crate::error::Error;
 use crate::path::{Path, Turn};
+use crate::pin::Pin;
 use crate::rigid::Body;
 
 /// Rigid bodies, with the constraints that may join them.
@@ -163,17 +164,24 @@ impl Prescribed<'_> {
         self.obstacles.iter().filter_map(|obstacle| obstacle.turn)
     }
 
-    /// Whether pins or obstacles move at any time.
+    /// Whether pins or obstacles move at any time, or pins let go.
     pub fn moves(&self) -> bool {
         let moves = |path: &Path| !matches!(path, Path::Still(_));
-        self.paths().any(moves) || self.turns().next().is_some()
+        let lets_go = self.particles.next_release().is_finite();
+        lets_go
+            || !self.particles.released().is_empty()
+            || self.paths().any(moves)
+            || self.turns().next().is_some()
     }
 
-    /// Returns the first time after t (s) at which a path or a turn begins or ends; infinite if
-    /// there is none.
+    /// Returns the first time after t (s) at which a path or a turn begins or ends, or a pin lets
+    /// go; infinite if there is none.
     pub fn next_known_time(&self, t: f64) -> f64 {
-        let of_paths = self.paths().flat_map(Path::known_times);
-        let all = of_paths.chain(self.turns().flat_map(|turn| turn.known_times()));
+        let of_pins = self.particles.pins().iter().flat_map(Pin::known_times);
+        let of_paths = self.obstacles.iter().flat_map(|it| it.path.known_times());
+        let all = of_pins
+            .chain(of_paths)
+            .chain(self.turns().flat_map(|turn| turn.known_times()));
         let all = all.chain(self.wind.into_iter().flat_map(Wind::known_times));
         all.filter(|time| *time > t).fold(f64::INFINITY, f64::min)
     }

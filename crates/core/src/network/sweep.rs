@@ -18,7 +18,7 @@ fn place_row(
     registers: &mut Registers,
 ) {
     for pin in network.particles.pins_of(particles.clone()) {
-        let place = pin.path.at(t);
+        let place = pin.at(t);
         let columns = registers.stage_mut(row);
         for axis in 0..3 {
             let i = pin.particle - particles.start;

@@ -8,8 +8,9 @@ use super::touching::{let_touch, touches_itself};
 use crate::contact::Shape;
 use crate::elements::Wind;
 use crate::error::Error;
-use crate::network::{Network, set_taut, taut};
+use crate::network::{Network, pass_to, set_taut, taut};
 use crate::path::Path;
+use crate::pin::Pin;
 use crate::scene::{Model, Scene};
 
 /// A run at one time: all data, except its scene, from which it continues bit for bit.
@@ -22,8 +23,8 @@ use crate::scene::{Model, Scene};
 pub struct Checkpoint {
     /// State of the run.
     pub run: RunState,
-    /// Pinned particles and their paths.
-    pub pins: Vec<(usize, Path)>,
+    /// Pins, also those that have let go.
+    pub pins: Vec<Pin>,
     /// Numbers and paths of the obstacles, except floors.
     pub obstacles: Vec<(usize, Path)>,
     /// The wind that blows.
@@ -69,7 +70,7 @@ impl Checkpoint {
         self.taut.clear();
         let network = model.network();
         if let Some(network) = network {
-            self.pins.extend(network.pins());
+            self.pins.extend(network.all_pins());
             let obstacles = network.obstacles().iter().enumerate();
             self.obstacles.extend(
                 obstacles
@@ -142,9 +143,8 @@ impl Checkpoint {
         for (i, _) in whole.pins() {
             network.unpin(i);
         }
-        for (i, path) in &self.pins {
-            network.pin(*i, *path)?;
-        }
+        network.pin_all(self.pins.clone())?;
+        pass_to(network, self.time());
         for (k, path) in &self.obstacles {
             network.lead_obstacle(*k, *path)?;
         }
@@ -160,9 +160,11 @@ impl Checkpoint {
         Ok(())
     }
 
-    /// Restores torn springs, the paths of obstacles and self-contact in a network of the run.
+    /// Restores torn springs, the paths of obstacles and self-contact in a network of the run, and
+    /// lets its pins hold that hold then.
     /// Returns whether that changes its forces.
     fn mend(&self, network: &mut Network, scene: &Scene) -> Result<bool, Error> {
+        pass_to(network, self.time());
         let touching = network.touch().is_some_and(|touch| touch.bodies);
         for (k, path) in &self.obstacles {
             network.lead_obstacle(*k, *path)?;

@@ -13,6 +13,7 @@ use super::within::{Span, Within};
 use crate::control::Control;
 use crate::error::Error;
 use crate::integrators::AdaptiveState;
+use crate::network::{next_release, pass_to};
 use crate::scene::Model;
 use crate::threads::among_threads;
 
@@ -122,7 +123,7 @@ impl Driver {
             for _ in 0..count {
                 if !self.arrive(model, state) {
                     self.pipeline.step(model, state)?;
-                    self.pipeline.tear(model, state);
+                    self.pipeline.end_step(model, state);
                 }
             }
             Ok(())
@@ -181,7 +182,7 @@ impl Driver {
                 self.show(model, state, time);
                 return Ok(());
             }
-            self.pipeline.tear(model, state);
+            self.pipeline.end_step(model, state);
         }
     }
 
@@ -192,19 +193,28 @@ impl Driver {
         let is_within = end.is_some();
         if let Some(end) = end {
             std::mem::swap(end, &mut state.y);
-            self.pipeline.tear(model, state);
+            // The step itself has let go of the pins within it.
+            pass_model_to(model, state.end().next_down());
+            self.pipeline.end_step(model, state);
         }
         is_within
     }
 
     /// Shows the state at a time (s) within the step: interpolated, then corrected for contact and
-    /// pins as at the end of a step.
-    fn show(&mut self, model: &Model, state: &mut RunState, time: f64) {
-        let (system, network) = (model.system(), model.network());
-        let y = &mut state.y;
-        let Some([begin, _]) = self.within.times() else {
+    /// pins as at the end of a step. If pins let go in a fixed step, it is taken again up to there:
+    /// no polynomial follows the motion past such a time.
+    fn show(&mut self, model: &mut Model, state: &mut RunState, time: f64) {
+        let Some([begin, end]) = self.within.times() else {
             return;
         };
+        pass_model_to(model, begin);
+        let lets_go = model.network().is_some_and(|it| next_release(it) < end);
+        if lets_go && self.shorten_step(model, state, begin, time) {
+            state.shown = Some(time);
+            return;
+        }
+        let (system, network) = (model.system(), model.network());
+        let y = &mut state.y;
         match &mut self.pipeline.stepper {
             Stepper::Fixed(_) => {
                 let n = model.particles_with_velocities();
@@ -225,7 +235,7 @@ impl Driver {
 
     /// Ends the step at the time shown, before the state or the system changes there: an adaptive
     /// step by its polynomial, a fixed step by a shorter one, whose end is as stable.
-    pub fn stop(&mut self, model: &Model, state: &mut RunState) {
+    pub fn stop(&mut self, model: &mut Model, state: &mut RunState) {
         let time = state.time();
         let end = self.within.until().unwrap_or(time);
         if let Some([begin, _]) = self.within.times() {
@@ -240,19 +250,42 @@ impl Driver {
         self.pipeline.watch.disturb(model, state, time, end);
     }
 
-    /// Takes the step that began at time t (s) again, up to the time shown. If that fails, the
-    /// interpolated state stays.
-    fn shorten_step(&mut self, model: &Model, state: &mut RunState, t: f64, time: f64) {
+    /// Takes the step that began at time t (s) again, up to a time (s): in parts, if pins let go
+    /// before. Returns whether that succeeded; if not, the state stays as it is.
+    fn shorten_step(
+        &mut self,
+        model: &mut Model,
+        state: &mut RunState,
+        mut t: f64,
+        time: f64,
+    ) -> bool {
         let Pipeline {
             stepper, phases, ..
         } = &mut self.pipeline;
         let mut y = self.within.y0().to_vec();
-        phases.begin(model, &y, false);
-        let step = Control::Step(time - t);
-        let taken = stepper.integrate(model.system(), step, t, time - t, &mut y);
-        let settled = phases.settle(model, (t, time - t), &mut y);
-        if taken.is_ok() && settled.is_ok() && y.iter().all(|y| y.is_finite()) {
+        pass_model_to(model, t);
+        let mut succeeds = true;
+        while succeeds && t < time {
+            let end = model.network().map_or(time, next_release).min(time);
+            phases.begin(model, &y, false);
+            let step = Control::Step(end - t);
+            let taken = stepper.integrate(model.system(), step, t, end - t, &mut y);
+            let settled = phases.settle(model, (t, end - t), &mut y);
+            succeeds = taken.is_ok() && settled.is_ok() && y.iter().all(|y| y.is_finite());
+            pass_model_to(model, end);
+            t = end;
+        }
+        pass_model_to(model, time);
+        if succeeds {
             state.y = y;
         }
+        succeeds
+    }
+}
+
+/// Lets the pins of a model hold that hold at time t (s).
+fn pass_model_to(model: &mut Model, t: f64) {
+    if let Model::Network(network) = model {
+        pass_to(network, t);
     }
 }

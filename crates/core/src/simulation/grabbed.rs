@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::pins::pin;
 use crate::network::{Network, attract, mass_behind};
 use crate::path::Path;
+use crate::pin::Pin;
 
 /// Time in which a pulled particle reaches its target (s).
 pub(super) const PULL_TIME: f64 = 1.0 / 30.0;
@@ -59,7 +60,7 @@ impl Grabbed {
             network.unpin(self.particle);
             self.attract(network);
         } else {
-            pin(network, y, (self.particle, self.path), t);
+            pin(network, y, Pin::new(self.particle, self.path), t);
         }
     }
 }

@@ -4,7 +4,7 @@ use nalgebra::{DMatrixView, Vector3};
 
 use super::grabbed::Grabbed;
 use super::hand::Hand;
-use super::pins::{leave, leave_all_but, pin, unpin_all_but};
+use super::pins::{leave, leave_all_but, own_release, pin, unpin_all_but};
 use super::run::Simulation;
 use super::state::RunState;
 use super::touching::{check_touch, let_touch, touches_itself};
@@ -14,6 +14,7 @@ use crate::energy::Energy;
 use crate::error::Error;
 use crate::network::{Network, let_go};
 use crate::path::Path;
+use crate::pin::Pin;
 use crate::scene::Model;
 
 impl Simulation {
@@ -122,7 +123,7 @@ impl Simulation {
 
     /// Ends the step at the time shown.
     pub(super) fn stop(&mut self) {
-        self.driver.stop(&self.model, &mut self.state);
+        self.driver.stop(&mut self.model, &mut self.state);
     }
 
     /// Recreates the integrator after the system changed: it sizes its scratch and its cost model
@@ -241,8 +242,9 @@ impl Simulation {
             return;
         }
         let own = self.scene.model.network();
-        let own: Vec<_> = own.into_iter().flat_map(Network::pins).collect();
-        for (i, _) in own {
+        let own = own.into_iter().flat_map(Network::all_pins);
+        let own: Vec<_> = own.filter(|pin| pin.holds_at(self.time())).collect();
+        for i in own.into_iter().map(|pin| pin.particle) {
             match &mut self.state.grabbed {
                 Some(grabbed) if grabbed.particle == i => grabbed.was_pinned = true,
                 _ => self.leave_pin(i),
@@ -260,7 +262,6 @@ impl Simulation {
         let Some(network) = self.model.network() else {
             return Ok(false);
         };
-        network.check_particle(i)?;
         network.check_kinematic(i)?;
         let pinned = network.is_pinned(i);
         let grabbed = self.state.grabbed.as_mut();
@@ -276,11 +277,14 @@ impl Simulation {
         Ok(!pinned)
     }
 
-    /// Pins particle i where it is, or swings it from there.
+    /// Pins particle i where it is, or swings it from there, up to the time at which the scene lets
+    /// go of it.
     pub(super) fn leave_pin(&mut self, i: usize) {
         let swing = self.scene.swing.filter(|_| self.state.swinging);
         let path = leave(self.position(i), swing, self.state.swing_phase, self.time());
-        self.disturb(|network, state, time| pin(network, &mut state.y, (i, path), time));
+        let mut left = Pin::new(i, path);
+        left.until = own_release(&self.scene, i, self.time());
+        self.disturb(|network, state, time| pin(network, &mut state.y, left, time));
     }
 
     /// Number of the grabbed particle.

@@ -2,6 +2,7 @@
 
 mod balance;
 mod bounds;
+mod changes;
 mod checkpoint;
 mod depths;
 mod driver;

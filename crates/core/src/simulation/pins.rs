@@ -3,9 +3,10 @@
 use nalgebra::Vector3;
 
 use crate::columns::row;
-use crate::network::Network;
+use crate::network::{Network, forget_released, release_of};
 use crate::path::Path;
-use crate::scene::Swing;
+use crate::pin::Pin;
+use crate::scene::{Scene, Swing};
 use crate::system::ParticleSystem;
 
 /// Distance of a pin from its path, over the radius of the scene, below which it is a rounding
@@ -29,10 +30,20 @@ pub(super) fn leave(position: Vector3<f64>, swing: Option<Swing>, phase: f64, t:
     }
 }
 
-/// Pins particle i to a path, and writes the path's velocity at time t (s) to y.
-pub(super) fn pin(network: &mut Network, y: &mut [f64], (i, path): (usize, Path), t: f64) {
-    let (n, velocity) = (network.particles(), path.at(t).velocity);
-    if network.pin(i, path).is_ok() {
+/// Time (s) after t at which a scene lets go of particle i, if it does.
+pub(super) fn own_release(scene: &Scene, i: usize, t: f64) -> Option<f64> {
+    let until = release_of(scene.model.network()?, i);
+    until.filter(|until| *until > t)
+}
+
+/// Adds a pin, and writes the velocity of its path at time t (s) to y.
+pub(super) fn pin(network: &mut Network, y: &mut [f64], pin: Pin, t: f64) {
+    let (n, i, velocity) = (network.particles(), pin.particle, pin.at(t).velocity);
+    let pinned = match pin.until {
+        None => network.pin(i, pin.path),
+        Some(_) => network.pin_all(vec![pin]),
+    };
+    if pinned.is_ok() {
         for axis in 0..3 {
             y[(3 + axis) * n + i] = velocity[axis];
         }
@@ -57,8 +68,9 @@ pub(super) fn leave_all_but(
     network.hold(t, y);
 }
 
-/// Frees all pinned particles except one.
+/// Frees all pinned particles except one, for good.
 pub(super) fn unpin_all_but(held: Option<usize>, network: &mut Network) {
+    forget_released(network);
     let pins: Vec<_> = network.pins().map(|(i, _)| i).collect();
     // The last ones first, so that few of the list are moved up by each removal.
     for i in pins.into_iter().rev().filter(|i| Some(*i) != held) {

@@ -1,5 +1,6 @@
 //! Reach of a step: how far it may go, and how far it has gone.
 
+use crate::network::{Network, next_known_time, next_release, quarter_period};
 use crate::scene::{Model, StepLimits};
 
 /// Part of a run that one step covers: its length (s), and the time at its end (s).
@@ -51,25 +52,42 @@ impl Reach {
     ) -> Self {
         let mut reach = Self::default();
         if let Some(network) = model.network() {
-            let until = network.next_known_time(t);
+            let until = next_known_time(network, t);
             if until.is_finite() {
                 reach = Self::up_to(t, until);
             }
             if is_adaptive {
-                let longest = network.quarter_period(t, t + reach.longest.min(f64::MAX));
+                let longest = quarter_period(network, t, t + reach.longest.min(f64::MAX));
                 reach.limit(longest);
             }
         }
         if is_adaptive {
             reach.limit(limits.max_step.unwrap_or(f64::INFINITY));
         }
-        if let Some(target) = target.filter(|target| *target <= reach.until.unwrap_or(f64::MAX)) {
-            reach = Self {
+        reach.or_before(t, target)
+    }
+
+    /// Limits of a part of a fixed step of a network from time t (s) by a method that locates no
+    /// events: it ends where the next pin lets go, or at `target` (s).
+    pub fn of_part(network: &Network, t: f64, target: Option<f64>) -> Self {
+        let release = next_release(network);
+        let reach = if release.is_finite() {
+            Self::up_to(t, release)
+        } else {
+            Self::default()
+        };
+        reach.or_before(t, target)
+    }
+
+    /// These limits, or those of a step that ends at `target` (s), if that is not later.
+    fn or_before(self, t: f64, target: Option<f64>) -> Self {
+        match target.filter(|target| *target <= self.until.unwrap_or(f64::MAX)) {
+            None => self,
+            Some(target) => Self {
                 longest: target - t,
                 until: Some(target),
-            };
+            },
         }
-        reach
     }
 
     /// Limits of a step from t up to a time `until` (s) at which a motion changes: all evaluations

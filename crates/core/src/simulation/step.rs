@@ -8,12 +8,12 @@
 //! [`retry`](super::retry)).
 
 use super::bounds::Bounds;
-use super::depths::{Depths, NEGLIGIBLE_SHARE};
+use super::depths::Depths;
 use super::events::{Event, EventKind};
 use super::failure::{Failure, cause_of};
 use super::locator::Locator;
 use super::phases::{Phases, Settled};
-use super::power::{End, energy_of};
+use super::power::End;
 use super::reach::{Part, Reach};
 use super::retry::{MIN_RETRY_SHARE, MIN_RETRY_STEP, limit_next, share_of_bulge, share_of_retry};
 use super::state::RunState;
@@ -21,8 +21,7 @@ use super::stepper::Stepper;
 use super::watch::Watch;
 use crate::control::Control;
 use crate::error::{Cause, Error};
-use crate::integrators::Work;
-use crate::network::{Least, has_ropes, settle, taut, tighten};
+use crate::network::{has_ropes, next_release};
 use crate::scene::{Model, Scene, StepLimits};
 use crate::system::ParticleSystem;
 
@@ -70,7 +69,7 @@ pub(super) struct Pipeline {
     pub locator: Locator,
     pub watch: Watch,
     pub bounds: Bounds,
-    limits: StepLimits,
+    pub(super) limits: StepLimits,
 }
 
 impl Pipeline {
@@ -95,6 +94,8 @@ impl Pipeline {
         let mut begin = state.end();
         let whole = state.control.step();
         let target = whole.map(|h| state.since + (state.taken + 1) as f64 * h);
+        let lets_go = target.is_some_and(|target| release_before(model, target));
+        let in_parts = lets_go || self.locator.splits(&self.stepper);
         for number in 1.. {
             let rebounds = number <= MAX_REBOUNDING_PARTS;
             if let Model::Network(network) = model {
@@ -104,7 +105,8 @@ impl Pipeline {
             self.choose_taut(model, state, begin);
             self.watch.begin_step(model, begin, &state.y);
             let splits = number < MAX_PARTS;
-            let taken = self.integrate_and_settle(model, state, (begin, target), splits)?;
+            let span = (begin, target.filter(|_| in_parts));
+            let taken = self.integrate_and_settle(model, state, span, splits)?;
             let (cause, part) = match taken {
                 Err(cause) => (Some(cause), Part::of(begin, whole.unwrap_or(0.0))),
                 Ok((part, settled)) => {
@@ -112,8 +114,7 @@ impl Pipeline {
                     (self.end_part(model, state, part.end, &settled), part)
                 }
             };
-            let is_last =
-                cause.is_some() || !self.locator.splits(&self.stepper) || target == Some(part.end);
+            let is_last = cause.is_some() || !in_parts || target == Some(part.end);
             state.steps += u64::from(is_last);
             if let Some(cause) = cause {
                 let time = part.end;
@@ -128,6 +129,7 @@ impl Pipeline {
                 break;
             }
             self.tear(model, state);
+            self.let_go(model, state, part.end);
             begin = part.end;
         }
         Ok(())
@@ -135,7 +137,7 @@ impl Pipeline {
 
     /// Takes a step from time t (s), and settles its end; an adaptive method may have to take it
     /// again with a shorter length. If events are located, the step ends at the first one if it
-    /// `splits`, and a fixed step ends at `target` (s) at the latest. Returns the step, or the
+    /// `splits`. A fixed step in parts ends at `target` (s) at the latest. Returns the step, or the
     /// cause of a blow-up.
     fn integrate_and_settle(
         &mut self,
@@ -147,10 +149,10 @@ impl Pipeline {
         let (stepper, limits) = (&mut self.stepper, self.limits);
         let depths = Depths::new(self.bounds.radius, limits, state.control);
         let locates = self.locator.serves(stepper);
-        let reach = if locates {
-            Reach::of_step(model, limits, stepper.is_adaptive(), t, target)
-        } else {
-            Reach::default()
+        let reach = match (locates, model.network().filter(|_| target.is_some())) {
+            (true, _) => Reach::of_step(model, limits, stepper.is_adaptive(), t, target),
+            (false, Some(network)) => Reach::of_part(network, t, target),
+            (false, None) => Reach::default(),
         };
         self.locator.list_rests(model, state, stepper, t, depths);
         let plan = Plan {
@@ -319,65 +321,10 @@ impl Pipeline {
         let end = End { order, t, y };
         self.watch.end_step(model, balance, end, &settled.met, lost)
     }
+}
 
-    /// Applies the impacts of ropes that tighten at time t (s), with or without rebounds, and
-    /// accounts for the energy that is lost in them.
-    fn tighten(&mut self, model: &mut Model, state: &mut RunState, t: f64, rebounds: bool) {
-        let Model::Network(network) = model else {
-            return;
-        };
-        if !has_ropes(network) || state.y.iter().any(|y| !y.is_finite()) {
-            return;
-        }
-        let depths = Depths::new(self.bounds.radius, self.limits, state.control);
-        let least = Least {
-            none: depths.none,
-            height: depths.none.max(depths.shallow),
-            time: state.control.step().unwrap_or(0.0),
-            rebounds,
-        };
-        let before = energy_of(network, t, &state.y).total();
-        if tighten(network, t, &mut state.y, least) {
-            let after = energy_of(network, t, &state.y).total();
-            state.balance.allow(after - before);
-            self.watch.forget_power();
-            self.stepper.forget();
-        }
-    }
-
-    /// Decides which ropes are taut from time t (s) on.
-    fn choose_taut(&mut self, model: &mut Model, state: &mut RunState, t: f64) {
-        let Model::Network(network) = model else {
-            return;
-        };
-        let before: Vec<_> = taut(network).collect();
-        let none = Depths::new(self.bounds.radius, self.limits, state.control).none;
-        state.work += Work::of(settle(network, t, &state.y, none));
-        if !taut(network).eq(before) {
-            self.stepper.forget();
-        }
-    }
-
-    /// Breaks springs that are stretched too far at the end of a step, or were located to be there,
-    /// and accounts for the change of energy. Before the run has arrived at that end, a state shown
-    /// within the step still has these springs.
-    pub fn tear(&mut self, model: &mut Model, state: &mut RunState) {
-        let share = if self.locator.serves(&self.stepper) {
-            NEGLIGIBLE_SHARE
-        } else {
-            0.0
-        };
-        let (t, y) = (state.end(), &state.y);
-        if let Model::Network(network) = model
-            && network.is_overstretched(network.halves(y).0, share)
-        {
-            let before = energy_of(network, t, y).total();
-            network.tear(network.halves(y).0, share);
-            let after = energy_of(network, t, y).total();
-            state.balance.allow(after - before);
-            self.watch.forget_power();
-            self.stepper.forget();
-            self.stepper.refit(state.method, model.system());
-        }
-    }
+/// Whether a pin lets go before a time (s).
+fn release_before(model: &Model, time: f64) -> bool {
+    let network = model.network();
+    network.is_some_and(|network| next_release(network) < time)
 }

@@ -6,6 +6,7 @@ mod common;
 mod frames;
 mod known_times;
 mod rebounds;
+mod releases;
 mod resting;
 mod ropes;
 mod tears;

@@ -1,6 +1,6 @@
 //! Fluids against laws of physics: conserved quantities, exact solutions, and an experiment.
 
-use a3_core::{Control, Linearized, Mechanics, Model, Network, Scene, Simulation};
+use a3_core::{Control, Linearized, Mechanics, Model, Network, Scene, Simulation, Vector3};
 
 use crate::common::{described, distance, method, scene, size};
 use crate::networks::Random;
@@ -295,4 +295,96 @@ fn any_number_of_threads_finds_the_same_forces() {
     for threads in [2, 3, 8] {
         assert!(run(threads) == one, "{threads} threads");
     }
+}
+
+/// Free particles of a run.
+fn flowing(run: &Simulation) -> Vec<usize> {
+    let network = run.model().network().unwrap();
+    (0..run.particles())
+        .filter(|i| !network.is_pinned(*i))
+        .collect()
+}
+
+/// A jet in free fall, in metres, millimetres and hundreds of metres: at any time, as much has
+/// flowed in as the speed and the opening say, to half of a layer, and each layer is on the
+/// parabola of a projectile from the opening.
+#[test]
+fn a_jet_falls_like_a_projectile() {
+    for scale in [1.0, 1e-3, 100.0_f64] {
+        let pace = scale.sqrt();
+        let [spacing, width, speed, sound, until] = [
+            0.04 * scale,
+            0.2 * scale,
+            2.0 * pace,
+            40.0 * pace,
+            0.5 * pace,
+        ];
+        let scene = described(&format!(
+            "gravity = [0, -10, 0]
+            [[fluid]]
+            dimensions = 2
+            size = [0, 0, 0]
+            spacing = {spacing:e}
+            at = [0, 0, 0]
+            density = 1000
+            sound = {sound:e}
+            inflow = {{ size = [0, {width:e}, 0], at = [0, 0, 0], velocity = [{speed:e}, 0, 0], duration = {until:e} }}"
+        ));
+        let step = Control::Step(5e-4 * pace);
+        let mut run = Simulation::new(scene, method("verlet"), step).unwrap();
+        for k in 1..=5 {
+            let t = 0.2 * f64::from(k) * until;
+            run.advance_to(t).unwrap();
+            let free = flowing(&run);
+            let area = free.len() as f64 * spacing * spacing;
+            let expected = speed * width * t;
+            assert!(
+                (area - expected).abs() < 0.51 * spacing * width,
+                "{area} {expected}"
+            );
+            // The first layer has flown all the time since its release.
+            let first = free
+                .iter()
+                .filter(|i| run.scene().state[**i] > -0.6 * spacing);
+            let places: Vec<_> = first.map(|i| run.position(*i)).collect();
+            let mean = places.iter().sum::<Vector3<f64>>() / places.len() as f64;
+            let flown = t - 0.5 * spacing / speed;
+            let exact = Vector3::new(speed * flown, -5.0 * flown * flown, 0.0);
+            assert_eq!(places.len(), 5);
+            assert!(
+                (mean - exact).norm() < 0.01 * exact.norm(),
+                "{mean:?} {exact:?}"
+            );
+        }
+        assert_eq!(flowing(&run).len(), 125);
+        assert!(run.gained().is_none());
+    }
+}
+
+/// Water rises in a tank as much flows in through its floor, over its width.
+#[test]
+fn a_tank_fills() {
+    let scene = described(
+        "gravity = [0, -10, 0]
+        [[fluid]]
+        dimensions = 2
+        size = [0.8, 0.2, 0]
+        spacing = 0.04
+        at = [0.4, 0.1, 0]
+        density = 1000
+        sound = 20
+        viscosity = 0.04
+        tank = { size = [0.8, 0.6, 0], at = [0.4, 0.3, 0] }
+        inflow = { size = [0.16, 0, 0], at = [0.4, 0, 0], velocity = [0, 0.5, 0], duration = 1.28 }",
+    );
+    let mut run = Simulation::new(scene, method("verlet"), Control::Step(5e-4)).unwrap();
+    let level = |run: &Simulation| {
+        let heights = flowing(run).into_iter().map(|i| run.position(i).y);
+        2.0 * heights.sum::<f64>() / flowing(run).len() as f64
+    };
+    let before = level(&run);
+    run.advance_to(2.5).unwrap();
+    let rise = level(&run) - before;
+    // The water is compressed by g h / 2 c2 = 0.4 % of its height.
+    assert!((rise - 0.128).abs() < 0.035 * 0.128, "{rise}");
 }

@@ -1,7 +1,7 @@
 //! Checkpoints: a restored run continues with the same bits.
 
 use a3_core::integrators::METHODS;
-use a3_core::{Checkpoint, Control, Method, Network, Path, Scene, Simulation, Vector3};
+use a3_core::{Checkpoint, Control, Method, Network, Path, Pin, Scene, Simulation, Vector3};
 
 use super::common::{described, method, on_all_cores, scene, simulation, takes_minutes};
 
@@ -182,7 +182,7 @@ fn a_moment_is_small_and_goes_on() {
     run.record(&mut moment);
     assert_eq!(moment, run.moment());
     // It contains the state, the pins, and little else.
-    let pins = moment.pins.len() * size_of::<(usize, Path)>();
+    let pins = moment.pins.len() * size_of::<Pin>();
     assert!(moment.size() < 8 * run.state().len() + pins + 1600);
     assert!(serde_json::to_string(&run.checkpoint()).unwrap().len() > 10 * 8 * run.state().len());
     let mut again = simulation("cloth", "euler", 0.01);
@@ -214,7 +214,12 @@ fn checkpoints_that_do_not_fit_are_refused_and_change_nothing() {
     refuse(&|c| c.run.since = f64::INFINITY);
     refuse(&|c| c.run.control = Control::Tolerance(-1.0));
     refuse(&|c| c.run.method = method("rk4"));
-    refuse(&|c| c.pins.push((1_000_000, Path::Still(Vector3::zeros()))));
+    let pin = |i: usize| Pin::new(i, Path::Still(Vector3::zeros()));
+    refuse(&|c| c.pins.push(pin(1_000_000)));
+    refuse(&|c| {
+        let until = Some(-1.0);
+        c.pins.push(Pin { until, ..pin(0) });
+    });
     refuse(&|c| c.torn.push([0, 224]));
     refuse(&|c| c.obstacles.push((7, Path::Still(Vector3::zeros()))));
     refuse(&|c| c.run.grabbed_obstacle = Some(7));

@@ -4,17 +4,15 @@ use std::ops::Range;
 
 use a3_core::contact::Skin;
 use a3_core::elements::{Fluid as Liquid, FluidLaw};
-use a3_core::{Network, Path, Vector3};
+use a3_core::{Network, Path, Pin as Held, Vector3};
 
 use super::assembly::{Assembly, Body, Counts};
+use super::inflow::Column;
+use super::places::{LAYERS, Places};
 use super::skins::point_skin;
 use crate::check::{at, at_least, positive};
 use crate::description::{Fluid, FluidShape, Pin, Spot};
 use crate::fault::Fault;
-
-/// Number of layers of particles in a wall: with three, the fluid particles next to a wall have all
-/// their neighbours.
-pub const LAYERS: u32 = 3;
 
 /// Thickness of the skin of a particle, relative to the spacing.
 const THICKNESS: f64 = 1.0;
@@ -34,85 +32,6 @@ pub(super) fn step_scale(fluids: &[Fluid]) -> f64 {
     fluids.iter().map(scale).fold(1.0, f64::min)
 }
 
-/// Lattice of the particles of a fluid or a tank.
-struct Places {
-    /// Number of lattice points along each axis.
-    counts: [i64; 3],
-    /// Corner of the lattice (m).
-    corner: Vector3<f64>,
-    spacing: f64,
-    flat: bool,
-}
-
-impl Places {
-    /// Creates the lattice that fills a box.
-    fn new(fluid: &Fluid, size: [f64; 3], center: [f64; 3]) -> Result<Self, Fault> {
-        let flat = fluid.dimensions == 2;
-        let mut counts = [1; 3];
-        for (axis, (count, size)) in counts.iter_mut().zip(size).enumerate() {
-            if flat && axis == 2 {
-                if size != 0.0 {
-                    let why = format!("in two dimensions, its last number is 0, not {size}");
-                    return Err(Fault::new("size", why));
-                }
-                continue;
-            }
-            at("size", positive("each edge", size))?;
-            let whole = (size / fluid.spacing).round();
-            if whole < 1.0 || (whole * fluid.spacing - size).abs() > 1e-6 * size {
-                let why = format!(
-                    "each edge must be a whole multiple of the spacing {}, not {size}",
-                    fluid.spacing
-                );
-                return Err(Fault::new("size", why));
-            }
-            *count = whole as i64;
-        }
-        Ok(Self {
-            counts,
-            corner: Vector3::from(center) - 0.5 * Vector3::from(size),
-            spacing: fluid.spacing,
-            flat,
-        })
-    }
-
-    /// Counts the points of the lattice with `layers` more around its sides and its bottom.
-    fn count(&self, layers: i64) -> usize {
-        let ends = (0..3).map(|axis| self.range(axis, layers));
-        ends.fold(1, |all, range| {
-            all.saturating_mul((range.end - range.start) as usize)
-        })
-    }
-
-    /// Returns the indices along an axis, with `layers` more outside.
-    fn range(&self, axis: usize, layers: i64) -> Range<i64> {
-        let n = self.counts[axis];
-        match axis {
-            2 if self.flat => 0..1,
-            1 => -layers..n,
-            _ => -layers..n.saturating_add(layers),
-        }
-    }
-
-    /// Lists the points of the lattice with `layers` more around its sides and its bottom, x
-    /// fastest, and tells whether each is inside.
-    fn all(&self, layers: i64) -> impl Iterator<Item = (Vector3<f64>, bool)> {
-        let [x, y, z] = [0, 1, 2].map(|axis| self.range(axis, layers));
-        let places = z.flat_map(move |k| {
-            let x = x.clone();
-            y.clone()
-                .flat_map(move |j| x.clone().map(move |i| [i, j, k]))
-        });
-        places.map(move |place| {
-            let inside = (0..3).all(|axis| (0..self.counts[axis]).contains(&place[axis]));
-            let depth = if self.flat { -0.5 } else { 0.0 };
-            let [i, j, k] = place.map(|k| k as f64 + 0.5);
-            let offset = Vector3::new(i, j, k + depth);
-            (self.corner + self.spacing * offset, inside)
-        })
-    }
-}
-
 impl Fluid {
     fn law(&self) -> FluidLaw {
         FluidLaw {
@@ -124,8 +43,8 @@ impl Fluid {
         }
     }
 
-    /// Returns the lattices of the fluid and of the space in its tank.
-    fn places(&self) -> Result<(Places, Option<Places>), Fault> {
+    /// Returns the lattices of the fluid and of the space in its tank, and what flows in.
+    fn places(&self) -> Result<(Option<Places>, Option<Places>, Option<Column>), Fault> {
         for (key, number) in [
             ("spacing", self.spacing),
             ("density", self.density),
@@ -138,17 +57,22 @@ impl Fluid {
             let why = format!("it must be 2 or 3, not {}", self.dimensions);
             return Err(Fault::new("dimensions", why));
         }
-        let fluid = Places::new(self, self.size, self.at)?;
+        let is_none = self.inflow.is_some() && self.size == [0.0; 3];
+        let fluid = (!is_none).then(|| Places::new(self, self.size, self.at));
         let tank = self.tank.as_ref().map(|tank| {
             let space = Places::new(self, tank.size, tank.at);
             space.map_err(|fault| fault.within("tank"))
         });
-        Ok((fluid, tank.transpose()?))
+        let column = self.inflow.as_ref().map(|inflow| {
+            let column = Column::new(self, inflow);
+            column.map_err(|fault| fault.within("inflow"))
+        });
+        Ok((fluid.transpose()?, tank.transpose()?, column.transpose()?))
     }
 
     /// Checks that the fluid begins within its tank, or above its open top.
     fn check_inside(&self) -> Result<(), Fault> {
-        let Some(tank) = &self.tank else {
+        let Some(tank) = self.tank.as_ref().filter(|_| self.size != [0.0; 3]) else {
             return Ok(());
         };
         for axis in 0..usize::from(self.dimensions) {
@@ -172,12 +96,12 @@ impl Fluid {
 }
 
 /// Returns the initial positions (m) of a fluid's particles, and of the particles in the walls of
-/// its tank, in the order of their numbers.
+/// its tank, in the order of their numbers. Between them are those that flow in.
 ///
 /// # Errors
 /// A number makes no sense.
 pub fn fluid_points(fluid: &Fluid) -> Result<[Vec<Vector3<f64>>; 2], Fault> {
-    let (places, tank) = fluid.places()?;
+    let (places, tank, column) = fluid.places()?;
     let half = 0.5 * Vector3::from(fluid.size);
     let is_in_shape = |place: &Vector3<f64>| {
         let from_center = place - Vector3::from(fluid.at);
@@ -187,22 +111,28 @@ pub fn fluid_points(fluid: &Fluid) -> Result<[Vec<Vector3<f64>>; 2], Fault> {
         };
         fluid.shape == FluidShape::Box || (0..3).map(share).sum::<f64>() <= 1.0
     };
-    let all = places.all(0).map(|(place, _)| place);
+    let all = places.iter().flat_map(|places| places.all(0));
+    let all = all.map(|(place, _)| place);
+    let is_open = |place: &Vector3<f64>| column.as_ref().is_some_and(|it| it.passes(place));
     let walls = tank.iter().flat_map(|tank| tank.all(LAYERS.into()));
     let walls = walls.filter(|(_, inside)| !inside).map(|(place, _)| place);
+    let walls = walls.filter(|place| !is_open(place));
     Ok([all.filter(is_in_shape).collect(), walls.collect()])
 }
 
 impl Body for Fluid {
     fn counts(&self) -> Result<Counts, Fault> {
-        let (fluid, tank) = self.places()?;
+        let (fluid, tank, column) = self.places()?;
+        let column = column.map_or(0, |column| column.count());
+        let flowing = fluid.map_or(0, |fluid| fluid.count(0));
+        let flowing = flowing.saturating_add(column);
         let walls = tank.map_or(0, |tank| {
             tank.count(LAYERS.into()).saturating_sub(tank.count(0))
         });
         Ok(Counts {
-            particles: fluid.count(0).saturating_add(walls),
-            smoothed: fluid.count(0).saturating_add(walls),
-            walls,
+            particles: flowing.saturating_add(walls),
+            smoothed: flowing.saturating_add(walls),
+            walls: walls.saturating_add(column),
             ..Counts::default()
         })
     }
@@ -218,10 +148,24 @@ impl Body for Fluid {
             assembly.positions.push(place);
             assembly.velocities.push(velocity + strained);
         }
+        assembly
+            .drops
+            .extend(first as u32..assembly.positions.len() as u32);
+        let (.., column) = self.places()?;
+        let (column, next) = (column.iter(), assembly.positions.len());
+        for (place, velocity, pin) in column.flat_map(|column| column.particles(next)) {
+            assembly.positions.push(place);
+            assembly.velocities.push(velocity);
+            // What is never let go is a wall.
+            if pin.is_none_or(|pin| pin.until.is_some()) {
+                assembly.drops.push(assembly.positions.len() as u32 - 1);
+            }
+            assembly.pins.paths.extend(pin);
+        }
         let free = assembly.positions.len();
         for place in walls {
             let i = assembly.positions.len();
-            assembly.pins.paths.push((i, Path::Still(place)));
+            assembly.pins.paths.push(Held::new(i, Path::Still(place)));
             assembly.positions.push(place);
             assembly.velocities.push(Vector3::zeros());
         }
@@ -232,7 +176,6 @@ impl Body for Fluid {
         let stiffness = mass * (self.sound / self.spacing).powi(2);
         let skin = point_skin(mass, thickness, Some(stiffness), [0.0; 2])?;
         assembly.skins.resize(free, skin);
-        assembly.drops.extend(first as u32..free as u32);
         // Surfaces do not touch walls.
         assembly.skins.resize(all, Skin::default());
         if all > free {

@@ -7,6 +7,7 @@ mod cloth;
 mod constraints;
 mod fluid;
 mod forces;
+mod inflow;
 mod jelly;
 mod joints;
 mod lattice;
@@ -16,6 +17,7 @@ mod motion;
 mod network;
 mod obstacles;
 mod pins;
+mod places;
 mod rigid;
 mod skins;
 mod soaked;
@@ -35,9 +37,10 @@ use crate::setup::{Defaults, Presentation, Setup, Viewpoint};
 use crate::surface::Surface;
 use crate::wording::unknown_choice;
 use circle::Circling;
-pub use fluid::{LAYERS, fluid_points};
+pub use fluid::fluid_points;
 pub use laws::damping_time;
 use network::NetworkParts;
+pub use places::LAYERS;
 pub use skins::max_thickness;
 
 impl Description {

@@ -1,10 +1,10 @@
 //! Pins.
 
-use a3_core::{Path, Vector3};
+use a3_core::{Pin as Held, Vector3};
 
 use super::motion::motion;
 use crate::budget::{Budget, PINS, RODS, SEARCHED};
-use crate::check::key_of;
+use crate::check::{at, key_of, positive};
 use crate::description::{Pin, Spot};
 use crate::fault::Fault;
 
@@ -12,7 +12,7 @@ use crate::fault::Fault;
 #[derive(Default)]
 pub(super) struct Pinned {
     /// Particles on paths.
-    pub paths: Vec<(usize, Path)>,
+    pub paths: Vec<Held>,
     /// Particles that are attached to rigid bodies, with the numbers of these.
     pub attached: Vec<(usize, usize)>,
 }
@@ -21,7 +21,10 @@ impl Pinned {
     /// Adds others, whose particles are counted from `first`.
     pub fn add(&mut self, first: usize, others: Self) {
         let paths = others.paths.into_iter();
-        self.paths.extend(paths.map(|(i, path)| (first + i, path)));
+        self.paths.extend(paths.map(|pin| Held {
+            particle: first + pin.particle,
+            ..pin
+        }));
         let attached = others.attached.into_iter();
         self.attached.extend(attached.map(|(i, k)| (first + i, k)));
     }
@@ -74,9 +77,9 @@ fn pinned(
     if let Some(i) = particles.iter().find(|i| **i >= positions.len()) {
         return Err(Fault::no_particle("particles", *i, positions.len()));
     }
-    for at in &pin.at {
+    for place in &pin.at {
         budget.spend("at", positions.len(), SEARCHED)?;
-        let Some(there) = spot(*at) else {
+        let Some(there) = spot(*place) else {
             return Err(Fault::new(
                 "at",
                 "a cloth has top, bottom, left, right, top-left, top-right, bottom-left, bottom-right; a jelly and \
@@ -103,11 +106,18 @@ fn pinned(
             let why = "what is attached to a body has no motion of its own";
             return Err(Fault::new("body", why));
         }
+        if pin.until.is_some() {
+            let why = "what is attached to a body stays so; `until` is for what is held in place";
+            return Err(Fault::new("until", why));
+        }
         budget.spend("body", particles.len(), RODS)?;
         return Ok(Pinned {
             attached: particles.into_iter().map(|i| (i, body)).collect(),
             ..Pinned::default()
         });
+    }
+    if let Some(until) = pin.until {
+        at("until", positive("it", until))?;
     }
     let path = |i: usize| {
         let (path, _) = motion(
@@ -116,7 +126,10 @@ fn pinned(
             pin.turn.as_ref(),
             positions[i],
         )?;
-        Ok((i, path))
+        Ok(Held {
+            until: pin.until,
+            ..Held::new(i, path)
+        })
     };
     let paths = particles.into_iter().map(path).collect::<Result<_, _>>()?;
     Ok(Pinned {

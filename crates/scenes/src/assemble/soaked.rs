@@ -3,7 +3,7 @@
 use a3_core::Vector3;
 use a3_core::rigid::Part;
 
-use super::fluid::LAYERS;
+use super::places::LAYERS;
 use crate::check::{at, positive};
 use crate::description::Fluid;
 use crate::fault::Fault;

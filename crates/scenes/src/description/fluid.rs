@@ -14,7 +14,7 @@ pub struct Fluid {
     #[serde(default, skip_serializing_if = "FluidShape::is_box")]
     pub shape: FluidShape,
     /// Lengths of the edges of the box or diameters of the ball (m), whole multiples of `spacing`.
-    /// In two dimensions, the last one is 0.
+    /// In two dimensions, the last one is 0. With an `inflow`, [0, 0, 0] means none of it at first.
     pub size: Triple,
     /// Distance of neighbouring particles (m).
     pub spacing: f64,
@@ -39,6 +39,8 @@ pub struct Fluid {
     pub strain: Option<Triple>,
     /// Tank around it.
     pub tank: Option<Tank>,
+    /// More of the liquid, which flows in through an opening.
+    pub inflow: Option<Inflow>,
 }
 
 /// Shape in which a fluid begins.
@@ -68,6 +70,30 @@ pub struct Tank {
     pub size: Triple,
     /// Centre of the space inside (m).
     pub at: Triple,
+}
+
+/// Liquid that flows in through an opening: layer by layer, out of a column behind it, which is
+/// pinned. The column passes through the walls of the tank, and closes the opening at the end.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Inflow {
+    /// Lengths of the edges of the opening (m), whole multiples of the fluid's `spacing`; 0 along
+    /// the velocity. In two dimensions, the last one is 0.
+    pub size: Triple,
+    /// Centre of the opening (m).
+    pub at: Triple,
+    /// Velocity of the liquid in the opening (m/s), along one of the axes.
+    pub velocity: Triple,
+    /// Time for which the liquid flows (s).
+    pub duration: f64,
+    /// Time for which it has flowed at the start (s); 0 if not given.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub ahead: f64,
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde calls it so")]
+fn is_zero(number: &f64) -> bool {
+    *number == 0.0
 }
 
 fn three() -> u8 {

@@ -44,6 +44,9 @@ pub struct Pin {
     pub shift: Option<Shift>,
     /// Turn of the pinned particles about an axis, of which `about` gives a point.
     pub turn: Option<Turn>,
+    /// Time (s) from which on the particles are free, with the velocities that they have then; if
+    /// not given, they are held for good.
+    pub until: Option<f64>,
 }
 
 /// Oscillation by `amplitude sin(rate t + phase)` about the initial position, or about `center`.

@@ -24,6 +24,9 @@ pub fn regrid_fluids(
     other: &mut [Fluid],
     factor: f64,
 ) -> Result<Vec<(Points, Lattice)>, String> {
+    if own.iter().any(|fluid| fluid.inflow.is_some()) {
+        return Err("a fluid that flows in has no other lattice".into());
+    }
     // All fluids of a scene have the same spacing, so that all edges are multiples of the other.
     let edges = own.iter().flat_map(|fluid| {
         let tank = fluid.tank.iter().flat_map(|tank| tank.size);

@@ -194,6 +194,16 @@ const WRONG: &[(&str, &str, &str)] = &[
     ),
     (
         "gravity = [0, -9.81, 0]",
+        "pin = [{ particles = [0], until = 0 }]",
+        "line 1: pin.until: it must be a finite number above 0",
+    ),
+    (
+        "gravity = [0, -9.81, 0]",
+        "pin = [{ particles = [0], body = 0, until = 1 }]",
+        "line 1: pin.until: what is attached to a body stays so",
+    ),
+    (
+        "gravity = [0, -9.81, 0]",
         "pin = [{ particles = [0], turn = { axis = [0, 1, 0], rate = 2 } }]",
         "line 1: pin.turn.about: the turn of a pin needs it",
     ),

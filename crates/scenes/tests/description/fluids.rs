@@ -139,3 +139,98 @@ tank = { size = [4, 2.5, 0], at = [2, 1.25, 0] }
         );
     }
 }
+
+/// A tank into which liquid flows through its left wall, and then no more.
+const FILLED: &str = "[[fluid]]
+dimensions = 2
+size = [0, 0, 0]
+spacing = 0.125
+at = [0, 0, 0]
+density = 1000
+sound = 45
+tank = { size = [4, 2.5, 0], at = [2, 1.25, 0] }
+inflow = { size = [0, 0.5, 0], at = [0, 1, 0], velocity = [2, 0, 0], duration = 1 }
+";
+
+/// Sixteen layers flow in, one each 1/16 s, and three more close the hole in the wall.
+#[test]
+fn liquid_flows_in_through_a_hole_in_the_wall() {
+    let setup = set_up(FILLED).unwrap();
+    let network = setup.scene.model.network().unwrap();
+    let (column, hole) = (4 * (16 + 3), 4 * 3);
+    let walls = 38 * 23 - 32 * 20 - hole;
+    assert_eq!(network.particles(), column + walls);
+    let pins: Vec<_> = network.all_pins().take(column).collect();
+    for pin in &pins {
+        let x = pin.path.at(0.0).position.x;
+        let layer = (-x / 0.125 - 0.5).round();
+        let until = (layer < 16.0).then_some((layer + 0.5) / 16.0);
+        assert_eq!(pin.until, until, "{x}");
+        let stops = -0.125 * (layer - 16.0 + 0.5);
+        let stays = (pin.at(2.0).position.x - stops).abs() < 1e-12;
+        assert!(layer < 16.0 || stays, "{layer}: {:?}", pin.at(2.0));
+    }
+    let mut times: Vec<_> = pins.iter().filter_map(|pin| pin.until).collect();
+    times.dedup();
+    times.sort_by(f64::total_cmp);
+    times.dedup();
+    assert_eq!(times.len(), 16);
+}
+
+#[test]
+fn what_is_wrong_with_an_inflow_is_said() {
+    for (there, instead, expected) in [
+        (
+            "velocity = [2, 0, 0]",
+            "velocity = [0, 0, 0]",
+            "line 9: fluid.inflow.velocity: it must be along one of the axes x, y, not",
+        ),
+        (
+            "velocity = [2, 0, 0]",
+            "velocity = [0, 0, 1]",
+            "line 9: fluid.inflow.velocity: it must be along one of the axes x, y, not",
+        ),
+        (
+            "velocity = [2, 0, 0]",
+            "velocity = [2, 1, 0]",
+            "line 9: fluid.inflow.velocity: it must be along",
+        ),
+        (
+            "velocity = [2, 0, 0]",
+            "velocity = [0, -2, 0]",
+            "line 9: fluid.inflow.size: along the velocity, the opening has the length 0, not 0.5",
+        ),
+        (
+            "size = [0, 0.5, 0]",
+            "size = [0, 0.45, 0]",
+            "line 9: fluid.inflow.size: each edge must be a whole multiple of the spacing",
+        ),
+        (
+            "size = [0, 0.5, 0]",
+            "size = [0, 0, 0]",
+            "line 9: fluid.inflow.size: each edge must be a finite number above 0",
+        ),
+        (
+            "duration = 1",
+            "duration = -1",
+            "line 9: fluid.inflow.duration: it must be a finite number above 0",
+        ),
+        (
+            "duration = 1",
+            "duration = 1e9",
+            "line 1: fluid: the scene would have 64000000246 particles, which take",
+        ),
+        (
+            "duration = 1",
+            "duration = 1, ahead = -1",
+            "line 9: fluid.inflow.ahead: it must be a finite number of at least 0",
+        ),
+    ] {
+        let text = FILLED.replacen(there, instead, 1);
+        assert!(text != FILLED, "{there}");
+        let said = said(&text);
+        assert!(said.starts_with(expected), "{said}\n{expected}");
+    }
+    let without = FILLED.replacen("inflow", "# ", 1);
+    assert!(said(&without).starts_with("line 3: fluid.size: each edge must be"));
+}

@@ -67,6 +67,7 @@ pub const NUMBERS: &[(&[&str], Range)] = &[
     (&["rate", "feedback"], (0.1, 50.0, true)),
     (&["sound"], (1.0, 50.0, true)),
     (&["end", "duration"], (1.01, 2.0, true)),
+    (&["until"], (1e-3, 0.5, true)),
     (&["max_step", "step"], (1e-5, 0.1, true)),
     (&["springs"], (0.1, 100.0, true)),
 ];

@@ -77,6 +77,15 @@ fn fluid(table: &mut Map<String, Value>, chance: &mut Chance) {
         tank.insert("size".into(), json!(size));
         tank.insert("at".into(), at);
     }
+    if let Some(Value::Object(inflow)) = table.get_mut("inflow") {
+        let mut size = edges(3, spacing, flat, chance);
+        let (axis, mut velocity) = (chance.below(if flat { 2 } else { 3 }), [0.0; 3]);
+        size[axis] = 0.0;
+        velocity[axis] = [1.0, -2.0][chance.below(2)];
+        inflow.insert("size".into(), json!(size));
+        inflow.insert("velocity".into(), json!(velocity));
+        inflow.insert("duration".into(), json!(0.3));
+    }
 }
 
 /// Makes all lists as long as that of the particles, with springs between them.
@@ -97,7 +106,8 @@ fn particles(table: &mut Map<String, Value>, chance: &mut Chance) {
     }
 }
 
-/// Removes the attachments to rigid bodies from the pins of other bodies, if there are none.
+/// Removes the attachments to rigid bodies from the pins of other bodies, if there are none. What
+/// is attached is never let go.
 fn release(table: &mut Map<String, Value>) {
     let none = !table.contains_key("body");
     for (key, bodies) in table.iter_mut() {
@@ -107,8 +117,12 @@ fn release(table: &mut Map<String, Value>) {
         };
         let pins = bodies.into_iter().filter_map(|body| body.get_mut("pin"));
         for pin in pins.flat_map(|pins| pins.as_array_mut().unwrap()) {
+            let pin = pin.as_object_mut().unwrap();
             if none || key == "body" {
-                pin.as_object_mut().unwrap().remove("body");
+                pin.remove("body");
+            }
+            if pin.contains_key("body") {
+                pin.remove("until");
             }
         }
     }

@@ -34,6 +34,13 @@ impl Geometry {
         let network = simulation.model().network();
         let springs = network.into_iter().flat_map(Network::springs);
         let particles = simulation.particles();
+        // Liquid that will flow in is pinned until then, and no wall.
+        let pins = network.into_iter().flat_map(Network::all_pins);
+        let flowing: BTreeSet<usize> = pins
+            .filter(|pin| pin.until.is_some())
+            .map(|pin| pin.particle)
+            .collect();
+        let is_wall = |i: usize| network.is_some_and(|n| n.is_wall(i)) && !flowing.contains(&i);
         let is_rigid = |i: usize| network.is_some_and(|n| n.body_of(i).is_some());
         let rigid = network.map_or_else(Vec::new, |n| tessellation::triangles(n, particles as u32));
         Self {
@@ -44,7 +51,7 @@ impl Geometry {
                 .map(|spring| [spring.i as u32, spring.j as u32])
                 .collect(),
             points: (covered..particles)
-                .filter(|i| !is_rigid(*i) && !network.is_some_and(|n| n.is_wall(*i)))
+                .filter(|i| !is_rigid(*i) && !is_wall(*i))
                 .map(|i| i as u32)
                 .collect(),
             triangles: whole_triangles(simulation).chain(rigid).collect(),

@@ -1,6 +1,6 @@
 //! Passage of a run from a scene to the same scene after an edit: which particles stay.
 
-use a3_core::{Checkpoint, Constraint, Network, Scene, Simulation};
+use a3_core::{Checkpoint, Constraint, Network, Pin, Scene, Simulation};
 use a3_scenes::Splice;
 
 /// Numbers that the state has for each particle: its position (m) and its velocity (m/s).
@@ -49,12 +49,15 @@ impl Passage {
         if (self.particles, self.bodies) != (Splice::default(), Splice::default()) {
             moment.run.y = self.state(&moment.run.y, run.particles(), next);
         }
-        let pins = moment.pins.iter();
-        moment.pins = pins
-            .filter_map(|(i, path)| Some((number(*i)?, *path)))
-            .collect();
+        let renumbered = |pin: &Pin| {
+            let particle = number(pin.particle)?;
+            Some(Pin { particle, ..*pin })
+        };
+        moment.pins = moment.pins.iter().filter_map(renumbered).collect();
         let back = self.particles.back();
-        let added = new.pins().filter(|(i, _)| back.number(*i).is_none());
+        let added = new
+            .all_pins()
+            .filter(|pin| back.number(pin.particle).is_none());
         moment.pins.extend(added);
         let ends = |k: &usize| {
             let (i, j) = old.constraints().get(*k)?.ends();

@@ -1,0 +1,106 @@
+//! Changes of the network at the ends of steps and of their parts: ropes tighten and slacken,
+//! springs break, and pins let go.
+
+use super::depths::{Depths, NEGLIGIBLE_SHARE};
+use super::power::energy_of;
+use super::state::RunState;
+use super::step::Pipeline;
+use crate::integrators::Work;
+use crate::network::{Least, Network, has_ropes, next_release, pass_to, settle, taut, tighten};
+use crate::scene::Model;
+
+impl Pipeline {
+    /// Applies the impacts of ropes that tighten at time t (s), with or without rebounds, and
+    /// accounts for the energy that is lost in them.
+    pub(super) fn tighten(
+        &mut self,
+        model: &mut Model,
+        state: &mut RunState,
+        t: f64,
+        rebounds: bool,
+    ) {
+        let Model::Network(network) = model else {
+            return;
+        };
+        if !has_ropes(network) || state.y.iter().any(|y| !y.is_finite()) {
+            return;
+        }
+        let depths = Depths::new(self.bounds.radius, self.limits, state.control);
+        let least = Least {
+            none: depths.none,
+            height: depths.none.max(depths.shallow),
+            time: state.control.step().unwrap_or(0.0),
+            rebounds,
+        };
+        self.change(network, state, t, |network, y| {
+            tighten(network, t, y, least)
+        });
+    }
+
+    /// Changes the network or the state y at time t (s), and accounts for the change of energy.
+    /// `change` returns whether it has changed anything.
+    fn change(
+        &mut self,
+        network: &mut Network,
+        state: &mut RunState,
+        t: f64,
+        change: impl FnOnce(&mut Network, &mut [f64]) -> bool,
+    ) {
+        let before = energy_of(network, t, &state.y).total();
+        if change(network, &mut state.y) {
+            let after = energy_of(network, t, &state.y).total();
+            state.balance.allow(after - before);
+            self.watch.forget_power();
+            self.stepper.forget();
+        }
+    }
+
+    /// Decides which ropes are taut from time t (s) on.
+    pub(super) fn choose_taut(&mut self, model: &mut Model, state: &mut RunState, t: f64) {
+        let Model::Network(network) = model else {
+            return;
+        };
+        let before: Vec<_> = taut(network).collect();
+        let none = Depths::new(self.bounds.radius, self.limits, state.control).none;
+        state.work += Work::of(settle(network, t, &state.y, none));
+        if !taut(network).eq(before) {
+            self.stepper.forget();
+        }
+    }
+
+    /// Breaks springs that are stretched too far at the end of a step, or were located to be there,
+    /// and accounts for the change of energy. Before the run has arrived at that end, a state shown
+    /// within the step still has these springs.
+    pub(super) fn tear(&mut self, model: &mut Model, state: &mut RunState) {
+        let share = if self.locator.serves(&self.stepper) {
+            NEGLIGIBLE_SHARE
+        } else {
+            0.0
+        };
+        if let Model::Network(network) = model
+            && network.is_overstretched(network.halves(&state.y).0, share)
+        {
+            let t = state.end();
+            self.change(network, state, t, |network, y| {
+                network.tear(&y[..3 * network.particles()], share) > 0
+            });
+            self.stepper.refit(state.method, model.system());
+        }
+    }
+
+    /// Breaks springs and lets go of pins at the end of a step, where the run has arrived.
+    pub(super) fn end_step(&mut self, model: &mut Model, state: &mut RunState) {
+        self.tear(model, state);
+        self.let_go(model, state, state.end());
+    }
+
+    /// Lets go of pins at time t (s), where the run has arrived, and accounts for the energy of
+    /// their particles, which does not count while they are held.
+    pub(super) fn let_go(&mut self, model: &mut Model, state: &mut RunState, t: f64) {
+        if let Model::Network(network) = model
+            && next_release(network) <= t
+        {
+            self.change(network, state, t, |network, _| pass_to(network, t));
+        }
+    }
+}
