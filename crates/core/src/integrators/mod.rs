@@ -13,13 +13,6 @@ mod error_norm;
 mod euler;
 mod heun;
 mod implicit;
-#[cfg_attr(
-    target_arch = "wasm32",
-    allow(
-        dead_code,
-        reason = "the page, whose size is limited, is without this method"
-    )
-)]
 mod implicit_damping;
 mod integrator;
 mod method;

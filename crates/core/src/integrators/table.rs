@@ -1,11 +1,10 @@
 //! The table of all methods.
 
-#[cfg(not(target_arch = "wasm32"))]
-use super::implicit_damping;
 use super::method::Method;
 use super::registry;
 use super::{
-    dop853, dormand_prince, dprkn86, dprkn1210, euler, heun, implicit, midpoint, pefrl, rk4, rkf45,
+    dop853, dormand_prince, dprkn86, dprkn1210, euler, heun, implicit, implicit_damping, midpoint,
+    pefrl, rk4, rkf45,
 };
 use super::{srkn11, symplectic_euler, vbd, verlet, verner65, xpbd};
 
@@ -32,7 +31,6 @@ pub static METHODS: &[Method] = &[
     xpbd::METHOD,
     xpbd::TEN,
     vbd::METHOD,
-    #[cfg(not(target_arch = "wasm32"))]
     implicit_damping::METHOD,
 ];
 

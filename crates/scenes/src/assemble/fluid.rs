@@ -32,6 +32,16 @@ pub(super) fn step_scale(fluids: &[Fluid]) -> f64 {
     fluids.iter().map(scale).fold(1.0, f64::min)
 }
 
+/// Lattices of a fluid.
+struct Lattices {
+    /// Liquid at the start.
+    liquid: Option<Places>,
+    /// Space in the tank.
+    tank: Option<Places>,
+    /// Liquid that flows in.
+    column: Option<Column>,
+}
+
 impl Fluid {
     fn law(&self) -> FluidLaw {
         FluidLaw {
@@ -43,8 +53,8 @@ impl Fluid {
         }
     }
 
-    /// Returns the lattices of the fluid and of the space in its tank, and what flows in.
-    fn places(&self) -> Result<(Option<Places>, Option<Places>, Option<Column>), Fault> {
+    /// Returns the lattices of the fluid.
+    fn lattices(&self) -> Result<Lattices, Fault> {
         for (key, number) in [
             ("spacing", self.spacing),
             ("density", self.density),
@@ -58,7 +68,7 @@ impl Fluid {
             return Err(Fault::new("dimensions", why));
         }
         let is_none = self.inflow.is_some() && self.size == [0.0; 3];
-        let fluid = (!is_none).then(|| Places::new(self, self.size, self.at));
+        let liquid = (!is_none).then(|| Places::new(self, self.size, self.at));
         let tank = self.tank.as_ref().map(|tank| {
             let space = Places::new(self, tank.size, tank.at);
             space.map_err(|fault| fault.within("tank"))
@@ -67,7 +77,11 @@ impl Fluid {
             let column = Column::new(self, inflow);
             column.map_err(|fault| fault.within("inflow"))
         });
-        Ok((fluid.transpose()?, tank.transpose()?, column.transpose()?))
+        Ok(Lattices {
+            liquid: liquid.transpose()?,
+            tank: tank.transpose()?,
+            column: column.transpose()?,
+        })
     }
 
     /// Checks that the fluid begins within its tank, or above its open top.
@@ -101,7 +115,11 @@ impl Fluid {
 /// # Errors
 /// A number makes no sense.
 pub fn fluid_points(fluid: &Fluid) -> Result<[Vec<Vector3<f64>>; 2], Fault> {
-    let (places, tank, column) = fluid.places()?;
+    let Lattices {
+        liquid,
+        tank,
+        column,
+    } = fluid.lattices()?;
     let half = 0.5 * Vector3::from(fluid.size);
     let is_in_shape = |place: &Vector3<f64>| {
         let from_center = place - Vector3::from(fluid.at);
@@ -111,7 +129,7 @@ pub fn fluid_points(fluid: &Fluid) -> Result<[Vec<Vector3<f64>>; 2], Fault> {
         };
         fluid.shape == FluidShape::Box || (0..3).map(share).sum::<f64>() <= 1.0
     };
-    let all = places.iter().flat_map(|places| places.all(0));
+    let all = liquid.iter().flat_map(|places| places.all(0));
     let all = all.map(|(place, _)| place);
     let is_open = |place: &Vector3<f64>| column.as_ref().is_some_and(|it| it.passes(place));
     let walls = tank.iter().flat_map(|tank| tank.all(LAYERS.into()));
@@ -122,9 +140,13 @@ pub fn fluid_points(fluid: &Fluid) -> Result<[Vec<Vector3<f64>>; 2], Fault> {
 
 impl Body for Fluid {
     fn counts(&self) -> Result<Counts, Fault> {
-        let (fluid, tank, column) = self.places()?;
+        let Lattices {
+            liquid,
+            tank,
+            column,
+        } = self.lattices()?;
         let column = column.map_or(0, |column| column.count());
-        let flowing = fluid.map_or(0, |fluid| fluid.count(0));
+        let flowing = liquid.map_or(0, |liquid| liquid.count(0));
         let flowing = flowing.saturating_add(column);
         let walls = tank.map_or(0, |tank| {
             tank.count(LAYERS.into()).saturating_sub(tank.count(0))
@@ -151,7 +173,7 @@ impl Body for Fluid {
         assembly
             .drops
             .extend(first as u32..assembly.positions.len() as u32);
-        let (.., column) = self.places()?;
+        let column = self.lattices()?.column;
         let (column, next) = (column.iter(), assembly.positions.len());
         for (place, velocity, pin) in column.flat_map(|column| column.particles(next)) {
             assembly.positions.push(place);
