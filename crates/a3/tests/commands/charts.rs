@@ -71,7 +71,9 @@ fn a_chart_of_evaluations_has_the_same_bits_every_time() {
         solvers.insert(line[solver].to_owned());
         runs += 1;
     }
-    assert_eq!(solvers.len(), a3_core::integrators::METHODS.len());
+    // Nothing is damped, and so implicit damping would repeat velocity Verlet.
+    assert!(!solvers.contains("implicit-damping"));
+    assert_eq!(solvers.len(), a3_core::integrators::METHODS.len() - 1);
     assert!(runs > 80, "{runs}");
 }
 
