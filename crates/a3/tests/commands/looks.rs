@@ -28,7 +28,8 @@ const UNSEEN: u8 = 8;
 /// Largest number of pixels that may differ by more. A small ball that moves by two pixels changes
 /// a hundred.
 const MAX_OFF: usize = 40;
-/// Largest mean difference of all channels, of 255 levels, of which the coarse colours make 0.9.
+/// Largest mean difference of all channels, in levels from 0 to 255. Rounding the golden pictures'
+/// colours alone makes 0.9.
 const MAX_MEAN: f64 = 1.5;
 
 /// Returns the time of the second picture (s): two seconds, or less where a scene ends before,
@@ -126,7 +127,8 @@ fn save(picture: &RgbImage, path: &Path) {
     written.unwrap();
 }
 
-/// Compares a picture with the golden one, or writes that. Returns what is wrong.
+/// Compares a picture of a scene with its golden one, or replaces the golden one if `A3_BLESS` is
+/// set. Returns a message if they differ.
 fn check(scene: &str, mut picture: RgbImage) -> Option<String> {
     let path = Path::new(GOLDEN).join(format!("{scene}.png"));
     if std::env::var_os("A3_BLESS").is_some() {

@@ -68,8 +68,7 @@ pub(crate) fn has_motors(network: &Network) -> bool {
 }
 
 /// Whether the forces conserve energy: there is no damping, no wind, no motor and no prescribed
-/// motion, and
-/// no spring is shortened or breaks. Contact with obstacles is left out.
+/// motion, and no spring is shortened or breaks. Contact with obstacles is left out.
 pub(crate) fn is_conservative(network: &Network) -> bool {
     let loses = |element: &Element| {
         let force = element.force();

@@ -75,8 +75,8 @@ impl Column {
         self.places.count(0)
     }
 
-    /// Lists the places of the particles before any flowed (m), the first of which has this number,
-    /// with their velocities (m/s) and the pins that hold them at the start.
+    /// Lists the particles, numbered from `first`: their places (m) before the flow began, their
+    /// velocities (m/s), and the pins that hold them at the start.
     pub fn particles(
         &self,
         first: usize,

@@ -271,8 +271,8 @@ impl Show {
     }
 
     /// Draws springs and particles that have no surface: as coils and balls, or as lines and small
-    /// balls where there are many. Of bodies with a surface it draws only the pins, and what was
-    /// torn out.
+    /// balls where there are many. Of bodies with a surface it draws only pinned particles, and
+    /// those that were torn out.
     fn draw_parts(&mut self, simulation: &Simulation) {
         let network = simulation.model().network();
         let covered = self.presentation.surface.particles();
