@@ -14,6 +14,7 @@ mod holding;
 mod loads;
 mod matrix;
 mod mechanics;
+mod outflow;
 mod particles;
 mod parts;
 mod project;
@@ -32,6 +33,7 @@ pub use crossings::untangle;
 pub use element::Element;
 pub(crate) use energies::{add_wind, energy_of_errors, has_motors, is_conservative};
 pub(crate) use holding::{contradiction, is_nearly_singular};
+pub(crate) use outflow::{drained, entered, go_back, outflows, set_drained};
 pub use parts::Network;
 pub(crate) use project::{has_joints, project};
 pub(crate) use release::{

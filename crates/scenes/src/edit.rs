@@ -1,6 +1,7 @@
 //! Edits of a scene: bodies, particles, springs, rods and ropes that come or go.
 
 use a3_core::Network;
+use a3_core::elements::Fluid;
 
 use crate::description::{
     ConstraintSpec, Description, Particles, Pin, RigidBody, SpringSpec, State, Triple,
@@ -101,8 +102,16 @@ fn check_ends(network: &Network, [i, j]: [usize; 2]) -> Result<(), String> {
 fn first_of_fluid(network: &Network) -> usize {
     let n = network.particles();
     let fluid = network.fluid();
-    let first = fluid.and_then(|fluid| fluid.particles().iter().min());
-    first.map_or(n, |i| *i as usize)
+    let first = |fluid: &Fluid| {
+        fluid
+            .particles()
+            .iter()
+            .chain(fluid.drained())
+            .min()
+            .copied()
+    };
+    let first = fluid.and_then(first);
+    first.map_or(n, |i| i as usize)
 }
 
 /// Returns the number after that of the last single particle: rigid bodies and fluids follow.

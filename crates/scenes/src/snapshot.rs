@@ -266,14 +266,18 @@ fn body_pins(description: &mut Description) -> impl Iterator<Item = &mut Vec<Pin
         .chain(rigid)
 }
 
-/// Describes the pins from now on. Pins with the same motion are merged. A grabbed particle that
-/// was pinned before stays pinned where it is.
+/// Describes the pins from now on, except those of liquid that has flowed out. Pins with the same
+/// motion are merged. A grabbed particle that was pinned before stays pinned where it is.
 fn pins(now: &Checkpoint) -> Vec<Pin> {
     let mut pins: Vec<Pin> = vec![];
     let t = now.time();
     let held = now.run.grabbed.filter(|grabbed| grabbed.was_pinned);
     let held = held.map(|grabbed| Held::new(grabbed.particle, grabbed.path));
-    let holding = || now.pins.iter().filter(|pin| pin.holds_at(t));
+    let is_drained = |pin: &Held| now.drained.binary_search(&(pin.particle as u32)).is_ok();
+    let holding = || {
+        let all = now.pins.iter().filter(|pin| pin.holds_at(t));
+        all.filter(|pin| !is_drained(pin))
+    };
     let held = held.filter(|held| holding().all(|pin| pin.particle != held.particle));
     for Held {
         particle,

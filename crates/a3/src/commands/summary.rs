@@ -33,6 +33,8 @@ struct Summary {
     largest_stretch: Option<f64>,
     /// Number of springs that broke.
     torn: usize,
+    /// Mass of the liquid that flowed out (kg); none without an outflow.
+    flowed_out: Option<f64>,
     /// Actions of the collision safeguard; none where surfaces do not touch.
     contact: Option<Contact>,
     /// Real time (s).
@@ -87,6 +89,13 @@ impl Contact {
     }
 }
 
+/// Returns the mass (kg) of the liquid that has flowed out, if there is an outflow.
+fn flowed_out(simulation: &Simulation) -> Option<f64> {
+    let fluid = simulation.model().network()?.fluid()?;
+    let mass = fluid.drained().len() as f64 * fluid.law().mass();
+    (!fluid.outflows().is_empty()).then_some(mass)
+}
+
 /// Writes the summary of a run that began at the instant `begun` and has written `frames` frames:
 /// to a file, or for - to standard output.
 pub fn write(
@@ -109,6 +118,7 @@ pub fn write(
         constraint: Violation::of(simulation),
         largest_stretch: extremes.stretch,
         torn: simulation.tears(),
+        flowed_out: flowed_out(simulation),
         contact: Contact::of(simulation),
         wall_time: begun.elapsed().as_secs_f64(),
     };

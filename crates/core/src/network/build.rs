@@ -7,12 +7,13 @@ use nalgebra::Vector3;
 use super::bodies::Bodies;
 use super::element::Element;
 use super::elements::Elements;
+use super::outflow::{drained, entered, is_drained, leave, set_drained};
 use super::particles::Particles;
 use super::parts::Network;
 use super::project;
 use super::strain::StrainLimits;
 use super::surfaces::{Surfaces, Touch};
-use super::tearing::Tears;
+use super::tearing::{Tears, break_between, remove_torn};
 use crate::constraints::{Constraint, Constraints};
 use crate::contact::{ContactLayer, Obstacle, Shape};
 use crate::elements::{Buckling, Wind};
@@ -76,9 +77,9 @@ impl Network {
         Ok(())
     }
 
-    /// Frees particle i. Does nothing if it is free already.
+    /// Frees particle i. Does nothing if it is free already, or has left a fluid.
     pub fn unpin(&mut self, i: usize) {
-        if self.particles.unpin(i) {
+        if !is_drained(self, i) && self.particles.unpin(i) {
             self.strain_limits.forget();
         }
     }
@@ -160,14 +161,16 @@ impl Network {
     }
 
     /// Copies the springs, the solids and the fluid of another network of the same particles.
-    /// Springs that have broken here stay broken.
+    /// Springs that have broken here stay broken, and what has left the fluid stays outside.
     ///
     /// # Errors
     /// The other has not as many particles.
     pub fn copy_springs(&mut self, other: &Self) -> Result<(), Error> {
         self.strain_limits.forget();
+        let drained = drained(self).to_vec();
         self.elements.copy_springs(&other.elements)?;
-        self.remove_torn();
+        remove_torn(self);
+        set_drained(self, &drained);
         Ok(())
     }
 
@@ -190,7 +193,7 @@ impl Network {
     pub fn break_springs(&mut self, pairs: &[[usize; 2]]) -> Result<(), Error> {
         if !pairs.is_empty() {
             self.elements.check_springs(pairs)?;
-            self.break_between(pairs.iter().map(|&[i, j]| [i.min(j), i.max(j)]));
+            break_between(self, pairs.iter().map(|&[i, j]| [i.min(j), i.max(j)]));
         }
         Ok(())
     }
@@ -219,25 +222,16 @@ impl Network {
             return 0;
         }
         let pairs = self.tears.breaking(&self.elements, x, share);
-        self.break_between(pairs)
+        break_between(self, pairs)
     }
 
-    /// Breaks the springs between pairs of particles, given with the lower number first. Returns
-    /// the number of new pairs.
-    fn break_between(&mut self, pairs: impl IntoIterator<Item = [usize; 2]>) -> usize {
-        let new = self.tears.add(pairs);
-        self.remove_torn();
-        self.surfaces.leave_out_holes(&self.tears);
-        self.renew_contact();
-        new
-    }
-
-    /// Removes the springs between particles where one has broken.
-    fn remove_torn(&mut self) {
-        if !self.tears.torn().is_empty() {
-            self.strain_limits.forget();
-            self.elements.remove_springs(self.tears.torn());
-        }
+    /// Lets the free particles of the fluid leave it that are in its outflows in the state y, or
+    /// less than `slack` (m) outside. Where they are, they stay, and act on nothing any more.
+    /// Returns whether there are any.
+    pub fn drain(&mut self, y: &mut [f64], slack: f64) -> bool {
+        let entered: Vec<u32> = entered(self, y, slack).collect();
+        leave(self, y, &entered);
+        !entered.is_empty()
     }
 
     /// Sets or removes the limit of the length over rest length of structural and shear springs
@@ -392,9 +386,9 @@ impl Network {
     }
 
     /// Creates the contact of surfaces again, with the present triangles and obstacles.
-    fn renew_contact(&mut self) {
+    pub(super) fn renew_contact(&mut self) {
         let jointed = (self.bodies.all(), self.constraints.all());
-        let layer = self.surfaces.layer(jointed, &self.tears);
+        let layer = self.surfaces.layer(jointed, &self.tears, drained(self));
         self.elements.replace_all(layer);
     }
 }

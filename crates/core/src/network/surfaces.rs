@@ -105,12 +105,15 @@ impl Surfaces {
         self.triangles = self.triangles.iter().filter(whole).copied().collect();
     }
 
-    /// Creates the contact of these surfaces and bodies, if they can touch.
-    pub fn layer(&self, bodies: Jointed, tears: &Tears) -> Option<ContactLayer> {
+    /// Creates the contact of these surfaces and bodies, if they can touch. Particles that have left
+    /// a fluid, in order, touch nothing.
+    pub fn layer(&self, bodies: Jointed, tears: &Tears, drained: &[u32]) -> Option<ContactLayer> {
         self.touch.as_ref().map(|touch| {
             let is_whole = |[a, b]: &[u32; 2]| !tears.is_torn(*a as usize, *b as usize);
             let edges: Vec<_> = touch.edges.iter().copied().filter(is_whole).collect();
-            let drops: Vec<_> = touch.drops.iter().map(|i| [*i; 2]).collect();
+            let drops = touch.drops.iter();
+            let drops = drops.filter(|i| drained.binary_search(i).is_err());
+            let drops: Vec<_> = drops.map(|i| [*i; 2]).collect();
             self.contact((&touch.skins, touch.bodies), [&edges, &drops], bodies)
         })
     }

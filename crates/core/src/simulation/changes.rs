@@ -1,12 +1,15 @@
 //! Changes of the network at the ends of steps and of their parts: ropes tighten and slacken,
-//! springs break, and pins let go.
+//! springs break, liquid flows out,
+//! and pins let go.
 
 use super::depths::{Depths, NEGLIGIBLE_SHARE};
 use super::power::energy_of;
 use super::state::RunState;
 use super::step::Pipeline;
 use crate::integrators::Work;
-use crate::network::{Least, Network, has_ropes, next_release, pass_to, settle, taut, tighten};
+use crate::network::{
+    Least, Network, entered, has_ropes, next_release, pass_to, settle, taut, tighten,
+};
 use crate::scene::Model;
 
 impl Pipeline {
@@ -71,7 +74,7 @@ impl Pipeline {
     /// Breaks springs that are stretched too far at the end of a step, or were located to be there,
     /// and accounts for the change of energy. Before the run has arrived at that end, a state shown
     /// within the step still has these springs.
-    pub(super) fn tear(&mut self, model: &mut Model, state: &mut RunState) {
+    fn tear(&mut self, model: &mut Model, state: &mut RunState) {
         let share = if self.locator.serves(&self.stepper) {
             NEGLIGIBLE_SHARE
         } else {
@@ -88,15 +91,33 @@ impl Pipeline {
         }
     }
 
-    /// Breaks springs and lets go of pins at the end of a step, where the run has arrived.
+    /// Lets particles leave the fluid that are in its outflows at time t (s), where the run has
+    /// arrived, and accounts for their energy.
+    fn drain(&mut self, model: &mut Model, state: &mut RunState, t: f64) {
+        let none = Depths::new(self.bounds.radius, self.limits, state.control).none;
+        if let Model::Network(network) = model
+            && entered(network, &state.y, none).next().is_some()
+        {
+            self.change(network, state, t, |network, y| network.drain(y, none));
+            self.stepper.refit(state.method, model.system());
+        }
+    }
+
+    /// Breaks springs, lets liquid flow out and lets go of pins at the end of a step.
     pub(super) fn end_step(&mut self, model: &mut Model, state: &mut RunState) {
+        self.change_at(model, state, state.end());
+    }
+
+    /// Does so at time t (s), where the run has arrived.
+    pub(super) fn change_at(&mut self, model: &mut Model, state: &mut RunState, t: f64) {
         self.tear(model, state);
-        self.let_go(model, state, state.end());
+        self.drain(model, state, t);
+        self.let_go(model, state, t);
     }
 
     /// Lets go of pins at time t (s), where the run has arrived, and accounts for the energy of
     /// their particles, which does not count while they are held.
-    pub(super) fn let_go(&mut self, model: &mut Model, state: &mut RunState, t: f64) {
+    fn let_go(&mut self, model: &mut Model, state: &mut RunState, t: f64) {
         if let Model::Network(network) = model
             && next_release(network) <= t
         {

@@ -8,7 +8,7 @@ use super::touching::{let_touch, touches_itself};
 use crate::contact::Shape;
 use crate::elements::Wind;
 use crate::error::Error;
-use crate::network::{Network, pass_to, set_taut, taut};
+use crate::network::{Network, drained, go_back, pass_to, set_drained, set_taut, taut};
 use crate::path::Path;
 use crate::pin::Pin;
 use crate::scene::{Model, Scene};
@@ -33,6 +33,8 @@ pub struct Checkpoint {
     pub touching: bool,
     /// Springs that have broken, by the particles at their ends, the lower number first, in order.
     pub torn: Vec<[usize; 2]>,
+    /// Particles that have left the fluid, in order.
+    pub drained: Vec<u32>,
     /// Ropes that are taut, by their numbers among the constraints, in order.
     pub taut: Vec<usize>,
     /// Progress within a step, and of an adaptive method.
@@ -49,6 +51,7 @@ impl Checkpoint {
             wind: None,
             touching: false,
             torn: vec![],
+            drained: vec![],
             taut: vec![],
             progress: Progress::default(),
         };
@@ -67,6 +70,7 @@ impl Checkpoint {
         self.pins.clear();
         self.obstacles.clear();
         self.torn.clear();
+        self.drained.clear();
         self.taut.clear();
         let network = model.network();
         if let Some(network) = network {
@@ -78,6 +82,7 @@ impl Checkpoint {
                     .map(|(k, obstacle)| (k, obstacle.path)),
             );
             self.torn.extend_from_slice(network.torn());
+            self.drained.extend_from_slice(drained(network));
             self.taut.extend(taut(network));
         }
         self.wind = network.and_then(Network::wind).copied();
@@ -102,6 +107,7 @@ impl Checkpoint {
             + size_of_val(&self.pins[..])
             + size_of_val(&self.obstacles[..])
             + size_of_val(&self.torn[..])
+            + size_of_val(&self.drained[..])
             + size_of_val(&self.taut[..])
     }
 
@@ -134,7 +140,7 @@ impl Checkpoint {
         Ok(model)
     }
 
-    /// Applies this checkpoint's pins, obstacles, wind and tears to a fresh copy of the scene's
+    /// Applies this checkpoint's pins, obstacles, wind, tears and outflow to a fresh copy of the scene's
     /// network.
     fn bind(&self, network: &mut Network, whole: &Network) -> Result<(), Error> {
         if network.torn() != self.torn {
@@ -144,6 +150,7 @@ impl Checkpoint {
             network.unpin(i);
         }
         network.pin_all(self.pins.clone())?;
+        set_drained(network, &self.drained);
         pass_to(network, self.time());
         for (k, path) in &self.obstacles {
             network.lead_obstacle(*k, *path)?;
@@ -160,10 +167,11 @@ impl Checkpoint {
         Ok(())
     }
 
-    /// Restores torn springs, the paths of obstacles and self-contact in a network of the run, and
-    /// lets its pins hold that hold then.
+    /// Restores torn springs, the liquid that has flowed out, the paths of obstacles and
+    /// self-contact in a network of the run, and lets its pins hold that hold then.
     /// Returns whether that changes its forces.
     fn mend(&self, network: &mut Network, scene: &Scene) -> Result<bool, Error> {
+        let drained = go_back(network, &self.run.y, &self.drained);
         pass_to(network, self.time());
         let touching = network.touch().is_some_and(|touch| touch.bodies);
         for (k, path) in &self.obstacles {
@@ -177,7 +185,7 @@ impl Checkpoint {
         if self.touching != touching {
             let_touch(network, scene, self.touching)?;
         }
-        Ok(torn || self.touching != touching)
+        Ok(torn || drained || self.touching != touching)
     }
 
     /// Sets a run of a scene back to this moment; it continues from there by its own method.

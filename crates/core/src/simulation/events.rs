@@ -6,13 +6,12 @@
 //! [`Approach`](crate::contact::Approach), nor a spring that is too long only briefly. Newton's
 //! method then finds the time on the polynomial itself.
 
-use nalgebra::Vector3;
-
-use super::depths::Depths;
+use super::searched::{EventKind, Searched, StateAt, course};
 use super::stretching::{first_beyond, first_longer};
 use crate::columns::row;
 use crate::contact::{Approach, Course};
-use crate::network::{Network, slack};
+use crate::elements::Fluid;
+use crate::network::slack;
 use crate::scene::Model;
 use crate::spring::Spring;
 use crate::system::Mechanics;
@@ -20,27 +19,11 @@ use crate::system::Mechanics;
 /// Number of pieces in which a step is searched.
 const PIECES: usize = 8;
 
-/// Largest number of Newton steps, from the time on a piece's cubic to that on the polynomial.
-const NEWTON_STEPS: usize = 8;
-
 /// Largest number of touches on a piece's cubic that may turn out not to be on the polynomial.
 const MAX_GRAZES: usize = 8;
 
 /// Distance after such a touch at which the search continues, as a share of the piece.
 const GAP_AFTER_GRAZE: f64 = 1e-5;
-
-/// Kind of an event.
-#[derive(Clone, Copy, Debug)]
-pub(super) enum EventKind {
-    /// A particle touches an obstacle: their numbers.
-    Touch { particle: usize, obstacle: usize },
-    /// A particle that rests on an obstacle sank deeper into it than allowed.
-    Sunk,
-    /// A particle ceases to stick or slide on an obstacle as it did, or a rope slackens.
-    Rested,
-    /// A spring between these ends reaches the length (m) at which it breaks, or a rope its own.
-    Stretch { ends: [usize; 2], longest: f64 },
-}
 
 /// First event within a step.
 #[derive(Clone, Copy, Debug)]
@@ -50,23 +33,12 @@ pub(super) struct Event {
     pub kind: EventKind,
 }
 
-/// Step that is searched for events, between two times and states.
-pub(super) struct Searched<'a> {
-    pub network: &'a Network,
-    pub t: f64,
-    pub h: f64,
-    pub ends: [&'a [f64]; 2],
-    pub depths: Depths,
-}
-
-/// Writes the state at a share of the step to the slice.
-type StateAt<'a> = &'a mut dyn FnMut(f64, &mut [f64]);
-
-/// Particle that comes close to an obstacle.
+/// Particle that comes close to an obstacle or an outflow.
 #[derive(Clone, Copy, Debug)]
 struct Pair {
     particle: usize,
-    obstacle: usize,
+    /// Number of the obstacle, or of the outflow after all obstacles.
+    body: usize,
     /// Whether it has touched the obstacle since the beginning of the step.
     touches: bool,
 }
@@ -141,7 +113,7 @@ impl Events {
         let mut first: Option<Event> = None;
         for pair in pairs.iter_mut() {
             let course = course(pieces, pair.particle, h, n);
-            let obstacle = &step.network.obstacles()[pair.obstacle];
+            let obstacle = step.body(pair.body);
             let approach = Approach::new(obstacle, &course, t);
             if pair.touches {
                 let deepest = step
@@ -164,13 +136,16 @@ impl Events {
                 };
                 let kind = EventKind::Touch {
                     particle: pair.particle,
-                    obstacle: pair.obstacle,
+                    body: pair.body,
                 };
                 let guess = begin + share / PIECES as f64;
                 if first.is_some_and(|event| event.share <= guess) {
                     break;
                 }
-                if step.ends_shallow(pair, &approach.separation(share).normal) {
+                if step.ends_shallow(
+                    [pair.particle, pair.body],
+                    &approach.separation(share).normal,
+                ) {
                     break;
                 }
                 match step.refine(guess, kind, state, state_at) {
@@ -217,38 +192,50 @@ impl Events {
         Some(event)
     }
 
-    /// Lists the particles that come near an obstacle.
+    /// Lists the particles that come near an obstacle, and those that reach an outflow.
     fn list_pairs(&mut self, step: &Searched) {
         self.pairs.clear();
         let network = step.network;
-        if network.contact_layer().is_some() {
-            return;
+        let obstacles = network.obstacles().len();
+        let free = |i: &usize| network.inverse_masses()[*i] > 0.0;
+        if network.contact_layer().is_none() {
+            for body in 0..obstacles {
+                self.list_near(step, body, (0..network.particles()).filter(free));
+            }
         }
-        let (n, inverse_masses) = (network.particles(), network.inverse_masses());
+        let flowing = network.fluid().map_or(&[][..], Fluid::particles).iter();
+        let flowing = flowing.map(|i| *i as usize).filter(free);
+        for body in obstacles..obstacles + step.outflows.len() {
+            self.list_near(step, body, flowing.clone());
+        }
+    }
+
+    /// Lists those of some particles that come near an obstacle or an outflow.
+    fn list_near(&mut self, step: &Searched, body: usize, particles: impl Iterator<Item = usize>) {
+        let n = step.network.particles();
         let times = [step.t, step.t + step.h];
-        for (obstacle, body) in network.obstacles().iter().enumerate() {
-            let [speed, _] = body.path.bounds(times);
-            let place = body.path.at(step.t + 0.5 * step.h).position;
-            let reach = body.shape.reach() + 0.5 * speed * step.h;
-            let is_floor = reach.is_infinite();
-            let begun = body.at(step.t);
-            let near_floor = place.y + 0.5 * speed * step.h;
-            for particle in (0..inverse_masses.len()).filter(|i| inverse_masses[*i] > 0.0) {
-                if is_floor && lowest(step, particle, n) > near_floor {
-                    continue;
-                }
-                let course = course(&step.ends, particle, step.h, n);
-                let middle = 0.5 * (course.x[0] + course.x[1]) - place;
-                let is_near = is_floor || middle.norm_squared() <= (reach + course.reach()).powi(2);
-                // States that are not finite are reported elsewhere.
-                if is_near {
-                    let seen = begun.inwards(course.x[0] - begun.place.position);
-                    self.pairs.push(Pair {
-                        particle,
-                        obstacle,
-                        touches: body.shape.separation(seen).distance <= step.depths.none,
-                    });
-                }
+        let obstacle = step.body(body);
+        let [speed, _] = obstacle.path.bounds(times);
+        let place = obstacle.path.at(step.t + 0.5 * step.h).position;
+        let reach = obstacle.shape.reach() + 0.5 * speed * step.h;
+        let is_floor = reach.is_infinite();
+        let begun = obstacle.at(step.t);
+        let near_floor = place.y + 0.5 * speed * step.h;
+        for particle in particles {
+            if is_floor && lowest(step, particle, n) > near_floor {
+                continue;
+            }
+            let course = course(&step.ends, particle, step.h, n);
+            let middle = 0.5 * (course.x[0] + course.x[1]) - place;
+            let is_near = is_floor || middle.norm_squared() <= (reach + course.reach()).powi(2);
+            // States that are not finite are reported elsewhere.
+            if is_near {
+                let seen = begun.inwards(course.x[0] - begun.place.position);
+                self.pairs.push(Pair {
+                    particle,
+                    body,
+                    touches: obstacle.shape.separation(seen).distance <= step.depths.none,
+                });
             }
         }
     }
@@ -291,80 +278,6 @@ impl Events {
     }
 }
 
-impl Searched<'_> {
-    /// Whether a particle ends the step inside its obstacle, but within the tolerance and on the
-    /// side with that normal: then it is moved to the surface at the end, without an event.
-    fn ends_shallow(&self, pair: &Pair, normal: &Vector3<f64>) -> bool {
-        let obstacle = &self.network.obstacles()[pair.obstacle];
-        let (pose, n) = (obstacle.at(self.t + self.h), self.network.particles());
-        let x = course(&self.ends, pair.particle, self.h, n).x[1];
-        let end = obstacle
-            .shape
-            .separation(pose.inwards(x - pose.place.position));
-        let shallow = self
-            .depths
-            .shallow
-            .min(0.25 * obstacle.shape.greatest_depth());
-        (-shallow..=0.0).contains(&end.distance) && end.normal.dot(normal) > 0.5
-    }
-
-    /// Share of the step at which an event happens on the polynomial, by Newton's method from a
-    /// guess; `None` if it does not happen. Leaves the state near it in `state`.
-    fn refine(
-        &self,
-        guess: f64,
-        kind: EventKind,
-        state: &mut [f64],
-        state_at: StateAt,
-    ) -> Option<f64> {
-        let mut share = guess;
-        let mut gap = f64::INFINITY;
-        for _ in 0..NEWTON_STEPS {
-            state_at(share, state);
-            let (found, rate) = self.gap(share, kind, state);
-            let next = share - found / (rate * self.h);
-            if found.abs() >= gap.abs() || !(0.0..=1.0).contains(&next) {
-                gap = found;
-                break;
-            }
-            gap = found;
-            if (next - share).abs() <= f64::EPSILON {
-                break;
-            }
-            share = next;
-        }
-        (gap.abs() <= self.depths.none).then_some(share)
-    }
-
-    /// Distance (m) from an event at a share of the step, and the rate of that distance (m/s).
-    fn gap(&self, share: f64, kind: EventKind, y: &[f64]) -> (f64, f64) {
-        let n = self.network.particles();
-        let row = |first: usize, i: usize| {
-            Vector3::new(y[first + i], y[first + n + i], y[first + 2 * n + i])
-        };
-        match kind {
-            EventKind::Touch { particle, obstacle } => {
-                let obstacle = &self.network.obstacles()[obstacle];
-                let pose = obstacle.at(self.t + share * self.h);
-                let d = row(0, particle) - pose.place.position;
-                let seen = obstacle.shape.separation(pose.inwards(d));
-                let normal = pose.outwards(seen.normal);
-                let spin = pose.orientation.map(|turned| turned.spin.cross(&d));
-                let own = pose.place.velocity + spin.unwrap_or_default();
-                (seen.distance, normal.dot(&(row(3 * n, particle) - own)))
-            }
-            EventKind::Stretch {
-                ends: [i, j],
-                longest,
-            } => {
-                let (d, v) = (row(0, j) - row(0, i), row(3 * n, j) - row(3 * n, i));
-                (longest - d.norm(), -d.dot(&v) / d.norm())
-            }
-            EventKind::Sunk | EventKind::Rested => (0.0, 0.0),
-        }
-    }
-}
-
 /// Keeps the earlier of two events.
 fn keep_first(first: &mut Option<Event>, share: f64, kind: EventKind) {
     if first.is_none_or(|event| share < event.share) {
@@ -378,16 +291,4 @@ fn lowest(step: &Searched, i: usize, n: usize) -> f64 {
     let [[y0, v0], [y1, v1]] = step.ends.map(|y| [y[n + i], y[4 * n + i]]);
     let bulge = 0.5 * ((v0.abs() + v1.abs()) * step.h + (y1 - y0).abs());
     y0.min(y1) - bulge
-}
-
-/// Course of particle i between two states.
-fn course<Y: AsRef<[f64]>>(ends: &[Y; 2], i: usize, h: f64, n: usize) -> Course {
-    let row = |y: &[f64], first: usize| {
-        Vector3::new(y[first + i], y[first + n + i], y[first + 2 * n + i])
-    };
-    Course {
-        x: [0, 1].map(|k| row(ends[k].as_ref(), 0)),
-        v: [0, 1].map(|k| row(ends[k].as_ref(), 3 * n)),
-        h,
-    }
 }

@@ -1,13 +1,19 @@
 //! Events of a step, for methods that locate them: where the first one is, and which particles rest
 //! on obstacles until then.
 
+use nalgebra::Vector3;
+
 use super::depths::Depths;
-use super::events::{Event, EventKind, Events, Searched};
+use super::events::{Event, Events};
 use super::resting::{Resting, Rests, first_end, first_negative, may_rest};
+use super::searched::{EventKind, Searched};
 use super::state::RunState;
 use super::stepper::Stepper;
+use crate::contact::{Obstacle, Shape};
+use crate::elements::Outflow;
 use crate::integrators::Work;
-use crate::network::{Network, has_ropes, least_tension, open_ends, taut};
+use crate::network::{Network, has_ropes, least_tension, open_ends, outflows, taut};
+use crate::path::Path;
 use crate::scene::Model;
 use crate::system::ParticleSystem;
 
@@ -19,6 +25,8 @@ pub(super) struct Locator {
     /// Whether fixed steps are split at events too: always in a network with ropes.
     pub splits_fixed_steps: bool,
     events: Events,
+    /// Outflows of the fluid, as obstacles.
+    outflows: Vec<Obstacle>,
     /// Particles that rest on obstacles in the current step.
     rests: Rests,
 }
@@ -26,9 +34,11 @@ pub(super) struct Locator {
 impl Locator {
     /// Search in a model, with room for all its particles.
     pub fn new(model: &Model) -> Self {
+        let outflows = model.network().map_or(&[][..], outflows).iter();
         Self {
             splits_fixed_steps: model.network().is_some_and(has_ropes),
             events: Events::new(model),
+            outflows: outflows.map(obstacle).collect(),
             rests: Rests::new(model),
         }
     }
@@ -91,12 +101,14 @@ impl Locator {
     ) -> Option<Event> {
         let network = model.network()?;
         let has_ropes = has_ropes(network);
-        if network.obstacles().is_empty() && network.tear_limit().is_none() && !has_ropes {
+        let is_none = network.obstacles().is_empty() && self.outflows.is_empty();
+        if is_none && network.tear_limit().is_none() && !has_ropes {
             return None;
         }
         let RunState { y, work, .. } = state;
         let step = Searched {
             network,
+            outflows: &self.outflows,
             t,
             h,
             ends: [y0, y],
@@ -147,6 +159,15 @@ impl Locator {
         *work += Work::of(evaluated);
         slackens.or(end).or(event)
     }
+}
+
+/// Returns an outflow as an obstacle.
+fn obstacle(outflow: &Outflow) -> Obstacle {
+    let shape = Shape::Box {
+        half_extents: outflow.half,
+        axes: [Vector3::x(), Vector3::y(), Vector3::z()],
+    };
+    Obstacle::smooth(shape, Path::Still(outflow.at))
 }
 
 /// Finds where a joint first reaches one of its ends before the share `before` of a step, on the

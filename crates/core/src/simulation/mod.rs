@@ -19,6 +19,7 @@ mod reach;
 mod resting;
 mod retry;
 mod run;
+mod searched;
 mod state;
 mod step;
 mod stepper;

@@ -10,7 +10,7 @@ use crate::contact::{
     bulge, guard, resolve,
 };
 use crate::error::Cause;
-use crate::network::{Network, has_joints, has_ropes, project};
+use crate::network::{Network, has_joints, has_ropes, outflows, project};
 use crate::scene::Model;
 use crate::system::{Mechanics, ParticleSystem};
 
@@ -58,8 +58,9 @@ impl Phases {
         if let Some(limit) = limit {
             self.excess = limit.excess(network.halves(y0).0);
         }
-        let tears = retry && (network.tear_limit().is_some() || has_ropes(network));
-        if limit.is_some() || tears || network.contact_layer().is_some() {
+        let changes = network.tear_limit().is_some() || has_ropes(network);
+        let changes = retry && (changes || !outflows(network).is_empty());
+        if limit.is_some() || changes || network.contact_layer().is_some() {
             self.contact.remember(y0);
         } else {
             self.contact.begin(network.obstacles(), y0, retry);

@@ -12,7 +12,8 @@ use std::ops::Range;
 
 use nalgebra::Vector3;
 
-use super::events::{Event, EventKind};
+use super::events::Event;
+use super::searched::EventKind;
 use crate::columns::{row, set_row};
 use crate::contact::Obstacle;
 use crate::geometry::Shape;

@@ -2,32 +2,37 @@
 //!
 //! It has five phases: *integrate* (the method takes the state from t to t + h), *shorten* (springs
 //! that are too long), *contact* (particles leave obstacles, surfaces do not pass through one
-//! another), *watch* (blow-ups, and the balance of energy) and *tear* (springs that are stretched
-//! too far). Fixed and adaptive steps share them. They differ in two respects: whether a step ends
+//! another), *watch* (blow-ups, and the balance of energy) and *change* (springs that are
+//! stretched too far break, liquid flows out, pins let go). Fixed and adaptive steps share them. They differ in two respects: whether a step ends
 //! at the first event within it, and whether it is taken again with a shorter length (see
 //! [`retry`](super::retry)).
 
 use super::bounds::Bounds;
 use super::depths::Depths;
-use super::events::{Event, EventKind};
+use super::events::Event;
 use super::failure::{Failure, cause_of};
 use super::locator::Locator;
 use super::phases::{Phases, Settled};
 use super::power::End;
 use super::reach::{Part, Reach};
 use super::retry::{MIN_RETRY_SHARE, MIN_RETRY_STEP, limit_next, share_of_bulge, share_of_retry};
+use super::searched::EventKind;
 use super::state::RunState;
 use super::stepper::Stepper;
 use super::watch::Watch;
 use crate::control::Control;
 use crate::error::{Cause, Error};
-use crate::network::{has_ropes, next_release};
+use crate::network::{Network, has_ropes, next_release, outflows};
 use crate::scene::{Model, Scene, StepLimits};
 use crate::system::ParticleSystem;
 
 /// Share of a step by which its end may miss a requested time: 1/60 s written as 0.01666667 is
 /// accurate enough for sixty frames a second.
 pub(super) const STEP_END_TOLERANCE: f64 = 1e-6;
+
+/// Largest distance, over the scene's radius, that a particle flies in a step of an adaptive method
+/// in which it may arrive somewhere.
+const MAX_FLIGHT: f64 = 100.0;
 
 /// Cost of a sweep over the springs with a limit of strain, in evaluations.
 const SWEEP_PRICE: f64 = 2.0;
@@ -128,8 +133,7 @@ impl Pipeline {
             if is_last {
                 break;
             }
-            self.tear(model, state);
-            self.let_go(model, state, part.end);
+            self.change_at(model, state, part.end);
             begin = part.end;
         }
         Ok(())
@@ -146,11 +150,12 @@ impl Pipeline {
         (t, target): (f64, Option<f64>),
         splits: bool,
     ) -> Result<Result<(Part, Settled), Cause>, Error> {
+        let flying = self.limits_of_flight(model, &state.y);
         let (stepper, limits) = (&mut self.stepper, self.limits);
         let depths = Depths::new(self.bounds.radius, limits, state.control);
         let locates = self.locator.serves(stepper);
         let reach = match (locates, model.network().filter(|_| target.is_some())) {
-            (true, _) => Reach::of_step(model, limits, stepper.is_adaptive(), t, target),
+            (true, _) => Reach::of_step(model, flying, stepper.is_adaptive(), t, target),
             (false, Some(network)) => Reach::of_part(network, t, target),
             (false, None) => Reach::default(),
         };
@@ -168,6 +173,27 @@ impl Pipeline {
                 Err(Setback::BlowUp(cause)) => return Ok(Err(cause)),
                 Err(Setback::Error(error)) => return Err(error),
             }
+        }
+    }
+
+    /// Limits of a step of an adaptive method from the state y. Where particles can arrive
+    /// somewhere, none crosses the scene so often in a step that the arrival is missed.
+    fn limits_of_flight(&self, model: &Model, y: &[f64]) -> StepLimits {
+        let network = model.network();
+        let arrives = |it: &&Network| !it.obstacles().is_empty() || !outflows(it).is_empty();
+        let Some(network) = network
+            .filter(arrives)
+            .filter(|_| self.stepper.is_adaptive())
+        else {
+            return self.limits;
+        };
+        let v = &y[3 * network.particles()..6 * network.particles()];
+        let fastest = v.iter().fold(0.0_f64, |fastest, v| fastest.max(v.abs()));
+        let longest = MAX_FLIGHT * self.bounds.radius / fastest;
+        let max_step = self.limits.max_step.unwrap_or(f64::INFINITY).min(longest);
+        StepLimits {
+            max_step: Some(max_step),
+            ..self.limits
         }
     }
 

@@ -133,3 +133,27 @@ fn states_within_stiff_steps_stay_between_their_ends() {
         assert!(within < 1.2 * ends, "{name}: {within} J, {ends} J");
     }
 }
+
+/// Where nothing accelerates, an adaptive method takes ever longer steps. A run that went back from
+/// far ahead goes on all the same.
+#[test]
+fn free_flight_goes_on_after_going_back() {
+    let scene = described(
+        "[particles]
+        positions = [[0, 0, 0]]
+        velocities = [[1, 0, 0]]
+        mass = 1",
+    );
+    for name in ["dopri5", "dop853", "dprkn86", "bdf"] {
+        let method = method(name);
+        let mut run = Simulation::new(scene.clone(), method, method.control(1e-6)).unwrap();
+        run.advance_to(0.5).unwrap();
+        let moment = run.moment();
+        run.take_steps(20).unwrap();
+        assert!(run.time() > 1e3, "{name}: {}", run.time());
+        run.rewind(&moment).unwrap();
+        run.advance_to(0.6).unwrap();
+        let x = run.position(0).x;
+        assert!((x - 0.6).abs() < 1e-6, "{name}: {x}");
+    }
+}

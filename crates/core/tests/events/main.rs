@@ -5,6 +5,7 @@ mod common;
 
 mod frames;
 mod known_times;
+mod outflows;
 mod rebounds;
 mod releases;
 mod resting;

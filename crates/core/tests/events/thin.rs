@@ -75,3 +75,29 @@ fn no_particle_passes_through_a_small_obstacle_in_a_step() {
         }
     }
 }
+
+/// A particle that flies freely for long, in ever longer steps, and goes back, still meets what is
+/// in its way.
+#[test]
+fn nothing_is_missed_after_a_free_flight() {
+    let scene = described(
+        "[particles]
+        positions = [[0, 0, 0], [-1, 0, 0]]
+        velocities = [[0, 1, 0], [1, 0, 0]]
+        mass = 1
+        [[box]]
+        center = [1, 0, 0]
+        size = [0.01, 1, 1]
+        restitution = 1",
+    );
+    for name in ["dopri5", "dop853", "dprkn86"] {
+        let method = method(name);
+        let mut run = Simulation::new(scene.clone(), method, method.control(1e-6)).unwrap();
+        let moment = run.moment();
+        run.take_steps(20).unwrap();
+        run.rewind(&moment).unwrap();
+        run.advance_to(3.0).unwrap();
+        let x = run.position(1).x;
+        assert!((x + 0.01).abs() < 1e-6, "{name}: {x}");
+    }
+}

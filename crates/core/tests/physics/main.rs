@@ -16,6 +16,7 @@ mod friction;
 mod gas;
 mod honey;
 mod networks;
+mod outflow;
 mod restitution;
 mod rigid;
 mod rolling;

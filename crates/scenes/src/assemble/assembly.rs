@@ -4,7 +4,7 @@
 use std::ops::Range;
 
 use a3_core::contact::Skin;
-use a3_core::elements::{Buckling, FluidLaw, Gas, Sheet, Solid};
+use a3_core::elements::{Buckling, FluidLaw, Gas, Outflow, Sheet, Solid};
 use a3_core::rigid::{self, Rotation};
 use a3_core::{Constraint, Spring, Vector3};
 
@@ -88,6 +88,8 @@ pub(super) struct Assembly {
     pub strain_limits: Vec<(String, Range<usize>, f64)>,
     /// Law of the fluid, and the particles of each of its bodies.
     pub fluid: Option<(FluidLaw, Vec<Range<usize>>)>,
+    /// Boxes in which the fluid leaves the scene.
+    pub outflows: Vec<Outflow>,
     /// Points of each rigid body that the fluid touches.
     pub soaked: Vec<Range<usize>>,
     /// Particles of the walls of each tank.

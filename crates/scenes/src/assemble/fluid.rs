@@ -3,11 +3,12 @@
 use std::ops::Range;
 
 use a3_core::contact::Skin;
-use a3_core::elements::{Fluid as Liquid, FluidLaw};
+use a3_core::elements::{Fluid as Liquid, FluidLaw, Outflow};
 use a3_core::{Network, Path, Pin as Held, Vector3};
 
 use super::assembly::{Assembly, Body, Counts};
 use super::inflow::Column;
+use super::outflow::{SLACK, spaces};
 use super::places::{LAYERS, Places};
 use super::skins::point_skin;
 use crate::check::{at, at_least, positive};
@@ -40,6 +41,8 @@ struct Lattices {
     tank: Option<Places>,
     /// Liquid that flows in.
     column: Option<Column>,
+    /// Space in which it flows out.
+    outflows: Vec<Outflow>,
 }
 
 impl Fluid {
@@ -81,6 +84,7 @@ impl Fluid {
             liquid: liquid.transpose()?,
             tank: tank.transpose()?,
             column: column.transpose()?,
+            outflows: spaces(self)?,
         })
     }
 
@@ -119,6 +123,7 @@ pub fn fluid_points(fluid: &Fluid) -> Result<[Vec<Vector3<f64>>; 2], Fault> {
         liquid,
         tank,
         column,
+        outflows,
     } = fluid.lattices()?;
     let half = 0.5 * Vector3::from(fluid.size);
     let is_in_shape = |place: &Vector3<f64>| {
@@ -131,7 +136,11 @@ pub fn fluid_points(fluid: &Fluid) -> Result<[Vec<Vector3<f64>>; 2], Fault> {
     };
     let all = liquid.iter().flat_map(|places| places.all(0));
     let all = all.map(|(place, _)| place);
-    let is_open = |place: &Vector3<f64>| column.as_ref().is_some_and(|it| it.passes(place));
+    let slack = SLACK * fluid.spacing;
+    let is_open = |place: &Vector3<f64>| {
+        column.as_ref().is_some_and(|it| it.passes(place))
+            || outflows.iter().any(|it| it.contains(place, slack))
+    };
     let walls = tank.iter().flat_map(|tank| tank.all(LAYERS.into()));
     let walls = walls.filter(|(_, inside)| !inside).map(|(place, _)| place);
     let walls = walls.filter(|place| !is_open(place));
@@ -144,6 +153,7 @@ impl Body for Fluid {
             liquid,
             tank,
             column,
+            outflows: _,
         } = self.lattices()?;
         let column = column.map_or(0, |column| column.count());
         let flowing = liquid.map_or(0, |liquid| liquid.count(0));
@@ -173,7 +183,9 @@ impl Body for Fluid {
         assembly
             .drops
             .extend(first as u32..assembly.positions.len() as u32);
-        let column = self.lattices()?.column;
+        let Lattices {
+            column, outflows, ..
+        } = self.lattices()?;
         let (column, next) = (column.iter(), assembly.positions.len());
         for (place, velocity, pin) in column.flat_map(|column| column.particles(next)) {
             assembly.positions.push(place);
@@ -204,6 +216,7 @@ impl Body for Fluid {
             assembly.tanks.push(free..all);
         }
         let (law, particles) = (self.law(), first..all);
+        assembly.outflows.extend(outflows);
         match &mut assembly.fluid {
             None => assembly.fluid = Some((law, vec![particles])),
             Some((other, all)) if *other == law => all.push(particles),
@@ -229,6 +242,7 @@ impl Body for Fluid {
 /// `soaked` points of rigid bodies.
 pub(super) fn add(
     fluid: Option<(FluidLaw, Vec<Range<usize>>)>,
+    outflows: Vec<Outflow>,
     soaked: Vec<Range<usize>>,
     network: &mut Network,
     x: &[f64],
@@ -239,6 +253,7 @@ pub(super) fn add(
     let particles = particles.into_iter().chain(soaked).flatten();
     let particles = particles.map(|i| i as u32);
     let fluid = at("fluid", Liquid::new(law, particles.collect()))?;
+    let fluid = at("fluid", fluid.with_outflows(outflows))?;
     if let Some(([i, j], distance)) = fluid.nearest_pair(x)
         && distance < MIN_DISTANCE * law.spacing
     {

@@ -16,6 +16,7 @@ mod mesh_cloth;
 mod motion;
 mod network;
 mod obstacles;
+mod outflow;
 mod pins;
 mod places;
 mod rigid;
@@ -26,7 +27,7 @@ mod state;
 
 use std::sync::Arc;
 
-use a3_core::{Grid, Model, Scene, Swing, Vector3, integrators};
+use a3_core::{Control, Grid, Model, Scene, Swing, Vector3, integrators};
 
 use crate::budget::Budget;
 use crate::check::{at, at_least, key_of, positive};
@@ -96,7 +97,7 @@ impl Description {
         asked: Option<Grid>,
         mesh: &mut dyn FnMut(&str) -> Result<Mesh, String>,
     ) -> Result<Setup, Fault> {
-        let (model, mut state, surface, tanks, touch) = if let Some(circle) = &self.circle {
+        let (mut model, mut state, surface, tanks, touch) = if let Some(circle) = &self.circle {
             let start = Vector3::from(circle.start);
             let model = Model::Points(Arc::new(Circling));
             let start = start.as_slice().to_vec();
@@ -124,6 +125,9 @@ impl Description {
         }
         if let (true, Model::Network(network)) = (self.untangle, &model) {
             at("untangle", a3_core::untangle(network, &mut state))?;
+        }
+        if let Model::Network(network) = &mut model {
+            outflow::drain(network, &mut state);
         }
         if let Some(trail) = self.trail.filter(|i| *i >= n) {
             return Err(Fault::no_particle("trail", trail, n));
@@ -203,11 +207,17 @@ impl Description {
             return Err(Fault::new("step", "a step also needs the key `solver`"));
         }
         let own = solver.zip(self.step);
+        let control = own.map(|(solver, step)| solver.control(step));
+        // A step that is given suits the fluid as it is.
+        let step_scale = match control {
+            Some(Control::Step(_)) => 1.0,
+            _ => fluid::step_scale(&self.fluid),
+        };
         Ok(Defaults {
             solver,
-            control: own.map(|(solver, step)| solver.control(step)),
+            control,
             duration: self.duration,
-            step_scale: fluid::step_scale(&self.fluid),
+            step_scale,
         })
     }
 }

@@ -95,6 +95,7 @@ pub(super) fn build(
     }
     fluid::add(
         assembly.fluid,
+        assembly.outflows,
         assembly.soaked,
         &mut network,
         &state[..3 * n],

@@ -41,6 +41,9 @@ pub struct Fluid {
     pub tank: Option<Tank>,
     /// More of the liquid, which flows in through an opening.
     pub inflow: Option<Inflow>,
+    /// Boxes in which the liquid leaves the scene, whichever fluid it is of.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub outflow: Vec<Outflow>,
 }
 
 /// Shape in which a fluid begins.
@@ -89,6 +92,16 @@ pub struct Inflow {
     /// Time for which it has flowed at the start (s); 0 if not given.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub ahead: f64,
+}
+
+/// Box in which the liquid leaves the scene, for good. It makes a hole in the walls of the tank.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Outflow {
+    /// Lengths of the edges of the box (m). In two dimensions, the last one is 0.
+    pub size: Triple,
+    /// Centre (m).
+    pub at: Triple,
 }
 
 #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde calls it so")]

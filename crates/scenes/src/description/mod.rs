@@ -21,7 +21,7 @@ pub use constraints::{
     BallSpec, CircleSpec, ConstraintSpec, HingeSpec, JointSpec, LineSpec, SliderSpec,
 };
 pub use floor::{Floor, FloorSpec};
-pub use fluid::{Fluid, FluidShape, Inflow, Tank};
+pub use fluid::{Fluid, FluidShape, Inflow, Outflow, Tank};
 pub use forces::{BucklingSpec, RegionSpec, SpringSpec, SwingSpec, WindSpec};
 pub use motion::{Pin, Shift, Sine, Spot, Triple, Turn};
 pub use obstacles::{BoxSpec, CapsuleSpec, ObstacleSpec, SphereSpec};

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use a3_core::elements::Fluid;
 use a3_core::{Network, Simulation, SpringKind, Vector3};
 use a3_render::{Ball, Camera, Floor, Line, Picture, Solid, Style, Topology};
 use a3_scenes::Presentation;
@@ -343,7 +344,8 @@ impl Show {
     fn draw_drop(&mut self, simulation: &Simulation, i: usize) {
         let fluid = simulation.model().network().and_then(Network::fluid);
         let in_wall = self.presentation.tanks.iter().any(|tank| tank.contains(&i));
-        if let Some(fluid) = fluid.filter(|_| self.style != Style::Shaded && !in_wall) {
+        let shows = |fluid: &&Fluid| self.style != Style::Shaded && !in_wall && !fluid.has_left(i);
+        if let Some(fluid) = fluid.filter(shows) {
             let color = self.colouring.of(i, BLUE);
             self.ball(i, 0.3 * fluid.law().spacing as f32 / self.unit, color);
         }

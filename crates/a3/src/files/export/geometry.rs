@@ -34,13 +34,20 @@ impl Geometry {
         let network = simulation.model().network();
         let springs = network.into_iter().flat_map(Network::springs);
         let particles = simulation.particles();
-        // Liquid that will flow in is pinned until then, and no wall.
+        // Liquid that will flow in is pinned until then, and no wall. Some has flowed out again.
         let pins = network.into_iter().flat_map(Network::all_pins);
         let flowing: BTreeSet<usize> = pins
             .filter(|pin| pin.until.is_some())
             .map(|pin| pin.particle)
             .collect();
-        let is_wall = |i: usize| network.is_some_and(|n| n.is_wall(i)) && !flowing.contains(&i);
+        let has_left = |i: usize| {
+            network
+                .and_then(Network::fluid)
+                .is_some_and(|it| it.has_left(i))
+        };
+        let is_wall = |i: usize| {
+            network.is_some_and(|n| n.is_wall(i)) && (!flowing.contains(&i) || has_left(i))
+        };
         let is_rigid = |i: usize| network.is_some_and(|n| n.body_of(i).is_some());
         let rigid = network.map_or_else(Vec::new, |n| tessellation::triangles(n, particles as u32));
         Self {

@@ -54,6 +54,8 @@ impl Passage {
             Some(Pin { particle, ..*pin })
         };
         moment.pins = moment.pins.iter().filter_map(renumbered).collect();
+        let renumbered = |i: &u32| Some(number(*i as usize)? as u32);
+        moment.drained = moment.drained.iter().filter_map(renumbered).collect();
         let back = self.particles.back();
         let added = new
             .all_pins()

@@ -14,6 +14,7 @@
 mod kernel;
 mod law;
 mod neighbours;
+mod outflow;
 mod triple;
 
 use super::force::{At, Cost, Force, Matter, check_particle};
@@ -27,6 +28,7 @@ use neighbours::Neighbours;
 use triple::{Triple, add_scaled, dot, minus, squared_distance};
 
 pub use law::FluidLaw;
+pub use outflow::Outflow;
 
 /// Work on a particle of fluid, over that on a particle of a sheet. Threads pay for fewer
 /// particles.
@@ -46,6 +48,8 @@ pub struct Fluid {
     law: FluidLaw,
     kernel: Kernel,
     particles: Vec<u32>,
+    outflows: Vec<Outflow>,
+    drained: Vec<u32>,
     scratch: Scratch<Buffers>,
 }
 
@@ -81,6 +85,8 @@ impl Fluid {
             kernel: law.kernel(),
             law,
             particles,
+            outflows: vec![],
+            drained: vec![],
             scratch: Scratch::default(),
         })
     }
@@ -89,18 +95,6 @@ impl Fluid {
     #[must_use]
     pub fn law(&self) -> &FluidLaw {
         &self.law
-    }
-
-    /// Returns the numbers of the fluid's particles, in order.
-    #[must_use]
-    pub fn particles(&self) -> &[u32] {
-        &self.particles
-    }
-
-    /// Whether particle i is of the fluid.
-    #[must_use]
-    pub fn contains(&self, i: usize) -> bool {
-        self.particles.binary_search(&(i as u32)).is_ok()
     }
 
     /// Returns the density (kg/m3) at each particle at x (m), n x 3.
