@@ -2,10 +2,15 @@
 
 // ---- Floor: a faint grid of units of length that fades into the background.
 
+// Number of strips of the floor, and of squares in each.
+const FLOOR_STRIPS = 16.0;
+
 struct Floor { @builtin(position) clip: vec4<f32>, @location(0) world: vec3<f32> };
 
-@vertex fn floor_vertex(@builtin(vertex_index) i: u32) -> Floor {
-    let corner = vec2(f32(i & 1u), f32(i >> 1u)) * 2.0 - 1.0;
+// The floor is drawn in strips, one an instance: software that draws single large triangles leaves
+// out parts of them.
+@vertex fn floor_vertex(@builtin(vertex_index) i: u32, @builtin(instance_index) strip: u32) -> Floor {
+    let corner = vec2(f32(i >> 1u), f32(strip + (i & 1u))) / FLOOR_STRIPS * 2.0 - 1.0;
     let at = globals.floor.zw + corner * globals.floor.y;
     var out: Floor;
     out.world = vec3(at.x, globals.floor.x, at.y);

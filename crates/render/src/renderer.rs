@@ -10,6 +10,8 @@ use crate::picture::{Picture, Style, Tile, Topology};
 use crate::pipelines::{Pipelines, SOURCE, layout};
 use crate::view::{Side, View};
 
+/// Number of strips of the floor, and of squares in each, as in `floor.wgsl`.
+const FLOOR_STRIPS: u32 = 16;
 /// The mark in the stencil of pixels in which the floor is seen.
 const ON_FLOOR: u32 = 1;
 
@@ -111,7 +113,7 @@ impl Renderer {
         if frame.floor == Some(Side::Above) {
             pass.set_stencil_reference(ON_FLOOR);
             pass.set_pipeline(&p.floor);
-            pass.draw(0..4, 0..1);
+            pass.draw(0..2 * FLOOR_STRIPS + 2, 0..FLOOR_STRIPS);
         }
         if frame.background {
             pass.set_pipeline(&p.background);
@@ -139,7 +141,7 @@ impl Renderer {
         draw_lines(pass, view, &p.wire, &p.spring, &p.line);
         if frame.floor == Some(Side::Below) {
             pass.set_pipeline(&p.floor_below);
-            pass.draw(0..4, 0..1);
+            pass.draw(0..2 * FLOOR_STRIPS + 2, 0..FLOOR_STRIPS);
         }
     }
 
