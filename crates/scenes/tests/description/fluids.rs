@@ -234,3 +234,45 @@ fn what_is_wrong_with_an_inflow_is_said() {
     let without = FILLED.replacen("inflow", "# ", 1);
     assert!(said(&without).starts_with("line 3: fluid.size: each edge must be"));
 }
+
+/// A box in which a fluid leaves the scene makes a hole in the walls of the tank, and what begins
+/// there has left.
+#[test]
+fn outflows_open_walls() {
+    let outflow = "outflow = [{ size = [0.25, 0.375, 0], at = [2, -0.1875, 0] }]\n";
+    let text = FILLED.replacen("inflow", &format!("{outflow}# "), 1);
+    let text = text.replacen("size = [0, 0, 0]", "size = [0.25, 0.25, 0]", 1);
+    let text = text.replacen("at = [0, 0, 0]", "at = [0.125, 0.125, 0]", 1);
+    let fluid = |text: &str| set_up(text).unwrap().scene.model;
+    let (open, closed) = (fluid(&text), fluid(&text.replacen("outflow", "# ", 1)));
+    assert_eq!(open.particles() + 2 * 3, closed.particles());
+    assert!(
+        open.network()
+            .unwrap()
+            .fluid()
+            .unwrap()
+            .drained()
+            .is_empty()
+    );
+    let within = text.replacen("at = [2, -0.1875, 0]", "at = [0, 0.1, 0]", 1);
+    let within = fluid(&within);
+    let network = within.network().unwrap();
+    let drained = network.fluid().unwrap().drained();
+    assert!(drained.len() == 2 && drained.iter().all(|i| network.is_pinned(*i as usize)));
+    for (there, instead, expected) in [
+        (
+            "size = [0.25, 0.375, 0]",
+            "size = [0.25, 0, 0]",
+            "outflow[0].size: each edge must be a finite number above 0",
+        ),
+        (
+            "size = [0.25, 0.375, 0]",
+            "size = [0.25, 0.375, 1]",
+            "outflow[0].size: in two dimensions, its last number is 0, not 1",
+        ),
+        ("at = [2, -0.1875, 0]", "to = 3", "outflow"),
+    ] {
+        let said = said(&text.replacen(there, instead, 1));
+        assert!(said.contains(expected), "{said}");
+    }
+}

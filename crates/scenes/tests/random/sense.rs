@@ -77,6 +77,18 @@ fn fluid(table: &mut Map<String, Value>, chance: &mut Chance) {
         tank.insert("size".into(), json!(size));
         tank.insert("at".into(), at);
     }
+    for outflow in table
+        .get_mut("outflow")
+        .and_then(Value::as_array_mut)
+        .into_iter()
+        .flatten()
+    {
+        outflow["size"][2] = if flat {
+            json!(0.0)
+        } else {
+            outflow["size"][2].take()
+        };
+    }
     if let Some(Value::Object(inflow)) = table.get_mut("inflow") {
         let mut size = edges(3, spacing, flat, chance);
         let (axis, mut velocity) = (chance.below(if flat { 2 } else { 3 }), [0.0; 3]);
