@@ -36,7 +36,7 @@ pub use mesh::Mesh;
 pub use parts::{Part, parts, without};
 pub use reader::{Places, read};
 pub use resolution::{Regridded, regridded};
-pub use setup::{Defaults, Presentation, Setup, Viewpoint};
+pub use setup::{Defaults, Presentation, Setup, Viewpoint, surroundings};
 pub use splice::Splice;
 pub use surface::Surface;
 pub use text::unmarked;

@@ -3,7 +3,8 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use a3_core::{Control, Method, Scene, Vector3};
+use a3_core::contact::Shape;
+use a3_core::{Control, Method, Model, Scene, Vector3};
 
 use crate::surface::Surface;
 
@@ -45,10 +46,48 @@ impl Viewpoint {
     /// Returns the view of a whole scene from the front, a little from the right and from above.
     #[must_use]
     pub fn of(scene: &Scene) -> Self {
-        let (target, radius) = scene.extent();
+        let (target, radius) = surroundings(&scene.model, 0.0, scene.extent());
         let eye = target + Vector3::new(0.5, 0.15, 1.0).normalize() * (2.8 * radius);
         Self { eye, target }
     }
+}
+
+/// Largest distance of what is seen around particles, over the radius of the ball that holds them.
+const NEAR: f64 = 4.0;
+
+/// Returns the middle (m) and the radius (m) of a ball that holds a given one, which holds the
+/// particles, and the obstacles and the floor near it at time t (s).
+#[must_use]
+pub fn surroundings(
+    model: &Model,
+    t: f64,
+    (middle, radius): (Vector3<f64>, f64),
+) -> (Vector3<f64>, f64) {
+    let network = model.network();
+    let near = network.into_iter().flat_map(|network| {
+        let falls = network.gravity().is_some();
+        network.obstacles().iter().filter_map(move |obstacle| {
+            let place = obstacle.at(t).place.position;
+            let (place, size) = match obstacle.shape {
+                Shape::Floor if falls => (Vector3::new(middle.x, place.y, middle.z), 0.0),
+                Shape::Floor => return None,
+                _ => (place, obstacle.shape.reach()),
+            };
+            ((place - middle).norm() + size < NEAR * radius).then_some((place, size))
+        })
+    });
+    near.fold((middle, radius), |(middle, radius), (place, size)| {
+        let away = place - middle;
+        let distance = away.norm();
+        if distance + size <= radius {
+            return (middle, radius);
+        }
+        if distance + radius <= size {
+            return (place, size);
+        }
+        let whole = 0.5 * (distance + radius + size);
+        (middle + away * ((whole - radius) / distance), whole)
+    })
 }
 
 /// Defaults of the runs of a scene.

@@ -14,7 +14,7 @@ use serde::{Deserialize, Serialize};
 use super::air::Air;
 use super::force::{At, ByParticle, Force};
 use super::region::{Region, Stream};
-use crate::columns::{columns, columns_mut};
+use crate::columns::{columns, columns_mut, row};
 use crate::error::Error;
 use crate::fused::mul_add;
 use crate::random::SplitMix;
@@ -277,6 +277,13 @@ impl WithSimd for Blow<'_, '_> {
     }
 }
 
+/// Lists the particles on which a wind exerts a force: of rigid bodies, the centres alone, because
+/// the points that they carry have no mass.
+fn blown(masses: &[f64]) -> impl Iterator<Item = usize> {
+    let particles = masses.iter().enumerate();
+    particles.filter(|(_, m)| **m > 0.0).map(|(i, _)| i)
+}
+
 impl Force for Wind {
     fn name(&self) -> &'static str {
         "wind"
@@ -292,6 +299,15 @@ impl Force for Wind {
 
     fn add_forces(&self, at: &At, f: &mut [f64]) {
         let n = at.masses.len();
+        if at.masses.contains(&0.0) {
+            for i in blown(at.masses) {
+                let force = self.at(at.t, row(at.x, n, i).into());
+                for axis in 0..3 {
+                    f[axis * n + i] += force[axis];
+                }
+            }
+            return;
+        }
         fork(threads(n), 0..n, 1, columns_mut(f), &|particles, mut f| {
             self.add(at.t, columns(at.x, &particles), &mut f);
         });
@@ -299,9 +315,8 @@ impl Force for Wind {
 
     fn add_differential(&self, at: &At, [dx, _]: [&[f64]; 2], df: &mut [f64]) {
         let n = at.masses.len();
-        for i in 0..n {
-            let row = |a: &[f64]| [a[i], a[n + i], a[2 * n + i]];
-            let change = self.differential(at.t, row(at.x), row(dx).into());
+        for i in blown(at.masses) {
+            let change = self.differential(at.t, row(at.x, n, i).into(), row(dx, n, i));
             for axis in 0..3 {
                 df[axis * n + i] += change[axis];
             }

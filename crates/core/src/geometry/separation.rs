@@ -55,8 +55,10 @@ impl Shape {
         }
     }
 
-    /// Radius (m) of a sphere around the place that contains the shape.
-    pub(crate) fn reach(&self) -> f64 {
+    /// Returns the radius (m) of a sphere around the place that contains the shape; infinite for a
+    /// floor.
+    #[must_use]
+    pub fn reach(&self) -> f64 {
         match self {
             Self::Sphere { radius } => *radius,
             Self::Box { half_extents, .. } => half_extents.norm(),

@@ -50,7 +50,8 @@ pub(super) fn pin(network: &mut Network, y: &mut [f64], pin: Pin, t: f64) {
     }
 }
 
-/// Leaves all pins except one where they are at time t (s), and writes their positions to y.
+/// Leaves all pins except one where they are at time t (s), and writes their positions to y. Liquid
+/// that flows in goes on doing so.
 pub(super) fn leave_all_but(
     held: Option<usize>,
     network: &mut Network,
@@ -58,8 +59,12 @@ pub(super) fn leave_all_but(
     (swing, phase): (Option<Swing>, f64),
     t: f64,
 ) {
+    let fluid = network.fluid();
+    let is_of_fluid = |i: usize| fluid.is_some_and(|fluid| fluid.contains(i));
+    let flows = |(i, path): &(usize, Path)| matches!(path, Path::Line { .. }) && is_of_fluid(*i);
+    let flowing: Vec<usize> = network.pins().filter(flows).map(|(i, _)| i).collect();
     network.lead_pins(|i, path| {
-        if Some(i) == held {
+        if Some(i) == held || flowing.binary_search(&i).is_ok() {
             path
         } else {
             leave(path.at(t).position, swing, phase, t)

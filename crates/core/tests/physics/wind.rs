@@ -1,7 +1,7 @@
 //! Air that streams past triangles: its force is as computed by hand, does not depend on the
 //! winding order, and only takes energy.
 
-use crate::common::{distance, integrate, method, scene_with_grid};
+use crate::common::{described, distance, integrate, method, scene_with_grid};
 use a3_core::elements::{Air, Wind};
 use a3_core::{
     Control, Mechanics, Model, Network, Scene, Simulation, Spring, SpringKind, SpringLaw, Vector3,
@@ -304,4 +304,35 @@ fn without_triangles_there_is_nothing_to_blow_on() {
     network.set_wind(Some(calm(DRAG, LIFT)));
     network.forces(0.0, x, v, &mut f);
     assert!(f.iter().zip(&calm_f).all(|(a, b)| (a - b).abs() < 1e-12));
+}
+
+/// A wind that pushes particles pushes a rigid body once, whatever its shape, and without a torque.
+#[test]
+fn a_rigid_body_is_pushed_once() {
+    for shape in [
+        "ball = 0.2",
+        "box = [0.4, 0.2, 0.2]",
+        "capsule = [0.4, 0.1]",
+    ] {
+        for (key, x) in [("force", 0.5), ("force_per_mass", 1.0)] {
+            let scene = described(&format!(
+                "[wind]\non = true\nsteady = true\n{key} = [1, 0, 0]\n[[body]]\nparts = [{{ {shape} }}]\nmass = 2\n\
+                 [[body]]\nparts = [{{ ball = 0.1 }}]\nmass = 2\nat = [0, 3, 0]"
+            ));
+            let verlet = method("verlet");
+            let mut run = Simulation::new(scene, verlet, Control::Step(0.01)).unwrap();
+            let n = run.particles();
+            let before: Vec<_> = (0..n).map(|i| run.position(i)).collect();
+            run.advance_to(1.0).unwrap();
+            for (i, before) in before.iter().enumerate() {
+                let moved = run.position(i) - before;
+                let exact = Vector3::new(0.5 * x, 0.0, 0.0);
+                assert!(
+                    (moved - exact).norm() < 1e-9,
+                    "{shape}, {key}: {i} by {moved}"
+                );
+            }
+            assert!(run.gained().is_none());
+        }
+    }
 }

@@ -19,12 +19,7 @@ pub(super) fn set(description: &Description, network: &mut Network) -> Result<()
     let drag = match (description.drag, description.drag_per_mass) {
         (Some(_), Some(_)) => return Err(Fault::not_both("drag", "drag_per_mass")),
         (Some(drag), None) => Some(("drag", drag)),
-        (None, Some(rate)) => {
-            // Points of rigid bodies have neither mass nor drag.
-            let masses = network.masses().iter().copied().filter(|m| *m > 0.0);
-            let masses: Vec<_> = masses.collect();
-            Some(("drag_per_mass", rate * mean(&masses)))
-        }
+        (None, Some(rate)) => Some(("drag_per_mass", rate * mean_mass(network))),
         (None, None) => None,
     };
     if let Some((key, drag)) = drag {
@@ -65,7 +60,7 @@ pub(super) fn wind(spec: &WindSpec, network: &Network) -> Result<Wind, Fault> {
         let factor = if key == "force" {
             1.0
         } else {
-            mean(network.masses())
+            mean_mass(network)
         };
         return blown(spec, Wind::new(spec.seed, mean_wind * factor));
     }
@@ -109,7 +104,10 @@ fn region(spec: &RegionSpec) -> Result<Region, Fault> {
     })
 }
 
-fn mean(masses: &[f64]) -> f64 {
+/// Returns the mean mass (kg) of the particles. Points of rigid bodies have none, and do not count.
+fn mean_mass(network: &Network) -> f64 {
+    let masses = network.masses().iter().copied().filter(|m| *m > 0.0);
+    let masses: Vec<_> = masses.collect();
     // The mean of equal masses is their common value, without rounding.
     if masses.iter().all(|m| *m == masses[0]) {
         masses[0]

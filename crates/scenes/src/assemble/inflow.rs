@@ -75,8 +75,8 @@ impl Column {
         self.places.count(0)
     }
 
-    /// Lists the particles, numbered from `first`: their places (m) before the flow began, their
-    /// velocities (m/s), and the pins that hold them at the start.
+    /// Lists the particles, numbered from `first`: their places (m) and velocities (m/s) at the
+    /// start, and the pins that hold them then. What has flowed in has flown straight on.
     pub fn particles(
         &self,
         first: usize,
@@ -89,7 +89,11 @@ impl Column {
             let last = layer >= self.layers;
             // The last layers stop where they close the opening.
             let end = if last { flows_until } else { until };
-            let gone = self.ahead.min(self.ahead + end);
+            let gone = if last {
+                self.ahead.min(self.ahead + end)
+            } else {
+                self.ahead
+            };
             let here = place + self.velocity * gone;
             if end <= 0.0 {
                 let closes = last.then(|| Held::new(i, Path::Still(here)));
@@ -98,7 +102,7 @@ impl Column {
                 } else {
                     self.velocity
                 };
-                return (place, velocity, closes);
+                return (here, velocity, closes);
             }
             let path = Path::Line {
                 from: here,
@@ -110,7 +114,7 @@ impl Column {
                 until: (!last).then_some(until),
                 ..Held::new(i, path)
             };
-            (place, self.velocity, Some(held))
+            (here, self.velocity, Some(held))
         })
     }
 

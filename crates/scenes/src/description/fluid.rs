@@ -89,7 +89,8 @@ pub struct Inflow {
     pub velocity: Triple,
     /// Time for which the liquid flows (s).
     pub duration: f64,
-    /// Time for which it has flowed at the start (s); 0 if not given.
+    /// Time for which it has flowed at the start (s), straight on if no state is given; 0 if not
+    /// given.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub ahead: f64,
 }

@@ -1,5 +1,7 @@
 //! Fluids: the places of their particles and walls, and their faults.
 
+use a3_core::Mechanics;
+
 use super::*;
 
 /// A fluid has its particles in the middle of the cells of its box, and walls on the same lattice
@@ -274,5 +276,37 @@ fn outflows_open_walls() {
     ] {
         let said = said(&text.replacen(there, instead, 1));
         assert!(said.contains(expected), "{said}");
+    }
+}
+
+/// What has flowed in before the start has flown straight on, at its distance from all else, and a
+/// swing leaves the column as it is.
+#[test]
+fn a_flow_may_have_begun_before() {
+    let ahead = FILLED.replacen("duration = 1 }", "duration = 1, ahead = 0.4 }", 1);
+    let swing = "[swing]\namplitude = [0.1, 0, 0]\nrate = 3\n";
+    for text in [
+        ahead.clone(),
+        ahead.replacen("[[fluid]]", &format!("{swing}[[fluid]]"), 1),
+    ] {
+        let scene = set_up(&text).unwrap().scene;
+        let n = scene.model.particles();
+        let network = scene.model.network().unwrap();
+        let fluid = network.fluid().unwrap();
+        let (_, nearest) = fluid.nearest_pair(&scene.state[..3 * n]).unwrap();
+        assert!(nearest > 0.9 * fluid.law().spacing, "{nearest}");
+        // Layers that have flown for 0.4 s at 2 m/s, less half of one.
+        let farthest = scene.state[..n].iter().zip(network.inverse_masses());
+        let farthest = farthest.filter(|(_, w)| **w > 0.0).map(|(x, _)| *x);
+        let farthest = farthest.fold(f64::NEG_INFINITY, f64::max);
+        assert!((farthest - (0.8 - 0.0625)).abs() < 1e-9, "{farthest}");
+        let method = a3_core::integrators::find("verlet").unwrap();
+        let step = a3_core::Control::Step(0.001);
+        let mut run = a3_core::Simulation::new(scene, method, step).unwrap();
+        run.set_swinging(true);
+        run.advance_to(0.7).unwrap();
+        let network = run.model().network().unwrap();
+        // Sixteen layers in all, of four particles; the three last ones close the hole.
+        assert_eq!((0..n).filter(|i| !network.is_pinned(*i)).count(), 4 * 16);
     }
 }

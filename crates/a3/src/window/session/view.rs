@@ -2,8 +2,9 @@
 
 use std::f32::consts::FRAC_PI_2;
 
+use a3_core::{Network, Vector3};
 use a3_render::Camera;
-use a3_scenes::Splice;
+use a3_scenes::{Splice, surroundings};
 
 use super::pane::Pane;
 use crate::draw::show;
@@ -108,12 +109,16 @@ impl View {
         }
     }
 
-    /// Moves the camera, without turning it, so that all particles of all panes are visible.
+    /// Moves the camera, without turning it, so that all particles of all panes are visible, and the
+    /// obstacles and the floor near them. Liquid that has flowed out is not looked for.
     pub fn see_all(&mut self, panes: &[Pane]) {
         let (mut low, mut high) = ([f32::INFINITY; 3], [f32::NEG_INFINITY; 3]);
         for pane in panes {
             let run = &pane.simulation;
-            for point in (0..run.particles()).map(|i| run.position(i)) {
+            let fluid = run.model().network().and_then(Network::fluid);
+            let has_left = |i: &usize| fluid.is_some_and(|fluid| fluid.has_left(*i));
+            let seen = (0..run.particles()).filter(|i| !has_left(i));
+            for point in seen.map(|i| run.position(i)) {
                 for axis in 0..3 {
                     low[axis] = low[axis].min(point[axis] as f32);
                     high[axis] = high[axis].max(point[axis] as f32);
@@ -123,8 +128,14 @@ impl View {
         let middle = [0, 1, 2].map(|axis| 0.5 * (low[axis] + high[axis]));
         let [x, y, z] = [0, 1, 2].map(|axis| 0.5 * (high[axis] - low[axis]));
         // Leave room for what is drawn around particles.
-        let radius = x.hypot(y).hypot(z) + 0.1;
-        self.camera.see(middle, radius);
+        let radius = x.hypot(y).hypot(z) + 0.1 * self.camera.unit();
+        let middle = Vector3::from(middle.map(f64::from));
+        let (middle, radius) = panes
+            .iter()
+            .fold((middle, f64::from(radius)), |ball, pane| {
+                surroundings(pane.simulation.model(), pane.simulation.time(), ball)
+            });
+        self.camera.see(show::to_f32(middle), radius as f32);
     }
 
     /// Turns the camera to the next view (from the front, from the right, or from above), and
