@@ -202,6 +202,20 @@ fn not_solved(residual: f64, f: &mut fmt::Formatter<'_>) -> fmt::Result {
     }
 }
 
+/// Number that is written with three significant digits.
+#[derive(Clone, Copy, Debug)]
+pub struct Rounded(pub f64);
+
+impl fmt::Display for Rounded {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let rounded = format!("{:.2e}", self.0);
+        match rounded.parse::<f64>() {
+            Ok(x) if x == 0.0 || (1e-4..1e7).contains(&x.abs()) => write!(f, "{x}"),
+            _ => f.write_str(&rounded),
+        }
+    }
+}
+
 impl fmt::Display for BlowUp {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self {
@@ -210,11 +224,7 @@ impl fmt::Display for BlowUp {
         write!(f, "blew up at step {step}, t = {time:.4} s: ")?;
         match cause {
             Cause::Away { particle, distance } => {
-                if *distance >= 10.0 {
-                    write!(f, "particle {particle} is {distance:.0} m away")
-                } else {
-                    write!(f, "particle {particle} is {distance:.1e} m away")
-                }
+                write!(f, "particle {particle} is {} m away", Rounded(*distance))
             }
             Cause::Gained {
                 energy,
@@ -222,7 +232,9 @@ impl fmt::Display for BlowUp {
                 speed,
             } => write!(
                 f,
-                "it gained {energy:.3e} J that nothing put in, and particle {particle} moves at {speed:.0} m/s"
+                "it gained {} J that nothing put in, and particle {particle} moves at {} m/s",
+                Rounded(*energy),
+                Rounded(*speed)
             ),
             Cause::NotFinite { particle } => {
                 write!(

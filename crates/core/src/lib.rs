@@ -101,7 +101,7 @@ pub use control::Control;
 pub use coupling::{AxialCoupling, BlockCoupling, Coupling, Diagonal, GeneralCoupling, Matrix};
 pub use elements::Sheet;
 pub use energy::Energy;
-pub use error::{BlowUp, Cause, ConstraintName, Error, Unmet, Vertex};
+pub use error::{BlowUp, Cause, ConstraintName, Error, Rounded, Unmet, Vertex};
 pub use failure::Outcome;
 pub use grid::{Grid, MAX_PARTICLES};
 pub use integrators::{Integrator, Method, Work};

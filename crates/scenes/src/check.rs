@@ -5,19 +5,27 @@ use std::fmt::Display;
 use crate::fault::Fault;
 
 /// Largest magnitude of a number of a scene, in any unit: its square fits into single precision.
-const MAX_NUMBER: f64 = 1e9;
+const MAX_NUMBER: f64 = 1e13;
 
-/// Message for a number beyond the bounds.
-pub(crate) const BOUNDS: &str = "it must be a number from -1e9 to 1e9";
+/// Largest magnitude of a coordinate (m).
+const MAX_COORDINATE: f64 = 1e9;
 
-/// Whether a number is within the bounds, and not NaN.
+/// Message for a place with a coordinate beyond the bounds.
+pub(crate) const COORDINATES: &str = "each coordinate must be a number from -1e9 to 1e9";
+
+/// Whether a number of a scene is within the bounds, and not NaN.
 pub(crate) fn within(x: f64) -> bool {
     x.abs() <= MAX_NUMBER
 }
 
-/// Returns the message for a number that is not.
+/// Whether a coordinate is within the bounds, and not NaN.
+pub(crate) fn is_coordinate(x: f64) -> bool {
+    x.abs() <= MAX_COORDINATE
+}
+
+/// Returns the message for a number of a scene that is not within the bounds.
 pub(crate) fn beyond(x: f64) -> String {
-    format!("{BOUNDS}, not {x:e}")
+    format!("it must be a number from -1e13 to 1e13, not {x:e}")
 }
 
 /// Turns the error of a result into a fault of a key.

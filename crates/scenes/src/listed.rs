@@ -44,7 +44,7 @@ const NAMES: &[(&str, &str)] = &[
 ///
 /// # Errors
 /// The text is not JSON, a key is unknown or missing, a value is of the wrong kind, or a
-/// number is not from -1e9 to 1e9.
+/// number is not from -1e13 to 1e13.
 pub fn parse_json(text: &str) -> Result<(Description, Places), Fault> {
     let (listed, places): (Listed, Places) = reader::read_json(text)?;
     let pin = Pin {

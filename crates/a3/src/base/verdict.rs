@@ -1,7 +1,7 @@
 //! Messages about failed runs without a window: a step that would have held, energy that nothing
 //! put in, and constraints that are not met.
 
-use a3_core::{Cause, Control, Error, Simulation, Unmet};
+use a3_core::{Cause, Control, Error, Rounded, Scene, Simulation, Unmet, Vector3};
 
 use crate::base::failure::Failure;
 use crate::base::holding::step_that_holds;
@@ -24,6 +24,9 @@ fn advice(run: &Simulation, error: &Error, until: f64) -> String {
     let Error::BlowUp(lost) = error else {
         return String::new();
     };
+    if let Some(inside) = inside(run.scene()) {
+        return format!("; {inside}");
+    }
     match (lost.cause, lost.control) {
         (Cause::StepTooSmall { .. }, _) => "; a larger tolerance may do".into(),
         (Cause::ReadsVelocity | Cause::Pinched { .. } | Cause::Contradiction(_), _)
@@ -38,6 +41,30 @@ fn advice(run: &Simulation, error: &Error, until: f64) -> String {
     }
 }
 
+/// Least depth of a particle inside an obstacle at the start, over the radius of the scene, that is
+/// reported.
+const MIN_DEPTH: f64 = 1e-6;
+
+/// Returns a clause that names the free particle that begins deepest inside an obstacle, if one
+/// does: it is moved out in the first step, and gains the energy of its place there.
+fn inside(scene: &Scene) -> Option<String> {
+    let (network, n) = (scene.model.network()?, scene.model.particles());
+    let least = MIN_DEPTH * scene.extent().1;
+    let free = (0..n).filter(|i| !network.is_pinned(*i));
+    let depths = free.flat_map(|i| {
+        let place = Vector3::from([0, 1, 2].map(|axis| scene.state[axis * n + i]));
+        let obstacles = network.obstacles().iter().enumerate();
+        obstacles.map(move |(k, obstacle)| (obstacle.depth(0.0, place), i, k))
+    });
+    let deepest = depths.filter(|(depth, ..)| *depth > least);
+    let (depth, i, k) = deepest.max_by(|a, b| a.0.total_cmp(&b.0))?;
+    let name = network.obstacles()[k].shape.name();
+    Some(format!(
+        "particle {i} begins {} m inside the {name} and was moved out; it should begin outside",
+        Rounded(depth)
+    ))
+}
+
 /// Warns on stderr of energy that nothing put into a run, and of constraints that it did not meet.
 pub fn warn(run: &Simulation) {
     let (what, better) = match run.control() {
@@ -45,9 +72,11 @@ pub fn warn(run: &Simulation) {
         Control::Tolerance(tolerance) => (format!("the tolerance of {tolerance:e}"), "smaller"),
     };
     if let Some(gain) = run.gained() {
+        let advice = inside(run.scene()).unwrap_or_else(|| format!("{what} should be {better}"));
         terminal::warn(&format!(
-            "warning: the run gained {:.3e} J that nothing put in, {:.1} times the energy of the scene: {what} should be {better}",
-            gain.energy, gain.share
+            "warning: the run gained {} J that nothing put in, {} times the energy of the scene: {advice}",
+            Rounded(gain.energy),
+            Rounded(gain.share)
         ));
     }
     if let Some(unmet) = run.worst_constraint().filter(Unmet::is_visible) {

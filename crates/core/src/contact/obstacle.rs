@@ -1,5 +1,7 @@
 //! Obstacles: a shape on a path, with friction and restitution.
 
+use nalgebra::Vector3;
+
 use crate::error::{Error, at_least, share};
 use crate::geometry::Shape;
 use crate::path::{Path, Pose, Turn};
@@ -44,6 +46,14 @@ impl Obstacle {
             place: self.path.at(t),
             orientation: self.turn.map(|turn| turn.orientation(t)),
         }
+    }
+
+    /// Returns the depth (m) of a place (m) inside at time t (s); below 0 outside.
+    #[must_use]
+    pub fn depth(&self, t: f64, place: Vector3<f64>) -> f64 {
+        let pose = self.at(t);
+        let seen = pose.inwards(place - pose.place.position);
+        -self.shape.separation(seen).distance
     }
 
     /// Whether it neither moves nor turns.

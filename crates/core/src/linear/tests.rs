@@ -8,7 +8,7 @@ use crate::random::SplitMix;
 use crate::spring::{Spring, SpringKind, SpringLaw};
 use crate::{Grid, Network, Path, Sheet, Vector3};
 
-/// Returns A flat square of springs of one stiffness, a corner pinned and everything a little out
+/// Returns a flat square of springs of one stiffness, a corner pinned and everything a little out
 /// of place.
 pub(super) fn cloth(side: usize, stiffness: f64) -> (Network, Vec<f64>) {
     let grid = Grid::new(side, side).unwrap();
@@ -33,7 +33,7 @@ pub(super) fn cloth(side: usize, stiffness: f64) -> (Network, Vec<f64>) {
     (network, x)
 }
 
-/// Returns A line of springs, its first particle pinned.
+/// Returns a line of springs, its first particle pinned.
 pub(super) fn chain(count: usize, stiffness: f64) -> (Network, Vec<f64>) {
     let mut network = Network::new(vec![1.0 / count as f64; count]).unwrap();
     let spacing = 1.0 / count as f64;
@@ -50,7 +50,7 @@ pub(super) fn chain(count: usize, stiffness: f64) -> (Network, Vec<f64>) {
     (network, x)
 }
 
-/// Returns A cube of single springs between neighbours in all directions, a corner pinned.
+/// Returns a cube of single springs between neighbours in all directions, a corner pinned.
 pub(super) fn jelly(side: usize, stiffness: f64) -> (Network, Vec<f64>) {
     let n = side * side * side;
     let mut network = Network::new(vec![1.0 / n as f64; n]).unwrap();

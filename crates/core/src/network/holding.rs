@@ -10,7 +10,7 @@ use crate::error::Unmet;
 /// Time ahead in which a contradiction is looked for, over the time in which errors decay.
 const LOOK_AHEAD: f64 = 0.1;
 
-/// Returns A constraint that cannot be met near x (m) at time t (s), or soon after, because it
+/// Returns a constraint that cannot be met near x (m) at time t (s), or soon after, because it
 /// contradicts others or the pins. `None` for networks with rigid bodies, for which it is not
 /// known.
 pub(crate) fn contradiction(network: &Network, t: f64, x: &[f64], radius: f64) -> Option<Unmet> {

@@ -12,7 +12,7 @@ use super::pins::{Pinned, pins};
 use crate::budget::{
     BODIES, Budget, PARTICLES, PARTS, PINS, RODS, SMOOTHED, SPRINGS, STRIPS, TETRAHEDRA, TOUCHING,
 };
-use crate::check::{BOUNDS, within};
+use crate::check::{COORDINATES, is_coordinate};
 use crate::description::{Pin, Spot};
 use crate::fault::Fault;
 use crate::surface::Surface;
@@ -178,9 +178,10 @@ impl Assembly {
     /// each mass has a finite reciprocal.
     fn check(&self, first: usize) -> Result<(), Fault> {
         for (i, p) in self.positions[first..].iter().enumerate() {
-            if !p.iter().all(|x| within(*x)) {
+            if !p.iter().all(|x| is_coordinate(*x)) {
                 let [x, y, z]: [f64; 3] = (*p).into();
-                let why = format!("its particle {i} would be at ({x:e}, {y:e}, {z:e}): {BOUNDS}");
+                let why =
+                    format!("its particle {i} would be at ({x:e}, {y:e}, {z:e}): {COORDINATES}");
                 return Err(Fault::new("", why));
             }
         }

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use a3_core::contact::Skin;
 use a3_core::elements::{Fluid as Liquid, FluidLaw, Outflow};
-use a3_core::{Network, Path, Pin as Held, Vector3};
+use a3_core::{Network, Path, Pin as Held, Rounded, Vector3};
 
 use super::assembly::{Assembly, Body, Counts};
 use super::inflow::Column;
@@ -258,9 +258,10 @@ pub(super) fn add(
         && distance < MIN_DISTANCE * law.spacing
     {
         let why = format!(
-            "particles {i} and {j} would begin {distance} m apart; at least {} is needed, so that \
-             they do not fly apart",
-            MIN_DISTANCE * law.spacing
+            "particles {i} and {j} would begin {} m apart; at least {} m is needed, so that they do \
+             not fly apart",
+            Rounded(distance),
+            Rounded(MIN_DISTANCE * law.spacing)
         );
         return Err(Fault::new("fluid", why));
     }

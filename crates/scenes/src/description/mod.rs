@@ -188,7 +188,7 @@ impl Description {
     ///
     /// # Errors
     /// The text is not TOML or too long, a key is unknown or missing, a value is of the
-    /// wrong kind, or a number is not from -1e9 to 1e9.
+    /// wrong kind, or a number is not from -1e13 to 1e13.
     pub fn parse(text: &str) -> Result<Self, Fault> {
         parse_toml(text).map(|(description, _)| description)
     }

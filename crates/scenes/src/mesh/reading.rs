@@ -2,7 +2,7 @@
 
 use super::data::Mesh;
 use super::{gltf, gmsh, obj, ply, stl, tetgen};
-use crate::check::{BOUNDS, within};
+use crate::check::{COORDINATES, is_coordinate};
 use crate::description::Triple;
 use crate::text::unmarked;
 
@@ -67,12 +67,12 @@ impl Mesh {
             return Err("the file has no triangles".into());
         }
         let mesh = self.with_areas()?.in_use(first);
-        let far = |p: &Triple| p.iter().any(|x| !within(*x));
+        let far = |p: &Triple| p.iter().any(|x| !is_coordinate(*x));
         if let Some(i) = mesh.positions.iter().position(far) {
             let [x, y, z] = mesh.positions[i];
             let number = mesh.number(i);
             return Err(format!(
-                "point {number} is at ({x:e}, {y:e}, {z:e}): {BOUNDS}"
+                "point {number} is at ({x:e}, {y:e}, {z:e}): {COORDINATES}"
             ));
         }
         Ok(mesh)

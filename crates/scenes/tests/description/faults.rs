@@ -14,7 +14,7 @@ const WRONG: &[(&str, &str, &str)] = &[
     (
         "spacing = 0.5",
         "spacing = nan",
-        "line 5: cloth.spacing: it must be a number from -1e9 to 1e9",
+        "line 5: cloth.spacing: it must be a number from -1e13 to 1e13",
     ),
     (
         "spacing = 0.5",
@@ -59,7 +59,7 @@ const WRONG: &[(&str, &str, &str)] = &[
     (
         "stiffness = [10, 5, 2]",
         "stiffness = [10, 5, inf]",
-        "line 7: cloth.stiffness: it must be a number from -1e9 to 1e9, not inf",
+        "line 7: cloth.stiffness: it must be a number from -1e13 to 1e13, not inf",
     ),
     (
         "mass = 0.1",
@@ -69,7 +69,7 @@ const WRONG: &[(&str, &str, &str)] = &[
     (
         "at = [0, 2, 0]",
         "at = [0, 2e300, 0]",
-        "line 8: cloth.at: it must be a number from -1e9 to 1e9",
+        "line 8: cloth.at: it must be a number from -1e13 to 1e13",
     ),
     (
         "at = [0, 2, 0]",
@@ -160,7 +160,7 @@ const WRONG: &[(&str, &str, &str)] = &[
     (
         "gravity = [0, -9.81, 0]",
         "box = [{ center = [0, 0, 0], size = [1, 1, 1] }, { center = [0, 0, 0], size = [1, 1, 1], friction = nan }]",
-        "line 1: box.1.friction: it must be a number from -1e9 to 1e9, not NaN",
+        "line 1: box.1.friction: it must be a number from -1e13 to 1e13, not NaN",
     ),
     (
         "gravity = [0, -9.81, 0]",
@@ -225,7 +225,7 @@ const WRONG: &[(&str, &str, &str)] = &[
     (
         "gravity = [0, -9.81, 0]",
         "floor = { height = 0, friction = inf }",
-        "line 1: floor.friction: it must be a number from -1e9 to 1e9, not inf",
+        "line 1: floor.friction: it must be a number from -1e13 to 1e13, not inf",
     ),
     (
         "gravity = [0, -9.81, 0]",

@@ -40,7 +40,7 @@ const JSON: &[(&str, &str, &str)] = &[
     (
         "[1, 1]",
         "[1, 1e999]",
-        "line 2: mass: it must be a number from -1e9 to 1e9, not inf",
+        "line 2: mass: it must be a number from -1e13 to 1e13, not inf",
     ),
     (
         "[1, 1]",

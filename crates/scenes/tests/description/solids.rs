@@ -121,7 +121,7 @@ fn what_is_wrong_with_a_solid_is_said() {
         ),
         (
             "young = 1e5",
-            "young = 1e12",
+            "young = 1e14",
             "line 5: solid.young: it must be a number from",
         ),
         (

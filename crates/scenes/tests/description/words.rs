@@ -90,7 +90,7 @@ const TOML: &[(&str, &str, &str)] = &[
     (
         "spacing = 0.5",
         "spacing = 1e400",
-        "line 5: cloth.spacing: it must be a number from -1e9 to 1e9",
+        "line 5: cloth.spacing: it must be a number from -1e13 to 1e13",
     ),
     (
         "spacing = 0.5",

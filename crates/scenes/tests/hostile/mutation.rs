@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 
 /// Words that readers have stumbled over.
-const WORDS: [&str; 30] = [
+const WORDS: [&str; 31] = [
     "1e308",
     "-1e308",
     "nan",
@@ -16,6 +16,7 @@ const WORDS: [&str; 30] = [
     "4e9",
     "4000000000",
     "1e9",
+    "1e13",
     "18446744073709551615",
     "-9223372036854775808",
     "2147483648",

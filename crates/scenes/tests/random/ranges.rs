@@ -73,7 +73,7 @@ pub const NUMBERS: &[(&[&str], Range)] = &[
 ];
 
 /// Numbers that make sense for hardly any key.
-pub const ODD: [f64; 9] = [0.0, -0.0, -1.0, 1e-9, 1e-5, 1e3, 1e6, 1e9, -1e9];
+pub const ODD: [f64; 10] = [0.0, -0.0, -1.0, 1e-9, 1e-5, 1e3, 1e6, 1e9, -1e9, 1e13];
 
 /// Whole numbers of each key: smallest and largest.
 pub const COUNTS: &[(&[&str], usize, usize)] = &[

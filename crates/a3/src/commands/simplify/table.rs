@@ -162,8 +162,13 @@ pub fn of_lean(answer: &Answer, unit: &str) -> String {
     if changes.is_empty() {
         return format!("nothing can be left out that would save time\n{of_whole}");
     }
+    let times = if times < 1.05 {
+        "no cheaper in this measurement".into()
+    } else {
+        format!("{times:.1} times cheaper")
+    };
     format!(
-        "leanest scene, {times:.1} times cheaper: {}\n{of_whole}  lean   {}, {}: error {} {unit} in all, {} {unit} of it \
+        "leanest scene, {times}: {}\n{of_whole}  lean   {}, {}: error {} {unit} in all, {} {unit} of it \
          the model's, {} a simulated second\n",
         changes.join("; "),
         solved.method.title,
