@@ -1,6 +1,6 @@
 //! Fluids against laws of physics: conserved quantities, exact solutions, and an experiment.
 
-use a3_core::{Control, Linearized, Mechanics, Model, Network, Scene, Simulation, Vector3};
+use a3_core::{Control, Linearized, Mechanics, Network, Scene, Simulation, Vector3};
 
 use crate::common::{described, distance, method, scene, size};
 use crate::networks::Random;
@@ -164,45 +164,6 @@ fn a_drop_becomes_the_ellipse_of_its_equation() {
     }
     assert!(b > 1.9);
     assert!(drift < 1e-4 * before, "{:e}", drift / before);
-}
-
-/// In a tank at rest the pressure is the weight of the water above, to 3 % of that at the bottom.
-#[test]
-fn water_at_rest_has_hydrostatic_pressure() {
-    let mut scene = described(
-        "gravity = [0, -9.81, 0]
-        [[fluid]]
-        dimensions = 2
-        size = [1, 1, 0]
-        spacing = 0.04
-        at = [0, 0.5, 0]
-        density = 1000
-        sound = 30
-        viscosity = 0.03
-        tank = { size = [1, 1.2, 0], at = [0, 0.6, 0] }",
-    );
-    // Drag brings the water to rest sooner.
-    if let Model::Network(network) = &mut scene.model {
-        network.set_drag(4.0 * network.masses()[0]).unwrap();
-    }
-    let mut run = Simulation::new(scene, method("verlet"), Control::Step(6e-4)).unwrap();
-    run.advance_to(2.5).unwrap();
-    let (n, y) = (run.particles(), run.state());
-    let network = run.model().network().unwrap();
-    let pressures = network.fluid().unwrap().pressures(&y[..3 * n]);
-    let free = || (0..n).filter(|i| !network.is_pinned(*i));
-    // Means over slices of two and a half rows.
-    for slice in 0..9 {
-        let low = 0.1 * f64::from(slice);
-        let inside: Vec<_> = free()
-            .filter(|i| (low..low + 0.1).contains(&y[n + i]))
-            .collect();
-        let above = free().filter(|i| y[n + i] >= low + 0.1).count() as f64;
-        let weight = 9.81 * network.masses()[0] * (above + 0.5 * inside.len() as f64);
-        let mean = inside.iter().map(|i| pressures[*i]).sum::<f64>() / inside.len() as f64;
-        let error = (mean - weight) / (1000.0 * 9.81);
-        assert!(error.abs() < 0.03, "{low}: {error}");
-    }
 }
 
 /// Times T = t (2 g / a)^1/2 at which the front of a column of the width a and the height 2 a is at

@@ -15,6 +15,7 @@ mod forces;
 mod friction;
 mod gas;
 mod honey;
+mod hydrostatics;
 mod networks;
 mod outflow;
 mod restitution;

@@ -3,6 +3,8 @@
 //! 1995; Dehnen, Aly, *Improving convergence in smoothed particle hydrodynamics simulations without
 //! pairing instability*, 2012).
 
+use super::triple::{Triple, dot, minus};
+
 /// Reach of the kernel over the spacing of the particles.
 const RELATIVE_REACH: f64 = 2.6;
 
@@ -64,6 +66,27 @@ fn shape(q: f64) -> f64 {
     let rest = (1.0 - q).max(0.0);
     let square = rest * rest;
     square * square * (1.0 + 4.0 * q)
+}
+
+/// Visits the particles within the kernel's reach of particle i: the number of each, the vector
+/// from it to i, and the distance (m).
+#[inline]
+pub(super) fn each(
+    kernel: Kernel,
+    x: &[Triple],
+    i: usize,
+    near: &[u32],
+    mut visit: impl FnMut(usize, Triple, f64),
+) {
+    let (here, most) = (x[i], kernel.reach * kernel.reach);
+    for j in near {
+        let j = *j as usize;
+        let d = minus(here, x[j]);
+        let square = dot(d, d);
+        if square < most {
+            visit(j, d, square.sqrt());
+        }
+    }
 }
 
 #[cfg(test)]

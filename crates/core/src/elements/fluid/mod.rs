@@ -23,7 +23,7 @@ use crate::energy::Energy;
 use crate::error::Error;
 use crate::scratch::Scratch;
 use crate::threads::threads;
-use kernel::Kernel;
+use kernel::{Kernel, each};
 use neighbours::Neighbours;
 use triple::{Triple, add_scaled, dot, minus, squared_distance};
 
@@ -106,14 +106,35 @@ impl Fluid {
         })
     }
 
-    /// Returns the pressure (Pa) at each particle at x (m), n x 3.
+    /// Returns the pressure (Pa) at each particle at x (m), n x 3: the mean of the normal stresses
+    /// of its pressure forces, `p_i = sum F_ij . (x_i - x_j) / (2 dimensions V_i)`, in a volume of
+    /// at most that at rest. It carries the weight of the fluid above. Tait's pressure does so less
+    /// exactly, because the sum of the kernel is too small at surfaces.
     #[must_use]
     pub fn pressures(&self, x: &[f64]) -> Vec<f64> {
-        let densities = self.densities(x);
-        densities
-            .into_iter()
-            .map(|d| self.law.pressure(d))
-            .collect()
+        self.scratch.lend(|buffers| {
+            self.weigh(x, buffers);
+            let Buffers {
+                neighbours,
+                x,
+                densities,
+                pushes,
+                ..
+            } = buffers;
+            pushes.clear();
+            pushes.extend(densities.iter().map(|density| self.law.push(*density)));
+            let kernel = self.kernel;
+            let share = -0.5 * self.law.mass() / f64::from(self.law.dimensions);
+            let mut pressures = vec![0.0; x.len()];
+            neighbours.map(&mut pressures, self.is_shared(), |i, near| {
+                let mut sum = 0.0;
+                each(kernel, x, i, near, |j, _, r| {
+                    sum += (pushes[i] + pushes[j]) * kernel.slope(r) * (r * r);
+                });
+                share * densities[i].max(self.law.density) * sum
+            });
+            pressures
+        })
     }
 
     /// Returns the two particles that are nearest to each other at x (m), n x 3, and their distance
@@ -186,27 +207,6 @@ impl Fluid {
             each(kernel, places, i, near, |_, _, r| sum += kernel.value(r));
             mass * sum
         });
-    }
-}
-
-/// Visits the particles within the kernel's reach of particle i: the number of each, the vector
-/// from it to i, and the distance (m).
-#[inline]
-fn each(
-    kernel: Kernel,
-    x: &[Triple],
-    i: usize,
-    near: &[u32],
-    mut visit: impl FnMut(usize, Triple, f64),
-) {
-    let (here, most) = (x[i], kernel.reach * kernel.reach);
-    for j in near {
-        let j = *j as usize;
-        let d = minus(here, x[j]);
-        let square = dot(d, d);
-        if square < most {
-            visit(j, d, square.sqrt());
-        }
     }
 }
 
