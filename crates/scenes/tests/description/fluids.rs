@@ -272,6 +272,14 @@ fn outflows_open_walls() {
             "size = [0.25, 0.375, 1]",
             "outflow[0].size: in two dimensions, its last number is 0, not 1",
         ),
+        (
+            "outflow = [",
+            &format!(
+                "outflow = [{}",
+                "{ size = [1, 1, 0], at = [9, 9, 0] },".repeat(100)
+            ),
+            "fluid.outflow: there are 101, more than 100",
+        ),
         ("at = [2, -0.1875, 0]", "to = 3", "outflow"),
     ] {
         let said = said(&text.replacen(there, instead, 1));
