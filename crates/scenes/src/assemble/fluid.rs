@@ -8,7 +8,7 @@ use a3_core::{Network, Path, Pin as Held, Rounded, Vector3};
 
 use super::assembly::{Assembly, Body, Counts};
 use super::inflow::Column;
-use super::outflow::{SLACK, spaces};
+use super::outflow::{MAX_OUTFLOWS, SLACK, spaces};
 use super::places::{LAYERS, Places};
 use super::skins::point_skin;
 use crate::check::{at, at_least, positive};
@@ -253,6 +253,13 @@ pub(super) fn add(
     let particles = particles.into_iter().chain(soaked).flatten();
     let particles = particles.map(|i| i as u32);
     let fluid = at("fluid", Liquid::new(law, particles.collect()))?;
+    if outflows.len() > MAX_OUTFLOWS {
+        let why = format!(
+            "there are {} outflows, more than {MAX_OUTFLOWS}",
+            outflows.len()
+        );
+        return Err(Fault::new("fluid", why));
+    }
     let fluid = at("fluid", fluid.with_outflows(outflows))?;
     if let Some(([i, j], distance)) = fluid.nearest_pair(x)
         && distance < MIN_DISTANCE * law.spacing

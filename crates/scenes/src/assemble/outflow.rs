@@ -10,18 +10,11 @@ use crate::fault::Fault;
 /// Distance outside an outflow at which a particle is inside, relative to the spacing.
 pub(super) const SLACK: f64 = 1e-6;
 
-/// Largest number of outflows of a fluid.
-const MAX_OUTFLOWS: usize = 100;
+/// Largest number of outflows of all fluids of a scene.
+pub(super) const MAX_OUTFLOWS: usize = 100;
 
 /// Returns the outflows of a fluid. In two dimensions they are two spacings thick.
 pub(super) fn spaces(fluid: &Fluid) -> Result<Vec<Space>, Fault> {
-    if fluid.outflow.len() > MAX_OUTFLOWS {
-        let why = format!(
-            "there are {}, more than {MAX_OUTFLOWS}",
-            fluid.outflow.len()
-        );
-        return Err(Fault::new("outflow", why));
-    }
     let spaces = fluid.outflow.iter().enumerate().map(|(k, outflow)| {
         let space = space(outflow, fluid);
         space.map_err(|fault| fault.within(&format!("outflow[{k}]")))

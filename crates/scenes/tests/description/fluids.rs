@@ -278,7 +278,7 @@ fn outflows_open_walls() {
                 "outflow = [{}",
                 "{ size = [1, 1, 0], at = [9, 9, 0] },".repeat(100)
             ),
-            "fluid.outflow: there are 101, more than 100",
+            "fluid: there are 101 outflows, more than 100",
         ),
         ("at = [2, -0.1875, 0]", "to = 3", "outflow"),
     ] {
