@@ -269,7 +269,8 @@ mod tests {
     use crate::geometry::closest;
     use crate::random::SplitMix;
 
-    /// Random pairs, some with parallel or flat primitives, points and equal vertices.
+    /// Draws the points of a random pair: some pairs have parallel or flat primitives, points or
+    /// equal vertices.
     fn random_points(random: &mut SplitMix) -> [Vector3<f64>; 4] {
         let mut point = || Vector3::from_fn(|_, _| random.between(-1.0, 1.0));
         let mut points = [point(), point(), point(), point()];

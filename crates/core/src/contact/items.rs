@@ -24,8 +24,8 @@ pub(super) struct Items {
 }
 
 impl Items {
-    /// The vertices, edges and sides of these triangles, and those edges and points that are in
-    /// none of them. They rank after all items of `others`.
+    /// Collects the vertices, edges and sides of these triangles, and those edges and points that
+    /// are in none of them. They rank after all items of `others`.
     pub fn new(
         triangles: impl IntoIterator<Item = [u32; 3]>,
         edges: impl IntoIterator<Item = [u32; 2]>,
@@ -57,7 +57,7 @@ impl Items {
         items
     }
 
-    /// Corners of the triangles.
+    /// Returns the corners of the triangles.
     pub fn triangles(&self) -> &[[u32; 3]] {
         &self.corners[..self.triangles]
     }

@@ -60,8 +60,8 @@ pub struct Strained {
 }
 
 impl StrainLimit {
-    /// Limit of these springs, each given by the particles at its ends and its longest length (m).
-    /// The inverse masses (1/kg) are 0 for pinned particles.
+    /// Creates the limit of these springs, each given by the particles at its ends and its longest
+    /// length (m). The inverse masses (1/kg) are 0 for pinned particles.
     #[must_use]
     pub fn new(
         springs: impl IntoIterator<Item = ([usize; 2], f64)>,
@@ -91,7 +91,8 @@ impl StrainLimit {
         Self { rows, tethers }
     }
 
-    /// Largest length of a spring at x (m) over its longest length, less 1; 0 if none is too long.
+    /// Returns the largest length of a spring at x (m) over its longest length, less 1; 0 if none
+    /// is too long.
     #[must_use]
     pub fn excess(&self, x: &[f64]) -> f64 {
         let n = x.len() / 3;
@@ -124,7 +125,7 @@ pub struct StrainLimiter {
 }
 
 impl StrainLimiter {
-    /// Phase with room for states of that length.
+    /// Creates a phase with room for states of length `dim`.
     #[must_use]
     pub fn new(dim: usize) -> Self {
         Self {
