@@ -187,7 +187,7 @@ impl Level {
     }
 }
 
-/// The couplings between aggregates, and the one that contains each finer coupling.
+/// Returns the couplings between aggregates, and the one that contains each finer coupling.
 fn join(finer: &[[u32; 2]], of: &[u32], count: usize) -> (Vec<[u32; 2]>, Vec<u32>) {
     let between = finer.iter().enumerate().filter_map(|(k, ends)| {
         let [a, b] = ends.map(|end| of[end as usize]);
