@@ -25,7 +25,7 @@ impl Trajectory {
         }
     }
 
-    /// Errors of a snapshot at frame k, counted from 1.
+    /// Returns the errors of a snapshot at frame k, counted from 1.
     pub fn errors(&self, k: u64, other: &Snapshot, scope: Scope) -> Errors {
         self.errors_of(&self.snapshots[k as usize - 1], other, scope)
     }
@@ -46,9 +46,9 @@ impl Trajectory {
         }
     }
 
-    /// Errors at the nearest end of the step of a model that encloses frame k, counted from 1.
-    /// Those of contact are unknown there, and infinite. The error of the positions is at least
-    /// that of interpolating the frame from the exact states at both ends of the step.
+    /// Returns the errors at the nearest end of the step of a model that encloses frame k, counted
+    /// from 1. Those of contact are unknown there, and infinite. The error of the positions is at
+    /// least that of interpolating the frame from the exact states at both ends of the step.
     pub fn errors_between(
         &self,
         (start, frames): (&Snapshot, Frames),
@@ -73,7 +73,7 @@ impl Trajectory {
         }
     }
 
-    /// Times (s) and snapshots of the frames nearest to a time t (s).
+    /// Returns the times (s) and snapshots of the frames nearest to a time t (s).
     fn around<'a>(
         &'a self,
         (start, frames): (&'a Snapshot, Frames),
