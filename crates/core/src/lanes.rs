@@ -31,7 +31,7 @@ impl<S: Simd> Lanes<S> {
         S::as_mut_simd_f64s(numbers).0[part] = self.value;
     }
 
-    /// The same number in each lane.
+    /// Puts the same number in each lane.
     #[inline(always)]
     pub fn splat(simd: S, x: f64) -> Self {
         let value = simd.splat_f64s(x);

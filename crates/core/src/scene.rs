@@ -68,7 +68,7 @@ impl Model {
         }
     }
 
-    /// Number of particles whose velocities follow the positions in the state.
+    /// Returns the number of particles whose velocities follow the positions in the state.
     pub(crate) fn particles_with_velocities(&self) -> usize {
         match self {
             Self::Points(_) => 0,
@@ -76,8 +76,8 @@ impl Model {
         }
     }
 
-    /// Number of coordinates that two states differ by, which come first in them: three of each
-    /// particle or, where there are none, all numbers.
+    /// Returns the number of coordinates that two states differ by, which come first in them: three
+    /// of each particle or, where there are none, all numbers.
     pub(crate) fn coordinates(&self) -> usize {
         match self.particles() {
             0 => self.system().dim(),
