@@ -47,7 +47,7 @@ impl Targets {
         }
     }
 
-    /// Width and height (px).
+    /// Returns the width and height (px).
     #[must_use]
     pub fn size(&self) -> (u32, u32) {
         self.size
