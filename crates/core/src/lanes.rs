@@ -43,7 +43,7 @@ impl<S: Simd> Lanes<S> {
         Self { value, ..self }
     }
 
-    /// Lanes in which self <= other.
+    /// Returns the lanes in which self <= other.
     #[inline(always)]
     pub fn at_most(self, other: Self) -> S::m64s {
         self.simd.less_than_or_equal_f64s(self.value, other.value)

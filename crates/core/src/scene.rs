@@ -85,7 +85,7 @@ impl Model {
         }
     }
 
-    /// Coordinates of a state y at time t (s), and their rates of change.
+    /// Returns the coordinates of a state y at time t (s), and their rates of change.
     pub(crate) fn motion<'a>(&self, t: f64, y: &'a [f64]) -> (&'a [f64], Cow<'a, [f64]>) {
         let n = 3 * self.particles_with_velocities();
         if n > 0 {

@@ -123,7 +123,7 @@ pub fn rgb(code: &str) -> [u8; 3] {
     [r, g, b]
 }
 
-/// Dashes and gaps; like SVG, repeats an odd number of lengths.
+/// Returns dashes and gaps. Like SVG, it repeats an odd number of lengths.
 pub fn dashes(lengths: &[f64]) -> Vec<f32> {
     let mut lengths: Vec<_> = lengths.iter().map(|d| *d as f32).collect();
     if lengths.len() % 2 == 1 {

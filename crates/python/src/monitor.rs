@@ -28,7 +28,7 @@ pub struct Monitor {
 }
 
 impl Monitor {
-    /// Is told of the functions of Python that take part.
+    /// Watches the functions of Python that take part.
     pub fn watch(&self, raised: &[Raised]) {
         self.change(|state| state.raised = raised.to_vec());
     }

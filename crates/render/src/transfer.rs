@@ -115,7 +115,7 @@ impl Transfer {
         self.pass(encoder, target).draw(0..3, 0..1);
     }
 
-    /// Does the same only for parts of the target.
+    /// Copies the picture, or lays the text, over parts of the target only.
     pub fn copy_parts(
         &self,
         encoder: &mut wgpu::CommandEncoder,

@@ -173,8 +173,8 @@ impl Reference {
         Cow::Owned(self.trajectory.at(start, model, t).positions().to_vec())
     }
 
-    /// Coordinates of a model (m) and their rates of change (m/s) at a time (s) up to the last
-    /// frame: known at frames, interpolated between them.
+    /// Returns the coordinates of a model (m) and their rates of change (m/s) at a time (s) up to
+    /// the last frame. They are known at frames, and interpolated between them.
     #[must_use]
     pub fn motion(&self, model: &Model, t: f64) -> [Vec<f64>; 2] {
         let start = (&self.start, self.frames);

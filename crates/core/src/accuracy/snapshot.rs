@@ -34,7 +34,7 @@ pub(super) struct Snapshot {
 }
 
 impl Snapshot {
-    /// Quantities of the state y of a model at time t (s), at which a run starts.
+    /// Creates a snapshot of the state y of a model at time t (s), at which a run starts.
     pub fn of(model: &Model, t: f64, y: &[f64]) -> Self {
         let Some(network) = model.network() else {
             let (positions, velocities) = model.motion(t, y);
@@ -79,8 +79,9 @@ impl Snapshot {
         }
     }
 
-    /// Quantities of the state y of a model at time t (s) that are compared between frames: without
-    /// those of contact, and without the energy if contact or rotations contribute to it.
+    /// Creates a snapshot of the state y of a model at time t (s), of the quantities that are
+    /// compared between frames: without those of contact, and without the energy if contact or
+    /// rotations contribute to it.
     pub fn between_frames(model: &Model, t: f64, y: &[f64]) -> Self {
         let Some(network) = model.network() else {
             return Self::of(model, t, y);
@@ -134,8 +135,7 @@ impl Snapshot {
         }
     }
 
-    /// Quantities of the state y of a model at time t (s), the next one of a run after this
-    /// snapshot.
+    /// Creates the next snapshot of a run after this one, of the state y of a model at time t (s).
     pub fn next(&self, model: &Model, t: f64, y: &[f64]) -> Self {
         let mut next = Self::of(model, t, y);
         if let Some(layer) = model.network().and_then(Network::contact_layer) {
@@ -148,7 +148,7 @@ impl Snapshot {
         next
     }
 
-    /// Quantities at time t (s) if nothing moves any more.
+    /// Returns the snapshot at time t (s) if nothing moves any more.
     pub fn still(&self, t: f64) -> Self {
         Self {
             impact: self.impact.still(t, self.penetration > 0.0),

@@ -30,12 +30,12 @@ impl Trajectory {
         self.errors_of(&self.snapshots[k as usize - 1], other, scope)
     }
 
-    /// Quantities of a model at time t (s), interpolated.
+    /// Returns a snapshot of a model at time t (s), interpolated.
     pub fn at(&self, start: (&Snapshot, Frames), model: &Model, t: f64) -> Snapshot {
         Snapshot::interpolated(model, &self.around(start, t), t)
     }
 
-    /// Coordinates of a model (m) and their rates of change (m/s) at time t (s).
+    /// Returns the coordinates of a model (m) and their rates of change (m/s) at time t (s).
     pub fn motion(&self, start: (&Snapshot, Frames), model: &Model, t: f64) -> [Vec<f64>; 2] {
         let (first, frames) = start;
         let k = (t / frames.spacing()).round() as u64;

@@ -125,7 +125,7 @@ fn unit<S: Simd>(a: [Lanes<S>; 3]) -> [Lanes<S>; 3] {
     times(a, one / dot(a, a).root())
 }
 
-/// Lanes that are in all three masks.
+/// Returns the lanes that are in all three masks.
 #[inline(always)]
 fn all<S: Simd>(simd: S, [a, b, c]: [S::m64s; 3]) -> S::m64s {
     simd.and_m64s(a, simd.and_m64s(b, c))

@@ -294,7 +294,7 @@ impl Tree {
         self.wholes[number].hull().grown(self.half)
     }
 
-    /// Primitives of a block.
+    /// Returns the primitives of a block.
     fn members(&self, block: u32) -> &[u32] {
         let first = block as usize * LANES;
         &self.order[first..self.order.len().min(first + LANES)]

@@ -68,7 +68,7 @@ impl Items {
     }
 }
 
-/// Ranks of values, counted from `first`.
+/// Ranks values, counted from `first`.
 fn ranks<T: Ord>(values: &[T], first: usize) -> Vec<u32> {
     let mut order: Vec<_> = (0..values.len()).collect();
     order.sort_by_key(|k| &values[*k]);

@@ -73,7 +73,7 @@ impl ContactPhase {
         &self.y0
     }
 
-    /// Statistics of the last step.
+    /// Returns the statistics of the last step.
     #[must_use]
     pub fn last(&self) -> Statistics {
         self.last

@@ -234,8 +234,8 @@ impl Ends<'_> {
     }
 }
 
-/// Tethers of all particles that springs connect to a pin: to the nearest pin, by the sum of
-/// longest lengths along springs (Dijkstra, 1959).
+/// Returns the tethers of all particles that springs connect to a pin: to the nearest pin, by the
+/// sum of longest lengths along springs (Dijkstra, 1959).
 fn tethers(rows: &[Row], inverse_masses: &[f64]) -> Vec<Tether> {
     let n = inverse_masses.len();
     let mut nearest = vec![(f64::INFINITY, 0); n];

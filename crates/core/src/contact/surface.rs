@@ -294,7 +294,7 @@ impl Surface {
         2.0 * KEPT_SHARE * self.thickest - self.thinnest
     }
 
-    /// Radius of a vertex (m): 0 except for those of round obstacles and bodies.
+    /// Returns the radius of a vertex (m): 0 except for those of round obstacles and bodies.
     pub(super) fn radius(&self, vertex: u32) -> f64 {
         self.radii[vertex as usize]
     }

@@ -269,7 +269,7 @@ impl ClosedMesh {
         }
     }
 
-    /// Radius (m) of a ball around the origin that contains all points.
+    /// Returns the radius (m) of a ball around the origin that contains all points.
     pub(crate) fn reach(&self) -> f64 {
         self.reach
     }

@@ -23,7 +23,7 @@ pub struct MassProperties {
 }
 
 impl MassProperties {
-    /// Properties of a solid shape of that density (kg/m3).
+    /// Returns the properties of a solid shape of that density (kg/m3).
     ///
     /// # Errors
     /// The shape is a floor or has no size, or the density is not a finite number above 0.
@@ -62,7 +62,7 @@ impl MassProperties {
         Ok(own)
     }
 
-    /// Properties of the same body, moved by a vector (m).
+    /// Returns the properties of the same body, moved by a vector (m).
     #[must_use]
     pub fn moved(mut self, by: Vector3<f64>) -> Self {
         self.center += by;

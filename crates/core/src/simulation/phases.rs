@@ -38,7 +38,7 @@ pub(super) struct Settled {
 }
 
 impl Phases {
-    /// Phases with room for states of that length.
+    /// Creates phases with room for states of that length.
     pub fn new(dim: usize) -> Self {
         Self {
             limiter: StrainLimiter::new(dim),

@@ -355,7 +355,7 @@ impl Simulation {
         self.driver.pipeline.phases.contact.last()
     }
 
-    /// Actions of the collision safeguard since the beginning.
+    /// Returns the actions of the collision safeguard since the beginning.
     #[must_use]
     pub fn guarded(&self) -> Guarded {
         self.state.guarded

@@ -38,8 +38,8 @@ pub fn bdf_growth(re: f64, im: f64) -> f64 {
     (1..=MAX_ORDER).map(of_order).fold(0.0, f64::max)
 }
 
-/// Roots of a polynomial, given by its coefficients from the constant on, found simultaneously
-/// (Durand and Kerner).
+/// Finds the roots of a polynomial, given by its coefficients from the constant on: all of them at
+/// the same time (Durand and Kerner).
 fn roots(coefficients: &[Complex<f64>]) -> Vec<Complex<f64>> {
     let zero = |c: &Complex<f64>| c.norm() > 0.0;
     let degree = coefficients.iter().rposition(zero).unwrap_or(0);
