@@ -182,8 +182,8 @@ fn columns(order: &[u32], meets: &[Vec<u32>]) -> (Vec<u32>, Vec<Vec<u32>>) {
     (ranks, columns)
 }
 
-/// Sorts the columns in an order of the elimination tree with the children of each just before it.
-/// It changes nothing but the places of columns in memory.
+/// Returns the columns in an order of the elimination tree with the children of each just before
+/// it. The order changes nothing but the places of columns in memory.
 fn children_first(columns: &[Vec<u32>]) -> Vec<u32> {
     let mut children = vec![vec![]; columns.len()];
     let mut stack = vec![];
