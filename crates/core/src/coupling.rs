@@ -78,7 +78,8 @@ impl From<BlockCoupling> for GeneralCoupling {
     }
 }
 
-/// The nine numbers, row by row, of a symmetric matrix with these xx, yy, zz, xy, xz and yz.
+/// Returns the nine numbers, row by row, of a symmetric matrix with these xx, yy, zz, xy, xz and
+/// yz.
 pub(crate) fn full([xx, yy, zz, xy, xz, yz]: [f64; 6]) -> [f64; 9] {
     [xx, xy, xz, xy, yy, yz, xz, yz, zz]
 }

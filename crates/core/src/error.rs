@@ -165,7 +165,7 @@ impl fmt::Display for ConstraintName {
 }
 
 impl fmt::Display for Unmet {
-    /// The number and the name of the constraint.
+    /// Writes the number and the name of the constraint.
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         write!(f, "constraint {}, {}", self.number, self.constraint)
     }

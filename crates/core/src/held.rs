@@ -41,7 +41,7 @@ pub(crate) struct Joint {
 }
 
 impl Joint {
-    /// Its particles, each with the sign of its gradients.
+    /// Lists the particles, each with the sign of its gradients.
     pub fn parts(&self) -> impl Iterator<Item = (usize, f64)> {
         let [i, j] = self.ends;
         [(i, 1.0), (j, -1.0)]
@@ -49,7 +49,7 @@ impl Joint {
             .take(if i == j { 1 } else { 2 })
     }
 
-    /// Row of the first end less that of the second, if there is one.
+    /// Returns the row of the first end less that of the second, if there is one.
     pub fn relative(&self, a: &[f64]) -> Vector3<f64> {
         let n = a.len() / 3;
         let row = |i: usize| Vector3::new(a[i], a[n + i], a[2 * n + i]);
@@ -66,7 +66,7 @@ impl Joint {
         }
     }
 
-    /// Matrix by which impulses (N s) along the gradients change with the positions.
+    /// Returns the matrix by which impulses (N s) along the gradients change with the positions.
     pub fn turning(&self, impulses: &[f64]) -> Matrix3<f64> {
         match self.count {
             0 => Matrix3::zeros(),

@@ -31,7 +31,7 @@ impl<S: Simd> Lanes<S> {
         S::as_mut_simd_f64s(numbers).0[part] = self.value;
     }
 
-    /// The same number in each lane.
+    /// Puts the same number in each lane.
     #[inline(always)]
     pub fn splat(simd: S, x: f64) -> Self {
         let value = simd.splat_f64s(x);
@@ -43,7 +43,7 @@ impl<S: Simd> Lanes<S> {
         Self { value, ..self }
     }
 
-    /// Lanes in which self <= other.
+    /// Returns the lanes in which self <= other.
     #[inline(always)]
     pub fn at_most(self, other: Self) -> S::m64s {
         self.simd.less_than_or_equal_f64s(self.value, other.value)

@@ -68,7 +68,7 @@ impl Model {
         }
     }
 
-    /// Number of particles whose velocities follow the positions in the state.
+    /// Returns the number of particles whose velocities follow the positions in the state.
     pub(crate) fn particles_with_velocities(&self) -> usize {
         match self {
             Self::Points(_) => 0,
@@ -76,8 +76,8 @@ impl Model {
         }
     }
 
-    /// Number of coordinates that two states differ by, which come first in them: three of each
-    /// particle or, where there are none, all numbers.
+    /// Returns the number of coordinates that two states differ by, which come first in them: three
+    /// of each particle or, where there are none, all numbers.
     pub(crate) fn coordinates(&self) -> usize {
         match self.particles() {
             0 => self.system().dim(),
@@ -85,7 +85,7 @@ impl Model {
         }
     }
 
-    /// Coordinates of a state y at time t (s), and their rates of change.
+    /// Returns the coordinates of a state y at time t (s), and their rates of change.
     pub(crate) fn motion<'a>(&self, t: f64, y: &'a [f64]) -> (&'a [f64], Cow<'a, [f64]>) {
         let n = 3 * self.particles_with_velocities();
         if n > 0 {

@@ -151,12 +151,12 @@ pub trait Mechanics {
         !reads_velocity && self.linearized().is_some()
     }
 
-    /// See [`ParticleSystem::jacobian`]. It serves systems without the view of [`Linearized`].
+    /// Does what [`ParticleSystem::jacobian`] does, for systems without the view of [`Linearized`].
     fn jacobian(&self, _t: f64, _y: &[f64], _jacobian: &mut [f64]) -> bool {
         false
     }
 
-    /// See [`ParticleSystem::take_failure`].
+    /// Does what [`ParticleSystem::take_failure`] does.
     fn take_failure(&self) -> Option<Error> {
         None
     }

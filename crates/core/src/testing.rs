@@ -4,7 +4,7 @@
 use crate::random::SplitMix;
 use crate::{Grid, Mechanics, Model, Network, Path, Scene, Sheet, Vector3};
 
-/// Hanging cloth in motion, its particles slightly displaced, its upper corners pinned.
+/// Creates a hanging cloth in motion, its particles slightly displaced, its upper corners pinned.
 /// `damping_time` is the damping of each spring over its stiffness (s).
 pub(crate) fn cloth(grid: Grid, damping_time: f64) -> Scene {
     const SPACING: f64 = 0.2;
@@ -36,8 +36,8 @@ pub(crate) fn cloth(grid: Grid, damping_time: f64) -> Scene {
     Scene::new("cloth", Model::Network(Box::new(network)), state)
 }
 
-/// Largest relative error of the momenta after a step of implicit Euler from y to `end` in h (s):
-/// of M (v1 - v) = h F(t + h, x1, v1).
+/// Returns the largest relative error of the momenta after a step of implicit Euler from y to `end`
+/// in h (s): of M (v1 - v) = h F(t + h, x1, v1).
 pub(crate) fn residual(network: &Network, h: f64, y: &[f64], end: &[f64]) -> f64 {
     let n = network.particles();
     let (x, v) = end.split_at(3 * n);

@@ -30,7 +30,7 @@ pub struct Tick {
 }
 
 impl Axis {
-    /// A linear axis between two numbers.
+    /// Creates a linear axis between two numbers.
     #[must_use]
     pub fn linear(ends: [f64; 2]) -> Self {
         Self {
@@ -40,8 +40,8 @@ impl Axis {
         }
     }
 
-    /// A linear axis around all finite values, with a margin. A nearly constant value is in its
-    /// middle, and its rounding errors are not magnified.
+    /// Creates a linear axis around all finite values, with a margin. A nearly constant value is in
+    /// its middle, and its rounding errors are not magnified.
     #[must_use]
     pub fn around(values: impl Iterator<Item = f64>) -> Self {
         let finite = values.filter(|value| value.is_finite());
@@ -57,7 +57,8 @@ impl Axis {
         Self::linear([low - gap, high + gap])
     }
 
-    /// A logarithmic axis around two positive numbers, which ends at 1, 2 or 5 times powers of ten.
+    /// Creates a logarithmic axis around two positive numbers, which ends at 1, 2 or 5 times powers
+    /// of ten.
     #[must_use]
     pub fn log(low: f64, high: f64) -> Self {
         let marks = [0.0, 2_f64.log10(), 5_f64.log10(), 1.0];
@@ -80,7 +81,7 @@ impl Axis {
         }
     }
 
-    /// The axis with its ends at these coordinates of the sheet.
+    /// Places the ends of the axis at these coordinates of the sheet.
     #[must_use]
     pub fn between(self, from: f64, to: f64) -> Self {
         Self {
@@ -89,7 +90,7 @@ impl Axis {
         }
     }
 
-    /// The coordinate of a number; a number beyond the ends gets that of the nearer end.
+    /// Returns the coordinate of a number; a number beyond the ends gets that of the nearer end.
     #[must_use]
     pub fn at(&self, value: f64) -> f64 {
         let value = if self.log { value.log10() } else { value };
@@ -104,7 +105,7 @@ impl Axis {
         self.ends[0] < value && value < self.ends[1]
     }
 
-    /// The ticks, whose labels are at least `gap` apart on the sheet.
+    /// Lists the ticks, whose labels are at least `gap` apart on the sheet.
     #[must_use]
     pub fn ticks(&self, gap: f64) -> Vec<Tick> {
         let span = self.ends[1] - self.ends[0];
@@ -175,7 +176,7 @@ fn power_of_ten(power: f64) -> String {
     format!("10^{{{power}}}").replace('-', "−")
 }
 
-/// The width of the widest label of an axis.
+/// Returns the width of the widest label of an axis.
 pub fn widest(axis: &Axis, size: f64) -> f64 {
     axis.ticks(1.6 * size)
         .iter()

@@ -5,9 +5,9 @@ use std::collections::BTreeMap;
 
 use crate::geometry::{Point, Rect};
 
-/// The closed outlines of the region where `inside` is true, which is on the same side of each
-/// outline throughout. The region is cut off at the edges of the window, which must reach as far
-/// below 0 as above. The width of the window is divided into `columns` squares.
+/// Returns the closed outlines of the region where `inside` is true, which is on the same side of
+/// each outline throughout. The region is cut off at the edges of the window, which must reach as
+/// far below 0 as above. The width of the window is divided into `columns` squares.
 pub fn outlines(inside: impl Fn(Point) -> bool, window: Rect, columns: usize) -> Vec<Vec<Point>> {
     let step = window.width() / columns as f64;
     // Rows of squares above the axis; there are equally many below it.

@@ -18,7 +18,7 @@ pub struct Figure {
 }
 
 impl Figure {
-    /// An empty sheet of this width and height.
+    /// Creates an empty sheet of this width and height.
     pub(crate) fn new(size: Point) -> Self {
         Self {
             size,
@@ -27,7 +27,7 @@ impl Figure {
         }
     }
 
-    /// The whole sheet.
+    /// Returns the whole sheet.
     pub(crate) fn sheet(&self) -> Rect {
         Rect::new(0.0, 0.0, self.size[0], self.size[1])
     }
@@ -100,19 +100,20 @@ impl Figure {
         self.labels.iter().enumerate().all(free)
     }
 
-    /// The figure as an SVG file.
+    /// Returns the figure as an SVG file.
     #[must_use]
     pub fn svg(&self) -> String {
         svg::file(self.size, &self.shapes)
     }
 
-    /// The figure as a PDF file with one page, whose size is that of the sheet at 96 units an inch.
+    /// Returns the figure as a PDF file with one page, whose size is that of the sheet at 96 units
+    /// an inch.
     #[must_use]
     pub fn pdf(&self) -> Vec<u8> {
         pdf::file(self.size, &self.shapes)
     }
 
-    /// The figure as a PNG file, with `scale` pixels for each unit of the sheet.
+    /// Returns the figure as a PNG file, with `scale` pixels for each unit of the sheet.
     ///
     /// # Errors
     /// [`Error::Pixels`] if the picture would be too large.

@@ -17,7 +17,7 @@ impl Rect {
         Self { x0, y0, x1, y1 }
     }
 
-    /// The square around a point whose half side is `r`.
+    /// Creates the square around a point whose half side is `r`.
     pub fn around([x, y]: Point, r: f64) -> Self {
         Self::new(x - r, y - r, x + r, y + r)
     }
@@ -47,7 +47,7 @@ impl Rect {
         self.x0 <= other.x0 && other.x1 <= self.x1 && self.y0 <= other.y0 && other.y1 <= self.y1
     }
 
-    /// The corners, in order around the rectangle.
+    /// Returns the corners, in order around the rectangle.
     pub fn corners(self) -> [Point; 4] {
         [
             [self.x0, self.y0],

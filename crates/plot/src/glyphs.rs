@@ -27,7 +27,7 @@ struct Letter {
     unit: f64,
 }
 
-/// The outlines of a label at a point, in units of the sheet; `None` if nothing is visible.
+/// Returns the outlines of a label at a point, in units of the sheet; `None` if nothing is visible.
 pub fn outlines(at: Point, label: Label) -> Option<Path> {
     let (font, data) = LETTERS.as_ref()?;
     let (letters, natural) = letters(font, data, label);
@@ -56,7 +56,7 @@ pub fn outlines(at: Point, label: Label) -> Option<Path> {
     path.finish()
 }
 
-/// The letters of a label from left to right, and the length of the text.
+/// Returns the letters of a label from left to right, and the length of the text.
 fn letters(font: &FontRef, data: &ShaperData, label: Label) -> (Vec<Letter>, f64) {
     let shaper = data.shaper(font).build();
     let em = f64::from(shaper.units_per_em());
@@ -100,7 +100,7 @@ struct Pen<'a> {
 }
 
 impl Pen<'_> {
-    /// A point of the letter on the sheet.
+    /// Returns a point of the letter on the sheet.
     fn on_sheet(&self, x: f32, y: f32) -> (f32, f32) {
         let [along, across] = [
             self.start[0] + f64::from(x) * self.unit[0],

@@ -22,7 +22,7 @@ pub enum Anchor {
 }
 
 impl Anchor {
-    /// The fraction of the label before its point.
+    /// Returns the fraction of the label before its point.
     pub fn part(self) -> f64 {
         match self {
             Self::Start => 0.0,
@@ -45,17 +45,17 @@ pub struct Look {
 }
 
 impl Look {
-    /// The width of the line around the letters of a bold label, in units of the sheet.
+    /// Returns the width of the line around the letters of a bold label, in units of the sheet.
     pub fn weight(&self) -> f64 {
         0.035 * self.size
     }
 
-    /// The height of a superscript above the base line, in units of the sheet.
+    /// Returns the height of a superscript above the base line, in units of the sheet.
     pub fn rise(&self) -> f64 {
         0.33 * self.size
     }
 
-    /// The paint of the letters. The font has no bold face; its outlines are drawn instead.
+    /// Returns the paint of the letters. The font has no bold face; its outlines are drawn instead.
     pub fn paint(&self) -> Paint {
         let plain = Paint::fill(self.colour);
         if self.bold {
@@ -100,20 +100,20 @@ impl<'a> Label<'a> {
         self
     }
 
-    /// The label, rotated to be read from below.
+    /// Rotates the label, to be read from below.
     pub fn turned(mut self) -> Self {
         self.look.turned = true;
         self
     }
 
-    /// The length to which the text is stretched, in units of the sheet, unless it has
+    /// Returns the length to which the text is stretched, in units of the sheet, unless it has
     /// superscripts.
     pub fn fixed_length(self) -> Option<f64> {
         let plain = !self.text.contains("^{");
         plain.then(|| width(self.text, self.look.size))
     }
 
-    /// The rectangle that the label occupies, with its anchor on the base line at a point.
+    /// Returns the rectangle that the label occupies, with its anchor on the base line at a point.
     pub fn room(self, [x, y]: Point) -> Rect {
         let Look { size, anchor, .. } = self.look;
         let length = width(self.text, size);
@@ -127,7 +127,7 @@ impl<'a> Label<'a> {
     }
 }
 
-/// The pieces of a text in order, and whether each is a superscript.
+/// Returns the pieces of a text in order, and whether each is a superscript.
 pub fn pieces(text: &str) -> impl Iterator<Item = (&str, bool)> {
     text.split("^{").enumerate().flat_map(|(k, part)| {
         let (raised, flat) = if k == 0 {
@@ -147,7 +147,7 @@ pub const RAISED: f64 = 0.7;
 /// The height of letters and superscripts above the base line, over the size of the text.
 const ASCENT: f64 = 0.84;
 
-/// The length of a text of this size.
+/// Returns the length of a text of this size.
 pub fn width(text: &str, size: f64) -> f64 {
     static LETTERS: LazyLock<Option<FontRef<'static>>> = LazyLock::new(|| FontRef::new(FONT).ok());
     let Some(font) = &*LETTERS else {

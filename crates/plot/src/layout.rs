@@ -17,8 +17,8 @@ pub struct Level {
     pub full: bool,
 }
 
-/// The drawing with the largest text that fits. Explanations are left out only if no size of text
-/// fits otherwise.
+/// Returns the drawing with the largest text that fits. Explanations are left out only if no size
+/// of text fits otherwise.
 ///
 /// # Errors
 /// [`Error::Sheet`] or [`Error::TooSmall`] if no drawing fits.
@@ -55,7 +55,7 @@ pub fn fit(size: Point, draw: impl Fn(Figure, Level) -> Option<Figure>) -> Resul
     })
 }
 
-/// The text, shortened with an ellipsis if it is longer than `room`.
+/// Shortens a text with an ellipsis if it is longer than `room`.
 pub fn elide(text: &str, size: f64, room: f64) -> String {
     if width(text, size) <= room {
         return text.to_owned();
@@ -70,8 +70,8 @@ pub fn elide(text: &str, size: f64, room: f64) -> String {
     String::new()
 }
 
-/// The text in lines of at most the length `room`. Lines break at spaces, except no-break spaces,
-/// and at line breaks.
+/// Breaks a text into lines of at most the length `room`. Lines break at spaces, except no-break
+/// spaces, and at line breaks.
 pub fn wrap(text: &str, size: f64, room: f64) -> Vec<String> {
     let mut lines: Vec<String> = vec![];
     for paragraph in text.lines() {
@@ -163,7 +163,7 @@ pub fn legend(figure: &mut Figure, area: &mut Rect, entries: &[(String, Sign)], 
     area.y0 += (1.4 * rows as f64 + 0.7) * size;
 }
 
-/// Cells for `n` panels, row by row and `gap` apart, and the number of columns. That number
+/// Returns cells for `n` panels, row by row and `gap` apart, and the number of columns. That number
 /// maximises the merit of a panel, a function of its width and height.
 pub fn grid(n: usize, area: Rect, gap: f64, merit: impl Fn(Point) -> f64) -> (Vec<Rect>, usize) {
     let cell = |columns: usize| {

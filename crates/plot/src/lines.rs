@@ -48,14 +48,14 @@ pub struct Line {
 }
 
 impl Line {
-    /// All points.
+    /// Returns all points.
     pub fn points(&self) -> impl Iterator<Item = &Point> {
         self.pieces.iter().flatten()
     }
 }
 
 impl LinePanel {
-    /// The axes: across and up.
+    /// Returns the axes: across and up.
     #[must_use]
     pub fn axes(&self) -> [Axis; 2] {
         let all = |k: usize| self.lines.iter().flat_map(Line::points).map(move |p| p[k]);
@@ -65,7 +65,7 @@ impl LinePanel {
 }
 
 impl LineChart {
-    /// The chart on a sheet of this width and height.
+    /// Draws the chart on a sheet of this width and height.
     ///
     /// # Errors
     /// [`Error::Empty`] if there is no point; [`Error::Sheet`] or [`Error::TooSmall`] if the chart
@@ -80,7 +80,7 @@ impl LineChart {
         })
     }
 
-    /// The chart at this level, or `None` if its panels would be too small.
+    /// Draws the chart at this level; `None` if its panels would be too small.
     fn try_draw(&self, mut figure: Figure, level: Level) -> Option<Figure> {
         let size = level.size;
         let words = [&*self.title, &self.subtitle, &self.foot];
@@ -124,7 +124,7 @@ impl LineChart {
         Some(figure)
     }
 
-    /// The entries of the legend: each curve once. A single one needs none.
+    /// Lists the entries of the legend: each curve once. A single one needs none.
     fn entries(&self, size: f64) -> Vec<(String, Sign<'_>)> {
         let mut seen: Vec<&Line> = vec![];
         for line in self.panels.iter().flat_map(|panel| &panel.lines) {

@@ -16,7 +16,7 @@ pub struct Pen {
 }
 
 impl Pen {
-    /// A pen for solid lines.
+    /// Creates a pen for solid lines.
     pub fn new(colour: &'static str, width: f64) -> Self {
         Self {
             colour,
@@ -26,12 +26,12 @@ impl Pen {
         }
     }
 
-    /// The pen, with dashes.
+    /// Gives the pen dashes.
     pub fn dashed(self, dash: Vec<f64>) -> Self {
         Self { dash, ..self }
     }
 
-    /// The pen, with round ends.
+    /// Gives the pen round ends.
     pub fn round(self) -> Self {
         Self {
             round: true,
@@ -68,7 +68,7 @@ pub struct Paint {
 }
 
 impl Paint {
-    /// A paint that fills a shape.
+    /// Creates a paint that fills a shape.
     pub fn fill(colour: &'static str) -> Self {
         Self {
             fill: Some(colour),
@@ -77,12 +77,12 @@ impl Paint {
         }
     }
 
-    /// The paint, with another opacity.
+    /// Gives the paint another opacity.
     pub fn opacity(self, opacity: f64) -> Self {
         Self { opacity, ..self }
     }
 
-    /// The paint, with a pen for the outline.
+    /// Gives the paint a pen for the outline.
     pub fn outlined(self, pen: Pen) -> Self {
         Self {
             pen: Some(pen),
@@ -115,7 +115,7 @@ impl fmt::Display for Paint {
     }
 }
 
-/// The red, green and blue of `#` and six hexadecimal digits; black if the code is invalid.
+/// Returns the red, green and blue of `#` and six hexadecimal digits; black if the code is invalid.
 pub fn rgb(code: &str) -> [u8; 3] {
     let number = code.strip_prefix('#').filter(|digits| digits.len() == 6);
     let number = number.and_then(|digits| u32::from_str_radix(digits, 16).ok());
@@ -123,7 +123,7 @@ pub fn rgb(code: &str) -> [u8; 3] {
     [r, g, b]
 }
 
-/// Dashes and gaps; like SVG, repeats an odd number of lengths.
+/// Returns dashes and gaps. Like SVG, it repeats an odd number of lengths.
 pub fn dashes(lengths: &[f64]) -> Vec<f32> {
     let mut lengths: Vec<_> = lengths.iter().map(|d| *d as f32).collect();
     if lengths.len() % 2 == 1 {

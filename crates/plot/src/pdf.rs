@@ -16,8 +16,8 @@ const POINT: f32 = 0.75;
 /// Level of compression, as in zlib.
 const LEVEL: u8 = 6;
 
-/// A file with a sheet of this size and its shapes. Texts are outlines, so that they look the same
-/// without the font.
+/// Returns a file with a sheet of this size and its shapes. Texts are outlines, so that they look
+/// the same without the font.
 pub fn file([w, h]: Point, shapes: &[Shape]) -> Vec<u8> {
     let [w, h] = [w, h].map(|length| length as f32 * POINT);
     let mut canvas = Canvas {
@@ -53,12 +53,12 @@ pub fn file([w, h]: Point, shapes: &[Shape]) -> Vec<u8> {
 
 type State<'a> = pdf_writer::writers::ExtGraphicsState<'a>;
 
-/// A length, rounded to digits that are visible.
+/// Rounds a length to digits that are visible.
 fn rounded(length: f32) -> f32 {
     (100.0 * length).round() / 100.0
 }
 
-/// The name of a graphics state by its index in a list.
+/// Returns the name of a graphics state by its index in a list.
 fn name(place: usize) -> Vec<u8> {
     format!("G{place}").into_bytes()
 }

@@ -12,7 +12,8 @@ use crate::label::Label;
 use crate::paint::{Paint, Pen, dashes, rgb};
 use crate::shape::Shape;
 
-/// A PNG file with a sheet of this size and its shapes, with `scale` pixels per unit of the sheet.
+/// Returns a PNG file with a sheet of this size and its shapes, with `scale` pixels per unit of the
+/// sheet.
 ///
 /// # Errors
 /// [`Error::Pixels`] if the picture would be too large.
@@ -30,7 +31,7 @@ pub fn file(size: Point, shapes: &[Shape], scale: f64) -> Result<Vec<u8>, Error>
     encode(&canvas.pixels).map_err(|why| Error::Pixels(why.to_string()))
 }
 
-/// Pixels as a PNG file without opacity: the sheet is opaque.
+/// Encodes pixels as a PNG file without opacity: the sheet is opaque.
 fn encode(pixels: &Pixmap) -> Result<Vec<u8>, png::EncodingError> {
     let colours: Vec<u8> = (pixels.data().chunks_exact(4))
         .flat_map(|pixel| [pixel[0], pixel[1], pixel[2]])
@@ -83,7 +84,7 @@ impl Canvas {
         }
     }
 
-    /// The mask of a window, which may be within another mask.
+    /// Returns the mask of a window, which may be within another mask.
     fn window(&self, window: Rect) -> Option<Mask> {
         let path = path(&[window.corners()], true)?;
         let mut mask = if let Some(mask) = &self.mask {
@@ -126,7 +127,7 @@ impl Canvas {
     }
 }
 
-/// Lines through points as a path, if there is anything to draw.
+/// Returns lines through points as a path, if there is anything to draw.
 fn path(lines: &[impl AsRef<[Point]>], closed: bool) -> Option<Path> {
     let mut path = PathBuilder::new();
     for line in lines {
@@ -145,7 +146,7 @@ fn path(lines: &[impl AsRef<[Point]>], closed: bool) -> Option<Path> {
     path.finish()
 }
 
-/// The paint of a colour.
+/// Returns the paint of a colour.
 fn colour(code: &str, opacity: f64) -> tiny_skia::Paint<'static> {
     let [r, g, b] = rgb(code);
     let mut paint = tiny_skia::Paint::default();

@@ -30,7 +30,7 @@ pub enum Marker {
 }
 
 impl Default for CurveStyle {
-    /// A solid grey line with octagons.
+    /// Creates a solid grey line with octagons.
     fn default() -> Self {
         Self {
             colour: "#777777",
@@ -52,7 +52,7 @@ pub(crate) enum Filling {
 }
 
 impl CurveStyle {
-    /// The pen of a line in this style.
+    /// Returns the pen of a line in this style.
     pub(crate) fn pen(self, width: f64) -> Pen {
         let dash = self.dash.iter().map(|d| d * width).collect();
         Pen::new(self.colour, width).dashed(dash)
@@ -87,8 +87,8 @@ impl CurveStyle {
         }
     }
 
-    /// The corners of a marker of a radius around a centre. The marker is seen as a whole from its
-    /// centre.
+    /// Returns the corners of a marker of a radius around a centre. The marker is seen as a whole
+    /// from its centre.
     #[must_use]
     pub fn outline(self, [x, y]: [f64; 2], r: f64) -> Vec<[f64; 2]> {
         let at = |turn: f64, r: f64| [x + r * (TAU * turn).sin(), y - r * (TAU * turn).cos()];

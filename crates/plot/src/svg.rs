@@ -10,7 +10,7 @@ use crate::shape::Shape;
 /// Fonts in order of preference. Labels are measured with the first one.
 const FONTS: &str = "Ubuntu, 'Ubuntu Light', 'Helvetica Neue', Arial, 'DejaVu Sans', sans-serif";
 
-/// A file with a sheet of this size and its shapes.
+/// Returns a file with a sheet of this size and its shapes.
 pub fn file([w, h]: Point, shapes: &[Shape]) -> String {
     let mut file = format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{w}\" height=\"{h}\" viewBox=\"0 0 {w} {h}\" \
@@ -114,7 +114,7 @@ fn label(file: &mut String, at: Point, label: Label) {
     file.push_str("</text>\n");
 }
 
-/// Text escaped for XML, without control characters, which XML forbids.
+/// Escapes a text for XML, without control characters, which XML forbids.
 fn escape(text: &str) -> String {
     let clean: String = text.chars().filter(|c| !c.is_control()).collect();
     clean

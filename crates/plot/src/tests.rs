@@ -79,7 +79,7 @@ const METHODS: [(char, &str, [f64; 6]); 13] = [
     ),
 ];
 
-/// A style that differs between methods.
+/// Returns a style that differs between methods.
 fn style(letter: char) -> CurveStyle {
     let k = letter as usize;
     let colours = ["#d55e00", "#0072b2", "#882255", "#117733"];
@@ -157,7 +157,7 @@ fn precision_chart(methods: usize, panels: usize) -> WorkPrecision {
 
 type Radius = fn(f64, f64) -> f64;
 
-/// |z + ... + z^n / n!|
+/// Returns |1 + z + ... + z^n / n!| with z = x + i y.
 fn taylor(order: i32, x: f64, y: f64) -> f64 {
     let (mut sum, mut term) = ([1.0, 0.0], [1.0, 0.0]);
     for k in 1..=order {
@@ -322,7 +322,7 @@ fn eigenvalues_outside_the_region_are_crosses_or_rings() {
     assert_eq!(rings(vec![[0.0, 0.5], [0.0, 0.6], [-0.5, 0.5]]), 1);
 }
 
-/// A chart of sines in panels below one another.
+/// Creates a chart of sines in panels below one another.
 fn line_chart(panels: usize, lines: usize) -> LineChart {
     let line = |k: usize| Line {
         name: format!("particle {k} by the classical Runge-Kutta method"),

@@ -22,12 +22,12 @@ fn exception<A: pyo3::PyErrArguments + Send + Sync + 'static>(
     }
 }
 
-/// Exception for a request that cannot be met.
+/// Creates the exception for a request that cannot be met.
 pub fn wrong(py: Python<'_>, why: impl Into<String>) -> PyErr {
     exception(py, "InputError", (why.into(),))
 }
 
-/// Exception for a failure of the program.
+/// Creates the exception for a failure of the program.
 pub fn of_failure(py: Python<'_>, failure: &Failure) -> PyErr {
     let why = failure.to_string();
     match failure {
@@ -37,7 +37,7 @@ pub fn of_failure(py: Python<'_>, failure: &Failure) -> PyErr {
     }
 }
 
-/// Exception for an error of a run. `message` has its words, and perhaps advice.
+/// Creates the exception for an error of a run. `message` has its words, and perhaps advice.
 pub fn of_error(py: Python<'_>, error: &Error, message: String) -> PyErr {
     match error {
         Error::BlowUp(blow_up) => {

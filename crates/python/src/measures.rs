@@ -77,22 +77,23 @@ pub struct Chart(a3::Chart);
 
 #[pymethods]
 impl Chart {
-    /// The runs, as JSON.
+    /// Returns the runs, as JSON.
     fn json(&self, py: Python<'_>) -> PyResult<String> {
         self.0.json().map_err(|failure| of_failure(py, &failure))
     }
 
-    /// The tables, as text.
+    /// Returns the tables, as text.
     fn table(&self) -> String {
         self.0.table()
     }
 
-    /// The name of the error that counts, the end of the runs (s), and whether all were measured.
+    /// Returns the name of the error that counts, the end of the runs (s), and whether all were
+    /// measured.
     fn about(&self) -> (&'static str, f64, bool) {
         (self.0.metric().name(), self.0.until(), self.0.is_complete())
     }
 
-    /// A picture of a kind and a size (px).
+    /// Draws a picture of a kind and a size (px).
     fn drawn<'py>(
         &self,
         py: Python<'py>,
@@ -223,12 +224,12 @@ pub struct Stability(a3::Stability);
 
 #[pymethods]
 impl Stability {
-    /// The limits (s), as JSON.
+    /// Returns the limits (s), as JSON.
     fn json(&self, py: Python<'_>) -> PyResult<String> {
         self.0.json().map_err(|failure| of_failure(py, &failure))
     }
 
-    /// The table, as text.
+    /// Returns the table, as text.
     fn table(&self) -> String {
         self.0.table()
     }
@@ -238,7 +239,7 @@ impl Stability {
         self.0.complete
     }
 
-    /// A picture of a kind and a size (px), for a step (s).
+    /// Draws a picture of a kind and a size (px), for a step (s).
     fn drawn<'py>(
         &self,
         py: Python<'py>,

@@ -28,7 +28,7 @@ pub struct Monitor {
 }
 
 impl Monitor {
-    /// Is told of the functions of Python that take part.
+    /// Watches the functions of Python that take part.
     pub fn watch(&self, raised: &[Raised]) {
         self.change(|state| state.raised = raised.to_vec());
     }
@@ -50,13 +50,14 @@ impl Monitor {
         self.stopped.store(true, Ordering::Relaxed);
     }
 
-    /// The threads that are in functions of Python now.
+    /// Lists the threads that are in functions of Python now.
     fn threads(&self) -> Vec<u64> {
         let state = self.state.lock().unwrap_or_else(PoisonError::into_inner);
         state.raised.iter().flat_map(Raised::threads).collect()
     }
 
-    /// The stage of the work, the share of it that is done, from 0 to 1, and the warnings so far.
+    /// Returns the stage of the work, the share of it that is done, from 0 to 1, and the warnings
+    /// so far.
     fn look(&self) -> (String, f64, Vec<String>) {
         let state = self.state.lock().unwrap_or_else(PoisonError::into_inner);
         let share = if state.expected > 0.0 {

@@ -40,7 +40,7 @@ pub struct Run {
 }
 
 impl Run {
-    /// The simulation, unless it is being advanced.
+    /// Returns the simulation, unless it is being advanced.
     fn simulation(&self, py: Python<'_>) -> PyResult<MutexGuard<'_, Simulation>> {
         self.simulation.try_lock().map_err(|_| {
             wrong(
@@ -142,7 +142,7 @@ impl Run {
         Ok(())
     }
 
-    /// The run as it is now, to continue from with the same bits.
+    /// Returns the run as it is now, to continue from with the same bits.
     fn checkpoint<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
         let checkpoint = self.simulation(py)?.checkpoint();
         let bytes = postcard::to_stdvec(&checkpoint);
@@ -194,19 +194,19 @@ impl Run {
         })
     }
 
-    /// Name of the scene.
+    /// Returns the name of the scene.
     #[getter]
     fn scene(&self, py: Python<'_>) -> PyResult<String> {
         Ok(self.simulation(py)?.scene().name.clone())
     }
 
-    /// Name of the method.
+    /// Returns the name of the method.
     #[getter]
     fn method(&self, py: Python<'_>) -> PyResult<&'static str> {
         Ok(self.simulation(py)?.method().name)
     }
 
-    /// Step (s) or relative tolerance.
+    /// Returns the step (s) or the relative tolerance.
     #[getter]
     fn setting(&self, py: Python<'_>) -> PyResult<f64> {
         Ok(self.simulation(py)?.control().value())
@@ -218,32 +218,32 @@ impl Run {
         Ok(self.simulation(py)?.control().step().is_none())
     }
 
-    /// Length of the next step or, of an adaptive method, of the last (s).
+    /// Returns the length of the next step or, of an adaptive method, of the last (s).
     #[getter]
     fn step_size(&self, py: Python<'_>) -> PyResult<Option<f64>> {
         Ok(self.simulation(py)?.step_size())
     }
 
-    /// Length of a run of the scene (s), if it has one of its own.
+    /// Returns the length of a run of the scene (s), if it has one of its own.
     #[getter]
     fn duration(&self) -> Option<f64> {
         self.duration
     }
 
-    /// Simulated time (s).
+    /// Returns the simulated time (s).
     #[getter]
     fn time(&self, py: Python<'_>) -> PyResult<f64> {
         Ok(self.simulation(py)?.time())
     }
 
-    /// Number of steps.
+    /// Returns the number of steps.
     #[getter]
     fn steps(&self, py: Python<'_>) -> PyResult<u64> {
         Ok(self.simulation(py)?.steps())
     }
 
-    /// Cost of the steps: evaluations, solves, factorisations, rejections, and the total in
-    /// evaluations.
+    /// Returns the cost of the steps: evaluations, solves, factorisations, rejections, and the
+    /// total in evaluations.
     fn work_done(&self, py: Python<'_>) -> PyResult<(u64, u64, u64, u64, f64)> {
         let work = self.simulation(py)?.work();
         Ok((
@@ -255,20 +255,20 @@ impl Run {
         ))
     }
 
-    /// State, as a flat array.
+    /// Returns the state, as a flat array.
     #[getter]
     fn state<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
         Ok(numbers(py, self.simulation(py)?.state()))
     }
 
-    /// Positions (m), n x 3.
+    /// Returns the positions (m), n x 3.
     #[getter]
     fn positions<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let simulation = self.simulation(py)?;
         rows(py, &simulation.state()[..3 * simulation.particles()])
     }
 
-    /// Velocities (m/s), n x 3.
+    /// Returns the velocities (m/s), n x 3.
     #[getter]
     fn velocities<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let simulation = self.simulation(py)?;
@@ -283,20 +283,20 @@ impl Run {
         )
     }
 
-    /// Contact forces (N), n x 3, if anything can touch.
+    /// Returns the contact forces (N), n x 3, if anything can touch.
     #[getter]
     fn contact_forces<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyArray2<f64>>>> {
         let forces = self.simulation(py)?.contact_forces();
         forces.map(|forces| rows(py, &forces)).transpose()
     }
 
-    /// Masses (kg), if the scene has some.
+    /// Returns the masses (kg), if the scene has some.
     #[getter]
     fn masses<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyArray1<f64>>>> {
         self.network(py, |network| numbers(py, network.masses()))
     }
 
-    /// Numbers of the pinned particles.
+    /// Returns the numbers of the pinned particles.
     #[getter]
     fn pinned<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<i64>>> {
         let pins = self.network(py, |network| {
@@ -305,7 +305,7 @@ impl Run {
         Ok(PyArray1::from_vec(py, pins?.unwrap_or_default()))
     }
 
-    /// Triangles of the surfaces.
+    /// Returns the triangles of the surfaces.
     #[getter]
     fn triangles<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<i64>>> {
         let corners = &self.presentation.surface.triangles;
@@ -316,7 +316,7 @@ impl Run {
         indices(py, &corners)
     }
 
-    /// All springs.
+    /// Returns the ends, kinds and numbers of all springs.
     fn spring_data<'py>(&self, py: Python<'py>) -> PyResult<Springs<'py>> {
         let simulation = self.simulation(py)?;
         let network = simulation.model().network();
@@ -339,7 +339,7 @@ impl Run {
         ))
     }
 
-    /// Energy (J): kinetic, elastic, of contact, gravitational.
+    /// Returns the energy (J): kinetic, elastic, of contact, gravitational.
     fn energies(&self, py: Python<'_>) -> PyResult<Option<[f64; 4]>> {
         let energy = self.simulation(py)?.energy();
         Ok(energy.map(|e| [e.kinetic, e.elastic, e.contact, e.gravitational]))

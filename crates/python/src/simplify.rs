@@ -23,17 +23,17 @@ impl Simplified {
         self.0.has_chart()
     }
 
-    /// All of it in words.
+    /// Returns all of it in words.
     fn text(&self) -> String {
         self.0.text()
     }
 
-    /// All of it as JSON.
+    /// Returns all of it as JSON.
     fn json(&self, py: Python<'_>) -> PyResult<String> {
         self.0.json().map_err(|failure| of_failure(py, &failure))
     }
 
-    /// A picture of the chart of models, of a kind and a size (px).
+    /// Draws a picture of the chart of models, of a kind and a size (px).
     fn drawn<'py>(
         &self,
         py: Python<'py>,

@@ -7,7 +7,7 @@ use pyo3::prelude::*;
 
 use super::errors::{of_failure, wrong};
 
-/// Names of the built-in scenes.
+/// Returns the names of the built-in scenes.
 #[pyfunction]
 pub fn scenes() -> Vec<&'static str> {
     SCENES.iter().map(|scene| scene.name).collect()
@@ -17,7 +17,7 @@ pub fn scenes() -> Vec<&'static str> {
 /// tolerance.
 type Row = (&'static str, Option<char>, &'static str, u32, bool, f64);
 
-/// Rows of the table of methods.
+/// Returns the rows of the table of methods.
 #[pyfunction]
 pub fn methods() -> Vec<Row> {
     let row = |method: &Method| {
@@ -33,7 +33,7 @@ pub fn methods() -> Vec<Row> {
     integrators::METHODS.iter().map(row).collect()
 }
 
-/// The table of the keys of a scene, as JSON. `kind` is one of "named", "toml" and "table".
+/// Returns the table of the keys of a scene, as JSON. `kind` is one of "named", "toml" and "table".
 #[pyfunction]
 pub fn table(py: Python<'_>, kind: &str, text: &str) -> PyResult<String> {
     let scene = OpenScene::read(origin(py, kind, text)?, SceneOptions::default());

@@ -22,13 +22,13 @@ pub(crate) struct Instances {
 }
 
 impl Shape {
-    /// A unit sphere with `rings` bands of latitude.
+    /// Creates a unit sphere with `rings` bands of latitude.
     pub(crate) fn sphere(gpu: &Gpu, rings: u16) -> Self {
         let (corners, triangles) = sphere(rings);
         Self::new(gpu, "sphere", &corners, &triangles)
     }
 
-    /// A rounded box whose pieces have `bands` bands of latitude and of longitude.
+    /// Creates a rounded box whose pieces have `bands` bands of latitude and of longitude.
     pub(crate) fn rounded_box(gpu: &Gpu, bands: u16) -> Self {
         let (corners, triangles) = rounded_box(bands);
         Self::new(gpu, "rounded box", &corners, &triangles)
@@ -64,7 +64,7 @@ impl Instances {
     }
 }
 
-/// A new buffer of at least 16 bytes, because a binding must not be empty.
+/// Creates a buffer of at least 16 bytes, because a binding must not be empty.
 pub(crate) fn buffer(
     device: &wgpu::Device,
     label: &str,
@@ -79,7 +79,7 @@ pub(crate) fn buffer(
     })
 }
 
-/// A new buffer with these bytes.
+/// Creates a buffer with these bytes.
 pub(crate) fn filled(gpu: &Gpu, label: &str, usage: BufferUsages, bytes: &[u8]) -> wgpu::Buffer {
     // The length of a write must be a multiple of four bytes.
     let mut bytes = bytes.to_vec();

@@ -35,7 +35,7 @@ pub struct Camera {
 }
 
 impl Camera {
-    /// A camera that looks from `eye` at `target` (m), which must not be the same point.
+    /// Creates a camera that looks from `eye` at `target` (m), which must not be the same point.
     #[must_use]
     pub fn look_at(eye: [f32; 3], target: [f32; 3]) -> Self {
         let target = Point3::from(target);
@@ -59,8 +59,8 @@ impl Camera {
         }
     }
 
-    /// Unit of length (m) of the scene: 1, or a power of ten for a much smaller or larger scene. It
-    /// sets the size of balls, and of the squares of the floor.
+    /// Returns the unit of length (m) of the scene: 1, or a power of ten for a much smaller or
+    /// larger scene. It sets the size of balls, and of the squares of the floor.
     #[must_use]
     pub fn unit(&self) -> f32 {
         self.unit
@@ -143,8 +143,8 @@ impl Camera {
         }
     }
 
-    /// As [`zoom`](Self::zoom), but keeps the point that is seen at a place in the picture, at the
-    /// distance of the target, at that place.
+    /// Changes the distance as [`zoom`](Self::zoom) does, but keeps the point that is seen at a
+    /// place in the picture, at the distance of the target, at that place.
     pub fn zoom_at(&mut self, factor: f32, at: [f32; 2], aspect: f32) {
         let stays = Point3::from(self.unproject(at, self.distance, aspect));
         let before = self.distance;
@@ -167,20 +167,20 @@ impl Camera {
         }
     }
 
-    /// The position of the eye (m).
+    /// Returns the position of the eye (m).
     #[must_use]
     pub fn eye(&self) -> Point3<f32> {
         let (_, _, z) = self.axes();
         self.target + z * self.distance
     }
 
-    /// The target (m).
+    /// Returns the target (m).
     #[must_use]
     pub fn target(&self) -> Point3<f32> {
         self.target
     }
 
-    /// The unit vectors to the right, up, and towards the eye.
+    /// Returns the unit vectors to the right, up, and towards the eye.
     #[must_use]
     pub fn axes(&self) -> (Vector3<f32>, Vector3<f32>, Vector3<f32>) {
         let ((sy, cy), (sp, cp)) = (self.yaw.sin_cos(), self.pitch.sin_cos());
@@ -189,8 +189,9 @@ impl Camera {
         (x, z.cross(&x), z)
     }
 
-    /// The matrix from world to clip space, with z from 0 to 1, for a picture of this width over
-    /// height. The field of view is horizontal in a tall picture, so that the scene stays in view.
+    /// Returns the matrix from world to clip space, with z from 0 to 1, for a picture of this width
+    /// over height. The field of view is horizontal in a tall picture, so that the scene stays in
+    /// view.
     #[must_use]
     pub fn view_projection(&self, aspect: f32) -> Matrix4<f32> {
         #[rustfmt::skip]
@@ -228,20 +229,20 @@ impl Camera {
             * Isometry3::look_at_rh(&self.eye(), &self.target, &Vector3::y()).to_homogeneous()
     }
 
-    /// Vertical field of view of a picture of this width over height (rad).
+    /// Returns the vertical field of view of a picture of this width over height (rad).
     fn field_of_view(aspect: f32) -> f32 {
         2.0 * ((0.5 * FIELD_OF_VIEW).tan() / aspect.min(1.0)).atan()
     }
 
-    /// The projection of a point of the world (m): its place in the picture, from 0 to 1 from the
-    /// left and from the top, and its distance from the eye along the view (m). `None` for a point
+    /// Projects a point of the world (m). Returns its place in the picture, from 0 to 1 from the
+    /// left and from the top, and its distance from the eye along the view (m); `None` for a point
     /// behind the eye.
     #[must_use]
     pub fn project(&self, point: [f32; 3], aspect: f32) -> Option<([f32; 2], f32)> {
         self.projection(aspect)(point)
     }
 
-    /// [`project`](Self::project), for many points.
+    /// Returns a function that [projects](Self::project) many points.
     pub fn projection(&self, aspect: f32) -> impl Fn([f32; 3]) -> Option<([f32; 2], f32)> + use<> {
         let matrix = self.view_projection(aspect);
         let (eye, (_, _, towards), parallel) = (self.eye(), self.axes(), self.parallel);
@@ -254,8 +255,8 @@ impl Camera {
         }
     }
 
-    /// The point of the world (m) at a place in the picture, at a distance from the eye along the
-    /// view (m): the inverse of [`project`](Self::project).
+    /// Returns the point of the world (m) at a place in the picture, at a distance from the eye
+    /// along the view (m): the inverse of [`project`](Self::project).
     #[must_use]
     pub fn unproject(&self, at: [f32; 2], distance: f32, aspect: f32) -> [f32; 3] {
         let depth = if self.parallel {

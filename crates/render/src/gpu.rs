@@ -55,7 +55,7 @@ impl fmt::Display for GpuError {
 impl std::error::Error for GpuError {}
 
 impl GpuError {
-    /// The error if no driver is found, with the backends from the environment.
+    /// Returns the error if no driver is found, with the backends from the environment.
     #[must_use]
     pub fn no_adapter() -> Self {
         Self::NoAdapter(match std::env::var("WGPU_BACKEND") {
@@ -97,8 +97,9 @@ impl Gpu {
         result
     }
 
-    /// The sets of backends to try in turn: those of `WGPU_BACKEND`, or else first the modern ones
-    /// and then GL. GL comes last because the search for it takes time and writes to the terminal.
+    /// Lists the sets of backends to try in turn: those of `WGPU_BACKEND`, or else first the modern
+    /// ones and then GL. GL comes last because the search for it takes time and writes to the
+    /// terminal.
     #[must_use]
     pub fn backends() -> Vec<wgpu::Backends> {
         match wgpu::Backends::from_env() {
@@ -167,7 +168,7 @@ impl Gpu {
         })
     }
 
-    /// The name and the backend of the adapter.
+    /// Returns the name and the backend of the adapter.
     #[must_use]
     pub fn name(&self) -> String {
         let info = self.adapter.get_info();
@@ -180,13 +181,14 @@ impl Gpu {
         self.adapter.get_info().device_type == wgpu::DeviceType::Cpu
     }
 
-    /// The largest width and height of a picture (px).
+    /// Returns the largest width and height of a picture (px).
     #[must_use]
     pub fn largest_side(&self) -> u32 {
         self.device.limits().max_texture_dimension_2d
     }
 
-    /// The number of samples a pixel: 4 if the adapter can multisample colour and depth, else 1.
+    /// Returns the number of samples a pixel: 4 if the adapter can multisample colour and depth,
+    /// else 1.
     #[must_use]
     pub fn samples(&self, color: wgpu::TextureFormat) -> u32 {
         let four = |format| {
@@ -241,7 +243,7 @@ async fn named_adapter(
     })
 }
 
-/// The text with all white space replaced by single spaces.
+/// Replaces all white space of a text by single spaces.
 fn one_line(text: &str) -> String {
     text.split_whitespace().collect::<Vec<_>>().join(" ")
 }

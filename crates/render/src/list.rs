@@ -18,7 +18,7 @@ pub(crate) struct List {
 }
 
 impl List {
-    /// Room for `length` items of this format.
+    /// Creates a list with room for `length` items of this format.
     pub(crate) fn new(
         device: &wgpu::Device,
         label: &str,
@@ -41,7 +41,7 @@ impl List {
         }
     }
 
-    /// A list of these items.
+    /// Creates a list of these items.
     pub(crate) fn filled<T: Pod>(
         gpu: &Gpu,
         label: &str,
@@ -86,7 +86,7 @@ impl List {
     }
 }
 
-/// A part of a texture, `width` items wide and `height` rows high.
+/// Returns the extent of a part of a texture, `width` items wide and `height` rows high.
 fn rows(width: usize, height: usize) -> wgpu::Extent3d {
     wgpu::Extent3d {
         width: width as u32,

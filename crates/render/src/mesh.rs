@@ -76,8 +76,8 @@ impl Mesh {
     }
 }
 
-/// For each point and each split one, the index of its first triangle in a list of triangles around
-/// them, and that list. A triangle in it is given by its other two corners.
+/// Returns, for each point and each split one, the index of its first triangle in a list of
+/// triangles around them, and that list. A triangle in it is given by its other two corners.
 fn triangles_around(topology: &Topology) -> (Vec<u32>, Vec<[u32; 2]>) {
     let places = topology.points + topology.splits.len();
     // The triangle of a split point is also one of its point.

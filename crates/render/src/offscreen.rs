@@ -24,7 +24,7 @@ pub struct Offscreen {
 }
 
 impl Offscreen {
-    /// A texture for pictures of `size` (px).
+    /// Creates a texture for pictures of `size` (px).
     ///
     /// # Errors
     /// [`GpuError::Size`] if a side is zero or beyond the limit of the device.
@@ -66,7 +66,7 @@ impl Offscreen {
         })
     }
 
-    /// Width and height (px).
+    /// Returns the width and height (px).
     #[must_use]
     pub fn size(&self) -> (u32, u32) {
         self.targets.size()
@@ -176,7 +176,7 @@ fn straighten(pixels: &mut [u8]) {
     }
 }
 
-/// The linear light of an sRGB channel (IEC 61966-2-1).
+/// Returns the linear light of an sRGB channel (IEC 61966-2-1).
 fn linear(channel: u8) -> f32 {
     let c = f32::from(channel) / 255.0;
     if c <= 0.04045 {
@@ -186,7 +186,7 @@ fn linear(channel: u8) -> f32 {
     }
 }
 
-/// The sRGB channel of a linear light: the inverse of [`linear`].
+/// Returns the sRGB channel of a linear light: the inverse of [`linear`].
 fn encoded(light: f32) -> u8 {
     let light = light.min(1.0);
     let c = if light <= 0.003_130_8 {

@@ -41,7 +41,7 @@ pub struct Topology {
 }
 
 impl Topology {
-    /// The point at which a corner of a triangle is.
+    /// Returns the point at which a corner of a triangle is.
     pub(crate) fn point_of(&self, corner: u32) -> u32 {
         match (corner as usize).checked_sub(self.points) {
             Some(split) => self.splits[split],
@@ -95,7 +95,7 @@ impl Solid {
     /// Values of a solid without coloured values.
     pub const PLAIN: [[f32; 4]; 8] = [[0.0, 0.0, 0.0, 1.0]; 8];
 
-    /// A vector as a value of a corner.
+    /// Returns a vector as a value of a corner.
     #[must_use]
     pub fn value([x, y, z]: [f32; 3]) -> [f32; 4] {
         [x, y, z, 0.0]
@@ -119,7 +119,7 @@ pub struct Line {
 }
 
 impl Line {
-    /// A line between two points (m), `width` points wide.
+    /// Creates a line between two points (m), `width` points wide.
     #[must_use]
     pub fn new(from: [f32; 3], to: [f32; 3], width: f32, color: [f32; 4]) -> Self {
         Self {
@@ -131,7 +131,7 @@ impl Line {
         }
     }
 
-    /// The line, with a shadow.
+    /// Gives the line a shadow.
     #[must_use]
     pub fn with_shadow(self) -> Self {
         Self {
@@ -201,7 +201,7 @@ pub struct Picture<'a> {
 }
 
 impl Picture<'_> {
-    /// A picture of nothing but the background.
+    /// Creates a picture of nothing but the background.
     #[must_use]
     pub fn new(camera: Camera) -> Self {
         Self {
@@ -234,7 +234,7 @@ pub struct Tile {
 }
 
 impl Tile {
-    /// The whole of a target of this width and height (px).
+    /// Returns the whole of a target of this width and height (px).
     #[must_use]
     pub fn whole((width, height): (u32, u32)) -> Self {
         Self {
@@ -245,7 +245,7 @@ impl Tile {
         }
     }
 
-    /// Width over height.
+    /// Returns the width over the height.
     #[must_use]
     pub fn aspect(&self) -> f32 {
         self.width as f32 / self.height as f32
@@ -259,8 +259,8 @@ impl Tile {
             && (top..top + self.height as f32).contains(&y)
     }
 
-    /// A point of the target (px) relative to this part: from 0 to 1 from its left and from its
-    /// top.
+    /// Returns the place of a point of the target (px) in this part: from 0 to 1 from its left and
+    /// from its top.
     #[must_use]
     pub fn place(&self, [x, y]: [f32; 2]) -> [f32; 2] {
         [

@@ -42,7 +42,7 @@ pub(crate) struct Pipelines {
     pub(crate) line: wgpu::RenderPipeline,
 }
 
-/// The layout of the bind group of all pipelines: the globals, and the particles with their
+/// Creates the layout of the bind group of all pipelines: the globals, and the particles with their
 /// triangles.
 pub(crate) fn layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
     let entry = |binding, visibility, ty| wgpu::BindGroupLayoutEntry {
@@ -99,7 +99,8 @@ struct Maker<'a> {
 }
 
 impl Maker<'_> {
-    /// A pipeline of a vertex and a fragment shader, given by the first parts of their names.
+    /// Creates a pipeline of a vertex and a fragment shader, given by the first parts of their
+    /// names.
     fn pipeline(
         &self,
         [vertex, fragment]: [&str; 2],
@@ -239,7 +240,7 @@ impl Pipelines {
     }
 }
 
-/// The layout of a buffer of vertices or instances of that length (bytes).
+/// Returns the layout of a buffer of vertices or instances of that length (bytes).
 fn stream(
     step_mode: VertexStepMode,
     attributes: &[wgpu::VertexAttribute],
@@ -252,7 +253,7 @@ fn stream(
     }
 }
 
-/// How a layer is combined with the picture so far, unless it replaces it.
+/// Returns how a layer is combined with the picture so far, unless it replaces it.
 fn blend(layer: Layer) -> Option<wgpu::BlendState> {
     let darkest = wgpu::BlendComponent {
         src_factor: wgpu::BlendFactor::One,
@@ -269,7 +270,7 @@ fn blend(layer: Layer) -> Option<wgpu::BlendState> {
     }
 }
 
-/// Depth and stencil tests of a layer.
+/// Returns the depth and stencil tests of a layer.
 fn depth_stencil(layer: Layer) -> wgpu::DepthStencilState {
     let face = |compare, pass_op| wgpu::StencilFaceState {
         compare,

@@ -13,8 +13,8 @@ pub(crate) const RAMP: [[f32; 3]; 8] = [
     [0.982, 0.799, 0.019],
 ];
 
-/// The colour of a value from 0 to 1, as linear red, green and blue, then 1. Values beyond the ends
-/// have the colours of the ends.
+/// Returns the colour of a value from 0 to 1, as linear red, green and blue, then 1. Values beyond
+/// the ends have the colours of the ends.
 #[must_use]
 pub fn ramp(value: f32) -> [f32; 4] {
     let last = RAMP.len() - 1;
@@ -26,8 +26,8 @@ pub fn ramp(value: f32) -> [f32; 4] {
     [mixed(0), mixed(1), mixed(2), 1.0]
 }
 
-/// The fourth number of a point whose surface is coloured by a value from 0 to 1, instead of the
-/// number of a look.
+/// Returns the fourth number of a point whose surface is coloured by a value from 0 to 1, instead
+/// of the number of a look.
 #[must_use]
 pub fn shaded_by(value: f32) -> f32 {
     -1.0 - value.clamp(0.0, 1.0)

@@ -30,7 +30,7 @@ pub struct Renderer {
 }
 
 impl Renderer {
-    /// A renderer for targets of this format and number of samples.
+    /// Creates a renderer for targets of this format and number of samples.
     #[must_use]
     pub fn new(gpu: &Gpu, color: wgpu::TextureFormat, samples: u32, topology: &Topology) -> Self {
         Self::with_source(gpu, SOURCE, color, samples, topology)
@@ -223,7 +223,8 @@ mod tests {
     use super::*;
     use crate::{Camera, Liquid, OFFSCREEN_FORMAT, Offscreen};
 
-    /// The pixels, by rows, of a ridge of two slopes of different sizes, drawn with these shaders.
+    /// Returns the pixels, by rows, of a ridge of two slopes of different sizes, drawn with these
+    /// shaders.
     fn ridge(gpu: &Gpu, source: &str) -> Vec<u8> {
         let points = [
             [-1.0, 0.6, 0.0, 0.0],

@@ -1,7 +1,7 @@
 //! Shapes: the sphere, whose instances are balls, and the rounded box, whose instances are other
 //! solids.
 
-/// The corners and the triangles of a unit sphere in `rings` bands of latitude.
+/// Returns the corners and the triangles of a unit sphere in `rings` bands of latitude.
 pub(crate) fn sphere(rings: u16) -> (Vec<[f32; 3]>, Vec<u16>) {
     let sectors = 2 * rings;
     let mut corners = vec![];
@@ -23,9 +23,10 @@ pub(crate) fn sphere(rings: u16) -> (Vec<[f32; 3]>, Vec<u16>) {
     (corners, triangles)
 }
 
-/// The corners and the triangles of a unit sphere that is cut along the coordinate planes, so that
-/// its eight pieces can be moved apart. A corner is given by its position and its piece; the latter
-/// is -1 or 1 along each axis. Each piece has `bands` bands of latitude and of longitude.
+/// Returns the corners and the triangles of a unit sphere that is cut along the coordinate planes,
+/// so that its eight pieces can be moved apart. A corner is given by its position and its piece;
+/// the latter is -1 or 1 along each axis. Each piece has `bands` bands of latitude and of
+/// longitude.
 pub(crate) fn rounded_box(bands: u16) -> (Vec<[[f32; 3]; 2]>, Vec<u16>) {
     // Each border occurs twice: as the end of one piece and as the beginning of the next.
     let angles = |quarters: u16| -> Vec<(f32, u16)> {

@@ -19,7 +19,7 @@ pub struct Targets {
 }
 
 impl Targets {
-    /// Targets for pictures of `size` (px), which must be within the limits of the device.
+    /// Creates targets for pictures of `size` (px), which must be within the limits of the device.
     #[must_use]
     pub fn new(gpu: &Gpu, size: (u32, u32), color: wgpu::TextureFormat, samples: u32) -> Self {
         let texture = |format| {
@@ -47,7 +47,7 @@ impl Targets {
         }
     }
 
-    /// Width and height (px).
+    /// Returns the width and height (px).
     #[must_use]
     pub fn size(&self) -> (u32, u32) {
         self.size

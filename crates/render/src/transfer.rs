@@ -20,7 +20,8 @@ pub struct Transfer {
 pub type Part = [u32; 4];
 
 impl Transfer {
-    /// A texture of `size` (px) and of the sRGB format that belongs to the format of the target.
+    /// Creates a texture of `size` (px) and of the sRGB format that belongs to the format of the
+    /// target.
     #[must_use]
     pub fn new(gpu: &Gpu, size: (u32, u32), target: TextureFormat) -> Self {
         let clear = wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT);
@@ -28,8 +29,8 @@ impl Transfer {
         Self::with(gpu, size, [own, target], ("transfer_fragment", None), clear)
     }
 
-    /// A texture of `size` (px) in the target's format, for text that is laid over a target. Its
-    /// colours are premultiplied by their opacity.
+    /// Creates a texture of `size` (px) in the target's format, for text that is laid over a
+    /// target. Its colours are premultiplied by their opacity.
     #[must_use]
     pub fn layer(gpu: &Gpu, size: (u32, u32), target: TextureFormat) -> Self {
         let blend = Some(wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING);
@@ -103,7 +104,7 @@ impl Transfer {
         }
     }
 
-    /// The view that pictures, or text, are drawn into.
+    /// Returns the view that pictures, or text, are drawn into.
     #[must_use]
     pub fn picture(&self) -> &wgpu::TextureView {
         &self.picture
@@ -114,7 +115,7 @@ impl Transfer {
         self.pass(encoder, target).draw(0..3, 0..1);
     }
 
-    /// Does the same only for parts of the target.
+    /// Copies the picture, or lays the text, over parts of the target only.
     pub fn copy_parts(
         &self,
         encoder: &mut wgpu::CommandEncoder,

@@ -173,7 +173,7 @@ impl View {
     }
 }
 
-/// The height of the lowest particle, ball or solid (m).
+/// Returns the height of the lowest particle, ball or solid (m).
 fn lowest(picture: &Picture) -> f32 {
     let points = picture.points.iter().map(|p| p[1]);
     let balls = picture
@@ -194,7 +194,7 @@ fn lowest(picture: &Picture) -> f32 {
         .fold(f32::INFINITY, f32::min)
 }
 
-/// The uniforms for a picture in this part of the target.
+/// Returns the uniforms for a picture in this part of the target.
 fn globals(picture: &Picture, tile: Tile) -> Globals {
     let eye = picture.camera.eye();
     let target = picture.camera.target();

@@ -25,7 +25,7 @@ pub(crate) fn list_of(count: impl std::fmt::Display) -> String {
     format!("a list of {count} numbers in square brackets")
 }
 
-/// Message for a list of the wrong length.
+/// Returns the message for a list of the wrong length.
 pub(crate) fn wrong_length(wanted: usize, found: usize) -> String {
     // A decimal comma makes two numbers of one.
     let advice = if found > wanted {
@@ -36,17 +36,17 @@ pub(crate) fn wrong_length(wanted: usize, found: usize) -> String {
     format!("it must be a list of {wanted} numbers, not of {found}{advice}")
 }
 
-/// Message for a whole number that is too large.
+/// Returns the message for a whole number that is too large.
 pub(crate) fn too_large(number: impl std::fmt::Display) -> String {
     format!("the number {number} is too large")
 }
 
-/// Message for a missing key.
+/// Returns the message for a missing key.
 pub(crate) fn missing(key: &str) -> String {
     format!("the key `{key}` is missing")
 }
 
-/// Message for an unknown key.
+/// Returns the message for an unknown key.
 pub(crate) fn unknown_key(key: &str, known: &[&str]) -> String {
     unknown(
         &format!("there is no key `{}`", brief(key, 60)),
@@ -56,7 +56,7 @@ pub(crate) fn unknown_key(key: &str, known: &[&str]) -> String {
     )
 }
 
-/// Message for a name that is not among the choices.
+/// Returns the message for a name that is not among the choices.
 pub(crate) fn unknown_choice(name: &str, known: &[&str]) -> String {
     unknown(
         &format!("there is no `{}`", brief(name, 60)),

@@ -69,8 +69,8 @@ pub struct Candidate<T = Outcome> {
     pub set_by: SetBy,
 }
 
-/// Cheapest step or tolerance of each method of the table that meets the error `error`, in the unit
-/// of the metric; the cheapest method comes first.
+/// Finds the cheapest step or tolerance of each method of the table that meets the error `error`,
+/// in the unit of the metric; the cheapest method comes first.
 ///
 /// The search gives up a method that would cost more than twice as much as the second cheapest so
 /// far, or five times as much in small scenes. `begin` is called with each method before its runs.
@@ -115,7 +115,8 @@ pub fn choose(
     choose_among(&methods, scene, reference, metric, error, go_on, begin)
 }
 
-/// As [`choose`], among these methods. Those that do not support the scene are left out.
+/// Does what [`choose`] does, among these methods. Those that do not support the scene are left
+/// out.
 ///
 /// # Errors
 /// The scene cannot be run, or the metric needs particles that it does not have.
@@ -156,11 +157,11 @@ pub fn choose_among(
     choose_by(&methods, scene, frames, error, max_cost, measure, begin)
 }
 
-/// As [`choose`], for errors that the caller measures: `measure` runs the scene, or a variant of
-/// it, by one of the methods with a step or a tolerance, and returns `None` to end the search. The
-/// methods are tried in their order. A method is given up if it would cost more than `max_cost`
-/// evaluations, which may depend on what is found so far. Methods that do not support the scene are
-/// left out.
+/// Does what [`choose`] does, for errors that the caller measures. `measure` runs the scene, or a
+/// variant of it, by one of the methods with a step or a tolerance, and returns `None` to end the
+/// search. The methods are tried in their order. A method is given up if it would cost more than
+/// `max_cost` evaluations, which may depend on what is found so far. Methods that do not support
+/// the scene are left out.
 ///
 /// # Errors
 /// Those of `measure`, or the scene cannot be run.
@@ -292,8 +293,8 @@ impl<M> Search<'_, M> {
         }))
     }
 
-    /// Reason why no step as long as `bad` was chosen instead of `good`, whose error over the
-    /// allowed one is `own`.
+    /// Returns the reason why no step as long as `bad` was chosen instead of `good`, whose error
+    /// over the allowed one is `own`.
     fn set_by(&self, (good, own): (Control, f64), bad: Option<(f64, f64)>) -> SetBy {
         let Some((value, ratio)) = bad else {
             return SetBy::Nothing;
@@ -309,8 +310,9 @@ impl<M> Search<'_, M> {
         }
     }
 
-    /// Step or tolerance above which no run is expected to meet the error: predicted by the order,
-    /// with a margin, if the last two runs failed as the order predicts; else that of the last run.
+    /// Returns the step or tolerance above which no run is expected to meet the error. It is
+    /// predicted by the order, with a margin, if the last two runs failed as the order predicts;
+    /// else it is that of the last run.
     fn predicted_bound(&self, before: Option<(f64, f64)>, last: (f64, f64)) -> f64 {
         let order = if self.method.is_adaptive() {
             1.0
@@ -330,8 +332,8 @@ impl<M> Search<'_, M> {
     }
 }
 
-/// Tolerance between one that meets the error and one that fails, or a step between two such steps
-/// that divides the time `until` (s); `None` if they are close to each other.
+/// Returns a tolerance between one that meets the error and one that fails, or a step between two
+/// such steps that divides the time `until` (s); `None` if they are close to each other.
 fn between(good: Control, bad: f64, until: f64) -> Option<Control> {
     let middle = (good.value() * bad).sqrt();
     match good {

@@ -14,7 +14,8 @@ pub struct Scope {
 }
 
 impl Scope {
-    /// `Ok` if the only particle that counts, if there is one, is one of that many.
+    /// Checks that the only particle that counts, if there is one, is among this number of
+    /// particles.
     pub(super) fn check(self, particles: usize) -> Result<(), Error> {
         match self.particle {
             Some(i) if i >= particles => Err(Error::Invalid(match particles.checked_sub(1) {
@@ -58,7 +59,7 @@ pub struct Errors {
 }
 
 impl Errors {
-    /// Errors with the same value of each quantity.
+    /// Creates errors with the same value of each quantity.
     pub(super) fn with_all(error: f64) -> Self {
         let zero = Self::default();
         zero.with(zero, |_, _| error)
@@ -78,17 +79,17 @@ impl Errors {
         }
     }
 
-    /// Larger of both errors in each quantity; NaN is larger than any number.
+    /// Returns the larger of both errors in each quantity; NaN is larger than any number.
     pub(super) fn max(self, other: Self) -> Self {
         self.with(other, |a, b| if a >= b || a.is_nan() { a } else { b })
     }
 
-    /// Smaller of both errors in each quantity.
+    /// Returns the smaller of both errors in each quantity.
     pub(super) fn min(self, other: Self) -> Self {
         self.with(other, f64::min)
     }
 
-    /// Error of the positions or, without particles, of the state.
+    /// Returns the error of the positions or, without particles, of the state.
     pub(super) fn of_coordinates(&self) -> f64 {
         // One of both is 0.
         self.position + self.state
@@ -129,7 +130,7 @@ impl Metric {
         Self::Impact,
     ];
 
-    /// Name of the metric.
+    /// Returns the name of the metric.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -144,8 +145,8 @@ impl Metric {
         }
     }
 
-    /// Metric of the motion of a model: the error of its positions or, without particles, of the
-    /// numbers of its state.
+    /// Returns the metric of the motion of a model: the error of its positions or, without
+    /// particles, of the numbers of its state.
     #[must_use]
     pub fn of_motion(model: &Model) -> Self {
         match model.particles() {
@@ -154,7 +155,8 @@ impl Metric {
         }
     }
 
-    /// `Ok` if a model has particles, or if the metric does not need any.
+    /// Checks that a model has particles, if the metric needs any, and none if it is for plain
+    /// numbers.
     pub(super) fn check(self, model: &Model) -> Result<(), Error> {
         let why = match (self, model.particles()) {
             (Self::State | Self::Phase, 0) => return Ok(()),
@@ -171,7 +173,7 @@ impl Metric {
         Err(Error::Invalid(why.into()))
     }
 
-    /// Error that the metric chooses, in its unit.
+    /// Returns the error that the metric chooses, in its unit.
     #[must_use]
     pub fn of(self, errors: &Errors) -> f64 {
         match self {

@@ -8,8 +8,8 @@ const ORDER: i32 = 4;
 /// Largest number of powers of the step that are extrapolated away.
 const MAX_POWERS: usize = 3;
 
-/// Next row of the extrapolation: the run with half of the step, and its combinations with the row
-/// before, each of which lacks one more power of the step.
+/// Returns the next row of the extrapolation: the run with half of the step, and its combinations
+/// with the row before, each of which lacks one more power of the step.
 pub(super) fn extrapolate(row: Vec<Vec<Snapshot>>, halved: Vec<Snapshot>) -> Vec<Vec<Snapshot>> {
     let mut next = vec![halved];
     for (power, coarse) in row.into_iter().take(MAX_POWERS).enumerate() {

@@ -15,7 +15,7 @@ pub struct Frames {
 }
 
 impl Frames {
-    /// Frames up to `until` (s): at least 60 in each second, and at least 60 in all.
+    /// Creates frames up to `until` (s): at least 60 in each second, and at least 60 in all.
     #[must_use]
     pub fn new(until: f64) -> Self {
         Self {
@@ -24,13 +24,13 @@ impl Frames {
         }
     }
 
-    /// Interval between frames (s).
+    /// Returns the interval between frames (s).
     #[must_use]
     pub fn spacing(&self) -> f64 {
         self.until / self.count as f64
     }
 
-    /// Time of frame k (s).
+    /// Returns the time of frame k (s).
     #[must_use]
     pub fn time(&self, k: u64) -> f64 {
         if k == self.count {
@@ -40,7 +40,8 @@ impl Frames {
         }
     }
 
-    /// Number of steps of h (s) that reach the last frame; the last step may be shorter.
+    /// Returns the number of steps of h (s) that reach the last frame; the last step may be
+    /// shorter.
     #[must_use]
     pub fn steps(&self, h: f64) -> u64 {
         (self.until / h - Simulation::STEP_END_TOLERANCE)

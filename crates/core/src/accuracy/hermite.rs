@@ -1,8 +1,9 @@
 //! Hermite interpolation: polynomials through values and derivatives at several times (Stoer,
 //! Bulirsch, *Introduction to Numerical Analysis*, 2002, 2.1.5).
 
-/// Weights of the values and derivatives at the nodes in the value of their interpolation
-/// polynomial at `at`: of node 0 the value, the first derivative, ..., then of node 1 and so on.
+/// Returns the weights of the values and derivatives at the nodes in the value of their
+/// interpolation polynomial at `at`: of node 0 the value, the first derivative, ..., then of node 1
+/// and so on.
 ///
 /// With `count` data at each of m nodes the polynomial has the degree m `count` - 1.
 pub(super) fn weights(nodes: &[f64], count: usize, at: f64) -> Vec<f64> {

@@ -17,18 +17,18 @@ pub(super) struct Impact {
 }
 
 impl Impact {
-    /// Impact of a run that starts at time t (s).
+    /// Creates the impact of a run that starts at time t (s).
     pub fn at_start(t: f64) -> Self {
         Self { t, times: [t; 2] }
     }
 
-    /// Impact at time t (s), if nothing begins or ends until then.
+    /// Returns the impact at time t (s), if nothing begins or ends until then.
     pub fn later(&self, t: f64) -> Self {
         let times = self.times.map(|time| if time < self.t { time } else { t });
         Self { t, times }
     }
 
-    /// Impact at time t (s), if nothing moves until then, and surfaces touch or do not.
+    /// Returns the impact at time t (s), if nothing moves until then, and surfaces touch or do not.
     pub fn still(&self, t: f64, touch: bool) -> Self {
         let mut later = self.later(t);
         if touch {
@@ -37,8 +37,8 @@ impl Impact {
         later
     }
 
-    /// Impact at time t (s). `ends` are the positions (m) and velocities (m/s) of the state before
-    /// and now, and `touch` tells whether surfaces touch then and now.
+    /// Returns the impact at time t (s). `ends` are the positions (m) and velocities (m/s) of the
+    /// state before and now, and `touch` tells whether surfaces touch then and now.
     pub fn next(
         &self,
         layer: &ContactLayer,
@@ -68,7 +68,7 @@ impl Impact {
         next
     }
 
-    /// The larger difference (s) between the times of two impacts.
+    /// Returns the larger difference (s) between the times of two impacts.
     pub fn error_of(&self, other: &Self) -> f64 {
         let [begins, ends] = [0, 1].map(|k| (self.times[k] - other.times[k]).abs());
         begins.max(ends)

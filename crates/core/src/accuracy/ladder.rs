@@ -20,8 +20,8 @@ const MIN_ROUNDED_UNITS: f64 = 3.0;
 /// from 10^-1 to 10^-12, or to 10^-8 for implicit methods, whose orders are low.
 const TOLERANCES: (i32, [i32; 2]) = (-2, [-24, -16]);
 
-/// Steps that divide the time of all frames, from just beyond the method's stability limit on the
-/// scene's `modes` down, or, for an adaptive method, tolerances from 0.1 down.
+/// Lists steps that divide the time of all frames, from just beyond the method's stability limit on
+/// the scene's `modes` down, or, for an adaptive method, tolerances from 0.1 down.
 ///
 /// The coarsest comes first. The list of steps ends where a run would take more than `most` steps.
 ///
@@ -62,8 +62,8 @@ pub fn ladder(
     Ok(steps)
 }
 
-/// Number of steps near `count` with which steps are 1/n s long, in a time (s) with few decimals;
-/// `count` itself if it is too small to be rounded.
+/// Returns a number of steps near `count` with which steps are 1/n s long, in a time (s) with few
+/// decimals; `count` itself if it is too small to be rounded.
 fn round(count: f64, until: f64) -> u64 {
     let is_whole = |steps: &f64| *steps > 0.5 && (steps - steps.round()).abs() < 1e-9;
     let unit = (1..=20).map(|n| f64::from(n) * until).find(is_whole);
@@ -73,7 +73,7 @@ fn round(count: f64, until: f64) -> u64 {
     }
 }
 
-/// The next longer step of a ladder; `None` beyond the longest, and for tolerances.
+/// Returns the next longer step of a ladder; `None` beyond the longest, and for tolerances.
 #[must_use]
 pub fn coarser(control: Control, frames: &Frames) -> Option<Control> {
     let count = (frames.until / control.step()?).round();

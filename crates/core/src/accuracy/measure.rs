@@ -44,9 +44,10 @@ pub fn measure(
     measure_by(&clock, scene, method, control, reference, &mut [], go_on)
 }
 
-/// As [`measure`], with the computing time by a clock: a function that returns the time since some
-/// fixed moment. The largest error of each coordinate over the frames that count (m) is written to
-/// `coordinates`, n x 3, unless that is empty; without particles, that of each number of the state.
+/// Does what [`measure`] does, with the computing time by a clock: a function that returns the time
+/// since some fixed moment. The largest error of each coordinate over the frames that count (m) is
+/// written to `coordinates`, n x 3, unless that is empty; without particles, that of each number of
+/// the state.
 ///
 /// # Errors
 /// The method does not support the scene or the control, or the run fails without a blow-up.

@@ -93,8 +93,8 @@ pub struct Reference {
 }
 
 impl Reference {
-    /// Most precise reference of a scene from its start, for errors of all particles at all frames.
-    /// `None` if `go_on` returned false.
+    /// Creates the most precise reference of a scene from its start, for errors of all particles at
+    /// all frames. `None` if `go_on` returned false.
     ///
     /// # Errors
     /// The scene cannot be run, or the run of the reference blows up.
@@ -106,8 +106,8 @@ impl Reference {
         Self::new(scene, frames, Scope::default(), precision, go_on)
     }
 
-    /// Reference of a scene from its start, for errors in a scope, with the required precision or
-    /// the highest possible. `None` if `go_on` returned false.
+    /// Creates a reference of a scene from its start, for errors in a scope, with the required
+    /// precision or the highest possible. `None` if `go_on` returned false.
     ///
     /// # Errors
     /// The scene cannot be run, the run of the reference blows up, or the metric or the scope's
@@ -152,19 +152,19 @@ impl Reference {
         Ok(Some(reference))
     }
 
-    /// Errors of a state at frame k, counted from 1.
+    /// Returns the errors of a state at frame k, counted from 1.
     pub(super) fn errors(&self, k: u64, found: &Snapshot) -> Errors {
         self.trajectory.errors(k, found, self.scope)
     }
 
-    /// Errors at the nearest end of a step that encloses frame k, counted from 1.
+    /// Returns the errors at the nearest end of a step that encloses frame k, counted from 1.
     pub(super) fn errors_between(&self, model: &Model, k: u64, step: &EnclosingStep) -> Errors {
         let start = (&self.start, self.frames);
         self.trajectory
             .errors_between(start, (model, k, step), self.scope)
     }
 
-    /// Positions (m) of a model at time t (s), at or near frame k, counted from 1.
+    /// Returns the positions (m) of a model at time t (s), at or near frame k, counted from 1.
     pub(super) fn positions(&self, model: &Model, k: u64, t: f64) -> Cow<'_, [f64]> {
         if t == self.frames.time(k) {
             return Cow::Borrowed(self.trajectory.snapshots[k as usize - 1].positions());
@@ -173,17 +173,17 @@ impl Reference {
         Cow::Owned(self.trajectory.at(start, model, t).positions().to_vec())
     }
 
-    /// Coordinates of a model (m) and their rates of change (m/s) at a time (s) up to the last
-    /// frame: known at frames, interpolated between them.
+    /// Returns the coordinates of a model (m) and their rates of change (m/s) at a time (s) up to
+    /// the last frame. They are known at frames, and interpolated between them.
     #[must_use]
     pub fn motion(&self, model: &Model, t: f64) -> [Vec<f64>; 2] {
         let start = (&self.start, self.frames);
         self.trajectory.motion(start, model, t)
     }
 
-    /// Time (s) until which positions, or a state without particles, are known to less than a
-    /// ten-thousandth of the [`floor`](Self::floor), and their uncertainty (m) until then: a later
-    /// event is less certain. `None` if none are known so precisely.
+    /// Returns the time (s) until which positions, or a state without particles, are known to less
+    /// than a ten-thousandth of the [`floor`](Self::floor), and their uncertainty (m) until then: a
+    /// later event is less certain. `None` if none are known so precisely.
     #[must_use]
     pub fn clear_until(&self) -> Option<(f64, f64)> {
         let most = CLEAR_SHARE * self.floor.of_coordinates();
@@ -206,7 +206,7 @@ impl Reference {
         }
     }
 
-    /// Largest errors of a trajectory over the frames that count.
+    /// Returns the largest errors of a trajectory over the frames that count.
     fn disagreement(&self, others: &[Snapshot]) -> Errors {
         let frames = (1..=self.frames.count).filter(|k| self.counts(*k));
         let errors = frames.map(|k| {
@@ -230,7 +230,7 @@ struct Making<'a> {
 type Run = (Vec<Snapshot>, f64);
 
 impl Making<'_> {
-    /// Run of a method. `None` if `go_on` returned false.
+    /// Runs a method. `None` if `go_on` returned false.
     fn run(&mut self, method: &'static Method, control: Control) -> Result<Option<Run>, Error> {
         let mut scene = self.scene.clone();
         scene.limits.absolute = None;
@@ -298,8 +298,8 @@ impl Making<'_> {
         }
     }
 
-    /// Fastest mode at each frame, if surfaces touch: contact may be much stiffer than all forces
-    /// at the start. Steps beyond its limit would measure the collision safeguard.
+    /// Returns the fastest mode at each frame, if surfaces touch: contact may be much stiffer than
+    /// all forces at the start. Steps beyond its limit would measure the collision safeguard.
     fn contact_modes(&self) -> Vec<Mode> {
         let network = self.scene.model.network();
         let Some(network) = network.filter(|network| network.contact_layer().is_some()) else {
@@ -314,8 +314,8 @@ impl Making<'_> {
         fastest.collect()
     }
 
-    /// The other method and its first setting. PEFRL takes four evaluations for each kick of forces
-    /// that depend on the velocity, and does not support first-order systems.
+    /// Returns the other method and its first setting. PEFRL takes four evaluations for each kick
+    /// of forces that depend on the velocity, and does not support first-order systems.
     fn other(&self) -> Result<(&'static Method, Control), Error> {
         let model = &self.scene.model;
         if model.network().is_some_and(may_rest) {
@@ -335,8 +335,8 @@ impl Making<'_> {
         Ok((method, Control::Step(step)))
     }
 
-    /// Disagreement of the reference with the other method, whose step or tolerance is reduced
-    /// until it is sufficient, or at most `own`, the reference's own uncertainty, or stuck.
+    /// Returns the disagreement of the reference with the other method, whose step or tolerance is
+    /// reduced until it is sufficient, or at most `own`, the reference's own uncertainty, or stuck.
     fn by_another(&mut self, own: f64) -> Result<Option<Errors>, Error> {
         let (method, mut control) = self.other()?;
         let metric = self.precision.metric;
@@ -392,7 +392,7 @@ fn is_stuck(history: &[f64]) -> bool {
     }
 }
 
-/// Error for a method of the reference that is not in the table of methods.
+/// Returns the error for a method of the reference that is not in the table of methods.
 fn missing() -> Error {
     Error::Invalid("the methods that make a reference are not in the table".into())
 }

@@ -81,7 +81,7 @@ pub fn run(
     run_observed(simulation, frames, go_on, observer.as_mut())
 }
 
-/// As [`run`], with an observer that measures its own time.
+/// Does what [`run`] does, with an observer that measures its own time.
 #[expect(clippy::option_option, reason = "this is what `run` returns")]
 pub(super) fn run_observed(
     simulation: &mut Simulation,
@@ -131,7 +131,7 @@ fn to_a_tolerance(
     Ok(true)
 }
 
-/// State of a run that has arrived at a frame.
+/// Returns the state of a run that has arrived at a frame.
 fn at_end(run: &Simulation, frame: u64) -> FrameState<'_> {
     FrameState {
         frame,

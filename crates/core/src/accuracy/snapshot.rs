@@ -34,7 +34,7 @@ pub(super) struct Snapshot {
 }
 
 impl Snapshot {
-    /// Quantities of the state y of a model at time t (s), at which a run starts.
+    /// Creates a snapshot of the state y of a model at time t (s), at which a run starts.
     pub fn of(model: &Model, t: f64, y: &[f64]) -> Self {
         let Some(network) = model.network() else {
             let (positions, velocities) = model.motion(t, y);
@@ -56,7 +56,8 @@ impl Snapshot {
         }
     }
 
-    /// The quantities that follow from positions and velocities alone; the rest is 0.
+    /// Creates a snapshot of the quantities that follow from positions and velocities alone; the
+    /// rest is 0.
     fn of_motion(network: &Network, y: &[f64]) -> Self {
         let (positions, velocities) = network.halves(y);
         let inverse_masses = network.inverse_masses();
@@ -78,8 +79,9 @@ impl Snapshot {
         }
     }
 
-    /// Quantities of the state y of a model at time t (s) that are compared between frames: without
-    /// those of contact, and without the energy if contact or rotations contribute to it.
+    /// Creates a snapshot of the state y of a model at time t (s), of the quantities that are
+    /// compared between frames: without those of contact, and without the energy if contact or
+    /// rotations contribute to it.
     pub fn between_frames(model: &Model, t: f64, y: &[f64]) -> Self {
         let Some(network) = model.network() else {
             return Self::of(model, t, y);
@@ -95,8 +97,9 @@ impl Snapshot {
         }
     }
 
-    /// The same quantities at time t (s), interpolated from known times (s): positions by the
-    /// polynomial through positions and velocities, all others by that through the values.
+    /// Creates a snapshot at time t (s), interpolated from known times (s): positions by the
+    /// polynomial through positions and velocities, all other quantities by that through the
+    /// values.
     pub fn interpolated(model: &Model, known: &[(f64, &Self)], t: f64) -> Self {
         // Times are in units of their distance, so that the weights are of ordinary size.
         let (first, last) = (known[0].0, known[known.len() - 1].0);
@@ -132,8 +135,7 @@ impl Snapshot {
         }
     }
 
-    /// Quantities of the state y of a model at time t (s), the next one of a run after this
-    /// snapshot.
+    /// Creates the next snapshot of a run after this one, of the state y of a model at time t (s).
     pub fn next(&self, model: &Model, t: f64, y: &[f64]) -> Self {
         let mut next = Self::of(model, t, y);
         if let Some(layer) = model.network().and_then(Network::contact_layer) {
@@ -146,7 +148,7 @@ impl Snapshot {
         next
     }
 
-    /// Quantities at time t (s) if nothing moves any more.
+    /// Returns the snapshot at time t (s) if nothing moves any more.
     pub fn still(&self, t: f64) -> Self {
         Self {
             impact: self.impact.still(t, self.penetration > 0.0),
@@ -154,18 +156,19 @@ impl Snapshot {
         }
     }
 
-    /// Positions (m): all x, all y, all z.
+    /// Returns the positions (m): all x, all y, all z.
     pub fn positions(&self) -> &[f64] {
         &self.positions
     }
 
-    /// Positions (m) and velocities (m/s), or the numbers of the state and their rates of change.
+    /// Returns the positions (m) and velocities (m/s), or the numbers of the state and their rates
+    /// of change.
     pub fn motion(&self) -> [Vec<f64>; 2] {
         [self.positions.clone(), self.velocities.clone()]
     }
 
-    /// Errors of another snapshot of the same scene against this one, which is exact. The phase is
-    /// not yet divided by the [`square_speed`](Self::square_speed).
+    /// Returns the errors of another snapshot of the same scene against this one, which is exact.
+    /// The phase is not yet divided by the [`square_speed`](Self::square_speed).
     pub fn errors_of(&self, other: &Self, scope: Scope) -> Errors {
         let springs = self.strains.len().max(1) as f64;
         let stretch = self.strains.iter().zip(&other.strains);
@@ -191,12 +194,13 @@ impl Snapshot {
         }
     }
 
-    /// Mean square speed of the particles in the scope (m2/s2).
+    /// Returns the mean square speed of the particles in the scope (m2/s2).
     pub fn square_speed(&self, scope: Scope) -> f64 {
         self.mean(scope, self.velocities.iter().map(|v| v * v))
     }
 
-    /// Sum over the axes of the mean over the particles in the scope; without particles, the mean.
+    /// Returns the sum over the axes of the mean over the particles in the scope; without
+    /// particles, the mean.
     fn mean(&self, scope: Scope, numbers: impl Iterator<Item = f64>) -> f64 {
         let n = match self.particles {
             0 => self.positions.len(),
@@ -228,7 +232,7 @@ impl Snapshot {
     }
 }
 
-/// Structural springs of a network whose rest length is above 0.
+/// Lists the structural springs of a network whose rest length is above 0.
 fn structural(network: &Network) -> impl Iterator<Item = crate::Spring> {
     network
         .springs()

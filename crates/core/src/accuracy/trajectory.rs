@@ -25,17 +25,17 @@ impl Trajectory {
         }
     }
 
-    /// Errors of a snapshot at frame k, counted from 1.
+    /// Returns the errors of a snapshot at frame k, counted from 1.
     pub fn errors(&self, k: u64, other: &Snapshot, scope: Scope) -> Errors {
         self.errors_of(&self.snapshots[k as usize - 1], other, scope)
     }
 
-    /// Quantities of a model at time t (s), interpolated.
+    /// Returns a snapshot of a model at time t (s), interpolated.
     pub fn at(&self, start: (&Snapshot, Frames), model: &Model, t: f64) -> Snapshot {
         Snapshot::interpolated(model, &self.around(start, t), t)
     }
 
-    /// Coordinates of a model (m) and their rates of change (m/s) at time t (s).
+    /// Returns the coordinates of a model (m) and their rates of change (m/s) at time t (s).
     pub fn motion(&self, start: (&Snapshot, Frames), model: &Model, t: f64) -> [Vec<f64>; 2] {
         let (first, frames) = start;
         let k = (t / frames.spacing()).round() as u64;
@@ -46,9 +46,9 @@ impl Trajectory {
         }
     }
 
-    /// Errors at the nearest end of the step of a model that encloses frame k, counted from 1.
-    /// Those of contact are unknown there, and infinite. The error of the positions is at least
-    /// that of interpolating the frame from the exact states at both ends of the step.
+    /// Returns the errors at the nearest end of the step of a model that encloses frame k, counted
+    /// from 1. Those of contact are unknown there, and infinite. The error of the positions is at
+    /// least that of interpolating the frame from the exact states at both ends of the step.
     pub fn errors_between(
         &self,
         (start, frames): (&Snapshot, Frames),
@@ -73,7 +73,7 @@ impl Trajectory {
         }
     }
 
-    /// Times (s) and snapshots of the frames nearest to a time t (s).
+    /// Returns the times (s) and snapshots of the frames nearest to a time t (s).
     fn around<'a>(
         &'a self,
         (start, frames): (&'a Snapshot, Frames),

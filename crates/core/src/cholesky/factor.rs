@@ -64,12 +64,12 @@ impl<const B: usize, const P: usize> Factor<B, P> {
         self.blocks.fill([[0.0; P]; B]);
     }
 
-    /// Columns of the block of a row of the matrix on the diagonal.
+    /// Returns the columns of the block of a row of the matrix on the diagonal.
     pub fn diagonal_mut(&mut self, pattern: &Pattern, i: usize) -> &mut Block<B, P> {
         &mut self.diagonal[pattern.ranks[i] as usize]
     }
 
-    /// Columns of a block below the diagonal.
+    /// Returns the columns of a block below the diagonal.
     pub fn block_mut(&mut self, place: Place) -> &mut Block<B, P> {
         &mut self.blocks[place.block as usize]
     }
@@ -86,21 +86,21 @@ impl<const B: usize, const P: usize> Factor<B, P> {
         Arch::new().dispatch(Factorise { factor, pattern })
     }
 
-    /// The same without vector instructions.
+    /// Factorises the matrix without vector instructions.
     #[cfg(test)]
     pub fn factorise_by_numbers(&mut self, pattern: &Pattern) -> bool {
         let factor = self;
         Factorise { factor, pattern }.with_simd(pulp::Scalar::new())
     }
 
-    /// The least square of a number on the diagonal of the factor.
+    /// Returns the least square of a number on the diagonal of the factor.
     pub fn least_square(&self) -> f64 {
         let inverses = |block: &Block<B, P>| std::array::from_fn::<_, B, _>(|k| block[k][k]);
         let largest = self.diagonal.iter().flat_map(inverses).fold(0.0, f64::max);
         1.0 / (largest * largest)
     }
 
-    /// Unknowns of a row of the matrix.
+    /// Returns the unknowns of a row of the matrix.
     pub fn unknowns_mut(&mut self, pattern: &Pattern, i: usize) -> &mut [f64; P] {
         &mut self.unknowns[pattern.ranks[i] as usize]
     }
@@ -239,13 +239,13 @@ impl<const B: usize, const P: usize> WithSimd for Solve<'_, B, P> {
     }
 }
 
-/// The block with the opposite sign.
+/// Returns the block with the opposite sign.
 #[inline(always)]
 fn opposite<const B: usize, const P: usize>(a: &Block<B, P>) -> Block<B, P> {
     a.map(|column| column.map(|number| -number))
 }
 
-/// c -= a bT
+/// Computes c -= a bT.
 #[inline(always)]
 fn subtract_product<const B: usize, const P: usize>(
     c: &mut Block<B, P>,
@@ -261,7 +261,7 @@ fn subtract_product<const B: usize, const P: usize>(
     }
 }
 
-/// y -= l x
+/// Computes y -= l x.
 #[inline(always)]
 fn subtract<const B: usize, const P: usize>(y: &mut [f64; P], l: &Block<B, P>, x: &[f64; P]) {
     for c in 0..B {

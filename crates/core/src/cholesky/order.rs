@@ -11,8 +11,8 @@ use std::collections::BinaryHeap;
 /// number of rows.
 const DENSE_DEGREES: [f64; 2] = [40.0, 2.0];
 
-/// Elimination order (approximate minimum degree) of a matrix given by its adjacency lists; `None`
-/// if the factor would have more than `most` blocks below its diagonal.
+/// Returns the elimination order (approximate minimum degree) of a matrix given by its adjacency
+/// lists; `None` if the factor would have more than `most` blocks below its diagonal.
 pub(super) fn order(mut meets: Vec<Vec<u32>>, most: usize) -> Option<Vec<u32>> {
     let n = meets.len();
     let many = DENSE_DEGREES[0].max(DENSE_DEGREES[1] * (n as f64).sqrt()) as usize;

@@ -24,18 +24,18 @@ pub(crate) struct Place {
 }
 
 impl Pattern {
-    /// Pattern for a matrix of n rows of blocks, with blocks at these rows and columns, in either
-    /// triangle and possibly repeated; `None` if the factor would have more than `most` blocks
-    /// below its diagonal.
+    /// Creates the pattern for a matrix of n rows of blocks, with blocks at these rows and columns,
+    /// in either triangle and possibly repeated; `None` if the factor would have more than `most`
+    /// blocks below its diagonal.
     pub fn new(n: usize, pairs: impl Iterator<Item = [u32; 2]>, most: usize) -> Option<Self> {
         let meets = neighbours(n, pairs);
         let order = order::order(meets.clone(), most)?;
         Some(Self::in_order(&order, &meets))
     }
 
-    /// Pattern for a matrix of n rows of blocks and one more row for each of these `ties`, which
-    /// has blocks in the columns of both of its ends, and is eliminated next after them; the other
-    /// blocks are at `pairs`.
+    /// Creates the pattern for a matrix of n rows of blocks and one more row for each of these
+    /// `ties`. The row of a tie has blocks in the columns of both of its ends, and is eliminated
+    /// next after them. The other blocks are at `pairs`.
     pub fn tied(
         n: usize,
         pairs: impl Iterator<Item = [u32; 2]>,
@@ -68,8 +68,8 @@ impl Pattern {
         Some(Self::in_order(&order, &meets))
     }
 
-    /// Pattern for a matrix of which the neighbours of each row are given, in that order of
-    /// elimination.
+    /// Creates the pattern for a matrix of which the neighbours of each row are given, in that
+    /// order of elimination.
     fn in_order(order: &[u32], meets: &[Vec<u32>]) -> Self {
         let n = order.len();
         let (ranks, columns) = columns(order, meets);
@@ -96,17 +96,17 @@ impl Pattern {
         }
     }
 
-    /// Number of rows of the matrix.
+    /// Returns the number of rows of the matrix.
     pub fn len(&self) -> usize {
         self.ranks.len()
     }
 
-    /// Number of blocks below the diagonal of the factor.
+    /// Returns the number of blocks below the diagonal of the factor.
     pub fn size(&self) -> usize {
         self.rows.len()
     }
 
-    /// Number of products of blocks in a factorisation.
+    /// Returns the number of products of blocks in a factorisation.
     pub fn products(&self) -> f64 {
         let lengths = self
             .starts
@@ -115,7 +115,8 @@ impl Pattern {
         lengths.map(|m| 0.5 * m * (m + 3.0)).sum()
     }
 
-    /// Place of the block in row i and column j of the matrix, which must be one of its pairs.
+    /// Returns the place of the block in row i and column j of the matrix, which must be one of its
+    /// pairs.
     pub fn place(&self, i: u32, j: u32) -> Place {
         let [row, column] = [i, j].map(|i| self.ranks[i as usize]);
         let (low, high) = (row.min(column), row.max(column));
@@ -127,13 +128,13 @@ impl Pattern {
         }
     }
 
-    /// Blocks of a column below the diagonal.
+    /// Returns the blocks of a column below the diagonal.
     fn column(&self, column: usize) -> Range<usize> {
         self.starts[column] as usize..self.starts[column + 1] as usize
     }
 }
 
-/// Neighbours of each of n rows, in order, from pairs of them that may be repeated.
+/// Lists the neighbours of each of n rows, in order, from pairs of them that may be repeated.
 fn neighbours(n: usize, pairs: impl Iterator<Item = [u32; 2]>) -> Vec<Vec<u32>> {
     let mut meets = vec![vec![]; n];
     for [i, j] in pairs.filter(|[i, j]| i != j) {
@@ -147,8 +148,8 @@ fn neighbours(n: usize, pairs: impl Iterator<Item = [u32; 2]>) -> Vec<Vec<u32>> 
     meets
 }
 
-/// Rank of each row in an order, and the rows below the diagonal in each column of the factor, by
-/// their ranks.
+/// Returns the rank of each row in an order, and the rows below the diagonal in each column of the
+/// factor, by their ranks.
 fn columns(order: &[u32], meets: &[Vec<u32>]) -> (Vec<u32>, Vec<Vec<u32>>) {
     let n = order.len();
     let mut ranks = vec![0; n];
@@ -181,8 +182,8 @@ fn columns(order: &[u32], meets: &[Vec<u32>]) -> (Vec<u32>, Vec<Vec<u32>>) {
     (ranks, columns)
 }
 
-/// Columns in an order of the elimination tree with the children of each just before it. It changes
-/// nothing but the places of columns in memory.
+/// Returns the columns in an order of the elimination tree with the children of each just before
+/// it. The order changes nothing but the places of columns in memory.
 fn children_first(columns: &[Vec<u32>]) -> Vec<u32> {
     let mut children = vec![vec![]; columns.len()];
     let mut stack = vec![];

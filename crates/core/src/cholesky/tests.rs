@@ -3,12 +3,12 @@
 use super::*;
 use crate::random::SplitMix;
 
-/// A random number from 0 to n - 1.
+/// Draws a random number from 0 to n - 1.
 fn below(n: usize, random: &mut SplitMix) -> usize {
     random.between(0.0, n as f64) as usize
 }
 
-/// A random diagonally dominant matrix with blocks at some pairs, by rows.
+/// Draws a random diagonally dominant matrix with blocks at some pairs, by rows.
 fn matrix<const B: usize>(n: usize, pairs: &[[u32; 2]], random: &mut SplitMix) -> Vec<Vec<f64>> {
     let dim = B * n;
     let mut a = vec![vec![0.0; dim]; dim];
@@ -60,8 +60,8 @@ fn filled<const B: usize, const P: usize>(
     factor
 }
 
-/// Largest residual of the solution for a random right-hand side; `None` if a matrix is not
-/// positive definite.
+/// Returns the largest residual of the solution for a random right-hand side; `None` if a matrix is
+/// not positive definite.
 fn residual<const B: usize, const P: usize>(
     n: usize,
     pairs: &[[u32; 2]],
@@ -157,7 +157,7 @@ fn what_is_not_positive_definite_is_noticed() {
     assert!(residual::<1, 1>(1, &[], 1.0, &mut random).is_none());
 }
 
-/// Number of products by an exact minimum degree order, pair by pair.
+/// Returns the number of products by an exact minimum degree order, pair by pair.
 fn least_degree(n: usize, pairs: &[[u32; 2]]) -> f64 {
     let mut meets = vec![std::collections::BTreeSet::new(); n];
     for &[i, j] in pairs {

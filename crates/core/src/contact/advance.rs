@@ -47,7 +47,7 @@ const MAX_PLANES_OF_PAIR: usize = 256;
 /// Number of planes after which a half is halved again.
 const MAX_PLANES_OF_PART: usize = 16;
 
-/// Share of a step at which a pair comes as near as `gap`, or `None` if it never does.
+/// Returns the share of a step at which a pair comes as near as `gap`, or `None` if it never does.
 ///
 /// The points (m) move linearly from `from` to `from + moves` (m). For round primitives, `radius`
 /// is the sum of the radii (m), and included in `gap` (m, at least 0). `None` is a certificate that
@@ -77,7 +77,7 @@ pub fn time_of_impact(
     time_and_planes(kind, from, moves, radius, gap).0
 }
 
-/// As [`time_of_impact`], with the number of planes that it took.
+/// Returns what [`time_of_impact`] returns, with the number of planes that it took.
 pub(super) fn time_and_planes(
     kind: PairKind,
     from: &[Vector3<f64>; 4],
@@ -130,8 +130,8 @@ struct Search {
 }
 
 impl Search {
-    /// Share of the motion at which a pair is hit, whose first plane is given: by at most `most`
-    /// planes, and then by halves.
+    /// Finds the share of the motion at which a pair is hit, whose first plane is given. It uses at
+    /// most `most` planes, and then halves the motion.
     fn first_hit(
         &mut self,
         from: &[Vector3<f64>; 4],
@@ -184,7 +184,7 @@ impl Search {
         hit.map(|hit| t + left * hit)
     }
 
-    /// Share of a part's motion at which it is hit.
+    /// Finds the share of a part's motion at which it is hit.
     fn hit_of_part(&mut self, from: &[Vector3<f64>; 4], moves: &[Vector3<f64>; 4]) -> Option<f64> {
         if are_apart(self.kind, from, moves, self.gaps[1]) {
             return None;
@@ -194,7 +194,7 @@ impl Search {
     }
 }
 
-/// Ends of the longest edge of two primitives.
+/// Returns the ends of the longest edge of two primitives.
 fn longest_edge(kind: PairKind, x: &[Vector3<f64>; 4]) -> [usize; 2] {
     let edges = match kind {
         PairKind::EdgeEdge => &[[0, 1], [2, 3]][..],
@@ -205,18 +205,18 @@ fn longest_edge(kind: PairKind, x: &[Vector3<f64>; 4]) -> [usize; 2] {
     longest.copied().unwrap_or([1, 2])
 }
 
-/// Sum of the magnitudes of all coordinates of points (m).
+/// Sums the magnitudes of all coordinates of points (m).
 fn magnitude(points: &[Vector3<f64>; 4]) -> f64 {
     points.iter().map(|x| x.abs().sum()).sum()
 }
 
-/// Upper bound of the rounding error (m) of a distance between primitives with these points.
+/// Returns an upper bound of the rounding error (m) of a distance between these primitives.
 pub(super) fn rounding_error(points: &[Vector3<f64>; 4]) -> f64 {
     ROUNDING_ERROR * magnitude(points)
 }
 
-/// Share of a step at which a vertex sinks to `gap` (m), given its height above a floor and its
-/// rise in the step (m). One that begins lower is hit if it sinks by `approach` (m).
+/// Finds the share of a step at which a vertex sinks to `gap` (m), given its height above a floor
+/// and its rise in the step (m). One that begins lower is hit if it sinks by `approach` (m).
 fn sinks_to(gap: f64, height: f64, rise: f64, tolerance: f64, approach: f64) -> Option<f64> {
     let above = height - gap;
     if above <= 2.0 * tolerance {
@@ -291,8 +291,8 @@ impl Plane {
         }
     }
 
-    /// Share of the step from now on during which the distance along the normal stays above `least`
-    /// (m); infinite if it always does.
+    /// Returns the share of the step from now on during which the distance along the normal stays
+    /// above `least` (m); infinite if it always does.
     fn holds_for(&self, least: f64) -> f64 {
         let mut share = f64::INFINITY;
         for (apart, rate) in self.distances.iter().zip(&self.rates) {

@@ -38,7 +38,7 @@ pub(crate) struct Approach<'a> {
 }
 
 impl<'a> Approach<'a> {
-    /// Approach of a particle on a course that begins at time t (s).
+    /// Creates the approach of a particle on a course that begins at time t (s).
     pub fn new(obstacle: &'a Obstacle, course: &'a Course, t: f64) -> Self {
         let h = course.h;
         let times = [t, t + h];
@@ -68,27 +68,27 @@ impl<'a> Approach<'a> {
         }
     }
 
-    /// Position of the particle at a share of the step, in the obstacle's own frame, before it
-    /// turned.
+    /// Returns the position (m) of the particle at a share of the step, in the obstacle's own
+    /// frame, before it turned.
     fn seen(&self, share: f64) -> Vector3<f64> {
         let pose = self.obstacle.at(self.t + share * self.course.h);
         pose.inwards(self.course.position(share) - pose.place.position)
     }
 
-    /// Separation at a share of the step, in the obstacle's own frame.
+    /// Returns the separation at a share of the step, in the obstacle's own frame.
     pub fn separation(&self, share: f64) -> Separation {
         self.obstacle.shape.separation(self.seen(share))
     }
 
-    /// Point of the surface nearest to the particle at a share of the step, and the normal there,
-    /// in the obstacle's own frame.
+    /// Returns the point of the surface nearest to the particle (m) at a share of the step, and the
+    /// normal there, in the obstacle's own frame.
     pub fn touched(&self, share: f64) -> (Vector3<f64>, Vector3<f64>) {
         let seen = self.seen(share);
         let Separation { distance, normal } = self.obstacle.shape.separation(seen);
         (seen - normal * distance, normal)
     }
 
-    /// Lower bound of the distance between two shares of the step.
+    /// Returns a lower bound of the distance (m) between two shares of the step.
     fn least(&self, [a, b]: [f64; 2]) -> f64 {
         let middle = 0.5 * (a + b);
         let seen = self.seen(middle);
@@ -103,15 +103,15 @@ impl<'a> Approach<'a> {
         least.max(plane)
     }
 
-    /// First share of the step, from `from` on, at which the particle is within the obstacle by
-    /// `depth` (m), if there is one.
+    /// Finds the first share of the step, from `from` on, at which the particle is within the
+    /// obstacle by `depth` (m), if there is one.
     pub fn first(&self, from: f64, depth: f64) -> Option<f64> {
         let may_touch = |interval| self.least(interval) + depth <= 0.0;
         let found = earliest([from, 1.0], MIN_INTERVAL, may_touch)?;
         Some(self.refine(found, depth))
     }
 
-    /// Share of the step near a given one at which the depth is reached.
+    /// Finds the share of the step near a given one at which the depth (m) is reached.
     fn refine(&self, share: f64, depth: f64) -> f64 {
         let distance = |share: f64| self.separation(share).distance + depth;
         let mut now = share;
@@ -131,8 +131,8 @@ impl<'a> Approach<'a> {
     }
 }
 
-/// Beginning of the first part of an interval, shorter than `finest`, in which an event may happen:
-/// intervals in which it may are halved.
+/// Finds the beginning of the first part of an interval, shorter than `finest`, in which an event
+/// may happen. Intervals in which it may happen are halved.
 pub(crate) fn earliest(
     whole: [f64; 2],
     finest: f64,
@@ -161,7 +161,8 @@ pub(crate) fn earliest(
 }
 
 impl Course {
-    /// Bounds of the first and the second derivative of the position by the share of the step (m).
+    /// Bounds the first and the second derivative of the position with respect to the share of the
+    /// step (m).
     pub fn bounds(&self) -> [f64; 2] {
         // Control points of the polynomial's Bézier form, which stays within their convex hull.
         let [a, d] = self.x;
@@ -177,8 +178,8 @@ impl Course {
         ]
     }
 
-    /// Distance (m) from the middle of the chord within which the whole course stays, with room for
-    /// a polynomial that is not quite a cubic.
+    /// Returns a distance (m) from the middle of the chord within which the whole course stays,
+    /// with room for a polynomial that is not quite a cubic.
     pub fn reach(&self) -> f64 {
         let chord = self.x[1] - self.x[0];
         let bulges = self.v.map(|v| (v * self.h - chord).norm());
@@ -193,7 +194,7 @@ mod tests {
     use crate::path::Path;
     use crate::random::SplitMix;
 
-    /// Random vector whose coordinates are at most `most` in magnitude.
+    /// Draws a random vector whose coordinates are at most `most` in magnitude.
     fn vector(random: &mut SplitMix, most: f64) -> Vector3<f64> {
         Vector3::from_fn(|_, _| random.between(-most, most))
     }

@@ -125,7 +125,7 @@ fn unit<S: Simd>(a: [Lanes<S>; 3]) -> [Lanes<S>; 3] {
     times(a, one / dot(a, a).root())
 }
 
-/// Lanes that are in all three masks.
+/// Returns the lanes that are in all three masks.
 #[inline(always)]
 fn all<S: Simd>(simd: S, [a, b, c]: [S::m64s; 3]) -> S::m64s {
     simd.and_m64s(a, simd.and_m64s(b, c))
@@ -269,7 +269,8 @@ mod tests {
     use crate::geometry::closest;
     use crate::random::SplitMix;
 
-    /// Random pairs, some with parallel or flat primitives, points and equal vertices.
+    /// Draws the points of a random pair: some pairs have parallel or flat primitives, points or
+    /// equal vertices.
     fn random_points(random: &mut SplitMix) -> [Vector3<f64>; 4] {
         let mut point = || Vector3::from_fn(|_, _| random.between(-1.0, 1.0));
         let mut points = [point(), point(), point(), point()];

@@ -47,7 +47,7 @@ pub(super) struct Courses<'a> {
 }
 
 impl Courses<'_> {
-    /// Box around the course of a vertex.
+    /// Returns the box around the course of a vertex.
     pub fn around(&self, surface: &Surface, i: usize) -> Bounds {
         let begin = self.base[i] - self.origin;
         let end = begin + (self.speeds[i] - self.mean) * self.horizon;
@@ -85,19 +85,19 @@ impl Bounds {
         self
     }
 
-    /// Box around the boxes at both ends.
+    /// Returns the box around the boxes at both ends.
     fn hull(&self) -> Aabb {
         let ([a, b], [c, d]) = (self.low, self.high);
         Aabb::around([a, b, c, d].map(|x| Vector3::from(x.map(f64::from))))
     }
 }
 
-/// The smaller of two numbers, as one instruction.
+/// Returns the smaller of two numbers, by one instruction.
 fn least(a: f32, b: f32) -> f32 {
     if a < b { a } else { b }
 }
 
-/// The larger of two numbers, as one instruction.
+/// Returns the larger of two numbers, by one instruction.
 fn most(a: f32, b: f32) -> f32 {
     if a > b { a } else { b }
 }
@@ -140,7 +140,7 @@ impl Block {
         }
     }
 
-    /// The box around all.
+    /// Returns the box around all boxes.
     fn whole(&self) -> Bounds {
         let mut whole = self.get(0);
         for t in 0..2 {
@@ -289,12 +289,12 @@ impl Tree {
         self.bvh = Bvh::new(&hulls);
     }
 
-    /// Box of a block in the tree: around its boxes at both ends, enlarged by half of the reach.
+    /// Returns a block's box in the tree: around its boxes at both ends, grown by half the reach.
     fn leaf(&self, number: usize) -> Aabb {
         self.wholes[number].hull().grown(self.half)
     }
 
-    /// Primitives of a block.
+    /// Returns the primitives of a block.
     fn members(&self, block: u32) -> &[u32] {
         let first = block as usize * LANES;
         &self.order[first..self.order.len().min(first + LANES)]

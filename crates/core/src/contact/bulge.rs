@@ -8,9 +8,9 @@ use super::layer::{Buffers, ContactLayer};
 /// the velocity at one end and that of the chord.
 const BULGE: f64 = 4.0 / 27.0;
 
-/// Largest distance of a vertex from its straight course in a step of h (s) from the state y0 at
-/// time t (s) to y1, over the least thickness that is not 0. Vertices of rigid bodies do not count;
-/// 0 if there are no others.
+/// Returns the largest distance of a vertex from its straight course in a step of h (s) from the
+/// state y0 at time t (s) to y1, over the least thickness that is not 0. Vertices of rigid bodies
+/// do not count; 0 if there are no others.
 pub(crate) fn bulge(layer: &ContactLayer, (t, h): (f64, f64), [y0, y1]: [&[f64]; 2]) -> f64 {
     let (surface, obstacles) = (layer.surface(), layer.obstacles());
     let is_soft = |vertex: &&u32| surface.solid(**vertex).is_none();

@@ -48,7 +48,7 @@ pub(super) struct Stretch<'a> {
 }
 
 impl Stretch<'_> {
-    /// Velocity of a vertex (m/s); 0 if unknown.
+    /// Returns the velocity of a vertex (m/s); 0 if unknown.
     fn speed(&self, i: usize) -> Vector3<f64> {
         let duration = self.times[1] - self.times[0];
         if duration > 0.0 {
@@ -258,8 +258,8 @@ impl Candidates {
         room < 2.0 * self.farthest && room < pair.candidate.approach(&self.travel)
     }
 
-    /// The pairs, in canonical order, that may come nearer than their thickness and a gap (m),
-    /// which is at most 0, in the stretch covered last.
+    /// Returns the pairs, in canonical order, that may come nearer than their thickness and a gap
+    /// (m), which is at most 0, in the stretch covered last.
     pub fn near(&self, gap: f64) -> impl Iterator<Item = &Candidate> {
         let near = self
             .pairs

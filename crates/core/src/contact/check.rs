@@ -46,10 +46,10 @@ impl fmt::Display for Crossed {
     }
 }
 
-/// The pairs of an edge and a triangle that have a point in common at time t (s), with particles at
-/// x (m), n x 3, found exactly by signs of determinants; and the primitives inside a round obstacle
-/// or a floor, up to rounding. Pairs of obstacles are not checked, nor are pairs of bodies if
-/// bodies cannot touch one another.
+/// Finds the pairs of an edge and a triangle that have a point in common at time t (s), with
+/// particles at x (m), n x 3. They are found exactly, by signs of determinants. Also finds the
+/// primitives inside a round obstacle or a floor, up to rounding. Pairs of obstacles are not
+/// checked, nor are pairs of bodies if bodies cannot touch one another.
 ///
 /// # Panics
 /// x has not three numbers for each particle.
@@ -111,8 +111,8 @@ fn crossed_with(layer: &ContactLayer, buffers: &mut Buffers, t: f64, x: &[f64]) 
     exact.chain(inside).collect()
 }
 
-/// The crossings of these edges and triangles of the surface, and the pairs inside a round obstacle
-/// or a floor, as [`crossed`] has them.
+/// Finds the crossings of these edges and triangles of the surface, and the pairs inside a round
+/// obstacle or a floor, as [`crossed`] does.
 pub(super) fn meetings(
     layer: &ContactLayer,
     buffers: &mut Buffers,

@@ -137,8 +137,8 @@ impl ContactPair {
         }
     }
 
-    /// The angular impulse (N m s) that stops the relative turn in a span of time (s, or 1 for
-    /// velocities), and the largest one; none if the contact does not resist turns.
+    /// Returns the angular impulse (N m s) that stops the relative turn in a span of time (s, or 1
+    /// for velocities), and the largest one; none if the contact does not resist turns.
     pub fn turning(&self, field: &Field, span: f64) -> Option<(Vector3<f64>, f64)> {
         let rolling = self.rigid.as_ref()?.rolling.as_ref()?;
         let turned = self
@@ -154,14 +154,14 @@ impl ContactPair {
         }
     }
 
-    /// The relative vector of the closest points.
+    /// Returns the relative vector of the closest points.
     fn relative(&self, field: &Field) -> Vector3<f64> {
         let relative = weighted(&self.weights, &self.points.map(|i| field[i as usize]));
         self.arms()
             .fold(relative, |sum, arm| sum + arm.beyond_points(field))
     }
 
-    /// The arms at rigid bodies.
+    /// Returns the arms at rigid bodies.
     fn arms(&self) -> impl Iterator<Item = &Arm> {
         let arms = self.rigid.as_ref().map(|rigid| rigid.arms.iter());
         arms.into_iter().flatten().flatten()
@@ -172,12 +172,12 @@ impl ContactPair {
         self.rigid.is_some()
     }
 
-    /// Numbers of the rigid bodies that touch.
+    /// Returns the numbers of the rigid bodies that touch.
     pub fn solids(&self) -> impl Iterator<Item = usize> {
         self.arms().map(|arm| arm.solid)
     }
 
-    /// The arms, if both sides are rigid bodies.
+    /// Returns the arms, if both sides are rigid bodies.
     pub fn both_arms(&self) -> Option<[Arm; 2]> {
         let [first, second] = self.rigid.as_ref()?.arms;
         Some([first?, second?])
@@ -193,13 +193,14 @@ impl ContactPair {
         })
     }
 
-    /// Component, perpendicular to the normal, of the relative vector of the closest points.
+    /// Returns the component, perpendicular to the normal, of the relative vector of the closest
+    /// points.
     pub fn slip(&self, field: &Field) -> Vector3<f64> {
         let relative = self.relative(field);
         relative - self.normal * relative.dot(&self.normal)
     }
 
-    /// Change of the relative velocity along a direction by an impulse along it (1/kg).
+    /// Returns the change of the relative velocity along a direction by an impulse along it (1/kg).
     pub fn mobility(&self, direction: Vector3<f64>) -> f64 {
         let squared = direction.norm_squared();
         match &self.rigid {
@@ -261,8 +262,9 @@ impl ContactPair {
         impulse
     }
 
-    /// The impulse that stops approach and slip or, if friction is not large enough for that, the
-    /// approach alone (Guendelman, Bridson, Fedkiw, *Nonconvex rigid bodies with stacking*, 2003).
+    /// Returns the impulse that stops approach and slip or, if friction is not large enough for
+    /// that, the approach alone (Guendelman, Bridson, Fedkiw, *Nonconvex rigid bodies with
+    /// stacking*, 2003).
     fn rigid_impulse(
         &self,
         rigid: &RigidContact,
@@ -290,7 +292,7 @@ impl ContactPair {
     }
 }
 
-/// A slip, limited to the length `most`.
+/// Limits a slip to the length `most`.
 pub(super) fn limited_to(slip: Vector3<f64>, most: f64) -> Vector3<f64> {
     let length = slip.norm();
     if length > most {

@@ -16,7 +16,7 @@ pub struct Crossing {
     pub triangle: usize,
 }
 
-/// Edges and triangles that have a point but no corner in common, in ascending order.
+/// Finds the edges and triangles that have a point but no corner in common, in ascending order.
 ///
 /// `positions` are points (m) as n x 3 numbers in column-major order, as at the beginning of a
 /// state; corners from n on are indices into `others` (m). All coordinates are finite.
@@ -64,7 +64,7 @@ pub fn crossings(
     found
 }
 
-/// Tree of the boxes around primitives.
+/// Creates a tree of the boxes around primitives.
 fn tree<const N: usize>(primitives: impl Iterator<Item = [Vector3<f64>; N]>) -> Bvh {
     Bvh::new(&primitives.map(Aabb::around).collect::<Vec<_>>())
 }
@@ -121,7 +121,7 @@ fn edges_meet([p, q]: [Vector3<f64>; 2], [a, b]: [Vector3<f64>; 2]) -> bool {
     })
 }
 
-/// Sign of the volume of a tetrahedron: exactly -1, 0 or 1.
+/// Returns the sign of the volume of a tetrahedron: exactly -1, 0 or 1.
 fn side(a: Vector3<f64>, b: Vector3<f64>, c: Vector3<f64>, d: Vector3<f64>) -> f64 {
     let at = |x: Vector3<f64>| Coord3D {
         x: x.x,
@@ -131,7 +131,7 @@ fn side(a: Vector3<f64>, b: Vector3<f64>, c: Vector3<f64>, d: Vector3<f64>) -> f
     sign(orient3d(at(a), at(b), at(c), at(d)))
 }
 
-/// Sign of the area of a triangle seen along an axis: exactly -1, 0 or 1.
+/// Returns the sign of the area of a triangle seen along an axis: exactly -1, 0 or 1.
 fn turn(axis: usize, a: Vector3<f64>, b: Vector3<f64>, c: Vector3<f64>) -> f64 {
     let at = |x: Vector3<f64>| Coord {
         x: x[(axis + 1) % 3],

@@ -252,7 +252,7 @@ fn push(
     }
 }
 
-/// Contact of a pair at a share of the step, unless its closest points coincide then.
+/// Returns the contact of a pair at a share of the step, unless its closest points coincide then.
 fn contact_at(
     surface: &Surface,
     candidate: &Candidate,

@@ -8,7 +8,7 @@ use super::motion::Motion;
 use super::surface::Surface;
 use crate::geometry::{closest, weighted};
 
-/// The movable parts of a pair: particles, and the centres of rigid bodies.
+/// Returns the movable parts of a pair: particles, and the centres of rigid bodies.
 pub(super) fn parties(
     surface: &Surface,
     motion: &Motion,
@@ -21,8 +21,8 @@ pub(super) fn parties(
     pair.points.map(party).into_iter().flatten()
 }
 
-/// The hits, with their shares of the step, that are the first of all their movable parts. Hits at
-/// nearly the same time get the same time. The points of other pairs are marked as moved.
+/// Selects the hits, with their shares of the step, that are the first of all their movable parts.
+/// Hits at nearly the same time get the same time. The points of other pairs are marked as moved.
 pub(super) fn first_hits(
     surface: &Surface,
     motion: &Motion,
@@ -59,8 +59,8 @@ pub(super) fn first_hits(
     first
 }
 
-/// The pairs that come too near, with the share of the step at which they do: all of them, or those
-/// with a vertex that has moved.
+/// Finds the pairs that come too near, with the share of the step at which they do: all of them, or
+/// those with a vertex that has moved.
 pub(super) fn find(
     surface: &Surface,
     candidates: &Candidates,

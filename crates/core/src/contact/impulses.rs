@@ -7,7 +7,7 @@ use nalgebra::Vector3;
 pub(crate) struct Impulses(Vec<(u32, Vector3<f64>)>);
 
 impl Impulses {
-    /// A list with room for one impulse on each of n particles.
+    /// Creates an empty list with room for one impulse on each of n particles.
     pub fn with_room_for(particles: usize) -> Self {
         Self(Vec::with_capacity(particles))
     }

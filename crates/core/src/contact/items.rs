@@ -24,8 +24,8 @@ pub(super) struct Items {
 }
 
 impl Items {
-    /// The vertices, edges and sides of these triangles, and those edges and points that are in
-    /// none of them. They rank after all items of `others`.
+    /// Collects the vertices, edges and sides of these triangles, and those edges and points that
+    /// are in none of them. They rank after all items of `others`.
     pub fn new(
         triangles: impl IntoIterator<Item = [u32; 3]>,
         edges: impl IntoIterator<Item = [u32; 2]>,
@@ -57,7 +57,7 @@ impl Items {
         items
     }
 
-    /// Corners of the triangles.
+    /// Returns the corners of the triangles.
     pub fn triangles(&self) -> &[[u32; 3]] {
         &self.corners[..self.triangles]
     }
@@ -68,7 +68,7 @@ impl Items {
     }
 }
 
-/// Ranks of values, counted from `first`.
+/// Ranks values, counted from `first`.
 fn ranks<T: Ord>(values: &[T], first: usize) -> Vec<u32> {
     let mut order: Vec<_> = (0..values.len()).collect();
     order.sort_by_key(|k| &values[*k]);

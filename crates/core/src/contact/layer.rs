@@ -30,7 +30,7 @@ pub(super) struct Buffers {
 }
 
 impl ContactLayer {
-    /// Contact of a surface that was made with these obstacles.
+    /// Creates the contact of a surface that was made with these obstacles.
     #[must_use]
     pub fn new(surface: Surface, obstacles: Vec<Obstacle>) -> Self {
         Self {
@@ -40,13 +40,13 @@ impl ContactLayer {
         }
     }
 
-    /// Surface of the bodies and obstacles that can touch.
+    /// Returns the surface of the bodies and obstacles that can touch.
     #[must_use]
     pub fn surface(&self) -> &Surface {
         &self.surface
     }
 
-    /// Obstacles.
+    /// Returns the obstacles.
     pub(super) fn obstacles(&self) -> &[Obstacle] {
         &self.obstacles
     }
@@ -143,7 +143,7 @@ impl ContactLayer {
         });
     }
 
-    /// Energy at time t (s) at x (J).
+    /// Returns the energy of repulsion (J) at time t (s), with particles at x (m).
     pub(crate) fn repulsion_energy(&self, t: f64, x: &[f64]) -> f64 {
         let mut energy = 0.0;
         let find = |_: &Candidate, pair: &Pair| Some(pair.energy());
@@ -151,8 +151,8 @@ impl ContactLayer {
         energy
     }
 
-    /// Penetration at time t (s) at x (m), n x 3: the largest depth over the thickness. 0 where
-    /// nothing touches, 1 where a gap is 0.
+    /// Returns the penetration at time t (s) at x (m), n x 3: the largest depth over the thickness.
+    /// It is 0 where nothing touches, and 1 where a gap is 0.
     #[must_use]
     pub fn penetration(&self, t: f64, x: &[f64]) -> f64 {
         let mut deepest = 0.0_f64;
@@ -180,7 +180,7 @@ impl ContactLayer {
     }
 }
 
-/// Row i of an n x 3 matrix, or zero for a vertex of an obstacle.
+/// Returns row i of an n x 3 matrix, or zero for a vertex of an obstacle.
 fn row(a: &[f64], i: u32) -> Vector3<f64> {
     let (n, i) = (a.len() / 3, i as usize);
     if i < n {

@@ -21,12 +21,12 @@ pub(super) struct Candidate {
 }
 
 impl Candidate {
-    /// The positions, or other vectors, of its points.
+    /// Selects the positions, or other vectors, of the pair's points.
     pub fn of<T: Copy>(&self, all: &[T]) -> [T; 4] {
         self.points.map(|i| all[i as usize])
     }
 
-    /// Largest approach of its primitives if each vertex moves by `travel`.
+    /// Returns the largest approach of the pair's primitives if each vertex moves by `travel`.
     pub fn approach(&self, travel: &[f64]) -> f64 {
         let [a, b, c, d] = self.of(travel);
         match self.kind {
@@ -50,7 +50,7 @@ pub(super) struct Listed {
 }
 
 impl Listed {
-    /// Lower bound of the gap between two times after the beginning (s), in m.
+    /// Returns a lower bound of the gap (m) between two times after the beginning (s).
     pub fn gap(&self, [first, last]: [f64; 2]) -> f64 {
         self.gap - (self.closing * first).max(self.closing * last)
     }
@@ -306,7 +306,7 @@ impl Query<'_> {
         }
     }
 
-    /// The pair of these primitives, by their ranks and points, if it comes within reach.
+    /// Lists the pair of these primitives, by their ranks and points, if it comes within reach.
     fn pair(&self, kind: PairKind, ranks: [u32; 2], points: [u32; 4]) -> Option<Listed> {
         let course = self.course;
         let origin = course.base[points[0] as usize];
@@ -336,8 +336,8 @@ impl Query<'_> {
         self.listed(kind, ranks, points, [distance, closing])
     }
 
-    /// The pair of these primitives, whose distance (m) and the speed at which it shrinks (m/s) are
-    /// bounded, if it comes within reach.
+    /// Lists the pair of these primitives, whose distance (m) and the speed at which it shrinks
+    /// (m/s) are bounded, if it comes within reach.
     fn listed(
         &self,
         kind: PairKind,

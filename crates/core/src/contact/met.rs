@@ -193,8 +193,8 @@ impl Met<'_> {
             && (x - self.after.place.position).norm_squared() <= near * near
     }
 
-    /// First touch of particle i in the step, at whose end its position and velocity are [x, v], if
-    /// it begins outside.
+    /// Finds the first touch of particle i in the step, at whose end its position and velocity are
+    /// [x, v], if it begins outside.
     fn touch(&self, i: usize, [x, v]: [Vector3<f64>; 2]) -> Option<Touch> {
         let ((t, h), n) = (self.span, self.inverse_masses.len());
         let course = Course {
@@ -230,8 +230,8 @@ impl Met<'_> {
         })
     }
 
-    /// Effect of restitution on a particle, whose velocity at the end of the step is v, if there is
-    /// any.
+    /// Returns the effect of restitution on a particle, whose velocity at the end of the step is v,
+    /// if there is any.
     fn rebound(&self, v: Vector3<f64>, touch: &Touch) -> Option<Rebound> {
         let ((_, h), restitution) = (self.span, self.obstacle.restitution);
         if restitution == 0.0 || touch.touches {
@@ -259,8 +259,8 @@ impl Met<'_> {
         })
     }
 
-    /// End of the slide of particle i, whose slip at the end of the step (m/s) friction stops,
-    /// where contact changed the velocity along the normal `up` by `change` (m/s).
+    /// Finds the end of the slide of particle i, whose slip at the end of the step (m/s) friction
+    /// stops, where contact changed the velocity along the normal `up` by `change` (m/s).
     fn stop(&self, i: usize, slip: Vector3<f64>, (up, change): (Vector3<f64>, f64)) -> Stop {
         let (Some(x0), Some(v0)) = (self.x0, self.v0) else {
             return Stop::default();
@@ -281,13 +281,14 @@ impl Met<'_> {
         }
     }
 
-    /// Velocity of the obstacle at the end of the step, at a point relative to its place.
+    /// Returns the velocity (m/s) of the obstacle at the end of the step, at a point relative to
+    /// its place.
     fn velocity(&self, point: Vector3<f64>) -> Vector3<f64> {
         velocity(&self.after, point)
     }
 
-    /// Position at the end of the step of a point that is at x at its beginning and moves with the
-    /// obstacle.
+    /// Returns the position (m) at the end of the step of a point that is at x at its beginning and
+    /// moves with the obstacle.
     fn carried(&self, x: Vector3<f64>) -> Vector3<f64> {
         let (before, after) = (&self.before.place.position, &self.after.place.position);
         if self.after.orientation.is_some() {
@@ -297,8 +298,8 @@ impl Met<'_> {
         }
     }
 
-    /// Share of a slip along the surface that friction leaves, where contact changed the motion
-    /// along the normal by `normal`.
+    /// Returns the share of a slip along the surface that friction leaves, where contact changed
+    /// the motion along the normal by `normal`.
     fn kept(&self, slip: Vector3<f64>, normal: f64) -> f64 {
         // A particle on the surface may be moved inwards, by rounding: friction is 0 then.
         let (slip, most) = (slip.norm(), self.friction * normal.max(0.0));
@@ -324,9 +325,9 @@ struct Touch {
 }
 
 impl Touch {
-    /// Position, in the plane of the touch, of a particle that has passed through the surface
-    /// there. At the end of the step the particle is at d, relative to the obstacle's place, and
-    /// `inside` is the nearest point of the surface if it is still inside.
+    /// Returns the position, in the plane of the touch, of a particle that has passed through the
+    /// surface there. At the end of the step the particle is at d, relative to the obstacle's
+    /// place, and `inside` is the nearest point of the surface if it is still inside.
     fn passed(&self, d: Vector3<f64>, inside: Option<&Nearest>) -> Option<Nearest> {
         let [point, normal] = self.end;
         let depth = normal.dot(&(point - d));
@@ -344,14 +345,14 @@ struct Rebound {
     left: f64,
 }
 
-/// Velocity of a point of an obstacle, relative to its place, in a pose.
+/// Returns the velocity (m/s) of a point of an obstacle, relative to its place, in a pose.
 pub(super) fn velocity(pose: &Pose, point: Vector3<f64>) -> Vector3<f64> {
     let along = pose.place.velocity;
     let turned = pose.orientation;
     turned.map_or(along, |turned| along + turned.spin.cross(&point))
 }
 
-/// Component of a vector perpendicular to a unit normal.
+/// Returns the component of a vector perpendicular to a unit normal.
 pub(super) fn across(a: Vector3<f64>, normal: Vector3<f64>) -> Vector3<f64> {
     a - normal * a.dot(&normal)
 }

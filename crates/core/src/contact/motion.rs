@@ -104,7 +104,8 @@ impl Motion {
         candidates.cover(surface, &stretch);
     }
 
-    /// Positions at the end of the step (m), as of the last call of [`cover`](Self::cover).
+    /// Returns the positions at the end of the step (m), as of the last call of
+    /// [`cover`](Self::cover).
     pub fn ends(&self) -> &[Vector3<f64>] {
         &self.ends
     }
@@ -129,7 +130,8 @@ impl Motion {
         }
     }
 
-    /// Velocity of vertex i at a share of a step of h (s), by the cubic through both ends.
+    /// Returns the velocity of vertex i at a share of a step of h (s), by the cubic through both
+    /// ends.
     pub fn velocity(&self, i: usize, share: f64, h: f64) -> Vector3<f64> {
         Course {
             x: [Vector3::zeros(), self.moves[i]],
@@ -139,8 +141,8 @@ impl Motion {
         .velocity(share)
     }
 
-    /// Angular momentum (kg m2/s) at the end of the step of the parts that a pair moves, if a side
-    /// is a rigid body and no vertex is kinematic.
+    /// Returns the angular momentum (kg m2/s) at the end of the step of the parts that a pair
+    /// moves, if a side is a rigid body and no vertex is kinematic.
     pub fn turning(&self, surface: &Surface, pair: &Candidate) -> Option<Vector3<f64>> {
         let bodies = pair.points.map(|i| surface.solid(i));
         let first = bodies.into_iter().flatten().next()?;
@@ -178,7 +180,7 @@ impl Motion {
         }
     }
 
-    /// Share of the step at which a pair comes too near, if it does.
+    /// Finds the share of the step at which a pair comes too near, if it does.
     pub fn impact(&self, surface: &Surface, candidate: &Candidate) -> Option<f64> {
         let x = candidate.of(&self.x0);
         let moves = candidate.of(&self.moves);
@@ -190,7 +192,7 @@ impl Motion {
         self.first_impact(candidate.kind, [&x, &moves], law.radius, kept)
     }
 
-    /// Share of the step, after another one, at which a pair comes too near, if it does.
+    /// Finds the share of the step, after another one, at which a pair comes too near, if it does.
     pub fn impact_after(&self, surface: &Surface, candidate: &Candidate, time: f64) -> Option<f64> {
         let (x, moves) = (candidate.of(&self.x0), candidate.of(&self.moves));
         let at = std::array::from_fn(|k| x[k] + moves[k] * time);
@@ -201,7 +203,8 @@ impl Motion {
         Some(time + (1.0 - time) * share)
     }
 
-    /// Time of impact of a pair, and counts its planes. Several threads may search for impacts.
+    /// Returns the time of impact of a pair, as a share of the motion, and counts its planes.
+    /// Several threads may search for impacts.
     fn first_impact(
         &self,
         kind: PairKind,
@@ -217,12 +220,13 @@ impl Motion {
         time
     }
 
-    /// Number of planes beyond the usual number since the last call.
+    /// Returns the number of planes beyond the usual number since the last call.
     pub fn take_planes(&mut self) -> usize {
         std::mem::take(self.planes.get_mut())
     }
 
-    /// Distance (m) that a pair keeps, which is less than its distance at the beginning.
+    /// Returns the distance (m) that a pair keeps, which is less than its distance at the
+    /// beginning.
     pub fn kept(surface: &Surface, candidate: &Candidate, x: &[Vector3<f64>; 4]) -> f64 {
         let law = surface.law(candidate.kind, &candidate.points);
         law.kept(closest(candidate.kind, x).offset.norm())

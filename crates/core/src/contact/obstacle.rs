@@ -26,7 +26,7 @@ pub struct Obstacle {
 }
 
 impl Obstacle {
-    /// Smooth obstacle of that shape on that path.
+    /// Creates a smooth obstacle of that shape on that path.
     #[must_use]
     pub fn smooth(shape: Shape, path: Path) -> Self {
         Self {
@@ -39,7 +39,8 @@ impl Obstacle {
         }
     }
 
-    /// Place and orientation at time t (s), which determine the positions of its points.
+    /// Returns the place and orientation at time t (s), which determine the positions of the
+    /// obstacle's points.
     #[must_use]
     pub fn at(&self, t: f64) -> Pose {
         Pose {
@@ -62,6 +63,8 @@ impl Obstacle {
         matches!(self.path, Path::Still(_)) && self.turn.is_none()
     }
 
+    /// Checks the numbers of the obstacle.
+    ///
     /// # Errors
     /// The shape has no size, the friction is negative, or the restitution is not from 0 to 1; or a
     /// number is not finite.

@@ -87,7 +87,7 @@ pub(super) fn hold(
     (all, turned)
 }
 
-/// Numbers of the contacts without rigid bodies, in the order of their colours.
+/// Lists the numbers of the contacts without rigid bodies, in the order of their colours.
 fn in_order(contacts: &[(ContactPair, f64)], inverse_masses: &[f64]) -> Vec<usize> {
     let mut used = vec![0_u64; inverse_masses.len()];
     let mut keys = vec![];

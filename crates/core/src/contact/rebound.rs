@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-/// Speed (m/s) away from a surface after an impact at the speed `approach` (m/s).
+/// Returns the speed (m/s) away from a surface after an impact at the speed `approach` (m/s).
 ///
 /// Under an acceleration `press` (m/s2) towards the surface, a particle that rebounds at the speed
 /// u comes back after 2 u / press. If that is sooner than `shortest` (s), the impact is inelastic:
@@ -26,7 +26,7 @@ pub(crate) struct Course {
 }
 
 impl Course {
-    /// Position at a share s of the step (m).
+    /// Returns the position at a share s of the step (m).
     pub fn position(&self, s: f64) -> Vector3<f64> {
         let ([x0, x1], [v0, v1]) = (self.x, self.v.map(|v| v * self.h));
         let left = 1.0 - s;
@@ -34,7 +34,7 @@ impl Course {
         line + (v0 * left - v1 * s + (x1 - x0) * (s - left)) * (s * left)
     }
 
-    /// Velocity at a share s of the step (m/s).
+    /// Returns the velocity at a share s of the step (m/s).
     pub fn velocity(&self, s: f64) -> Vector3<f64> {
         let ([x0, x1], [v0, v1]) = (self.x, self.v);
         let left = 1.0 - s;

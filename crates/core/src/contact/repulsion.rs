@@ -90,7 +90,8 @@ impl Pair {
         })
     }
 
-    /// Force F and its derivative -dF/dg (N/m) at a penetration, as a share of the thickness.
+    /// Returns the force F (N) and its derivative -dF/dg (N/m) at a penetration, as a share of the
+    /// thickness.
     fn law_at(&self, share: f64) -> (f64, f64) {
         let (k, d) = (self.law.skin.stiffness, self.law.skin.thickness);
         if share < 1.0 {
@@ -100,7 +101,7 @@ impl Pair {
         }
     }
 
-    /// Potential U at a penetration, as a share of the thickness (J).
+    /// Returns the potential U (J) at a penetration, as a share of the thickness.
     fn potential(&self, share: f64) -> f64 {
         let (k, d) = (self.law.skin.stiffness, self.law.skin.thickness);
         let past = share - 1.0;
@@ -113,8 +114,8 @@ impl Pair {
             }
     }
 
-    /// Damping factor of the force at a penetration and a rate of the gap (m/s), and the derivative
-    /// of the factor by the rate.
+    /// Returns the damping factor of the force at a penetration and a rate of the gap (m/s), and
+    /// the derivative of the factor with respect to the rate.
     fn damping(&self, share: f64, rate: f64) -> (f64, f64) {
         let (Skin { damping: c, .. }, r) = (self.law.skin, self.law.skin.damping * rate);
         let (lost, size) = self.loss(share);
@@ -133,8 +134,8 @@ impl Pair {
         (factor * felt, slope * felt + factor * fades)
     }
 
-    /// Largest share q of the force by which damping changes it, and the squared range of rates
-    /// over which it changes, relative to that of the damping coefficient.
+    /// Returns the largest share q of the force by which damping changes it, and the squared range
+    /// of rates over which it changes, relative to that of the damping coefficient.
     fn loss(&self, share: f64) -> (f64, f64) {
         let Skin {
             restitution,
@@ -150,7 +151,8 @@ impl Pair {
         ((1.0 - squared) / (1.0 + squared), size)
     }
 
-    /// Factor of the potential of two edges, and its derivatives with respect to their vectors.
+    /// Returns the factor of the potential of two edges, and its derivatives with respect to their
+    /// vectors.
     fn crossing(&self) -> (f64, [Vector3<f64>; 2]) {
         let [a, b] = [self.x[1] - self.x[0], self.x[3] - self.x[2]];
         if self.kind != PairKind::EdgeEdge || a == Vector3::zeros() || b == Vector3::zeros() {
@@ -169,7 +171,7 @@ impl Pair {
         (1.0 - left * left * left, along.map(|d| d * slope))
     }
 
-    /// Forces on the four points (N), if there are any.
+    /// Returns the forces on the four points (N), if there are any.
     pub fn forces(&self) -> Option<[Vector3<f64>; 4]> {
         let Within {
             weights,
@@ -190,8 +192,8 @@ impl Pair {
         Some(forces)
     }
 
-    /// Magnitude of the force between the primitives (N), if there is any, with the weights of
-    /// their closest points and the normal from the second to the first.
+    /// Returns the magnitude of the force between the primitives (N), if there is any, with the
+    /// weights of their closest points and the normal from the second to the first.
     pub fn force(&self) -> Option<(f64, [f64; 4], Vector3<f64>)> {
         let Within {
             weights,
@@ -203,8 +205,8 @@ impl Pair {
         Some((force, weights, normal))
     }
 
-    /// Change of the forces (N) if the points move by dx (m) and their velocities change by dv
-    /// (m/s), by a difference quotient; `None` if there is none.
+    /// Returns the change of the forces (N) if the points move by dx (m) and their velocities
+    /// change by dv (m/s), by a difference quotient; `None` if there is none.
     pub fn differential(
         &self,
         dx: &[Vector3<f64>; 4],
@@ -238,21 +240,21 @@ impl Pair {
         }))
     }
 
-    /// Share of the thickness that the gap lacks: above 0 within the thickness, 1 where the gap is
-    /// 0.
+    /// Returns the share of the thickness that the gap lacks: above 0 within the thickness, 1 where
+    /// the gap is 0.
     pub fn share(&self) -> f64 {
         self.within().map_or(0.0, |within| within.share)
     }
 
-    /// Energy (J).
+    /// Returns the energy of repulsion (J).
     pub fn energy(&self) -> f64 {
         self.within().map_or(0.0, |within| {
             self.potential(within.share) * self.crossing().0
         })
     }
 
-    /// Stiffness and damping, if there are any: the part of the differential that is positive
-    /// semi-definite.
+    /// Returns the stiffness and damping, if there are any: the part of the differential that is
+    /// positive semi-definite.
     pub fn stiffness(&self) -> Option<Stiffness> {
         let Within {
             weights,

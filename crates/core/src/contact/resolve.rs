@@ -38,7 +38,7 @@ pub struct ContactPhase {
 }
 
 impl ContactPhase {
-    /// Contact phase with room for states of that length.
+    /// Creates a contact phase with room for states of length `dim`.
     #[must_use]
     pub fn new(dim: usize) -> Self {
         Self {
@@ -67,13 +67,13 @@ impl ContactPhase {
         self.y0.extend_from_slice(y0);
     }
 
-    /// State at the beginning of the step, if [`begin`](Self::begin) remembered it.
+    /// Returns the state at the beginning of the step, if [`begin`](Self::begin) remembered it.
     #[must_use]
     pub fn y0(&self) -> &[f64] {
         &self.y0
     }
 
-    /// Statistics of the last step.
+    /// Returns the statistics of the last step.
     #[must_use]
     pub fn last(&self) -> Statistics {
         self.last
@@ -220,7 +220,7 @@ struct Masses<'a> {
     struck: &'a [usize],
 }
 
-/// As [`resolve`], and records the impulses.
+/// Does what [`resolve`] does, and records the impulses.
 fn resolve_noting(
     obstacles: &[Obstacle],
     masses: &Masses,

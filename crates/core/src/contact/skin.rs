@@ -29,6 +29,8 @@ pub struct Skin {
 }
 
 impl Skin {
+    /// Checks the numbers of the skin.
+    ///
     /// # Errors
     /// A number is negative or not finite, or the restitution is above 1.
     pub(crate) fn check(&self) -> Result<(), Error> {
@@ -54,13 +56,13 @@ pub(super) struct Law {
 }
 
 impl Law {
-    /// Largest distance that the pair keeps (m).
+    /// Returns the largest distance that the pair keeps (m).
     pub fn max_kept(&self) -> f64 {
         self.radius + KEPT_SHARE * self.skin.thickness
     }
 
-    /// Distance that the pair keeps (m), which is less than its distance at first; a pair within a
-    /// round body keeps the distance that it has.
+    /// Returns the distance that the pair keeps (m), which is less than its distance at first; a
+    /// pair within a round body keeps the distance that it has.
     pub fn kept(&self, distance: f64) -> f64 {
         let room = distance - self.radius;
         self.radius + (KEPT_SHARE * self.skin.thickness).min(0.9 * room).min(room)

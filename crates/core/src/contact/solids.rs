@@ -35,7 +35,7 @@ impl Field {
         self.changes.clear();
     }
 
-    /// Turn of a body, with that by impulses that its points do not include yet.
+    /// Returns the turn of a body, with that by impulses that its points do not include yet.
     fn turn(&self, solid: usize) -> Vector3<f64> {
         self.turns[solid] + self.changes[solid].turned
     }
@@ -128,8 +128,8 @@ impl Solid {
         (solid, way, [before.spin, after.spin])
     }
 
-    /// Arm of a point of contact on the body that the vertices belong to, whose weights give the
-    /// closest point of its simplices.
+    /// Returns the arm of a point of contact on the body that the vertices belong to, whose weights
+    /// give the closest point of its simplices.
     pub fn arm(
         surface: &Surface,
         solids: &[Self],
@@ -158,7 +158,8 @@ impl Solid {
         self.inverse_mass == 0.0
     }
 
-    /// Change of the velocity of a point of contact by an impulse there: a matrix (1/kg).
+    /// Returns the change of the velocity of a point of contact by an impulse there: a matrix
+    /// (1/kg).
     pub fn mobility(&self, arm: &Arm) -> Matrix3<f64> {
         let cross = arm.lever.cross_matrix();
         Matrix3::identity() * self.inverse_mass - cross * self.inverse_inertia * cross
@@ -172,8 +173,8 @@ impl Solid {
         change.turned += self.inverse_inertia * arm.lever.cross(&impulse) * arm.sign;
     }
 
-    /// Angular velocity (rad/s) and inverse inertia (1/(kg m2)) at a share of the step, `left` (s)
-    /// before its end, if the angular velocity at the end is `spin`.
+    /// Returns the angular velocity (rad/s) and the inverse inertia (1/(kg m2)) at a share of the
+    /// step, `left` (s) before its end, if the angular velocity at the end is `spin`.
     pub fn at(&self, spin: Vector3<f64>, share: f64, left: f64) -> (Vector3<f64>, Matrix3<f64>) {
         let back = UnitQuaternion::new_unchecked(turn(spin * -left));
         let back = back.to_rotation_matrix().into_inner();
@@ -197,8 +198,8 @@ impl Solid {
         change.turned += self.inverse_inertia * lever.cross(&impulse) * span;
     }
 
-    /// Angular momentum (kg m2/s) of the body about a point (m) at the end of the step, with its
-    /// centre at x (m).
+    /// Returns the angular momentum (kg m2/s) of the body about a point (m) at the end of the step,
+    /// with its centre at x (m).
     pub fn turning(
         &self,
         (x, v): (Vector3<f64>, Vector3<f64>),
@@ -208,7 +209,7 @@ impl Solid {
         (x - about).cross(&(v / self.inverse_mass)) + self.inertia * spin
     }
 
-    /// Angular velocity (rad/s) that an angular momentum (kg m2/s) gives the body.
+    /// Returns the angular velocity (rad/s) that an angular momentum (kg m2/s) gives the body.
     pub fn spun(&self, momentum: Vector3<f64>) -> Vector3<f64> {
         self.inverse_inertia * momentum
     }
@@ -242,15 +243,15 @@ impl Solid {
         }
     }
 
-    /// The rotation vector (rad) of a step whose rotation vector is `turned`, if only a share of
-    /// its turn is made.
+    /// Returns the rotation vector (rad) of a step whose rotation vector is `turned`, if only a
+    /// share of its turn is made.
     pub fn shortened(&self, turned: Vector3<f64>, share: f64) -> Vector3<f64> {
         let [start, end] = self.ends.map(|rotation| rotation.q);
         let whole = rotation_vector(self.orientation(turned), start);
         self.unguarded[0] + rotation_vector(turn(whole * share) * start, end)
     }
 
-    /// The orientation at the end of a step with that rotation vector (rad).
+    /// Returns the orientation at the end of a step with that rotation vector (rad).
     fn orientation(&self, turned: Vector3<f64>) -> Quaternion<f64> {
         let (way, q) = (self.unguarded[0], self.ends[1].q);
         if turned == way {
@@ -260,8 +261,9 @@ impl Solid {
         }
     }
 
-    /// The rotation and angular momentum at the end of the step, if the safeguard has changed its
-    /// rotation vector (rad) to `turned`, and its angular velocity to `turning` (rad/s).
+    /// Returns the rotation and angular momentum at the end of the step, if the safeguard has
+    /// changed its rotation vector (rad) to `turned`, and its angular velocity to `turning`
+    /// (rad/s).
     pub fn end(&self, turned: Vector3<f64>, turning: Vector3<f64>) -> Rotation {
         let spin = self.unguarded[1];
         let mut momentum = self.ends[1].momentum;
@@ -276,7 +278,7 @@ impl Solid {
 }
 
 impl Arm {
-    /// Turn of the body, with the sign of its side.
+    /// Returns the turn of the body, with the sign of its side.
     pub fn turn(&self, field: &Field) -> Vector3<f64> {
         field.turn(self.solid) * self.sign
     }
@@ -287,7 +289,8 @@ impl Arm {
         field.changes[self.solid].turned += turned;
     }
 
-    /// Change of the angular velocity of the body by an angular impulse: a matrix (1/(kg m2)).
+    /// Returns the change of the angular velocity of the body by an angular impulse: a matrix
+    /// (1/(kg m2)).
     pub fn inverse_inertia(&self, solids: &[Solid]) -> Matrix3<f64> {
         solids[self.solid].inverse_inertia
     }
@@ -297,8 +300,9 @@ impl Arm {
         (self.lever - other.lever).norm() < SAME_TOLERANCE * self.lever.norm()
     }
 
-    /// Velocity of the point of contact beyond that of its body's points: by the turn of a round
-    /// body beyond the closest point of its simplices, and by changes that are not settled.
+    /// Returns the velocity of the point of contact beyond that of its body's points: by the turn
+    /// of a round body beyond the closest point of its simplices, and by changes that are not
+    /// settled.
     pub fn beyond_points(&self, field: &Field) -> Vector3<f64> {
         let Change { along, turned } = field.changes[self.solid];
         let roll = field.turns[self.solid].cross(&self.round);

@@ -60,8 +60,8 @@ pub struct Strained {
 }
 
 impl StrainLimit {
-    /// Limit of these springs, each given by the particles at its ends and its longest length (m).
-    /// The inverse masses (1/kg) are 0 for pinned particles.
+    /// Creates the limit of these springs, each given by the particles at its ends and its longest
+    /// length (m). The inverse masses (1/kg) are 0 for pinned particles.
     #[must_use]
     pub fn new(
         springs: impl IntoIterator<Item = ([usize; 2], f64)>,
@@ -91,7 +91,8 @@ impl StrainLimit {
         Self { rows, tethers }
     }
 
-    /// Largest length of a spring at x (m) over its longest length, less 1; 0 if none is too long.
+    /// Returns the largest length of a spring at x (m) over its longest length, less 1; 0 if none
+    /// is too long.
     #[must_use]
     pub fn excess(&self, x: &[f64]) -> f64 {
         let n = x.len() / 3;
@@ -124,7 +125,7 @@ pub struct StrainLimiter {
 }
 
 impl StrainLimiter {
-    /// Phase with room for states of that length.
+    /// Creates a phase with room for states of length `dim`.
     #[must_use]
     pub fn new(dim: usize) -> Self {
         Self {
@@ -233,8 +234,8 @@ impl Ends<'_> {
     }
 }
 
-/// Tethers of all particles that springs connect to a pin: to the nearest pin, by the sum of
-/// longest lengths along springs (Dijkstra, 1959).
+/// Returns the tethers of all particles that springs connect to a pin: to the nearest pin, by the
+/// sum of longest lengths along springs (Dijkstra, 1959).
 fn tethers(rows: &[Row], inverse_masses: &[f64]) -> Vec<Tether> {
     let n = inverse_masses.len();
     let mut nearest = vec![(f64::INFINITY, 0); n];

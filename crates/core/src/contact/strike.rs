@@ -176,8 +176,8 @@ fn solve(impacts: &mut [Impact], changes: &mut Changes, inverse_masses: &[f64]) 
 }
 
 impl Impact {
-    /// The impact of a pair that touches at a share of a step of h (s). Parts that were `struck`
-    /// earlier in the step have the velocities of its end.
+    /// Returns the impact of a pair that touches at a share of a step of h (s). Parts that were
+    /// `struck` earlier in the step have the velocities of its end.
     fn new(
         surface: &Surface,
         pair: &Candidate,
@@ -303,7 +303,7 @@ impl Impact {
             && (self.point - other.point).norm() < SAME_TOLERANCE * lever
     }
 
-    /// The relative velocity, with changes.
+    /// Returns the relative velocity (m/s), with changes.
     fn relative(&self, changes: &Changes) -> Vector3<f64> {
         let points = self.candidate.points.map(|i| changes.points[i as usize]);
         let mut relative = self.before + weighted(&self.weights, &points);
@@ -327,7 +327,7 @@ impl Impact {
         }
     }
 
-    /// The impulse of friction that stops the slip, as far as the normal impulse allows.
+    /// Returns the impulse of friction that stops the slip, as far as the normal impulse allows.
     fn friction_impulse(&self, pressed: f64, changes: &Changes) -> Vector3<f64> {
         let relative = self.relative(changes);
         let slip = relative - self.normal * relative.dot(&self.normal);

@@ -50,8 +50,9 @@ pub struct Surface {
 }
 
 impl Surface {
-    /// Surface of particles with these skins, some of which are corners of triangles, ends of edges
-    /// or points of rigid bodies, and of obstacles. An edge with equal ends is a point.
+    /// Creates the surface of particles with these skins, some of which are corners of triangles,
+    /// ends of edges or points of rigid bodies, and of obstacles. An edge with equal ends is a
+    /// point.
     #[must_use]
     pub fn new(
         skins: &[Skin],
@@ -141,8 +142,8 @@ impl Surface {
         surface
     }
 
-    /// The same surface, with particles of a fluid, as edges with equal ends. They touch soft
-    /// bodies and obstacles, but neither one another nor rigid bodies.
+    /// Adds particles of a fluid to the surface, as edges with equal ends. They touch soft bodies
+    /// and obstacles, but neither one another nor rigid bodies.
     pub(crate) fn with_drops(mut self, drops: &[[u32; 2]]) -> Self {
         let others = [&self.bodies, &self.obstacles];
         let mut drops = drops.to_vec();
@@ -165,8 +166,7 @@ impl Surface {
             });
     }
 
-    /// The same surface, in which pairs of bodies, named by their centres, and of particles with
-    /// bodies do not touch one another.
+    /// Keeps pairs from touching: of bodies, named by their centres, and of particles with bodies.
     pub(crate) fn with_joined(mut self, pairs: impl Iterator<Item = [usize; 2]>) -> Self {
         let pairs = pairs.map(|[a, b]| [a.min(b) as u32, a.max(b) as u32]);
         self.joined.extend(pairs);
@@ -174,19 +174,19 @@ impl Surface {
         self
     }
 
-    /// Number of particles, which are the first vertices.
+    /// Returns the number of particles, which are the first vertices.
     #[must_use]
     pub fn particles(&self) -> usize {
         self.particles
     }
 
-    /// Number of vertices: of particles and of points of obstacles.
+    /// Returns the number of vertices: of particles and of points of obstacles.
     #[must_use]
     pub fn vertices(&self) -> usize {
         self.skins.len()
     }
 
-    /// Particle, rigid body or obstacle to which a vertex belongs.
+    /// Returns the particle, rigid body or obstacle to which a vertex belongs.
     #[must_use]
     pub fn vertex(&self, vertex: u32) -> Vertex {
         let Some(mut point) = (vertex as usize).checked_sub(self.particles) else {
@@ -201,13 +201,13 @@ impl Surface {
         Vertex::Obstacle(k)
     }
 
-    /// Triangles of bodies and of obstacles.
+    /// Returns the triangles of bodies and of obstacles.
     pub fn triangles(&self) -> impl Iterator<Item = [u32; 3]> {
         let obstacles = self.obstacles.triangles();
         self.bodies.triangles().iter().chain(obstacles).copied()
     }
 
-    /// Edges of bodies and of obstacles, the lower end first.
+    /// Returns the edges of bodies and of obstacles, the lower end first.
     pub fn edges(&self) -> impl Iterator<Item = [u32; 2]> {
         let edges = self.bodies.edges.iter().chain(&self.obstacles.edges);
         edges.copied().filter(|[a, b]| a != b)
@@ -219,12 +219,12 @@ impl Surface {
         self.skins.iter().any(takes)
     }
 
-    /// The rigid bodies.
+    /// Returns the rigid bodies.
     pub(super) fn rigid(&self) -> &[Body] {
         &self.rigid
     }
 
-    /// The rigid body to which a vertex belongs.
+    /// Returns the number of the rigid body to which a vertex belongs, if it belongs to one.
     pub(super) fn solid(&self, vertex: u32) -> Option<usize> {
         let solid = self.solids.get(vertex as usize).copied().unwrap_or(0);
         (solid > 0).then(|| solid as usize - 1)
@@ -257,13 +257,13 @@ impl Surface {
             && (a.iter()).any(|i| b.iter().any(|j| joined([owner(*i), owner(*j)])))
     }
 
-    /// Least thickness that is not 0 (m); infinite without any.
+    /// Returns the least thickness that is not 0 (m); infinite without any.
     pub(super) fn least_thickness(&self) -> f64 {
         let all = self.skins.iter().map(|skin| skin.thickness);
         all.filter(|d| *d > 0.0).fold(f64::INFINITY, f64::min)
     }
 
-    /// Largest thickness (m).
+    /// Returns the largest thickness (m).
     pub(crate) fn thickest(&self) -> f64 {
         self.thickest
     }
@@ -288,18 +288,18 @@ impl Surface {
             .any(|i| self.solid(*i).is_some() || self.skins[*i as usize].restitution > 0.0)
     }
 
-    /// Gap beyond their thickness (m) below which surfaces may come nearer than the distance that
-    /// they keep.
+    /// Returns the gap beyond their thickness (m) below which surfaces may come nearer than the
+    /// distance that they keep.
     pub(super) fn nearest(&self) -> f64 {
         2.0 * KEPT_SHARE * self.thickest - self.thinnest
     }
 
-    /// Radius of a vertex (m): 0 except for those of round obstacles and bodies.
+    /// Returns the radius of a vertex (m): 0 except for those of round obstacles and bodies.
     pub(super) fn radius(&self, vertex: u32) -> f64 {
         self.radii[vertex as usize]
     }
 
-    /// Contact law between the primitives of a pair.
+    /// Returns the contact law between the primitives of a pair.
     pub(super) fn law(&self, kind: PairKind, points: &[u32; 4]) -> Law {
         let [a, b] = [points[0], points[kind.first()]].map(|i| self.skins[i as usize]);
         let mut skin = Skin {
@@ -327,23 +327,23 @@ impl Surface {
         }
     }
 
-    /// Thickness of a pair (m).
+    /// Returns the thickness of a pair (m).
     pub(super) fn thickness(&self, kind: PairKind, points: &[u32; 4]) -> f64 {
         let [a, b] = [points[0], points[kind.first()]].map(|i| self.skins[i as usize].thickness);
         0.5 * (a + b)
     }
 
-    /// Distance (m) up to which a pair touches.
+    /// Returns the distance (m) up to which a pair touches.
     pub(super) fn reach(&self, kind: PairKind, points: &[u32; 4]) -> f64 {
         self.thickness(kind, points) + self.radii(kind, points)
     }
 
-    /// Bound of rounding errors of distances (m).
+    /// Bounds the rounding errors of distances (m).
     pub(super) fn rounding(&self) -> f64 {
         ROUNDING_SHARE * self.thickest
     }
 
-    /// Sum of the radii of a pair (m).
+    /// Sums the radii of a pair (m).
     pub(super) fn radii(&self, kind: PairKind, points: &[u32; 4]) -> f64 {
         self.radius(points[0]) + self.radius(points[kind.first()])
     }

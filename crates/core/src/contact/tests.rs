@@ -44,8 +44,8 @@ fn obstacles() -> Vec<Obstacle> {
     places.map(obstacle).to_vec()
 }
 
-/// Keys of the pairs that are within their thickness at these positions (m), in canonical order,
-/// from a check of every pair.
+/// Lists the keys of the pairs that are within their thickness at these positions (m), in canonical
+/// order, from a check of every pair.
 fn all_within(surface: &Surface, x: &[Vector3<f64>]) -> Vec<(PairKind, [u32; 4])> {
     let n = surface.particles() as u32;
     let (triangles, edges): (Vec<_>, Vec<_>) =

@@ -172,7 +172,8 @@ impl Force for Gas {
         }
     }
 
-    /// An amount of gas couples all particles with one another.
+    /// Returns whether all couplings are listed: an amount of gas couples all particles with one
+    /// another.
     fn lists_all_couplings(&self) -> bool {
         matches!(self.law, GasLaw::Pressure(_)) || self.triangles.is_empty()
     }
@@ -201,7 +202,7 @@ impl Force for Gas {
         }
     }
 
-    /// The gas escapes through the first hole.
+    /// Lets the gas escape through the first hole.
     fn remove_springs(&mut self, torn: &[[usize; 2]]) {
         let is_torn = |[i, j]: [u32; 2]| {
             let pair = [i.min(j) as usize, i.max(j) as usize];

@@ -91,7 +91,7 @@ mod tests {
     use crate::simulation::Simulation;
     use crate::spring::{Spring, SpringKind, SpringLaw};
 
-    /// A run of two masses on a spring, one of them pinned.
+    /// Creates a run of two masses on a spring, one of them pinned.
     fn pendulum(method: &str, change: impl FnOnce(&mut Network)) -> Simulation {
         let mut network = Network::new(vec![2.0; 2]).unwrap();
         let law = SpringLaw::new(50.0, 1.0, 0.0).unwrap();

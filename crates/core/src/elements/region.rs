@@ -23,6 +23,8 @@ pub struct Region {
 }
 
 impl Region {
+    /// Checks the numbers of the region.
+    ///
     /// # Errors
     /// A radius is not above 0.
     pub fn check(&self) -> Result<(), Error> {
@@ -30,13 +32,13 @@ impl Region {
         positive("the length of a region", self.length)
     }
 
-    /// Times at which a motion of the region begins or ends (s).
+    /// Lists the times at which a motion of the region begins or ends (s).
     pub(super) fn known_times(self) -> impl Iterator<Item = f64> {
         let of_turn = self.turn.into_iter().flat_map(|turn| turn.known_times());
         self.path.known_times().into_iter().chain(of_turn)
     }
 
-    /// Quarter of the shortest period of its motion in an interval (s).
+    /// Returns a quarter of the shortest period of the region's motion in an interval (s).
     pub(super) fn quarter_period(&self, times: [f64; 2]) -> f64 {
         let turn = self.turn.filter(|turn| turn.is_on(times));
         let of_turn = turn.map_or(f64::INFINITY, |turn| {
@@ -45,7 +47,7 @@ impl Region {
         self.path.quarter_period(times).min(of_turn)
     }
 
-    /// The region at time t (s), for a wind along a direction before any turn.
+    /// Returns the region at time t (s), for a wind along a direction before any turn.
     pub(super) fn at(&self, t: f64, direction: Vector3<f64>) -> Stream {
         let pose = Pose {
             place: self.path.at(t),
@@ -73,13 +75,14 @@ pub(super) struct Stream {
 }
 
 impl Stream {
-    /// The wind at x (m), if it blew with `whole` everywhere.
+    /// Returns the wind at x (m), if it blew with `whole` everywhere.
     pub fn wind(&self, x: [f64; 3], whole: Vector3<f64>) -> Vector3<f64> {
         let (left, _) = self.left(x);
         self.pose.outwards(whole) * (left * left * left)
     }
 
-    /// Change of the wind at x (m) if x changes by `towards` and the whole wind by `change`.
+    /// Returns the change of the wind at x (m) if x changes by `towards` and the whole wind by
+    /// `change`.
     pub fn differential(
         &self,
         (x, towards): ([f64; 3], Vector3<f64>),
@@ -90,7 +93,7 @@ impl Stream {
         self.pose.outwards(change) * (left * left * left) + self.pose.outwards(whole) * fades
     }
 
-    /// 1 - q at x (m), or 0 outside, and its gradient (1/m).
+    /// Returns 1 - q at x (m), or 0 outside, and its gradient (1/m).
     fn left(&self, x: [f64; 3]) -> (f64, Vector3<f64>) {
         let from_centre = Vector3::from(x) - self.pose.place.position;
         let ahead = from_centre.dot(&self.axis);

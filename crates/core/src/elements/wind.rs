@@ -340,7 +340,7 @@ mod tests {
         assert_ne!(a, Wind::new(8, Vector3::z()));
     }
 
-    /// A wind in a region that swings and turns.
+    /// Creates a wind in a region that swings and turns.
     fn fan() -> Wind {
         let region = Region {
             path: Path::Sine {

@@ -3,12 +3,12 @@
 
 use nalgebra::Vector3;
 
-/// The smaller of two numbers, as one instruction.
+/// Returns the smaller of two numbers, by one instruction.
 pub(crate) fn least(a: f64, b: f64) -> f64 {
     if a < b { a } else { b }
 }
 
-/// The larger of two numbers, as one instruction.
+/// Returns the larger of two numbers, by one instruction.
 pub(crate) fn most(a: f64, b: f64) -> f64 {
     if a > b { a } else { b }
 }
@@ -36,7 +36,7 @@ pub(crate) struct Aabb {
 }
 
 impl Aabb {
-    /// The smallest box around all points of a primitive.
+    /// Returns the smallest box around all points of a primitive.
     pub fn around<const N: usize>(points: [Vector3<f64>; N]) -> Self {
         let each = |pick: fn(f64, f64) -> f64| {
             let of = |k: usize| points.iter().map(|x| x[k]).reduce(pick).unwrap_or(f64::NAN);
@@ -48,7 +48,7 @@ impl Aabb {
         }
     }
 
-    /// Box enlarged by a distance (m) on all sides.
+    /// Returns the box enlarged by a distance (m) on all sides.
     pub fn grown(self, by: f64) -> Self {
         Self {
             low: self.low.map(|x| x - by),
@@ -56,8 +56,8 @@ impl Aabb {
         }
     }
 
-    /// Place of the centre of another box along a curve through this box that keeps near places
-    /// near each other (Morton, *A computer oriented geodetic data base*, 1966).
+    /// Returns the place of the centre of another box along a curve through this box that keeps
+    /// near places near each other (Morton, *A computer oriented geodetic data base*, 1966).
     pub fn place_of(&self, other: &Self) -> u64 {
         let (all, center) = (self.center(), other.center());
         let width = |k: usize| self.high[k] - self.low[k];
@@ -70,7 +70,7 @@ impl Aabb {
             .fold(0, |place, k| place | spread(cell(*k)) << k)
     }
 
-    /// The smallest box around two boxes.
+    /// Returns the smallest box around two boxes.
     pub fn with(&self, other: &Self) -> Self {
         Self {
             low: [0, 1, 2].map(|k| least(self.low[k], other.low[k])),
@@ -85,7 +85,7 @@ impl Aabb {
         most(most(gap(0), gap(1)), gap(2)) <= 0.0
     }
 
-    /// Squared distance of a point: 0 inside.
+    /// Returns the squared distance (m2) of a point from the box: 0 inside.
     fn squared_distance(&self, point: &Vector3<f64>) -> f64 {
         let outside = |k: usize| {
             (self.low[k] - point[k])
@@ -95,7 +95,7 @@ impl Aabb {
         [0, 1, 2].map(|k| outside(k).powi(2)).iter().sum()
     }
 
-    /// Twice the centre.
+    /// Returns twice the centre.
     fn center(&self) -> [f64; 3] {
         [0, 1, 2].map(|k| self.low[k] + self.high[k])
     }
@@ -122,8 +122,8 @@ pub(crate) struct Bvh {
 }
 
 impl Bvh {
-    /// Tree of these boxes: each child of a node gets half of its boxes, split along the axis on
-    /// which their centres are spread most.
+    /// Creates a tree of these boxes: each child of a node gets half of its boxes, split along the
+    /// axis on which their centres are spread most.
     pub fn new(boxes: &[Aabb]) -> Self {
         let mut tree = Self {
             nodes: Vec::with_capacity((2 * boxes.len()).saturating_sub(1)),
@@ -165,7 +165,7 @@ impl Bvh {
         self.add(boxes, second);
     }
 
-    /// Box around all items, if there are any.
+    /// Returns the box around all items, if there are any.
     pub fn bounds(&self) -> Option<Aabb> {
         self.nodes.first().map(|root| root.bounds)
     }
@@ -246,8 +246,9 @@ impl Bvh {
         }
     }
 
-    /// The item with the least squared distance from a point by `measure`, and the other result of
-    /// that; of several at the same distance, the first. `None` if the point is outside all boxes.
+    /// Finds the item with the least squared distance from a point by `measure`, and the other
+    /// result of that; of several at the same distance, the first. `None` if the point is outside
+    /// all boxes.
     pub fn nearest<T>(
         &self,
         point: &Vector3<f64>,
@@ -297,7 +298,7 @@ mod tests {
     use super::*;
     use crate::random::SplitMix;
 
-    /// Boxes of various sizes at random places of a grid, on which many touch or are equal.
+    /// Draws boxes of various sizes at random places of a grid, on which many touch or are equal.
     fn random_boxes(count: usize, random: &mut SplitMix) -> Vec<Aabb> {
         let boxes = (0..count).map(|_| {
             let low = Vector3::from_fn(|_, _| random.between(0.0, 12.0).floor());
@@ -313,7 +314,7 @@ mod tests {
         list
     }
 
-    /// All pairs of items that meet, by comparison of each with each.
+    /// Lists all pairs of items that meet, by comparison of each with each.
     fn all_pairs(first: &[Aabb], second: &[Aabb]) -> Vec<(u32, u32)> {
         let all = (0..first.len()).flat_map(|a| (0..second.len()).map(move |b| (a, b)));
         let meet = all.filter(|(a, b)| first[*a].meets(&second[*b]));

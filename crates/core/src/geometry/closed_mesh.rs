@@ -57,10 +57,10 @@ impl ClosedMesh {
     /// Largest number of triangles.
     pub const MAX_TRIANGLES: usize = 200_000;
 
-    /// Surface with these points (m) and triangles, whose corners are indices of points. Each
-    /// connected part bounds its own solid: its triangles are reversed if they wind clockwise as
-    /// seen from outside, unless it lies within another part, in which it then is a hole. Points
-    /// and edges that parts share are duplicated.
+    /// Creates the surface with these points (m) and triangles, whose corners are indices of
+    /// points. Each connected part bounds its own solid: its triangles are reversed if they wind
+    /// clockwise as seen from outside, unless it lies within another part, in which it then is a
+    /// hole. Points and edges that parts share are duplicated.
     ///
     /// # Errors
     /// There are no triangles or more than [`MAX_TRIANGLES`](Self::MAX_TRIANGLES); a corner does
@@ -100,7 +100,7 @@ impl ClosedMesh {
         })
     }
 
-    /// Surface of a number of parts, each of which bounds a solid.
+    /// Creates the surface of a number of parts, each of which bounds a solid.
     fn of_parts(
         points: Vec<Vector3<f64>>,
         triangles: Vec<[u32; 3]>,
@@ -188,33 +188,33 @@ impl ClosedMesh {
             .is_some_and(|(offset, normal)| normal.dot(&offset) < 0.0)
     }
 
-    /// Points (m).
+    /// Returns the points (m).
     #[must_use]
     pub fn points(&self) -> &[Vector3<f64>] {
         &self.points
     }
 
-    /// Corners of the triangles, anticlockwise as seen from outside.
+    /// Returns the corners of the triangles, anticlockwise as seen from outside.
     #[must_use]
     pub fn triangles(&self) -> &[[u32; 3]] {
         &self.triangles
     }
 
-    /// Outward normals of the points: unit vectors, the mean of the normals of the triangles around
-    /// a point with their angles there as weights, or zero where they cancel.
+    /// Returns the outward normals of the points: unit vectors, the mean of the normals of the
+    /// triangles around a point with their angles there as weights, or zero where they cancel.
     #[must_use]
     pub fn normals(&self) -> &[Vector3<f64>] {
         &self.normals
     }
 
-    /// Ends of the edges, the lower number first, in order.
+    /// Returns the ends of the edges, the lower number first, in order.
     #[must_use]
     pub fn edges(&self) -> &[[u32; 2]] {
         &self.edges
     }
 
-    /// Nearest point of the surface to a point d inside; where solids overlap, the point at which d
-    /// is outside all of them after it was moved out of one after another.
+    /// Returns the nearest point of the surface to a point d inside; where solids overlap, the
+    /// point at which d is outside all of them after it was moved out of one after another.
     pub(crate) fn nearest(&self, d: Vector3<f64>) -> Option<Nearest> {
         let mut left = vec![];
         let (mut point, mut last) = (d, None);
@@ -228,8 +228,8 @@ impl ClosedMesh {
         })
     }
 
-    /// Of the solids that contain a point d, without those in `but`, the one from whose surface it
-    /// is farthest, with the vector from there and the normal there.
+    /// Finds, of the solids that contain a point d, without those in `but`, the one from whose
+    /// surface it is farthest. Also returns the vector from there and the normal there.
     fn deepest(&self, d: Vector3<f64>, but: &[u32]) -> Option<(u32, Vector3<f64>, Vector3<f64>)> {
         let mut deepest: Option<(u32, Vector3<f64>, Vector3<f64>)> = None;
         let mut check = |k: u32, solid: &Tree| {
@@ -257,7 +257,7 @@ impl ClosedMesh {
         deepest
     }
 
-    /// Separation of a point d.
+    /// Returns the separation of a point d.
     pub(crate) fn separation(&self, d: Vector3<f64>) -> Separation {
         let (offset, normal) = self.offset(d).unwrap_or_default();
         let (side, outwards) = (normal.dot(&offset), normal.try_normalize(0.0));
@@ -269,13 +269,14 @@ impl ClosedMesh {
         }
     }
 
-    /// Radius (m) of a ball around the origin that contains all points.
+    /// Returns the radius (m) of a ball around the origin that contains all points.
     pub(crate) fn reach(&self) -> f64 {
         self.reach
     }
 
-    /// Vector to a point d from the nearest point of the surface, and the outward normal there, of
-    /// any length. If d is in solids, the surface is that of the one in which it is deepest.
+    /// Returns the vector to a point d from the nearest point of the surface, and the outward
+    /// normal there, of any length. If d is in solids, the surface is that of the one in which it
+    /// is deepest.
     fn offset(&self, d: Vector3<f64>) -> Option<(Vector3<f64>, Vector3<f64>)> {
         let inside = (!self.solids.is_empty())
             .then(|| self.deepest(d, &[]))
@@ -286,7 +287,8 @@ impl ClosedMesh {
         }
     }
 
-    /// The same, for the triangles in a tree.
+    /// Returns the vector from the nearest point to d, and the normal there, for the triangles in a
+    /// tree.
     fn offset_from(&self, tree: &Tree, d: Vector3<f64>) -> Option<(Vector3<f64>, Vector3<f64>)> {
         let (k, nearest) = tree.boxes.nearest(&d, |k| {
             let t = self.triangles[tree.triangles[k as usize] as usize];
@@ -298,8 +300,8 @@ impl ClosedMesh {
         Some((nearest.offset, self.normal(k, &nearest.weights)))
     }
 
-    /// Normal at the point of triangle k with these weights, the last three of which are those of
-    /// its corners.
+    /// Returns the normal at the point of triangle k with these weights, the last three of which
+    /// are those of its corners.
     fn normal(&self, k: usize, weights: &[f64; 4]) -> Vector3<f64> {
         let zero = |k: usize| weights[k + 1] == 0.0;
         let corner = (0..3).find(|k| zero((k + 1) % 3) && zero((k + 2) % 3));
@@ -312,7 +314,7 @@ impl ClosedMesh {
     }
 }
 
-/// Normals of the points, of the triangles and of their sides.
+/// Computes the normals of the points, of the triangles and of their sides.
 fn normals(points: &[Vector3<f64>], triangles: &[[u32; 3]]) -> (Vec<Vector3<f64>>, Vec<Face>) {
     let mut corners = vec![Vector3::zeros(); points.len()];
     let mut sides: BTreeMap<[u32; 2], Vector3<f64>> = BTreeMap::new();
@@ -343,13 +345,13 @@ fn normals(points: &[Vector3<f64>], triangles: &[[u32; 3]]) -> (Vec<Vector3<f64>
     (corners, faces.collect())
 }
 
-/// The triangle with the opposite orientation.
+/// Returns the triangle with the opposite orientation.
 fn reversed([a, b, c]: [u32; 3]) -> [u32; 3] {
     [a, c, b]
 }
 
-/// Signed volume between a triangle and the origin (m3), negative if it winds clockwise as seen
-/// from outside.
+/// Returns the signed volume between a triangle and the origin (m3), negative if it winds clockwise
+/// as seen from outside.
 fn volume(points: &[Vector3<f64>], triangle: &[u32; 3]) -> f64 {
     let [a, b, c] = triangle.map(|i| points[i as usize]);
     a.cross(&b).dot(&c) / 6.0

@@ -24,7 +24,7 @@ pub enum PairKind {
 }
 
 impl PairKind {
-    /// Number of points of the first primitive.
+    /// Returns the number of points of the first primitive.
     #[must_use]
     pub fn first(self) -> usize {
         if self == Self::EdgeEdge { 2 } else { 1 }
@@ -50,7 +50,7 @@ impl Closest {
         }
     }
 
-    /// The closer of two pairs of points.
+    /// Returns the closer of two pairs of points.
     fn nearer(self, other: Self) -> Self {
         if other.offset.norm_squared() < self.offset.norm_squared() {
             other
@@ -60,7 +60,7 @@ impl Closest {
     }
 }
 
-/// Sum of weighted vectors.
+/// Sums weighted vectors.
 #[must_use]
 pub fn weighted(weights: &[f64; 4], vectors: &[Vector3<f64>; 4]) -> Vector3<f64> {
     vectors[0] * weights[0]
@@ -69,7 +69,7 @@ pub fn weighted(weights: &[f64; 4], vectors: &[Vector3<f64>; 4]) -> Vector3<f64>
         + vectors[3] * weights[3]
 }
 
-/// Closest points of the pair of that kind with those points (m).
+/// Finds the closest points of the pair of that kind with those points (m).
 #[must_use]
 pub fn closest(kind: PairKind, points: &[Vector3<f64>; 4]) -> Closest {
     match kind {
@@ -163,7 +163,8 @@ fn edge_edge(points: &[Vector3<f64>; 4]) -> Closest {
     }
 }
 
-/// Position along an edge, as a share, of its point nearest to p; 0 if the edge is a point.
+/// Returns the position along an edge, as a share, of its point nearest to p; 0 if the edge is a
+/// point.
 fn share(p: Vector3<f64>, [a, b]: [Vector3<f64>; 2]) -> f64 {
     let along = b - a;
     let squared = along.norm_squared();

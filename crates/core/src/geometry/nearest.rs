@@ -17,8 +17,8 @@ pub(crate) struct Separation {
     pub normal: Vector3<f64>,
 }
 
-/// Nearest point of a sphere around the origin to a point d inside it; for its centre, the point in
-/// the direction of `aside`.
+/// Returns the nearest point of a sphere around the origin to a point d inside it; for its centre,
+/// the point in the direction of `aside`.
 pub(crate) fn of_sphere(
     d: Vector3<f64>,
     radius: f64,
@@ -41,7 +41,8 @@ pub(crate) fn of_sphere(
     }
 }
 
-/// Nearest point of a box around the origin to a point d inside it: on the nearest face.
+/// Returns the nearest point of a box around the origin to a point d inside it: on the nearest
+/// face.
 pub(crate) fn of_box(
     d: Vector3<f64>,
     half_extents: Vector3<f64>,
@@ -63,7 +64,7 @@ pub(crate) fn of_box(
     })
 }
 
-/// Nearest point of a capsule to a point d inside it.
+/// Returns the nearest point of a capsule to a point d inside it.
 pub(crate) fn of_capsule(
     d: Vector3<f64>,
     [a, b]: [Vector3<f64>; 2],
@@ -84,7 +85,7 @@ pub(crate) fn of_capsule(
     })
 }
 
-/// Nearest point of a floor at height 0 to a point d below it.
+/// Returns the nearest point of a floor at height 0 to a point d below it.
 pub(crate) fn of_floor(d: Vector3<f64>) -> Option<Nearest> {
     (d.y < 0.0).then(|| Nearest {
         point: Vector3::new(d.x, 0.0, d.z),
@@ -92,8 +93,8 @@ pub(crate) fn of_floor(d: Vector3<f64>) -> Option<Nearest> {
     })
 }
 
-/// Unit vector perpendicular to an axis that points upwards most steeply; along x if the axis is
-/// vertical.
+/// Returns the unit vector perpendicular to an axis that points upwards most steeply; along x if
+/// the axis is vertical.
 fn upwards(axis: Vector3<f64>) -> Vector3<f64> {
     let squared = axis.norm_squared();
     if squared == 0.0 {

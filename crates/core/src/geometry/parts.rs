@@ -28,7 +28,7 @@ pub(super) struct Parts {
     pub count: usize,
 }
 
-/// Parts of the surface with these points and triangles.
+/// Splits the surface with these points and triangles into its parts.
 ///
 /// # Errors
 /// The numbers of triangles that pass an edge upwards and downwards differ.
@@ -88,7 +88,7 @@ pub(super) fn split(points: Vec<Vector3<f64>>, triangles: &[[u32; 3]]) -> Result
     })
 }
 
-/// The passages of triangles along edges, sorted by edge.
+/// Lists the passages of triangles along edges, sorted by edge.
 fn sides(triangles: &[[u32; 3]]) -> Vec<([u32; 2], Side)> {
     let mut sides = Vec::with_capacity(3 * triangles.len());
     for (k, t) in triangles.iter().enumerate() {
@@ -141,8 +141,8 @@ fn sort(sides: &mut Vec<Side>, [a, b]: [Vector3<f64>; 2], third: impl Fn(&Side) 
     *sides = sorted.into_iter().map(|(_, side)| side).collect();
 }
 
-/// Pairs of triangles at an edge that bound the same solid. It begins behind a triangle that passes
-/// the edge downwards and ends at one that passes it upwards.
+/// Pairs the triangles at an edge that bound the same solid. The solid begins behind a triangle
+/// that passes the edge downwards and ends at one that passes it upwards.
 fn pairs(sides: &[Side]) -> Vec<[Side; 2]> {
     let (mut begun, mut pairs) = (vec![], vec![]);
     let mut is_paired = vec![false; sides.len()];
@@ -161,7 +161,7 @@ fn pairs(sides: &[Side]) -> Vec<[Side; 2]> {
     pairs
 }
 
-/// Error for an edge with different numbers of triangles in its two directions.
+/// Returns the error for an edge with different numbers of triangles in its two directions.
 fn open(points: &[Vector3<f64>], [a, b]: [u32; 2], count: usize) -> Error {
     let place = |i: u32| {
         let [x, y, z]: [f64; 3] = points[i as usize].into();

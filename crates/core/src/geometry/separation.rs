@@ -6,13 +6,13 @@ use super::nearest::Separation;
 use super::shape::Shape;
 
 impl Shape {
-    /// Distance of a point from the surface (m), below 0 inside.
+    /// Returns the distance of a point from the surface (m), below 0 inside.
     #[must_use]
     pub fn distance(&self, point: Vector3<f64>) -> f64 {
         self.separation(point).distance
     }
 
-    /// Separation of a point d, in the shape's own frame.
+    /// Returns the separation of a point d, in the shape's own frame.
     pub(crate) fn separation(&self, d: Vector3<f64>) -> Separation {
         match self {
             Self::Sphere { radius } => around(d, *radius),
@@ -44,8 +44,8 @@ impl Shape {
         !matches!(self, Self::Mesh(_))
     }
 
-    /// Depth (m) of the deepest point inside, half of the least width; 0 for a mesh, because it is
-    /// unknown.
+    /// Returns the depth (m) of the deepest point inside, half of the least width; 0 for a mesh,
+    /// because it is unknown.
     pub(crate) fn greatest_depth(&self) -> f64 {
         match self {
             Self::Sphere { radius } | Self::Capsule { radius, .. } => *radius,
@@ -72,7 +72,7 @@ impl Shape {
     }
 }
 
-/// Separation of d from a sphere of that radius (m) around the origin.
+/// Returns the separation of d from a sphere of that radius (m) around the origin.
 fn around(d: Vector3<f64>, radius: f64) -> Separation {
     let distance = d.norm();
     Separation {
@@ -81,7 +81,7 @@ fn around(d: Vector3<f64>, radius: f64) -> Separation {
     }
 }
 
-/// Separation of d from a box around the origin.
+/// Returns the separation of d from a box around the origin.
 fn of_box(d: Vector3<f64>, half_extents: Vector3<f64>, axes: [Vector3<f64>; 3]) -> Separation {
     let local = axes.map(|axis| axis.dot(&d));
     let beyond: [f64; 3] = std::array::from_fn(|k| local[k].abs() - half_extents[k]);

@@ -55,7 +55,7 @@ pub struct Simplices {
 const COPLANAR_SINE: f64 = 1e-9;
 
 impl Simplices {
-    /// Edges between coplanar triangles, as indices of points, the lower one first.
+    /// Lists the edges between coplanar triangles, as indices of points, the lower one first.
     pub(crate) fn flat_edges(&self) -> Vec<[u32; 2]> {
         let mut sides = BTreeMap::new();
         let mut flat = vec![];
@@ -77,7 +77,7 @@ impl Simplices {
 }
 
 impl Shape {
-    /// Box rotated from the upright about the vector `turn` by its length (rad).
+    /// Creates a box rotated from the upright about the vector `turn` by its length (rad).
     ///
     /// # Errors
     /// A half extent is not above 0, or a number is not finite.
@@ -90,7 +90,7 @@ impl Shape {
         Ok(shape)
     }
 
-    /// The shape rotated by a matrix about its place.
+    /// Returns the shape rotated by a matrix about its place.
     ///
     /// # Errors
     /// Rounding reduces the volume of a mesh to zero.
@@ -113,7 +113,7 @@ impl Shape {
         })
     }
 
-    /// Name as in scene files.
+    /// Returns the name as in scene files.
     #[must_use]
     pub fn name(&self) -> &'static str {
         match self {
@@ -125,7 +125,8 @@ impl Shape {
         }
     }
 
-    /// Surface as points, edges and triangles with a radius; none for a floor, which is unbounded.
+    /// Returns the surface as points, edges and triangles with a radius; none for a floor, which is
+    /// unbounded.
     #[must_use]
     pub fn simplices(&self) -> Simplices {
         match self {
@@ -183,6 +184,8 @@ impl Shape {
         }
     }
 
+    /// Checks the numbers of the shape.
+    ///
     /// # Errors
     /// A radius or a half extent is not above 0, or a number is not finite.
     pub(crate) fn check(&self) -> Result<(), Error> {

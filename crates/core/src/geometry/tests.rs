@@ -5,7 +5,7 @@ use nalgebra::Vector3;
 use super::ClosedMesh;
 use crate::random::SplitMix;
 
-/// Box between two corners, as points and triangles whose corners count from `first`.
+/// Creates a box between two corners, as points and triangles whose corners count from `first`.
 fn cuboid(low: [f64; 3], high: [f64; 3], first: u32) -> (Vec<Vector3<f64>>, Vec<[u32; 3]>) {
     let points = (0..8).map(|k| Vector3::from_fn(|axis, _| [low, high][k >> axis & 1][axis]));
     let faces = [
@@ -23,7 +23,7 @@ fn cuboid(low: [f64; 3], high: [f64; 3], first: u32) -> (Vec<Vector3<f64>>, Vec<
     (points.collect(), triangles.collect())
 }
 
-/// One mesh of boxes, some of them inside out, with equal points merged.
+/// Creates one mesh of boxes, some of them inside out, with equal points merged.
 fn boxes(of: &[([f64; 3], [f64; 3], bool)]) -> ClosedMesh {
     let (mut points, mut triangles): (Vec<Vector3<f64>>, Vec<[u32; 3]>) = (vec![], vec![]);
     for (low, high, is_turned) in of {
@@ -45,7 +45,7 @@ fn boxes(of: &[([f64; 3], [f64; 3], bool)]) -> ClosedMesh {
     ClosedMesh::new(points, triangles).unwrap()
 }
 
-/// Distance of a point from a box, below 0 inside.
+/// Returns the distance of a point from a box, below 0 inside.
 fn distance(low: [f64; 3], high: [f64; 3], d: Vector3<f64>) -> f64 {
     let beyond = Vector3::from_fn(|k, _| (low[k] - d[k]).max(d[k] - high[k]));
     let outside = beyond.map(|x| x.max(0.0)).norm();

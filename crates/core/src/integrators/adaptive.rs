@@ -138,14 +138,14 @@ impl Adaptive {
         }
     }
 
-    /// The last step.
+    /// Returns the last step.
     #[must_use]
     pub fn last(&self) -> Taken {
         self.last
     }
 
-    /// Memory of the method: all of it, or without the `stages` of the last step; then it
-    /// [restarts](Self::restart).
+    /// Returns the memory of the method: all of it, or without the `stages` of the last step; then
+    /// it [restarts](Self::restart).
     #[must_use]
     pub fn state(&self, stages: bool) -> AdaptiveState {
         AdaptiveState {
@@ -283,7 +283,7 @@ impl Adaptive {
         self.trial.interpolate(system, t, (time - t) / h, out)
     }
 
-    /// Guess of the first step (s), from the times in which f and, estimated by a step of Euler's
+    /// Guesses the first step (s), from the times in which f and, estimated by a step of Euler's
     /// method, its derivative change the state.
     fn first_step(&mut self, t: f64, y: &[f64], norm: &ErrorNorm) -> f64 {
         let (system, [f0, y1, f1]) = (norm.system, &mut self.first);

@@ -251,7 +251,7 @@ impl Integrator for EmbeddedPair {
     }
 }
 
-/// out = y + h sum weights k
+/// Computes out = y + h sum weights k.
 fn combine(out: &mut [f64], y: &[f64], h: f64, weights: &[f64], k: &[Vec<f64>]) {
     blocks(6, out, |start, out| {
         combine_block(start, out, y, h, weights, k);

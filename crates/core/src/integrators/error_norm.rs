@@ -23,7 +23,8 @@ pub struct Tolerance {
 }
 
 impl Tolerance {
-    /// Tolerance of a system about 1 m in size: the same number relatively, and in metres.
+    /// Creates the tolerance of a system about 1 m in size: the same number relatively, and in
+    /// metres.
     ///
     /// # Errors
     /// It is not a finite number above 0.
@@ -31,7 +32,7 @@ impl Tolerance {
         Self::with_absolute(relative, relative)
     }
 
-    /// A relative tolerance (without unit) and an absolute one (m).
+    /// Creates a tolerance from a relative one (without unit) and an absolute one (m).
     ///
     /// # Errors
     /// One of them is not a finite number above 0.
@@ -83,14 +84,14 @@ struct Tolerated {
 }
 
 impl ErrorNorm<'_> {
-    /// The largest ratio of a quantity's error to the allowed one.
+    /// Returns the largest ratio of a quantity's error to the allowed one.
     pub fn of(&self, y0: &[f64], y1: &[f64], error: &[f64]) -> f64 {
         let [error, _] = self.of_sums(squares([y0, y1, error]));
         error
     }
 
-    /// The same for two errors, from the sums of squares over a range of numbers: of y0, of y1 and
-    /// of both errors.
+    /// Returns the largest ratio for each of two errors, from the sums of squares over a range of
+    /// numbers: of y0, of y1 and of both errors.
     pub fn of_sums(&self, sums: impl FnMut(Range<usize>) -> [f64; 4]) -> [f64; 2] {
         let mut largest = [0.0; 2];
         for (errors, Tolerated { fixed, rate }) in self.quantities(sums) {
@@ -105,8 +106,8 @@ impl ErrorNorm<'_> {
         largest
     }
 
-    /// Time (s) in which a quantity changes by its own size, at the state y with this derivative of
-    /// y of order 1 or 2; infinite if nothing changes. It does not depend on h.
+    /// Returns the time (s) in which a quantity changes by its own size, at the state y with this
+    /// derivative of y of order 1 or 2; infinite if nothing changes. It does not depend on h.
     pub fn time_scale(&self, y: &[f64], derivative: &[f64], order: i32) -> f64 {
         let root = |a: f64, order: i32| libm::pow(a, 1.0 / f64::from(order));
         let sums = squares([y, y, derivative]);
@@ -128,7 +129,7 @@ impl ErrorNorm<'_> {
         })
     }
 
-    /// The quantities in the state: their errors, and the allowed ones.
+    /// Returns the errors of the quantities in the state, and the allowed ones.
     fn quantities(
         &self,
         mut sums: impl FnMut(Range<usize>) -> [f64; 4],
@@ -173,7 +174,7 @@ impl ErrorNorm<'_> {
     }
 }
 
-/// Sums of squares over ranges of numbers of three states.
+/// Returns a function that sums squares over ranges of numbers of three states.
 fn squares(states: [&[f64]; 3]) -> impl FnMut(Range<usize>) -> [f64; 4] {
     let bands = threads(states[0].len() / 6);
     move |numbers| add_up(bands, numbers, BLOCK, [], &Squares(states))

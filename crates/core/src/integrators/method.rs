@@ -203,8 +203,8 @@ impl Method {
         }
     }
 
-    /// Integrator that chooses its steps to this tolerance; `None` if the method estimates no
-    /// error.
+    /// Creates an integrator that chooses its steps to this tolerance; `None` if the method
+    /// estimates no error.
     #[must_use]
     pub fn adaptive(&self, system: &dyn ParticleSystem, tolerance: Tolerance) -> Option<Adaptive> {
         self.trial
@@ -235,8 +235,8 @@ impl Method {
         }
     }
 
-    /// Control from a number that a user types: the tolerance of an adaptive method, the step (s)
-    /// of any other.
+    /// Creates a control from a number that a user types: the tolerance of an adaptive method, the
+    /// step (s) of any other.
     #[must_use]
     pub fn control(&self, value: f64) -> Control {
         if self.is_adaptive() {
@@ -254,7 +254,7 @@ impl PartialEq for Method {
     }
 }
 
-/// Refusal of a system with constraints that offers no view of them.
+/// Returns the refusal of a system with constraints that offers no view of them.
 fn refusal_of_joints(system: Option<&dyn Linearized>) -> Refusal {
     let touches = system.is_some_and(|system| !system.hints().pattern_is_fixed());
     if touches {
@@ -264,7 +264,7 @@ fn refusal_of_joints(system: Option<&dyn Linearized>) -> Refusal {
     }
 }
 
-/// Refusal of a system that is too large for the Jacobian of its f.
+/// Returns the refusal of a system that is too large for the Jacobian of its f, if it is.
 fn refusal_by_size(system: &dyn ParticleSystem) -> Option<Refusal> {
     let mut numbers = 0;
     system.measures(&mut |of, _| numbers += of.len());

@@ -57,7 +57,8 @@ pub(super) struct NystromPair {
     last: LastStep,
 }
 
-/// The drag of a system whose other forces do not depend on the velocity; `None` for other systems.
+/// Returns the drag of a system whose other forces do not depend on the velocity; `None` for other
+/// systems.
 fn drag(system: &dyn ParticleSystem) -> Option<(&dyn Mechanics, Drag<'_>)> {
     let mechanics = system.mechanics()?;
     let drag = Drag {
@@ -67,7 +68,7 @@ fn drag(system: &dyn ParticleSystem) -> Option<(&dyn Mechanics, Drag<'_>)> {
     mechanics.is_positional().then_some((mechanics, drag))
 }
 
-/// Error of a method if forces depend on the velocity.
+/// Returns the error of a method if forces depend on the velocity.
 fn refused(method: &'static str) -> Error {
     Error::Unsupported {
         method,
@@ -212,7 +213,7 @@ impl NystromPair {
         }
     }
 
-    /// The step of h (s) from t (s) with this system.
+    /// Creates the step of h (s) from t (s) with this system, if the system allows it.
     fn of(system: &dyn ParticleSystem, t: f64, h: f64) -> Option<Step<'_>> {
         let (mechanics, drag) = drag(system)?;
         Some(Step {

@@ -16,7 +16,7 @@ pub(super) struct Prediction {
 }
 
 impl Prediction {
-    /// Prediction for a system of n particles.
+    /// Creates a prediction for a system of n particles.
     pub fn new(particles: usize) -> Self {
         Self {
             f: vec![0.0; 3 * particles],
@@ -46,7 +46,7 @@ impl Prediction {
     }
 }
 
-/// The springs of a system one by one.
+/// Returns the view of a system that has its springs one by one.
 ///
 /// # Errors
 /// It has none.
@@ -63,8 +63,8 @@ pub(super) fn springs_of<'a>(
         })
 }
 
-/// Work of iterations over all springs: each counts as an evaluation and, for the rest of its cost
-/// (in evaluations of forces spring by spring), as linear algebra.
+/// Returns the work of iterations over all springs: each counts as an evaluation and, for the rest
+/// of its cost (in evaluations of forces spring by spring), as linear algebra.
 pub(super) fn work(system: &dyn Compliant, iterations: u32, price: f64) -> Work {
     let speed = system
         .linearized()

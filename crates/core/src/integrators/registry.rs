@@ -14,7 +14,7 @@ pub(super) fn add(method: &'static Method) {
     own.push(method);
 }
 
-/// Own method with this name.
+/// Returns the own method with this name, if there is one.
 pub(super) fn find(name: &str) -> Option<&'static Method> {
     let own = OWN.read().unwrap_or_else(PoisonError::into_inner);
     own.iter().copied().find(|method| method.name == name)

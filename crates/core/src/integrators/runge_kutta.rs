@@ -26,7 +26,7 @@ pub(super) const RK4: Table = &[
     (1.0, 1.0 / 6.0),
 ];
 
-/// Stages of a step from t to t + h (s).
+/// Lists the stages of a step from t to t + h (s).
 pub(super) fn stages(table: Table, terms: Terms, t: f64, h: f64) -> impl Iterator<Item = Stage> {
     table.iter().enumerate().map(move |(i, (c, b))| Stage {
         terms,

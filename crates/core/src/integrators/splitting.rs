@@ -64,13 +64,13 @@ pub(super) struct SplittingMethod {
 }
 
 impl Plan {
-    /// Integrator of this method for a system.
+    /// Creates the integrator of this method for a system.
     pub fn integrator(&'static self, system: &dyn ParticleSystem) -> Box<dyn Integrator> {
         let sweeper = Sweeper::new(system, self.stages_of_sweep(system));
         self.with(system, sweeper)
     }
 
-    /// Integrator that steps with this sweeper or, without one, on whole arrays.
+    /// Creates an integrator that steps with this sweeper or, without one, on whole arrays.
     pub fn with(
         &'static self,
         system: &dyn ParticleSystem,
@@ -101,7 +101,7 @@ impl Plan {
             .unwrap_or(self.free)
     }
 
-    /// Number of stages in a sweep: as many whole kicks as fit, at least one.
+    /// Returns the number of stages in a sweep: as many whole kicks as fit, at least one.
     pub fn stages_of_sweep(&self, system: &dyn ParticleSystem) -> usize {
         let Kicks { steps, table, .. } = self.kicks(system);
         table.len() * (MAX_SWEEP_STAGES / table.len()).clamp(1, steps.len())
@@ -109,7 +109,7 @@ impl Plan {
 }
 
 impl Kicks {
-    /// Stages of a step from t to t + h (s).
+    /// Lists the stages of a step from t to t + h (s).
     fn stages(self, terms: Terms, t: f64, h: f64) -> impl Iterator<Item = Stage> {
         let mut now = t;
         self.steps
@@ -219,8 +219,8 @@ impl SplittingMethod {
         }
     }
 
-    /// As [`plain`](Self::plain), with rigid bodies: kicks change velocities and angular momenta,
-    /// and drifts rotate bodies freely.
+    /// Takes a step as [`plain`](Self::plain) does, with rigid bodies: kicks change velocities and
+    /// angular momenta, and drifts rotate bodies freely.
     fn rigid(&mut self, system: &dyn Rigid, (t, lead): (f64, f64), y: &mut [f64]) {
         let terms = self.plan.terms;
         let drift = |t: f64, h: f64, y: &mut [f64]| {

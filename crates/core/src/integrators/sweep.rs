@@ -28,7 +28,7 @@ pub(super) struct Sweeper {
 }
 
 impl Sweeper {
-    /// A sweeper for a system of rows, if it is faster than whole arrays.
+    /// Creates a sweeper for a system of rows, if it is faster than whole arrays.
     pub fn new(system: &dyn ParticleSystem, stages: usize) -> Option<Self> {
         let rows = rows_of(system)?;
         let patches: Vec<_> = (0..rows.patches()).map(|k| rows.patch(k)).collect();
@@ -39,7 +39,7 @@ impl Sweeper {
         pays.then(|| Self::with_bands(rows, stages, share))
     }
 
-    /// A sweeper with a number of bands for each patch.
+    /// Creates a sweeper with a number of bands for each patch.
     pub fn with_bands(system: &dyn Rows, stages: usize, bands: impl Fn(&Patch) -> usize) -> Self {
         let patches: Vec<_> = (0..system.patches()).map(|k| system.patch(k)).collect();
         let mut all = vec![];
@@ -140,7 +140,7 @@ impl Band {
         }
     }
 
-    /// Number of its first particle.
+    /// Returns the number of the band's first particle.
     fn first(&self) -> usize {
         self.patch.row(self.rows.start).start
     }
@@ -256,7 +256,7 @@ mod tests {
         Plan(&'static Plan),
     }
 
-    /// The state after some steps, in a number of bands, or with whole arrays.
+    /// Returns the state after some steps, in a number of bands, or with whole arrays.
     fn after(scene: &Scene, method: &Kind, bands: Option<usize>) -> Vec<f64> {
         let system = scene.model.system();
         let sweeper = |stages| {

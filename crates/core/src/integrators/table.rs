@@ -34,8 +34,8 @@ pub static METHODS: &[Method] = &[
     implicit_damping::METHOD,
 ];
 
-/// Method with this letter, name or alias: one of the table or, failing that, an own method that
-/// was [registered](Method::register).
+/// Finds the method with this letter, name or alias: one of the table or, failing that, an own
+/// method that was [registered](Method::register).
 #[must_use]
 pub fn find(name: &str) -> Option<&'static Method> {
     let of_table = METHODS.iter().find(|m| m.is_called(name));

@@ -21,13 +21,13 @@ pub(super) trait Trial: Send {
         Ok(())
     }
 
-    /// Length of the state.
+    /// Returns the length of the state.
     fn dim(&self) -> usize;
 
-    /// Power of h to which the estimated local error is proportional.
+    /// Returns the power of h to which the estimated local error is proportional.
     fn exponent(&self) -> f64;
 
-    /// Factor for the next step, given this step's error relative to the tolerance.
+    /// Returns the factor for the next step, given this step's error relative to the tolerance.
     fn change(&self, error: f64) -> f64 {
         SAFETY * libm::pow(error, -1.0 / self.exponent())
     }
@@ -56,7 +56,7 @@ pub(super) trait Trial: Send {
         norm: &ErrorNorm,
     ) -> (Work, f64);
 
-    /// State at the end of the step.
+    /// Returns the state at the end of the step.
     fn end(&self) -> &[f64];
 
     /// Writes the state at the fraction theta of an accepted step that began at t (s) to `out`.
@@ -69,7 +69,7 @@ pub(super) trait Trial: Send {
         out: &mut [f64],
     ) -> Work;
 
-    /// Memory of the last step.
+    /// Returns the memory of the last step.
     fn last(&self) -> LastStep;
 
     /// Continues after a saved step.
@@ -101,7 +101,7 @@ pub(super) struct LastStep {
 }
 
 impl LastStep {
-    /// Memory of a method with a number of stages, for a system of this dimension.
+    /// Creates the memory of a method with a number of stages, for a system of this dimension.
     pub fn new(dim: usize, stages: usize) -> Self {
         Self {
             h: 0.0,

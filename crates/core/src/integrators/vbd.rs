@@ -101,7 +101,7 @@ impl Ends {
         });
     }
 
-    /// The springs of each particle, in the order of particles.
+    /// Lists the springs of each particle, in the order of particles.
     fn by_particle(&self) -> impl Iterator<Item = &[(usize, SpringLaw)]> {
         let starts = std::iter::once(0).chain(self.until.iter().copied());
         starts

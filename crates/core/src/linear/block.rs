@@ -25,7 +25,7 @@ pub(super) fn inverse([xx, yy, zz, xy, xz, yz]: Block) -> Block {
     }
 }
 
-/// The symmetric part of a block.
+/// Returns the symmetric part of a block.
 pub(super) fn symmetric([xx, xy, xz, yx, yy, yz, zx, zy, zz]: [f64; 9]) -> Block {
     let mean = |a: f64, b: f64| 0.5 * (a + b);
     [xx, yy, zz, mean(xy, yx), mean(xz, zx), mean(yz, zy)]

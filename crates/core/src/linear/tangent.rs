@@ -51,7 +51,8 @@ impl Tangent {
         tangent
     }
 
-    /// As [`new`](Self::new), for the matrix A = M + a C, with a D if drifts do not solve drag.
+    /// Does what [`new`](Self::new) does, for the matrix A = M + a C, with a D if drifts do not
+    /// solve drag.
     pub fn of_damping(system: &dyn Linearized) -> Self {
         let mut tangent = Self {
             only_damping: true,
@@ -147,7 +148,7 @@ impl Tangent {
         self.axial.len() + self.blocks.len()
     }
 
-    /// Ends of the couplings.
+    /// Lists the ends of the couplings.
     pub fn pairs(&self) -> impl Iterator<Item = [u32; 2]> {
         let axial = self.axial.iter().map(|c| [c.i as u32, c.j as u32]);
         axial.chain(self.blocks.iter().map(|c| [c.i as u32, c.j as u32]))

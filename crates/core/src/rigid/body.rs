@@ -42,9 +42,9 @@ pub(crate) struct Moving {
 }
 
 impl Body {
-    /// Body with these principal moments of inertia (kg m2), whose centre of mass is the particle
-    /// `center`. The [points](Shape::simplices) of its parts are the particles from number `first`
-    /// on.
+    /// Creates a body with these principal moments of inertia (kg m2), whose centre of mass is the
+    /// particle `center`. The [points](Shape::simplices) of its parts are the particles from number
+    /// `first` on.
     ///
     /// # Errors
     /// It has no parts, or only floors; or no body can have these moments: each has to be a finite
@@ -91,9 +91,9 @@ impl Body {
         })
     }
 
-    /// The same body with more points, as those that a liquid touches: the particles that follow
-    /// the points of its parts. Their places are relative to the centre and along the principal
-    /// axes (m).
+    /// Adds points to the body, as those that a liquid touches: the particles that follow the
+    /// points of its parts. Their places are relative to the centre and along the principal axes
+    /// (m).
     #[must_use]
     pub fn with_points(mut self, places: impl IntoIterator<Item = Vector3<f64>>) -> Self {
         self.anchors.extend(places);
@@ -101,47 +101,47 @@ impl Body {
         self
     }
 
-    /// Particle at its centre of mass, which has its mass.
+    /// Returns the particle at the centre of mass, which has the body's mass.
     #[must_use]
     pub fn center(&self) -> usize {
         self.center
     }
 
-    /// Particles at the points of its parts, and at further points, which have no mass.
+    /// Returns the particles at the points of the parts, and at further points, which have no mass.
     #[must_use]
     pub fn points(&self) -> Range<usize> {
         self.points.clone()
     }
 
-    /// The points with their places, relative to the centre and along the principal axes (m).
+    /// Lists the points with their places, relative to the centre and along the principal axes (m).
     pub(crate) fn anchors(&self) -> impl Iterator<Item = (usize, &Vector3<f64>)> {
         self.points.clone().zip(&self.anchors)
     }
 
-    /// Principal moments of inertia (kg m2).
+    /// Returns the principal moments of inertia (kg m2).
     #[must_use]
     pub fn inertia(&self) -> Vector3<f64> {
         self.inertia
     }
 
-    /// Distance of its farthest point from the centre (m).
+    /// Returns the distance of the body's farthest point from the centre (m).
     #[must_use]
     pub fn radius(&self) -> f64 {
         self.radius
     }
 
-    /// Largest speed of its surface per unit of angular momentum (1/(kg m)).
+    /// Returns the largest speed of the body's surface per unit of angular momentum (1/(kg m)).
     pub(crate) fn speed(&self) -> f64 {
         self.radius / self.inertia.min()
     }
 
-    /// Parts.
+    /// Returns the parts.
     #[must_use]
     pub fn parts(&self) -> &[Part] {
         &self.parts
     }
 
-    /// The body in motion.
+    /// Returns the body in motion.
     pub(crate) fn moving(&self, rotation: &Rotation) -> Moving {
         let (matrix, momentum) = (rotation.matrix(), rotation.momentum);
         Moving {
@@ -151,13 +151,14 @@ impl Body {
         }
     }
 
-    /// Energy of the rotation (J).
+    /// Returns the energy of the rotation (J).
     #[must_use]
     pub fn energy(&self, rotation: &Rotation) -> f64 {
         0.5 * rotation.momentum.dot(&self.moving(rotation).spin)
     }
 
-    /// Angular momentum (kg m2/s) at which the body turns with that angular velocity (rad/s).
+    /// Returns the angular momentum (kg m2/s) at which the body turns with that angular velocity
+    /// (rad/s).
     #[must_use]
     pub fn momentum(&self, q: Quaternion<f64>, spin: Vector3<f64>) -> Vector3<f64> {
         let momentum = Vector3::zeros();
@@ -165,7 +166,8 @@ impl Body {
         matrix * matrix.tr_mul(&spin).component_mul(&self.inertia)
     }
 
-    /// Place and orientation of a body whose centre is at x and moves with v, both n x 3.
+    /// Returns the place and orientation of a body whose centre is at x and moves with v, both n x
+    /// 3.
     #[must_use]
     pub fn pose(&self, rotation: &Rotation, x: &[f64], v: &[f64]) -> Pose {
         let Moving { rotation, spin, .. } = self.moving(rotation);
@@ -185,12 +187,12 @@ impl Body {
 }
 
 impl Moving {
-    /// Rate of the quaternion, w q / 2.
+    /// Returns the rate of the quaternion, w q / 2.
     pub fn rate(&self, q: Quaternion<f64>) -> Quaternion<f64> {
         Quaternion::from_imag(self.spin) * q * 0.5
     }
 
-    /// Angular acceleration (rad/s2) under a torque (N m).
+    /// Returns the angular acceleration (rad/s2) under a torque (N m).
     pub fn angular_acceleration(
         &self,
         inertia: &Vector3<f64>,

@@ -46,7 +46,7 @@ impl Body {
         rotation.momentum *= left;
     }
 
-    /// The five rotations of order 2.
+    /// Turns a body by h (s): five rotations about its axes, which together are of order 2.
     fn turns(&self, rotation: &mut Rotation, h: f64) {
         for (axis, share) in [(0, 0.5), (1, 0.5), (2, 1.0), (1, 0.5), (0, 0.5)] {
             let own = rotation.matrix().tr_mul(&rotation.momentum);

@@ -23,7 +23,7 @@ pub struct MassProperties {
 }
 
 impl MassProperties {
-    /// Properties of a solid shape of that density (kg/m3).
+    /// Returns the properties of a solid shape of that density (kg/m3).
     ///
     /// # Errors
     /// The shape is a floor or has no size, or the density is not a finite number above 0.
@@ -62,14 +62,15 @@ impl MassProperties {
         Ok(own)
     }
 
-    /// Properties of the same body, moved by a vector (m).
+    /// Returns the properties of the same body, moved by a vector (m).
     #[must_use]
     pub fn moved(mut self, by: Vector3<f64>) -> Self {
         self.center += by;
         self
     }
 
-    /// Principal moments of inertia (kg m2), and the rotation matrix from the principal axes.
+    /// Returns the principal moments of inertia (kg m2), and the rotation matrix from the principal
+    /// axes.
     #[must_use]
     pub fn principal(&self) -> (Vector3<f64>, Matrix3<f64>) {
         let largest = self.inertia.diagonal().max();
@@ -106,7 +107,7 @@ impl AddAssign for MassProperties {
     }
 }
 
-/// Cylinder with two hemispheres, of density 1.
+/// Returns the mass properties of a cylinder with two hemispheres, of density 1.
 fn capsule([a, b]: [Vector3<f64>; 2], r: f64) -> MassProperties {
     let pi = std::f64::consts::PI;
     let length = (b - a).norm();
@@ -129,8 +130,8 @@ fn capsule([a, b]: [Vector3<f64>; 2], r: f64) -> MassProperties {
     }
 }
 
-/// Solid enclosed by a closed surface of triangles, of density 1: a sum of exact integrals over
-/// signed tetrahedra.
+/// Returns the mass properties of the solid enclosed by a closed surface of triangles, of density
+/// 1. They are sums of exact integrals over signed tetrahedra.
 fn of_triangles(points: &[Vector3<f64>], triangles: &[[u32; 3]]) -> MassProperties {
     // Relative to one of the points, so that no digits are lost far from the origin.
     let origin = points[0];

@@ -40,7 +40,7 @@ impl Motor {
         ))
     }
 
-    /// Torque on the first body (N m); that on the second is opposite.
+    /// Returns the torque on the first body (N m); that on the second is opposite.
     pub(crate) fn torque(&self, first: &Moving, second: Option<&Moving>) -> Vector3<f64> {
         let axis = first.rotation * self.axis;
         let spin = first.spin - second.map_or_else(Vector3::zeros, |second| second.spin);

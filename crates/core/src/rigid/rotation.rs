@@ -15,7 +15,7 @@ pub struct Rotation {
 }
 
 impl Rotation {
-    /// Rotation about a vector by its length (rad), at rest.
+    /// Creates the rotation about a vector by its length (rad), at rest.
     #[must_use]
     pub fn about(vector: Vector3<f64>) -> Self {
         Self {
@@ -24,7 +24,7 @@ impl Rotation {
         }
     }
 
-    /// Rotation from the numbers of a state: w, x, y and z of q, then L.
+    /// Creates the rotation from the numbers of a state: w, x, y and z of q, then L.
     #[must_use]
     pub fn read(numbers: &[f64]) -> Self {
         let [w, x, y, z, lx, ly, lz] = *numbers else {
@@ -42,7 +42,7 @@ impl Rotation {
         numbers.copy_from_slice(&[q.w, q.i, q.j, q.k, l.x, l.y, l.z]);
     }
 
-    /// Rotation matrix R(q / |q|), from the principal axes to the world.
+    /// Returns the rotation matrix R(q / |q|), from the principal axes to the world.
     #[must_use]
     pub fn matrix(&self) -> Matrix3<f64> {
         let Quaternion { coords: c } = self.q;
@@ -62,7 +62,7 @@ impl Rotation {
     }
 }
 
-/// Quaternion of a rotation about a vector by its length (rad).
+/// Returns the quaternion of a rotation about a vector by its length (rad).
 pub(crate) fn turn(vector: Vector3<f64>) -> Quaternion<f64> {
     let angle = vector.norm();
     if angle == 0.0 {
@@ -72,7 +72,7 @@ pub(crate) fn turn(vector: Vector3<f64>) -> Quaternion<f64> {
     Quaternion::from_parts(cos, vector * (sin / angle))
 }
 
-/// Rotation vector (rad), of at most half a turn, from one orientation to another.
+/// Returns the rotation vector (rad), of at most half a turn, from one orientation to another.
 pub(crate) fn rotation_vector(to: Quaternion<f64>, from: Quaternion<f64>) -> Vector3<f64> {
     let by = to * from.conjugate();
     let along = by.imag();

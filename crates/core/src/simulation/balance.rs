@@ -66,7 +66,7 @@ pub struct Balance {
 }
 
 impl Balance {
-    /// Balance of a run that starts at y at time t (s), in a scene of that radius (m).
+    /// Creates the balance of a run that starts at y at time t (s), in a scene of that radius (m).
     pub(super) fn new(network: &Network, (t, y): (f64, &[f64]), radius: f64) -> Self {
         let energy = energy_of(network, t, y);
         let mass = network.masses().iter().sum::<f64>();
@@ -90,8 +90,8 @@ impl Balance {
         (self.worst, self.singular) = (None, false);
     }
 
-    /// Energy of the scene, which gains are compared with (J): its own, what gravity has added to
-    /// its motion, and the work done on it and by it.
+    /// Returns the energy of the scene, which gains are compared with (J): its own, what gravity
+    /// has added to its motion, and the work done on it and by it.
     fn scale(&self) -> f64 {
         let put_in = 0.5 * (self.turnover + self.work).max(0.0);
         let had = self.own + self.fall + put_in;
@@ -192,13 +192,13 @@ impl Balance {
         })
     }
 
-    /// Largest gain, if it is large enough for a warning.
+    /// Returns the largest gain, if it is large enough for a warning.
     pub(super) fn notable_gain(&self) -> Option<Gain> {
         self.most.filter(|gain| gain.share > NOTABLE_GAIN)
     }
 
-    /// Energy gained or lost, over the energy of the motion; `None` if nothing moves, or if hands,
-    /// contact or tears may have changed it.
+    /// Returns the energy gained or lost, over the energy of the motion; `None` if nothing moves,
+    /// or if hands, contact or tears may have changed it.
     pub(super) fn change(&self) -> Option<f64> {
         let motion = self.moving + self.fall;
         let moves = motion > ROUNDING_SPEED * self.own;
@@ -206,7 +206,7 @@ impl Balance {
         (moves && !self.open).then_some(energy / motion)
     }
 
-    /// The constraint with the largest error so far, and that error.
+    /// Returns the constraint with the largest error so far, and that error.
     pub(super) fn worst_constraint(&self, network: &Network) -> Option<Unmet> {
         let (number, share) = self.worst?;
         let constraint = network.constraints().get(number)?.name();

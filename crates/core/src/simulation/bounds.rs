@@ -35,20 +35,20 @@ impl Bounds {
         self.beyond(MAX_GOOD_DISTANCE, model, y).is_none()
     }
 
-    /// The cause of a blow-up, if a particle of y is too far away or not finite.
+    /// Returns the cause of a blow-up, if a particle of y is too far away or not finite.
     pub fn violation(&self, model: &Model, y: &[f64]) -> Option<Cause> {
         self.beyond(MAX_DISTANCE, model, y)
     }
 
-    /// A constraint that contradicts others or pins, if there is one, in the state y at time
-    /// t (s).
+    /// Returns a constraint that contradicts others or pins, if there is one, in the state y at
+    /// time t (s).
     pub fn contradiction(&self, model: &Model, y: &[f64], t: f64) -> Option<Unmet> {
         let network = model.network()?;
         contradiction(network, t, network.halves(y).0, self.radius)
     }
 
-    /// The first particle that is farther than this many radii from the middle, or the first number
-    /// that is not finite, if there is one. Numbers of a first-order system may grow far.
+    /// Finds the first particle that is farther than this many radii from the middle, or the first
+    /// number that is not finite, if there is one. Numbers of a first-order system may grow far.
     fn beyond(&self, radii: f64, model: &Model, y: &[f64]) -> Option<Cause> {
         let n = match model {
             Model::FirstOrder(_) => 0,
@@ -81,8 +81,8 @@ impl Bounds {
     }
 }
 
-/// The cause of a blow-up where number k of a state is not finite: it names the particle that the
-/// number belongs to, which is the centre for the rotation of a rigid body.
+/// Returns the cause of a blow-up where number k of a state is not finite. It names the particle
+/// that the number belongs to, which is the centre for the rotation of a rigid body.
 pub(super) fn not_finite(model: &Model, k: usize) -> Cause {
     let n = model.particles();
     if n == 0 {

@@ -42,7 +42,7 @@ pub struct Checkpoint {
 }
 
 impl Checkpoint {
-    /// Checkpoint of a run in a state, without the last step of an adaptive method.
+    /// Creates a checkpoint of a run in a state, without the last step of an adaptive method.
     pub(super) fn of(state: &RunState, model: &Model, driver: &Driver) -> Self {
         let mut moment = Self {
             run: state.clone(),
@@ -93,13 +93,13 @@ impl Checkpoint {
         }
     }
 
-    /// Simulated time (s).
+    /// Returns the simulated time (s).
     #[must_use]
     pub fn time(&self) -> f64 {
         self.run.time()
     }
 
-    /// Memory of a checkpoint without the last step of an adaptive method (bytes).
+    /// Returns the memory of a checkpoint without the last step of an adaptive method (bytes).
     #[must_use]
     pub fn size(&self) -> usize {
         size_of::<Self>()
@@ -128,7 +128,8 @@ impl Checkpoint {
         Ok(())
     }
 
-    /// Model of a scene with this checkpoint's pins, obstacles, wind, contact and tears.
+    /// Returns the model of a scene with this checkpoint's pins, obstacles, wind, contact and
+    /// tears.
     pub(super) fn model(&self, scene: &Scene) -> Result<Model, Error> {
         let mut model = scene.model.clone();
         if let (Model::Network(network), Some(whole)) = (&mut model, scene.model.network()) {
@@ -140,8 +141,8 @@ impl Checkpoint {
         Ok(model)
     }
 
-    /// Applies this checkpoint's pins, obstacles, wind, tears and outflow to a fresh copy of the scene's
-    /// network.
+    /// Applies this checkpoint's pins, obstacles, wind, tears and outflow to a fresh copy of the
+    /// scene's network.
     fn bind(&self, network: &mut Network, whole: &Network) -> Result<(), Error> {
         if network.torn() != self.torn {
             network.mend(whole, &self.torn)?;

@@ -24,7 +24,7 @@ pub(super) struct Depths {
 }
 
 impl Depths {
-    /// Depths for steps under a control, in a scene of that radius (m).
+    /// Creates the depths for steps under a control, in a scene of that radius (m).
     pub fn new(radius: f64, limits: StepLimits, control: Control) -> Self {
         let relative = control.tolerance().unwrap_or(0.0);
         let absolute = limits.absolute.unwrap_or(relative * radius);

@@ -33,7 +33,7 @@ pub(super) struct Driver {
 }
 
 impl Driver {
-    /// Driver at the beginning of a run.
+    /// Creates a driver at the beginning of a run.
     pub fn new(pipeline: Pipeline) -> Self {
         let within = Within::default();
         Self { pipeline, within }
@@ -71,7 +71,7 @@ impl Driver {
         self.pipeline.phases.contact.forget_impulses();
     }
 
-    /// Progress of the run: all of it or, without `whole`, only what a new step needs.
+    /// Returns the progress of the run: all of it or, without `whole`, only what a new step needs.
     pub fn progress(&self, whole: bool) -> Progress {
         Progress {
             method: self.pipeline.stepper.memory(whole),
@@ -84,7 +84,7 @@ impl Driver {
         self.within.times().is_some()
     }
 
-    /// Balance of energy at the end of the last step.
+    /// Returns the balance of energy at the end of the last step.
     pub fn balance(&self, model: &Model, state: &RunState) -> Balance {
         let (watch, end) = (&self.pipeline.watch, self.last_end(state));
         watch.balance_at(model, state.balance, end).0
@@ -102,7 +102,7 @@ impl Driver {
         }
     }
 
-    /// Time (s) and state at the end of the last step.
+    /// Returns the time (s) and state at the end of the last step.
     fn last_end<'a>(&'a self, state: &'a RunState) -> (f64, &'a [f64]) {
         let within = self.within.end();
         within.unwrap_or_else(|| (state.time(), &state.y))

@@ -63,7 +63,7 @@ pub(super) struct Events {
 }
 
 impl Events {
-    /// Search with room for all particles and obstacles of a model.
+    /// Creates a search with room for all particles and obstacles of a model.
     pub fn new(model: &Model) -> Self {
         let obstacles = model
             .network()
@@ -285,8 +285,8 @@ fn keep_first(first: &mut Option<Event>, share: f64, kind: EventKind) {
     }
 }
 
-/// Lower bound of the height (m) of particle i of n during the step, with room for a polynomial
-/// that is not quite a cubic.
+/// Returns a lower bound of the height (m) of particle i of n during the step, with room for a
+/// polynomial that is not quite a cubic.
 fn lowest(step: &Searched, i: usize, n: usize) -> f64 {
     let [[y0, v0], [y1, v1]] = step.ends.map(|y| [y[n + i], y[4 * n + i]]);
     let bulge = 0.5 * ((v0.abs() + v1.abs()) * step.h + (y1 - y0).abs());

@@ -32,7 +32,7 @@ pub(super) struct Locator {
 }
 
 impl Locator {
-    /// Search in a model, with room for all its particles.
+    /// Creates a search in a model, with room for all its particles.
     pub fn new(model: &Model) -> Self {
         let outflows = model.network().map_or(&[][..], outflows).iter();
         Self {
@@ -53,12 +53,12 @@ impl Locator {
         self.splits_fixed_steps && !stepper.is_adaptive()
     }
 
-    /// View of a model in which particles rest, if any do.
+    /// Returns a view of the model in which particles rest, if any do.
     pub fn view<'a>(&'a self, model: &'a Model) -> Option<Resting<'a>> {
         self.rests.view(model)
     }
 
-    /// State at the event that was found.
+    /// Returns the state at the event that was found.
     pub fn state(&self) -> &[f64] {
         &self.events.state
     }

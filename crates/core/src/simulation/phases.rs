@@ -38,7 +38,7 @@ pub(super) struct Settled {
 }
 
 impl Phases {
-    /// Phases with room for states of that length.
+    /// Creates phases with room for states of that length.
     pub fn new(dim: usize) -> Self {
         Self {
             limiter: StrainLimiter::new(dim),
@@ -67,13 +67,13 @@ impl Phases {
         }
     }
 
-    /// State at the beginning of the step, as far as it was remembered.
+    /// Returns the state at the beginning of the step, as far as it was remembered.
     pub fn y0(&self) -> &[f64] {
         self.contact.y0()
     }
 
-    /// Largest distance of vertices of surfaces from the chords of their courses in a step of h (s)
-    /// from time t (s) to y1, over the least thickness; 0 if nothing touches.
+    /// Returns the largest distance of vertices of surfaces from the chords of their courses in a
+    /// step of h (s) from time t (s) to y1, over the least thickness; 0 if nothing touches.
     pub fn bulge(&self, model: &Model, (t, h): (f64, f64), y1: &[f64]) -> f64 {
         let layer = model.network().and_then(Network::contact_layer);
         let states = [self.y0(), y1];
@@ -139,8 +139,8 @@ impl Phases {
         network.hold(t + h, y);
     }
 
-    /// Contact forces (N), n x 3, on the particles of a network at y at time t (s): those of
-    /// surfaces, and the impulses of the last step, divided by its length.
+    /// Returns the contact forces (N), n x 3, on the particles of a network at y at time t (s):
+    /// those of surfaces, and the impulses of the last step, divided by its length.
     pub fn contact_forces(&self, network: &Network, t: f64, y: &[f64]) -> Vec<f64> {
         let mut f = vec![0.0; 3 * network.particles()];
         if let Some(layer) = network.contact_layer() {
@@ -216,7 +216,7 @@ impl Phases {
     }
 }
 
-/// Largest displacement (m) between two states of anything that joints join.
+/// Returns the largest displacement (m) between two states of anything that joints join.
 fn largest_shift(network: &Network, [a, b]: [&[f64]; 2]) -> f64 {
     let n = network.particles();
     let joints = network

@@ -13,8 +13,8 @@ use crate::system::ParticleSystem;
 /// error.
 const ROUNDING: f64 = 1e-9;
 
-/// Path of a pin that is left at `position` (m) at time t (s): it stays there, or swings from
-/// there.
+/// Returns the path of a pin that is left at `position` (m) at time t (s): it stays there, or
+/// swings from there.
 pub(super) fn leave(position: Vector3<f64>, swing: Option<Swing>, phase: f64, t: f64) -> Path {
     match swing {
         None => Path::Still(position),
@@ -30,7 +30,7 @@ pub(super) fn leave(position: Vector3<f64>, swing: Option<Swing>, phase: f64, t:
     }
 }
 
-/// Time (s) after t at which a scene lets go of particle i, if it does.
+/// Returns the time (s) after t at which a scene lets go of particle i, if it does.
 pub(super) fn own_release(scene: &Scene, i: usize, t: f64) -> Option<f64> {
     let until = release_of(scene.model.network()?, i);
     until.filter(|until| *until > t)
@@ -83,7 +83,8 @@ pub(super) fn unpin_all_but(held: Option<usize>, network: &mut Network) {
     }
 }
 
-/// Pinned particles that are not on their paths in y at time t (s), in a scene of that radius (m).
+/// Lists the pinned particles that are not on their paths in y at time t (s), in a scene of that
+/// radius (m).
 pub(super) fn strayed(network: &Network, y: &[f64], t: f64, radius: f64) -> Vec<usize> {
     let (n, far) = (network.particles(), ROUNDING * radius);
     let pins = network.pins();

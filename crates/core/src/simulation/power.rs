@@ -77,7 +77,7 @@ impl Power {
         self.is_fresh = false;
     }
 
-    /// Work (J) since the end of the last step, up to this end of a step.
+    /// Returns the work (J) since the end of the last step, up to this end of a step.
     pub fn work(&mut self, network: &Network, end: End) -> f64 {
         let pins = self.pins.as_mut().map(|pins| pins.work(network, end));
         let wind = self.wind.as_mut().map(|wind| wind.work(network, end));
@@ -199,7 +199,7 @@ impl PinWork {
         mean * h
     }
 
-    /// Power (W) of the pins in a state of the particles.
+    /// Returns the power (W) of the pins in a state of the particles.
     fn power_at(&self, network: &Network, y: &[f64]) -> f64 {
         let (n, pins) = (self.particles.len(), self.paths.len());
         let row = |i: usize, first: usize| {
@@ -322,7 +322,7 @@ impl TotalWork {
         mean * h
     }
 
-    /// Rate (W) at which the energy of the exact motion grows at y at time t (s).
+    /// Returns the rate (W) at which the energy of the exact motion grows at y at time t (s).
     fn power_at(&mut self, network: &Network, t: f64, y: &[f64]) -> f64 {
         let [state, f, _] = &mut self.scratch;
         network.eval_f(t, y, f);
@@ -345,8 +345,8 @@ fn write_middle(y0: &[f64], y1: &[f64], h: f64, out: &mut Vec<f64>) {
     out.extend((0..half).map(|k| 1.5 * (x1[k] - x0[k]) / h - 0.25 * (v0[k] + v1[k])));
 }
 
-/// Energy of y at time t (s), without the kinetic energy of pins: their motion is prescribed, and
-/// may begin at once.
+/// Returns the energy of y at time t (s), without the kinetic energy of pins: their motion is
+/// prescribed, and may begin at once.
 pub(super) fn energy_of(network: &Network, t: f64, y: &[f64]) -> Energy {
     let (_, v) = network.halves(y);
     let (n, masses) = (network.particles(), network.masses());
@@ -363,14 +363,15 @@ pub(super) fn energy_of(network: &Network, t: f64, y: &[f64]) -> Energy {
     energy
 }
 
-/// Upper bound of the speed (m/s) of an obstacle's points within a scene of that radius (m).
+/// Returns an upper bound of the speed (m/s) of an obstacle's points within a scene of that radius
+/// (m).
 pub(super) fn fastest(obstacle: &Obstacle, t: f64, radius: f64) -> f64 {
     let pose = obstacle.at(t);
     let spin = pose.orientation.map_or(0.0, |turned| turned.spin.norm());
     pose.place.velocity.norm() + spin * 2.0 * radius
 }
 
-/// The particle with the largest of the velocities v, n x 3, and its speed (m/s).
+/// Returns the particle with the largest of the velocities v, n x 3, and its speed (m/s).
 pub(super) fn fastest_particle(v: &[f64]) -> (usize, f64) {
     let n = v.len() / 3;
     let speed = |i: usize| {

@@ -13,7 +13,7 @@ pub(super) struct Part {
 }
 
 impl Part {
-    /// Part of h (s) from time t (s), which ends at an event.
+    /// Creates a part of h (s) from time t (s), which ends at an event.
     pub fn of(t: f64, h: f64) -> Self {
         Self {
             h,
@@ -40,9 +40,9 @@ impl Default for Reach {
 }
 
 impl Reach {
-    /// Limits of a step of a model from time t (s) by a method that locates events: prescribed
-    /// motions begin and end at known times. An adaptive step has further limits; a fixed step ends
-    /// at `target` (s) at the latest.
+    /// Returns the limits of a step of a model from time t (s) by a method that locates events.
+    /// Prescribed motions begin and end at known times. An adaptive step has further limits; a
+    /// fixed step ends at `target` (s) at the latest.
     pub fn of_step(
         model: &Model,
         limits: StepLimits,
@@ -67,8 +67,8 @@ impl Reach {
         reach.or_before(t, target)
     }
 
-    /// Limits of a part of a fixed step of a network from time t (s) by a method that locates no
-    /// events: it ends where the next pin lets go, or at `target` (s).
+    /// Returns the limits of a part of a fixed step of a network from time t (s) by a method that
+    /// locates no events. The part ends where the next pin lets go, or at `target` (s).
     pub fn of_part(network: &Network, t: f64, target: Option<f64>) -> Self {
         let release = next_release(network);
         let reach = if release.is_finite() {
@@ -79,7 +79,7 @@ impl Reach {
         reach.or_before(t, target)
     }
 
-    /// These limits, or those of a step that ends at `target` (s), if that is not later.
+    /// Returns these limits, or those of a step that ends at `target` (s), if that is not later.
     fn or_before(self, t: f64, target: Option<f64>) -> Self {
         match target.filter(|target| *target <= self.until.unwrap_or(f64::MAX)) {
             None => self,
@@ -90,8 +90,8 @@ impl Reach {
         }
     }
 
-    /// Limits of a step from t up to a time `until` (s) at which a motion changes: all evaluations
-    /// are before that time.
+    /// Returns the limits of a step from t up to a time `until` (s) at which a motion changes. All
+    /// evaluations are before that time.
     fn up_to(t: f64, until: f64) -> Self {
         // Adding a short step to the time rounds it.
         let (mut longest, digit) = (until - t, 0.25 * (until - until.next_down()));
@@ -114,7 +114,7 @@ impl Reach {
         }
     }
 
-    /// The part that a step of h (s) from t covers.
+    /// Returns the part that a step of h (s) from t covers.
     pub fn part(&self, t: f64, h: f64) -> Part {
         let until = self.until.filter(|_| h == self.longest);
         Part {

@@ -59,7 +59,7 @@ struct Slide {
 }
 
 impl Slide {
-    /// Slide in the direction of a vector, unless that is 0.
+    /// Creates a slide in the direction of a vector, unless that is 0.
     fn of(along: Vector3<f64>, speed: f64, slack: f64) -> Option<Self> {
         let along = along.try_normalize(0.0)?;
         Some(Self {
@@ -106,7 +106,8 @@ pub(crate) fn may_rest(network: &Network) -> bool {
         && !network.is_constrained()
 }
 
-/// Height (m) of a point above a flat obstacle that does not move, and the normal there.
+/// Returns the height (m) of a point above a flat obstacle that does not move, and the normal
+/// there.
 fn height(obstacle: &Obstacle, x: Vector3<f64>) -> (f64, Vector3<f64>) {
     let pose = obstacle.at(0.0);
     let seen = obstacle
@@ -132,12 +133,12 @@ impl Rests {
         }
     }
 
-    /// The particles that rest, and scratch.
+    /// Returns the particles that rest, and scratch.
     pub fn split(&mut self) -> (&[Rest], &mut Scratch) {
         (&self.now, &mut self.scratch)
     }
 
-    /// View of a model in which the particles rest, if any do.
+    /// Returns a view of a model in which the particles rest, if any do.
     pub fn view<'a>(&'a self, model: &'a Model) -> Option<Resting<'a>> {
         Resting::of(model, &self.now)
     }
@@ -209,7 +210,8 @@ impl Rests {
         1
     }
 
-    /// Hash of which particles rest on which obstacles, and which of them slide: 0 if none rests.
+    /// Returns a hash of which particles rest on which obstacles, and which of them slide: 0 if
+    /// none rests.
     pub fn fingerprint(&self) -> u64 {
         let parts = self.now.iter().flat_map(|rest| {
             let slides = usize::from(rest.slide.is_some());
@@ -223,7 +225,7 @@ impl Rests {
 }
 
 impl<'a> Resting<'a> {
-    /// View of a model in which particles rest, if any do.
+    /// Creates a view of a model in which particles rest, if any do.
     pub fn of(model: &'a Model, rests: &'a [Rest]) -> Option<Self> {
         let network = model.network().filter(|_| !rests.is_empty())?;
         Some(Self { network, rests })
@@ -285,14 +287,15 @@ pub(super) fn first_negative(before: f64, mut margin: impl FnMut(f64) -> f64) ->
 }
 
 impl Rest {
-    /// Part of a particle's velocity along the obstacle (m/s).
+    /// Returns the part of a particle's velocity along the obstacle (m/s).
     fn slide(&self, network: &Network, y: &[f64]) -> Vector3<f64> {
         let v = row(network.halves(y).1, network.particles(), self.particle);
         v - self.normal * v.dot(&self.normal)
     }
 
-    /// Margin by which the contact continues unchanged in the state y with the derivative `free`
-    /// without reactions, over the force or speed that it depends on: negative where it ceases.
+    /// Returns the margin by which the contact continues unchanged in the state y with the
+    /// derivative `free` without reactions, over the force or speed that it depends on: negative
+    /// where it ceases.
     fn margin(&self, network: &Network, y: &[f64], free: &[f64], none: f64) -> f64 {
         let (n, i) = (network.particles(), self.particle);
         let obstacle = &network.obstacles()[self.obstacle];
@@ -327,8 +330,8 @@ impl Rest {
         }
     }
 
-    /// Acceleration (m/s2) with the obstacle's reaction and friction at a velocity (m/s), from the
-    /// acceleration without them.
+    /// Returns the acceleration (m/s2) with the obstacle's reaction and friction at a velocity
+    /// (m/s), from the acceleration without them.
     fn held(&self, obstacle: &Obstacle, v: Vector3<f64>, free: Vector3<f64>) -> Vector3<f64> {
         let Some(Slide { along, .. }) = self.slide else {
             return Vector3::zeros();

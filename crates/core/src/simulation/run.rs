@@ -55,7 +55,7 @@ impl Simulation {
     /// accurate enough for sixty frames a second.
     pub const STEP_END_TOLERANCE: f64 = STEP_END_TOLERANCE;
 
-    /// A run from the beginning of a scene, in fixed steps or, with an adaptive method, to a
+    /// Creates a run at the beginning of a scene, in fixed steps or, by an adaptive method, to a
     /// tolerance.
     ///
     /// # Errors
@@ -237,8 +237,8 @@ impl Simulation {
             .put_back(&self.scene, model, state, &mut self.driver)
     }
 
-    /// The run as it is now, with the last step of an adaptive method: some 20 arrays of the size
-    /// of the state.
+    /// Returns the run as it is now, with the last step of an adaptive method: some 20 arrays of
+    /// the size of the state.
     #[must_use]
     pub fn checkpoint(&self) -> Checkpoint {
         let mut whole = self.moment();
@@ -247,8 +247,8 @@ impl Simulation {
         whole
     }
 
-    /// The run as it is now, without the last step of an adaptive method: a run that continues from
-    /// it begins a new step.
+    /// Returns the run as it is now, without the last step of an adaptive method: a run that
+    /// continues from it begins a new step.
     #[must_use]
     pub fn moment(&self) -> Checkpoint {
         Checkpoint::of(&self.state, &self.model, &self.driver)
@@ -306,76 +306,76 @@ impl Simulation {
         self.good.record(&self.state, &self.model, &self.driver);
     }
 
-    /// The scene as it was built.
+    /// Returns the scene as it was built.
     #[must_use]
     pub fn scene(&self) -> &Scene {
         &self.scene
     }
 
-    /// The method.
+    /// Returns the method.
     #[must_use]
     pub fn method(&self) -> &'static Method {
         self.state.method
     }
 
-    /// The step or the tolerance.
+    /// Returns the step or the tolerance.
     #[must_use]
     pub fn control(&self) -> Control {
         self.state.control
     }
 
-    /// The step (s): the fixed one, or the last one under a tolerance, if there was one yet.
+    /// Returns the step (s): the fixed one, or the last one under a tolerance, if there was one.
     #[must_use]
     pub fn step_size(&self) -> Option<f64> {
         let stepper = &self.driver.pipeline.stepper;
         stepper.step_size(self.state.control)
     }
 
-    /// Simulated time (s).
+    /// Returns the simulated time (s).
     #[must_use]
     pub fn time(&self) -> f64 {
         self.state.time()
     }
 
-    /// Steps taken since the beginning.
+    /// Returns the number of steps taken since the beginning.
     #[must_use]
     pub fn steps(&self) -> u64 {
         self.state.steps
     }
 
-    /// Cost of these steps.
+    /// Returns the cost of these steps.
     #[must_use]
     pub fn work(&self) -> Work {
         self.state.work
     }
 
-    /// Contact during the last step.
+    /// Returns the statistics of contact during the last step.
     #[must_use]
     pub fn contact(&self) -> Statistics {
         self.driver.pipeline.phases.contact.last()
     }
 
-    /// Actions of the collision safeguard since the beginning.
+    /// Returns the actions of the collision safeguard since the beginning.
     #[must_use]
     pub fn guarded(&self) -> Guarded {
         self.state.guarded
     }
 
-    /// The blow-up that ended the run, if there was one.
+    /// Returns the blow-up that ended the run, if there was one.
     #[must_use]
     pub fn blow_up(&self) -> Option<BlowUp> {
         self.blow_up
     }
 
-    /// Energy that the method added to the run, if it is notable against the energy of the scene:
+    /// Returns the energy that the method added, if it is notable against the energy of the scene:
     /// then the step is too long.
     #[must_use]
     pub fn gained(&self) -> Option<Gain> {
         self.driver.balance(&self.model, &self.state).notable_gain()
     }
 
-    /// Energy gained or, below 0, lost since the beginning, over the kinetic, elastic and
-    /// gravitational energy of the motion. `None` if forces do not conserve energy, if contact,
+    /// Returns the energy gained or, below 0, lost since the beginning, over the kinetic, elastic
+    /// and gravitational energy of the motion. `None` if forces do not conserve energy, if contact,
     /// tears or hands may have changed it, or if nothing moves.
     #[must_use]
     pub fn energy_change(&self) -> Option<f64> {
@@ -384,7 +384,7 @@ impl Simulation {
         self.driver.balance(&self.model, &self.state).change()
     }
 
-    /// The constraint with the largest error at the end of any step, and that error.
+    /// Returns the constraint with the largest error at the end of any step, and that error.
     #[must_use]
     pub fn worst_constraint(&self) -> Option<Unmet> {
         let network = self.model.network()?;

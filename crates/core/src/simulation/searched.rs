@@ -61,8 +61,8 @@ impl Searched<'_> {
         (-shallow..=0.0).contains(&end.distance) && end.normal.dot(normal) > 0.5
     }
 
-    /// Share of the step at which an event happens on the polynomial, by Newton's method from a
-    /// guess; `None` if it does not happen. Leaves the state near it in `state`.
+    /// Finds the share of the step at which an event happens on the polynomial, by Newton's method
+    /// from a guess; `None` if it does not happen. Leaves the state near it in `state`.
     pub fn refine(
         &self,
         guess: f64,
@@ -89,7 +89,8 @@ impl Searched<'_> {
         (gap.abs() <= self.depths.none).then_some(share)
     }
 
-    /// Distance (m) from an event at a share of the step, and the rate of that distance (m/s).
+    /// Returns the distance (m) from an event at a share of the step, and the rate of that distance
+    /// (m/s).
     fn gap(&self, share: f64, kind: EventKind, y: &[f64]) -> (f64, f64) {
         let n = self.network.particles();
         let row = |first: usize, i: usize| {
@@ -118,7 +119,7 @@ impl Searched<'_> {
     }
 }
 
-/// Course of particle i between two states.
+/// Returns the course of particle i between two states.
 pub(super) fn course<Y: AsRef<[f64]>>(ends: &[Y; 2], i: usize, h: f64, n: usize) -> Course {
     let row = |y: &[f64], first: usize| {
         Vector3::new(y[first + i], y[first + n + i], y[first + 2 * n + i])

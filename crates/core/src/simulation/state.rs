@@ -52,7 +52,7 @@ pub struct RunState {
 }
 
 impl RunState {
-    /// State of a run at the beginning of a scene.
+    /// Creates the state of a run at the beginning of a scene.
     ///
     /// # Errors
     /// The scene's state has another length than its model's, or none; or surfaces cross there.
@@ -86,7 +86,7 @@ impl RunState {
         Ok(Self::new(method, control, y.clone()))
     }
 
-    /// State of a run that begins at y.
+    /// Creates the state of a run that begins at y.
     pub(super) fn new(method: &'static Method, control: Control, y: Vec<f64>) -> Self {
         Self {
             method,
@@ -115,7 +115,7 @@ impl RunState {
         *self = Self { y, ..*other };
     }
 
-    /// Blow-up of the run by a cause, at a time (s).
+    /// Returns the blow-up of the run by a cause, at a time (s).
     pub(super) fn blow_up(&self, cause: Cause, time: f64) -> BlowUp {
         BlowUp {
             method: self.method.title,
@@ -126,13 +126,13 @@ impl RunState {
         }
     }
 
-    /// Simulated time, which is shown (s).
+    /// Returns the simulated time, which is shown (s).
     #[must_use]
     pub fn time(&self) -> f64 {
         self.shown.unwrap_or_else(|| self.end())
     }
 
-    /// Time at the end of the last step (s).
+    /// Returns the time at the end of the last step (s).
     pub(super) fn end(&self) -> f64 {
         self.since + self.taken as f64 * self.control.step().unwrap_or(0.0)
     }

@@ -15,7 +15,7 @@ pub(super) enum Stepper {
 }
 
 impl Stepper {
-    /// Stepper of a method for a scene, whose system is as it is now.
+    /// Creates the stepper of a method for a scene, whose system is as it is now.
     ///
     /// # Errors
     /// The method does not support the system or the control.
@@ -43,7 +43,8 @@ impl Stepper {
         matches!(self, Self::Adaptive(_))
     }
 
-    /// The step (s): the fixed one, or the last one under a tolerance, if there was one yet.
+    /// Returns the step (s): the fixed one, or the last one under a tolerance, if there was one
+    /// yet.
     pub fn step_size(&self, control: Control) -> Option<f64> {
         match self {
             Self::Fixed(_) => control.step(),
@@ -115,7 +116,8 @@ impl Stepper {
         }
     }
 
-    /// Memory of an adaptive method: all of it or, without `whole`, only what a new step needs.
+    /// Returns the memory of an adaptive method: all of it or, without `whole`, only what a new
+    /// step needs.
     pub fn memory(&self, whole: bool) -> Option<AdaptiveState> {
         match self {
             Self::Fixed(_) => None,

@@ -11,7 +11,7 @@ const INTERVALS: u32 = 8;
 /// Number of bisections of such an interval.
 const BISECTIONS: u32 = 45;
 
-/// Share of a piece at which a vector is first longer than `longest` (m).
+/// Finds the share of a piece at which a vector is first longer than `longest` (m).
 pub(super) fn first_longer(apart: &Course, longest: f64) -> Option<f64> {
     let [speed, _] = apart.bounds();
     earliest([0.0, 1.0], MIN_INTERVAL, |[a, b]| {
@@ -20,8 +20,9 @@ pub(super) fn first_longer(apart: &Course, longest: f64) -> Option<f64> {
     })
 }
 
-/// Share of a piece at which a vector becomes longer than `longest` (m), unless that lasts for less
-/// than one of the intervals of the piece. A rope that has just rebounded begins at its length.
+/// Finds the share of a piece at which a vector becomes longer than `longest` (m), unless that
+/// lasts for less than one of the intervals of the piece. A rope that has just rebounded begins at
+/// its length.
 pub(super) fn first_beyond(apart: &Course, longest: f64) -> Option<f64> {
     let is_longer = |share: f64| apart.position(share).norm() > longest;
     let end = |k: u32| f64::from(k) / f64::from(INTERVALS);

@@ -27,7 +27,7 @@ pub(super) struct Watch {
 }
 
 impl Watch {
-    /// Watch over runs of a scene with that radius (m).
+    /// Creates a watch over runs of a scene with that radius (m).
     pub fn new(radius: f64, limits: StepLimits) -> Self {
         Self {
             power: Power::default(),
@@ -120,9 +120,9 @@ impl Watch {
         self.power.forget();
     }
 
-    /// The cause of a blow-up, if the particles move with more kinetic energy than a run may gain,
-    /// before the collision safeguard acts: a particle that flies through the whole scene in one
-    /// step meets all of it, which would cost as much as thousands of steps.
+    /// Returns the cause of a blow-up, if the particles move with more kinetic energy than a run
+    /// may gain. This is checked before the collision safeguard acts: a particle that flies through
+    /// the whole scene in one step meets all of it, which would cost as much as thousands of steps.
     pub fn check_before_safeguard(
         &self,
         model: &Model,
@@ -187,8 +187,8 @@ impl Watch {
         broken.or(lost).or(gained)
     }
 
-    /// Balance of a run at the end of its last step, at y at time t (s), and the cause of a
-    /// blow-up, if there is one.
+    /// Returns the balance of a run at the end of its last step, at y at time t (s), and the cause
+    /// of a blow-up, if there is one.
     pub fn balance_at(
         &self,
         model: &Model,

@@ -48,22 +48,22 @@ pub(super) struct Within {
 }
 
 impl Within {
-    /// Time at the end of the step (s).
+    /// Returns the time at the end of the step (s), if the time shown is within one.
     pub fn until(&self) -> Option<f64> {
         self.times.map(|times| times[1])
     }
 
-    /// Time (s) and state at the end of the step, if the time shown is within one.
+    /// Returns the time (s) and state at the end of the step, if the time shown is within one.
     pub fn end(&self) -> Option<(f64, &[f64])> {
         self.times.map(|times| (times[1], &self.ends[1][..]))
     }
 
-    /// Times of the step (s).
+    /// Returns the times of both ends of the step (s), if the time shown is within one.
     pub fn times(&self) -> Option<[f64; 2]> {
         self.times
     }
 
-    /// State at the beginning of a fixed step.
+    /// Returns the state at the beginning of a fixed step.
     pub fn y0(&self) -> &[f64] {
         &self.ends[0]
     }
@@ -191,7 +191,7 @@ impl Within {
         }
     }
 
-    /// The step, if the time shown is within one.
+    /// Returns the step, if the time shown is within one.
     pub fn span(&self) -> Option<Span> {
         self.times.map(|times| Span {
             times,
@@ -199,7 +199,7 @@ impl Within {
         })
     }
 
-    /// The step of saved progress, in a system of that dimension.
+    /// Creates the step of saved progress, in a system of that dimension.
     ///
     /// # Errors
     /// It is of another system, or its times are not those of a step.
@@ -228,8 +228,8 @@ impl Within {
     }
 }
 
-/// Value at the fraction theta of a step: by the polynomial of degree 3 if it is smooth, else on a
-/// straight line.
+/// Returns the value at the fraction theta of a step. It is on the polynomial of degree 3 if that
+/// is smooth, else on a straight line.
 fn between([y0, y1]: [f64; 2], [s0, s1]: [f64; 2], theta: f64, is_smooth: bool) -> f64 {
     let d = y1 - y0;
     if is_smooth {

@@ -10,8 +10,8 @@ pub(super) const MAX_ITERATIONS: usize = 20;
 /// that fails, the error of central differences.
 pub(super) const PRECISIONS: [f64; 2] = [f64::EPSILON, 1e-8];
 
-/// Eigenvalues of a matrix; none if the QR algorithm does not find them in a limited number of
-/// iterations.
+/// Returns the eigenvalues of a matrix; none if the QR algorithm does not find them in a limited
+/// number of iterations.
 ///
 /// A permutation of the axes is a fixed point of the algorithm. Conjugation by a random reflection
 /// makes it none, and keeps the eigenvalues. If many eigenvalues are zero, rounding keeps entries
@@ -33,7 +33,7 @@ pub(super) fn eigenvalues(matrix: &DMatrix<f64>) -> Vec<Complex<f64>> {
 mod tests {
     use super::*;
 
-    /// Eigenvalues, sorted by their real and imaginary parts.
+    /// Returns the eigenvalues, sorted by their real and imaginary parts.
     fn sorted(matrix: &DMatrix<f64>) -> Vec<[f64; 2]> {
         let mut all: Vec<_> = eigenvalues(matrix).iter().map(|l| [l.re, l.im]).collect();
         all.sort_by(|a, b| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])));

@@ -33,7 +33,7 @@ pub struct Growth {
 }
 
 impl Growth {
-    /// Growth of `mode` by `method`.
+    /// Creates the growth of `mode` by `method`.
     ///
     /// # Errors
     /// The method does not support damped springs, which damp the mode.
@@ -55,8 +55,8 @@ impl Growth {
         self.failure.take().map_or(Ok(()), Err)
     }
 
-    /// Matrix of a step of h (s) on x times the frequency and on v: a, b, c, d, row by row. `None`
-    /// if the step fails.
+    /// Returns the matrix of a step of h (s) on x times the frequency and on v: a, b, c, d, row by
+    /// row. `None` if the step fails.
     fn matrix(&mut self, h: f64) -> Option<[f64; 4]> {
         let mut y = [0.0; 18];
         // Particle 0 starts with x = 1, particle 1 with v = `unit`: v is scaled by the frequency,
@@ -72,8 +72,8 @@ impl Growth {
         (stepped && matrix.iter().all(|m| m.is_finite())).then_some(matrix)
     }
 
-    /// Spectral radius of the matrix of a step of h (s); for a Runge-Kutta method, the larger |R(h
-    /// l)| of both eigenvalues l. Infinite if the step fails.
+    /// Returns the spectral radius of the matrix of a step of h (s); for a Runge-Kutta method, the
+    /// larger |R(h l)| of both eigenvalues l. It is infinite if the step fails.
     pub fn of_step(&mut self, h: f64) -> f64 {
         let Some([a, b, c, d]) = self.matrix(h) else {
             return f64::INFINITY;
@@ -92,8 +92,8 @@ impl Growth {
         }
     }
 
-    /// Ratio of the largest to the smallest energy of a mode in steps of h (s), without growth and
-    /// decay, and relative to that of the exact motion.
+    /// Returns the ratio of the largest to the smallest energy of a mode in steps of h (s), without
+    /// growth and decay, and relative to that of the exact motion.
     ///
     /// Steps move (x w, v) round an ellipse, c x^2 + (d - a) x v - b v^2 = const. The result is the
     /// squared ratio of its axes over that of the exact motion, (1 + z) / (1 - z) with the damping

@@ -42,16 +42,16 @@ impl Limit {
     }
 }
 
-/// Time (s) in which no mode may grow more than [`GROWTH`] times in steps of h (s): the longer of
-/// [`HORIZON`] and [`STEPS`] steps.
+/// Returns the time (s) in which no mode may grow more than [`GROWTH`] times in steps of h (s): the
+/// longer of [`HORIZON`] and [`STEPS`] steps.
 #[must_use]
 pub fn tenfold_time(h: f64) -> f64 {
     HORIZON.max(STEPS * h)
 }
 
-/// Largest steps of a method with which no mode grows, and with which none grows tenfold; all
-/// shorter steps are as good. Modes that have no restoring force, or grow by themselves, are left
-/// out: they fall, buckle or flutter with any method. `None` if no mode is left.
+/// Finds the largest steps of a method with which no mode grows, and with which none grows tenfold;
+/// all shorter steps are as good. Modes that have no restoring force, or grow by themselves, are
+/// left out: they fall, buckle or flutter with any method. `None` if no mode is left.
 ///
 /// # Errors
 /// The method does not support a mechanical system with drag and damping as in these modes.
@@ -91,8 +91,8 @@ pub fn largest_step(method: &Method, modes: &[Mode]) -> Result<Option<Limit>, Er
     Ok(limit)
 }
 
-/// Largest h below which `fails` is false, from trials at `h`, at steps that grow by `ratio` up to
-/// `longest`, and at `longest`; `None` if none fails.
+/// Finds the largest h below which `fails` is false, from trials at `h`, at steps that grow by
+/// `ratio` up to `longest`, and at `longest`; `None` if none fails.
 fn first(mut fails: impl FnMut(f64) -> bool, mut h: f64, longest: f64, ratio: f64) -> Option<f64> {
     let mut below = 0.0;
     while h < longest && !fails(h) {
@@ -103,7 +103,8 @@ fn first(mut fails: impl FnMut(f64) -> bool, mut h: f64, longest: f64, ratio: f6
     (h < longest || fails(longest)).then(|| between(fails, [below, above]))
 }
 
-/// Largest h at which `fails` is false, between a step at which it is and one at which it is not.
+/// Finds the largest h at which `fails` is false, between a step at which it is and one at which it
+/// is not.
 fn between(mut fails: impl FnMut(f64) -> bool, [mut low, mut high]: [f64; 2]) -> f64 {
     for _ in 0..50 {
         let middle = f64::midpoint(low, high);
@@ -116,8 +117,8 @@ fn between(mut fails: impl FnMut(f64) -> bool, [mut low, mut high]: [f64; 2]) ->
     low
 }
 
-/// Step (s) from which on a mode of this rate (1/s) grows: 0 if it grows at every step, `None` if
-/// it does not grow up to `longest` (s).
+/// Finds the step (s) from which on a mode of this rate (1/s) grows: 0 if it grows at every step,
+/// `None` if it does not grow up to `longest` (s).
 ///
 /// Growth of an undamped mode by a method of high order begins so smoothly that rounding hides it
 /// at short steps. Such a mode grows at every step, unless it decays at a shorter one.

@@ -57,9 +57,9 @@ impl<'a> AtRest<'a> {
         }
     }
 
-    /// Largest step of a method, searched from an expected one (s). The fastest motion has the
-    /// angular frequency `fastest` (rad/s). Infinite if no trial step fails. `None` if the shortest
-    /// one fails too: then the motion grows by itself.
+    /// Finds the largest step of a method, searched from an expected one (s). The fastest motion
+    /// has the angular frequency `fastest` (rad/s). Infinite if no trial step fails. `None` if the
+    /// shortest one fails too: then the motion grows by itself.
     ///
     /// # Errors
     /// The method does not support the system.
@@ -112,8 +112,8 @@ impl<'a> AtRest<'a> {
         Ok(Some(low))
     }
 
-    /// Growth per step of h (s) of the root of the energy, after `steps` steps from a random state
-    /// that contains all motion: at least 1, infinite if a step fails.
+    /// Returns the growth per step of h (s) of the root of the energy, after `steps` steps from a
+    /// random state that contains all motion: at least 1, infinite if a step fails.
     ///
     /// # Errors
     /// A callback failed.
@@ -174,8 +174,8 @@ impl<'a> AtRest<'a> {
         Ok((grown / (steps / 2) as f64).exp())
     }
 
-    /// Root of twice the energy of a state (J^1/2). Slow motion does not increase it, however far
-    /// it goes.
+    /// Returns the root of twice the energy of a state (J^1/2). Slow motion does not increase it,
+    /// however far it goes.
     fn size(&self, y: &[f64], scratch: &mut [f64]) -> f64 {
         let w = self.mechanics.inverse_masses();
         let (dx, dv) = y.split_at(self.x.len());

@@ -18,7 +18,7 @@ pub struct Mode {
 }
 
 impl Mode {
-    /// Mode with the eigenvalue re + i im (1/s) and its conjugate, damped by drag.
+    /// Creates a mode with the eigenvalue re + i im (1/s) and its conjugate, damped by drag.
     #[must_use]
     pub fn of_eigenvalue(re: f64, im: f64) -> Self {
         Self {
@@ -28,7 +28,7 @@ impl Mode {
         }
     }
 
-    /// Angular frequency w of the undamped mode (rad/s); 0 for negative stiffness.
+    /// Returns the angular frequency w of the undamped mode (rad/s); 0 for negative stiffness.
     #[must_use]
     pub fn frequency(&self) -> f64 {
         self.stiffness.max(0.0).sqrt()
@@ -40,7 +40,7 @@ impl Mode {
         self.stiffness > 0.0 && self.drag + self.damping >= -ROUNDING * self.frequency()
     }
 
-    /// Both eigenvalues as [re, im] (1/s).
+    /// Returns both eigenvalues as [re, im] (1/s).
     #[must_use]
     pub fn eigenvalues(&self) -> [[f64; 2]; 2] {
         let half = 0.5 * (self.drag + self.damping);

@@ -80,7 +80,7 @@ pub struct Motion {
 }
 
 impl Motion {
-    /// Motion of a scene. `None` soon after `go_on` returns false.
+    /// Computes the motion of a scene. Returns `None` soon after `go_on` returns false.
     ///
     /// # Errors
     /// The scene cannot be run.
@@ -161,7 +161,7 @@ impl Motion {
         Ok(Some(motion))
     }
 
-    /// Largest step with which a method's runs from the start stay bounded.
+    /// Finds the largest step with which a method's runs from the start stay bounded.
     ///
     /// Runs last for [`HORIZON`] and [`STEPS`](super::STEPS) steps at least. The search begins at
     /// the limit of the modes. Runs ten times as long, with steps a tenth shorter and a tenth
@@ -218,11 +218,11 @@ impl Motion {
         Ok(seen.filter(|_| go_on()))
     }
 
-    /// Largest step (s) up to `longest` with which the error of a run is below a hundredth of the
-    /// motion: the root mean square distance of the particles from their true positions, over the
-    /// largest from their start, within the predictable time. If the budget is spent, an accurate
-    /// step that may not be the largest. `None` if nothing moves, if the runs would take too long,
-    /// and soon after `go_on` returns false.
+    /// Finds the largest step (s) up to `longest` with which the error of a run is below a
+    /// hundredth of the motion: the root mean square distance of the particles from their true
+    /// positions, over the largest from their start, within the predictable time. If the budget is
+    /// spent, the step is accurate, but may not be the largest. `None` if nothing moves, if the
+    /// runs would take too long, and soon after `go_on` returns false.
     ///
     /// # Errors
     /// The method does not support the scene.
@@ -283,9 +283,9 @@ impl Motion {
         Ok(Some(low.0).filter(|_| go_on()))
     }
 
-    /// Largest error of a run in whole steps of about h (s) within the predictable time, over the
-    /// allowed one; infinite if the run fails. The run ends once its error exceeds `most`. `None`
-    /// if the budget is spent.
+    /// Returns the largest error of a run in whole steps of about h (s) within the predictable
+    /// time, over the allowed one; infinite if the run fails. The run ends once its error exceeds
+    /// `most`. `None` if the budget is spent.
     fn error(
         &self,
         method: &'static Method,
@@ -313,7 +313,8 @@ impl Motion {
         Ok(Some(error))
     }
 
-    /// True positions (m) at a time (s), by a cubic polynomial between the stored states.
+    /// Returns the true positions (m) at a time (s), by a cubic polynomial between the stored
+    /// states.
     fn at(&self, time: f64) -> Vec<f64> {
         let place = (time / self.interval).max(0.0);
         let k = (place as usize).min(self.states.len() - 2);
@@ -334,8 +335,8 @@ impl Motion {
     }
 }
 
-/// Scene whose free particles are displaced by up to this distance (m); without particles, whose
-/// numbers differ by up to that.
+/// Returns the scene with its free particles displaced by up to this distance (m); without
+/// particles, with its numbers changed by up to that.
 fn disturbed(scene: &Scene, size: f64) -> Scene {
     let mut scene = scene.clone();
     let mut random = SplitMix(2);
@@ -349,13 +350,13 @@ fn disturbed(scene: &Scene, size: f64) -> Scene {
     scene
 }
 
-/// Total energy of a run (J), or the norm of the state of a first-order scene.
+/// Returns the total energy of a run (J), or the norm of the state of a first-order scene.
 fn level(run: &Simulation) -> f64 {
     let norm = || run.state().iter().map(|y| y * y).sum::<f64>().sqrt();
     run.energy().map_or_else(norm, |energy| energy.total())
 }
 
-/// Root mean square distance of particles in two lists of positions (m).
+/// Returns the root mean square distance of particles in two lists of positions (m).
 fn distance(a: &[f64], b: &[f64]) -> f64 {
     let squares = a.iter().zip(b).map(|(a, b)| (a - b).powi(2));
     (3.0 * squares.sum::<f64>() / a.len() as f64).sqrt()

@@ -44,7 +44,7 @@ impl<'a> Normalised<'a> {
         }
     }
 
-    /// z = M^-1/2 z.
+    /// Replaces z by M^-1/2 z.
     fn scale(&self, z: &mut [f64]) {
         let w = self.mechanics.inverse_masses();
         for column in z.chunks_exact_mut(w.len()) {
@@ -54,7 +54,7 @@ impl<'a> Normalised<'a> {
         }
     }
 
-    /// out = K z, or D z if `damping` is set, both mass-normalised.
+    /// Computes out = K z, or D z if `damping` is set, both mass-normalised.
     pub fn product(&mut self, z: &[f64], damping: bool, out: &mut [f64]) {
         let mut scaled = std::mem::take(&mut self.scaled);
         scaled.copy_from_slice(z);
@@ -73,7 +73,7 @@ impl<'a> Normalised<'a> {
         }
     }
 
-    /// Drag over mass of the mode of shape z (1/s).
+    /// Returns the drag over mass of the mode of shape z (1/s).
     fn drag(&self, z: &[f64]) -> f64 {
         let w = self.mechanics.inverse_masses();
         let share = z
@@ -83,8 +83,8 @@ impl<'a> Normalised<'a> {
         self.mechanics.drag_coefficient() * share
     }
 
-    /// Mode of shape z and of this stiffness over mass (1/s2), and the degree to which damping
-    /// couples z to other shapes.
+    /// Returns the mode of shape z and of this stiffness over mass (1/s2), and the degree to which
+    /// damping couples z to other shapes.
     pub fn mode(&mut self, stiffness: f64, z: &[f64], scratch: &mut [f64]) -> (Mode, Mixing) {
         self.product(z, true, scratch);
         let drag = self.drag(z);
@@ -110,7 +110,7 @@ impl<'a> Normalised<'a> {
         (mode, mixing)
     }
 
-    /// Random shape of length 1, which has a component along every mode.
+    /// Returns a random shape of length 1, which has a component along every mode.
     pub fn any_shape(&self) -> Vec<f64> {
         let mut random = SplitMix(1);
         let free = self.mechanics.inverse_masses();

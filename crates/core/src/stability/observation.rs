@@ -28,7 +28,7 @@ impl Observation {
         (1.0..MAX_SHARP_RATIO).contains(&(self.failed / self.held))
     }
 
-    /// Step below which all trials held, and step above which all failed (s).
+    /// Returns the step below which all trials held, and the step above which all failed (s).
     #[must_use]
     pub fn interval(&self) -> [f64; 2] {
         [self.held.min(self.failed), self.held.max(self.failed)]

@@ -29,7 +29,8 @@ pub(super) struct Pencil {
 }
 
 impl Pencil {
-    /// Pencil at the positions x (m); `None` if x has more than `most` free coordinates.
+    /// Creates the pencil at the positions x (m); `None` if x has more than `most` free
+    /// coordinates.
     pub fn of(mechanics: &dyn Linearized, t: f64, x: &[f64], most: usize) -> Option<Self> {
         let w = mechanics.inverse_masses();
         let unknowns: Vec<_> = (0..x.len()).filter(|k| w[k % w.len()] != 0.0).collect();
@@ -60,9 +61,9 @@ impl Pencil {
         })
     }
 
-    /// Modes, one for each real eigenvalue and each conjugate pair, fastest first. Damping is
-    /// divided between drag and springs as in the undamped mode of the nearest frequency. `None` if
-    /// the eigenvalues are not found.
+    /// Returns the modes, one for each real eigenvalue and each conjugate pair, fastest first.
+    /// Damping is divided between drag and springs as in the undamped mode of the nearest
+    /// frequency. `None` if the eigenvalues are not found.
     pub fn modes(&self, undamped: &[Mode]) -> Option<Vec<Mode>> {
         let n = self.unknowns.len();
         // Makes the norms of both parts of the state similar.
@@ -103,8 +104,8 @@ impl Pencil {
         (!found.is_empty()).then_some(modes)
     }
 
-    /// Shape of a mode at one moment, by inverse iteration: the displacements times the roots of
-    /// the masses, of length 1.
+    /// Returns the shape of a mode at one moment, by inverse iteration: the displacements times the
+    /// roots of the masses, of length 1.
     pub fn shape(&self, mode: &Mode) -> Option<Vec<f64>> {
         let [re, im] = mode.eigenvalues()[0];
         let l = Complex::new(re, im) * (1.0 + 1e-9);

@@ -81,7 +81,7 @@ enum RestShapes {
 }
 
 impl RestState {
-    /// Scene that starts in its state of rest, with zero velocities.
+    /// Creates a state of rest from a scene that starts in it, with zero velocities.
     fn new(scene: Scene, network: &Network) -> Self {
         let x = &scene.state[..scene.state.len() / 2];
         let Undamped {
@@ -119,9 +119,9 @@ impl RestState {
         }
     }
 
-    /// Largest steps of a method on the scene at rest, as by [`largest_step`] on its modes. If
-    /// damping mixes shapes, those of a splitting method are found by its steps on all motion at
-    /// once, and so are those of all explicit methods in a large scene.
+    /// Finds the largest steps of a method on the scene at rest, as by [`largest_step`] on its
+    /// modes. If damping mixes shapes, those of a splitting method are found by its steps on all
+    /// motion at once, and so are those of all explicit methods in a large scene.
     ///
     /// # Errors
     /// The method does not support the scene.
@@ -158,7 +158,7 @@ impl RestState {
         Ok(found.or(by_modes))
     }
 
-    /// Shape of the mode of this index.
+    /// Returns the shape of the mode of this index.
     fn shape(&self, mode: usize) -> Option<Vec<f64>> {
         match &self.shapes {
             RestShapes::Known(shapes) | RestShapes::Approximate(shapes) => {
@@ -169,7 +169,7 @@ impl RestState {
     }
 }
 
-/// State in which the scene comes to rest without wind, swing and tearing, computed by implicit
+/// Finds the state in which the scene comes to rest without wind, swing and tearing, by implicit
 /// Euler with growing steps.
 ///
 /// `None` if implicit Euler does not support the scene, if the scene has constraints, which the
@@ -255,14 +255,14 @@ pub fn rest(scene: &Scene, go_on: impl Fn() -> bool) -> Result<Option<RestState>
     Ok(Some(RestState::new(scene, network)))
 }
 
-/// Number of times that the collision safeguard has acted in a run.
+/// Returns the number of times that the collision safeguard has acted in a run.
 fn safeguard_actions(run: &Simulation) -> usize {
     let guarded = run.guarded();
     guarded.impulses + guarded.cuts
 }
 
-/// Largest step with which a small disturbance of the scene at rest grows less than [`GROWTH`]
-/// times in [`HORIZON`](super::HORIZON).
+/// Finds the largest step with which a small disturbance of the scene at rest grows less than
+/// [`GROWTH`] times in [`HORIZON`](super::HORIZON).
 ///
 /// The disturbance is a velocity in the mode that limits the method, with a small random part.
 /// Bisection begins at the predicted limit. If that is not sharp, growth is slower down to its
@@ -348,7 +348,7 @@ impl EnergyNorm<'_> {
     }
 }
 
-/// Euclidean length of a vector.
+/// Returns the Euclidean length of a vector.
 fn norm(y: &[f64]) -> f64 {
     y.iter().map(|y| y * y).sum::<f64>().sqrt()
 }

@@ -54,7 +54,7 @@ pub struct Budget {
 }
 
 impl Budget {
-    /// Budget of that amount of work.
+    /// Creates a budget of that amount of work.
     #[must_use]
     pub fn new(most: f64) -> Self {
         Self {
@@ -66,7 +66,7 @@ impl Budget {
         }
     }
 
-    /// Unlimited budget.
+    /// Creates an unlimited budget.
     #[must_use]
     pub fn unlimited() -> Self {
         Self::new(f64::INFINITY)
@@ -78,7 +78,7 @@ impl Budget {
         self.allowed.set(spent + share * (self.most - spent));
     }
 
-    /// Work done so far.
+    /// Returns the work done so far.
     #[must_use]
     pub fn spent(&self) -> f64 {
         self.spent.get()
@@ -90,7 +90,7 @@ impl Budget {
         self.limits.get()
     }
 
-    /// Number of steps of a run, at most `wanted`, that the budget allows.
+    /// Returns the number of steps of a run, at most `wanted`, that the budget allows.
     pub(super) fn room(&self, method: &Method, model: &Model, wanted: u64) -> u64 {
         let each = f64::from(method.evaluations) * price(model);
         let room = (MAX_RUN_SHARE * self.most / each).max(MIN_STEPS);
@@ -137,7 +137,7 @@ impl Budget {
     }
 }
 
-/// Cost of an evaluation of a model.
+/// Returns the cost of an evaluation of a model.
 fn price(model: &Model) -> f64 {
     let each = model.network().map_or(1.0, |network| {
         let is_light = |element: &Element| {
@@ -156,13 +156,13 @@ fn price(model: &Model) -> f64 {
     each * model.particles().max(MIN_PARTICLES) as f64
 }
 
-/// Work of a run so far.
+/// Returns the work of a run so far.
 pub(super) fn cost(run: &Simulation) -> f64 {
     run.work().total() * price(run.model()) + IMPULSE_PRICE * run.guarded().impulses as f64
 }
 
-/// Number of steps of h (s) in a run that lasts for [`HORIZON`] and [`STEPS`] steps at least, or a
-/// twentieth of these if no limit is expected.
+/// Returns the number of steps of h (s) in a run that lasts for [`HORIZON`] and [`STEPS`] steps at
+/// least, or a twentieth of these if no limit is expected.
 pub(super) fn steps(h: f64, expected: f64) -> u64 {
     let least = if expected.is_finite() { 1.0 } else { 0.05 };
     (HORIZON / h).ceil().max(least * STEPS) as u64
@@ -266,13 +266,13 @@ impl<F: Fn(f64) -> Result<Option<bool>, Error>> Trials<F> {
         Ok(())
     }
 
-    /// Longest step that held, up to a limit (s).
+    /// Returns the longest step that held, up to a limit (s).
     fn longest_that_held(&self, limit: f64) -> Option<f64> {
         let held = self.tried.iter().filter(|(h, holds)| *holds && *h <= limit);
         held.map(|(h, _)| *h).max_by(f64::total_cmp)
     }
 
-    /// Shortest step that failed, from a limit (s) on.
+    /// Returns the shortest step that failed, from a limit (s) on.
     fn shortest_that_failed(&self, limit: f64) -> Option<f64> {
         let failed = self
             .tried
@@ -281,19 +281,19 @@ impl<F: Fn(f64) -> Result<Option<bool>, Error>> Trials<F> {
         failed.map(|(h, _)| *h).min_by(f64::total_cmp)
     }
 
-    /// The longest step that held below the shortest one that failed, and the latter (s).
+    /// Returns the longest step that held below the shortest one that failed, and the latter (s).
     fn lower_end(&self) -> Option<(f64, f64)> {
         let failed = self.shortest_that_failed(0.0)?;
         Some((self.longest_that_held(failed)?, failed))
     }
 
-    /// The longest step that held, and the shortest longer one that failed (s).
+    /// Returns the longest step that held, and the shortest longer one that failed (s).
     fn upper_end(&self) -> Option<(f64, f64)> {
         let held = self.longest_that_held(f64::INFINITY)?;
         Some((held, self.shortest_that_failed(held)?))
     }
 
-    /// Result of the trials, if any step held.
+    /// Returns the result of the trials, if any step held.
     fn observation(&self) -> Option<Observation> {
         self.longest_that_held(f64::INFINITY)
             .map(|held| Observation {
@@ -304,9 +304,9 @@ impl<F: Fn(f64) -> Result<Option<bool>, Error>> Trials<F> {
     }
 }
 
-/// Largest step (s) for which `holds` returns true, to a relative precision: by bisection of its
-/// logarithm, starting from the expected limit (s), or infinity if none is expected. `None` if runs
-/// would take too long; `work` is that of an evaluation.
+/// Finds the largest step (s) for which `holds` returns true, to a relative precision: by bisection
+/// of its logarithm, starting from the expected limit (s), or infinity if none is expected. `None`
+/// if runs would take too long; `work` is that of an evaluation.
 ///
 /// With `near`, the step closest to the limit is tried before others: two runs are enough if the
 /// limit is as expected, provided that steps shorter than one that holds hold too.
@@ -382,7 +382,8 @@ pub(super) fn sharpen(
     })
 }
 
-/// First step next to `end`, when the interval to `other` is bisected to a relative precision.
+/// Returns the first step next to `end`, when the interval to `other` is bisected to a relative
+/// precision.
 fn next(end: f64, other: f64, precision: f64) -> f64 {
     let mut step = other;
     while (step / end).max(end / step) > 1.0 + precision {

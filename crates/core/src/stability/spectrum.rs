@@ -16,7 +16,7 @@ const MAX_PRODUCTS: usize = 64;
 const MAX_MULTIPLICATIONS: f64 = 2e9;
 /// Largest length of the state of a first-order system whose Jacobian is computed.
 const MAX_DENSE_LENGTH: usize = 300;
-/// Modes around the state y at time t (s), fastest first.
+/// Returns the modes around the state y at time t (s), fastest first.
 ///
 /// For a linearised mechanical system they come from Lanczos's method on the mass-normalised
 /// stiffness, each with the damping of its own shape. If damping mixes these shapes, the modes of a
@@ -62,13 +62,13 @@ pub(super) struct Undamped {
     pub mixing: Mixing,
 }
 
-/// Modes around the positions x (m): all of them, or as many as a few seconds allow.
+/// Returns the modes around the positions x (m): all of them, or as many as a few seconds allow.
 pub(super) fn shapes(mechanics: &dyn Linearized, t: f64, x: &[f64]) -> Undamped {
     let products = (MAX_MULTIPLICATIONS / x.len() as f64).sqrt() as usize;
     of_mechanics(mechanics, t, x, products.max(MAX_PRODUCTS))
 }
 
-/// Modes around x by Lanczos's method with at most `products` products.
+/// Returns the modes around x by Lanczos's method with at most `products` products.
 fn of_mechanics(mechanics: &dyn Linearized, t: f64, x: &[f64], products: usize) -> Undamped {
     let mut found = Undamped {
         modes: vec![],
@@ -136,8 +136,8 @@ fn of_mechanics(mechanics: &dyn Linearized, t: f64, x: &[f64], products: usize) 
     found
 }
 
-/// Mode of the particle with the largest drag over mass, as if no spring held it; `None` if all
-/// have the same.
+/// Returns the mode of the particle with the largest drag over mass, as if no spring held it;
+/// `None` if all have the same.
 pub(super) fn of_drag(mechanics: &dyn Linearized) -> Option<Mode> {
     let free = || mechanics.inverse_masses().iter().filter(|w| **w > 0.0);
     let lightest = free().fold(0.0, |m: f64, w| m.max(*w));
@@ -153,8 +153,8 @@ pub(super) fn of_drag(mechanics: &dyn Linearized) -> Option<Mode> {
     })
 }
 
-/// Critically damped mode in which Baumgarte stabilisation reduces the errors of all constraints;
-/// `None` without constraints.
+/// Returns the critically damped mode in which Baumgarte stabilisation reduces the errors of all
+/// constraints; `None` without constraints.
 fn of_constraints(mechanics: &dyn Linearized) -> Option<Mode> {
     mechanics.baumgarte_frequency().map(|w| Mode {
         stiffness: w * w,
@@ -164,10 +164,10 @@ fn of_constraints(mechanics: &dyn Linearized) -> Option<Mode> {
     })
 }
 
-/// Modes of a first-order system: one for each real eigenvalue and each conjugate pair of the
-/// Jacobian, which is the system's own or computed by central differences. It does not distinguish
-/// drag from other damping: all damping counts as that of springs if kicks depend on v, else as
-/// drag.
+/// Returns the modes of a first-order system: one for each real eigenvalue and each conjugate pair
+/// of the Jacobian, which is the system's own or computed by central differences. The Jacobian does
+/// not distinguish drag from other damping: all damping counts as that of springs if kicks depend
+/// on v, else as drag.
 fn of_jacobian(system: &dyn ParticleSystem, t: f64, y: &[f64]) -> Vec<Mode> {
     let carried = |k: &usize| rigid_of(system).is_some_and(|rigid| rigid.is_carried(*k));
     let unknowns: Vec<usize> = (0..y.len()).filter(|k| !carried(k)).collect();
@@ -223,8 +223,8 @@ pub struct LargestMode {
 }
 
 impl LargestMode {
-    /// Shape of the mode at the last estimate: the displacements times the roots of the masses, of
-    /// length 1; empty before the first estimate.
+    /// Returns the shape of the mode at the last estimate: the displacements times the roots of the
+    /// masses, of length 1; empty before the first estimate.
     #[must_use]
     pub fn shape(&self) -> &[f64] {
         &self.shape
@@ -237,8 +237,8 @@ impl LargestMode {
         self.mixes
     }
 
-    /// Fastest mode around the positions x (m) at time t (s), or that of the constraints if it is
-    /// faster.
+    /// Estimates the fastest mode around the positions x (m) at time t (s), or that of the
+    /// constraints if it is faster.
     ///
     /// The first estimate takes 24 products with the force differential and is accurate to 1 %.
     /// Later ones take 4 products, and are as accurate if the positions have changed little.

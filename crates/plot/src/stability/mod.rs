@@ -32,7 +32,7 @@ const FOOT: &str = "h in s, λ in 1/s, so h λ has no unit. Real parts are growt
     imaginary parts oscillation; what lies in the region does not grow.";
 
 impl StabilityRegions {
-    /// The chart on a sheet of this width and height.
+    /// Draws the chart on a sheet of this width and height.
     ///
     /// # Errors
     /// [`Error::Empty`] if there is no region; [`Error::Sheet`] or [`Error::TooSmall`] if the chart
@@ -47,15 +47,15 @@ impl StabilityRegions {
         })
     }
 
-    /// The extent of all panels: that of the largest region, limited so that small ones are still
-    /// visible beside it.
+    /// Returns the extent of all panels: that of the largest region, limited so that small ones are
+    /// still visible beside it.
     fn extent(&self) -> Extent {
         let own = self.regions.iter().map(Region::extent);
         let all = own.reduce(Extent::with_all).unwrap_or_default();
         all.within(MAX_PART)
     }
 
-    /// The chart at this level, or `None` if its panels would be too small.
+    /// Draws the chart at this level; `None` if its panels would be too small.
     fn try_draw(&self, mut figure: Figure, level: Level, extent: Extent) -> Option<Figure> {
         let size = level.size;
         let foot = format!("{FOOT} {}", self.note);
@@ -130,7 +130,7 @@ impl StabilityRegions {
         Some(figure)
     }
 
-    /// The entries of the legend.
+    /// Lists the entries of the legend.
     fn entries(&self, size: f64, extent: Extent) -> Vec<(String, Sign<'_>)> {
         let sample: Sign = Box::new(move |figure, [x, y]| {
             let room = Rect::new(

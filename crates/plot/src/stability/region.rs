@@ -29,7 +29,7 @@ pub enum Fate {
 }
 
 impl Fate {
-    /// The colour of its symbol.
+    /// Returns the colour of the symbol.
     fn colour(self) -> &'static str {
         match self {
             Self::Bounded => INSIDE,
@@ -67,7 +67,7 @@ pub struct Extent {
 }
 
 impl Extent {
-    /// The extent that also contains a point and its mirror image.
+    /// Returns the extent that also contains a point and its mirror image.
     pub fn with(self, [re, im]: Point) -> Self {
         let [low, high] = self.real;
         Self {
@@ -76,19 +76,20 @@ impl Extent {
         }
     }
 
-    /// The extent that also contains all of another.
+    /// Returns the extent that also contains all of another.
     pub fn with_all(self, other: Self) -> Self {
         self.with([other.real[0], other.imaginary])
             .with([other.real[1], 0.0])
     }
 
-    /// The length of 1 in a panel of this width and height that shows the extent with a margin.
+    /// Returns the length of 1 in a panel of this width and height that shows the extent with a
+    /// margin.
     pub fn unit(self, width: f64, height: f64) -> f64 {
         let [low, high] = self.real;
         (width / (high - low)).min(height / (2.0 * self.imaginary)) / 1.12
     }
 
-    /// The part of the extent within the square around 0 with that half side.
+    /// Returns the part of the extent within the square around 0 with that half side.
     pub fn within(self, largest: f64) -> Self {
         Self {
             real: self.real.map(|end| end.clamp(-largest, largest)),
@@ -96,7 +97,7 @@ impl Extent {
         }
     }
 
-    /// The longer side.
+    /// Returns the longer side.
     pub fn size(self) -> f64 {
         (self.real[1] - self.real[0]).max(2.0 * self.imaginary)
     }
@@ -108,7 +109,7 @@ impl Region {
         self.fate(z) == Fate::Bounded
     }
 
-    /// The behaviour of a mode at h λ.
+    /// Returns the behaviour of a mode at h λ.
     fn fate(&self, [re, im]: Point) -> Fate {
         match (self.radius)(re, im) {
             bounded if bounded <= 1.0 + 1e-9 => Fate::Bounded,
@@ -117,8 +118,8 @@ impl Region {
         }
     }
 
-    /// The extent around the boundary of the region, as far as it is bounded, and around the
-    /// eigenvalues, unless they are far away.
+    /// Returns the extent around the boundary of the region, as far as it is bounded, and around
+    /// the eigenvalues, unless they are far away.
     pub(super) fn extent(&self) -> Extent {
         const WINDOW_HALF: f64 = 16.0;
         let start = Extent {
@@ -218,7 +219,7 @@ impl Region {
     }
 }
 
-/// The paint of a region of this colour.
+/// Returns the paint of a region of this colour.
 pub fn region_paint(colour: &'static str, width: f64) -> Paint {
     let inside = Paint::fill(colour).opacity(0.2);
     inside.outlined(Pen::new(colour, width))

@@ -36,7 +36,7 @@ pub struct WorkPrecision {
 }
 
 impl WorkPrecision {
-    /// The diagram on a sheet of this width and height.
+    /// Draws the diagram on a sheet of this width and height.
     ///
     /// # Errors
     /// [`Error::Empty`] if no run has a place on the axes; [`Error::Sheet`] or [`Error::TooSmall`]
@@ -51,7 +51,7 @@ impl WorkPrecision {
         })
     }
 
-    /// All runs that can be drawn.
+    /// Lists all runs that can be drawn.
     fn runs(&self) -> impl Iterator<Item = &Measurement> {
         let curves = self.problems.iter().flat_map(|problem| &problem.curves);
         curves
@@ -59,14 +59,14 @@ impl WorkPrecision {
             .filter(|run| run.is_drawn())
     }
 
-    /// All runs of other programs that can be drawn.
+    /// Lists all runs of other programs that can be drawn.
     fn marks(&self) -> impl Iterator<Item = &Mark> {
         let marks = self.problems.iter().flat_map(|problem| &problem.marks);
         marks.filter(|mark| mark.is_drawn())
     }
 
-    /// The axes of error and of work, around all runs on all problems; `None` if no run has a place
-    /// on them.
+    /// Returns the axes of error and of work, around all runs on all problems; `None` if no run has
+    /// a place on them.
     #[must_use]
     pub fn axes(&self) -> Option<[Axis; 2]> {
         let range = |values: &mut dyn Iterator<Item = f64>| {
@@ -101,7 +101,7 @@ impl WorkPrecision {
         Some([Axis::log(least, most.max(least)), Axis::log(low, high)])
     }
 
-    /// The diagram at this level, or `None` if its panels would be too small.
+    /// Draws the diagram at this level; `None` if its panels would be too small.
     fn try_draw(&self, mut figure: Figure, level: Level, [x, y]: [Axis; 2]) -> Option<Figure> {
         let size = level.size;
         let mut left = layout::headings(
@@ -178,7 +178,7 @@ impl WorkPrecision {
         Some(figure)
     }
 
-    /// The entries of the legend: each method once, the front, and the shade if there is one.
+    /// Lists the entries of the legend: each method once, the front, and the shade if there is one.
     fn entries(&self, size: f64, x: &Axis) -> Vec<(String, Sign<'_>)> {
         let mut seen = vec![];
         let mut entries: Vec<(String, Sign)> = vec![];

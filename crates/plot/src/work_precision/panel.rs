@@ -13,17 +13,17 @@ use crate::style::{CurveStyle, Filling, Marker};
 /// Opacity of a band of errors.
 const BAND_OPACITY: f64 = 0.25;
 
-/// The paint of errors below the resolution of the reference.
+/// Returns the paint of errors below the resolution of the reference.
 pub fn shade_paint() -> Paint {
     Paint::fill("#e6eaf0")
 }
 
-/// The pen of the front.
+/// Returns the pen of the front.
 pub fn front_pen(width: f64) -> Pen {
     Pen::new("#f8dd86", width).round()
 }
 
-/// The pen of a guide.
+/// Returns the pen of a guide.
 pub fn guide_pen(width: f64) -> Pen {
     Pen::new("#222222", width).dashed(vec![5.0, 3.0])
 }
@@ -57,7 +57,7 @@ impl<'a> Drawing<'a> {
         }
     }
 
-    /// The point of a run.
+    /// Returns the point of a run.
     fn at(&self, run: &Measurement) -> Point {
         [
             self.axes[0].at(run.error.max(f64::MIN_POSITIVE)),
@@ -236,7 +236,7 @@ impl<'a> Drawing<'a> {
         }
     }
 
-    /// The place of a run of another program across, and up if its work is known.
+    /// Returns the place of a run of another program across, and up if its work is known.
     fn place_of(&self, mark: &Mark) -> (f64, Option<f64>) {
         let up = mark.work.map(|work| self.axes[1].at(work));
         (self.axes[0].at(mark.error), up)

@@ -93,9 +93,10 @@ impl Measurement {
 }
 
 impl Curve {
-    /// The runs that a line joins, from the most accurate on: those that no other run of the method
-    /// beats in both error and work. The steps of an adaptive method at its limit of stability cost
-    /// about the same at any error, and a line through them would only go back and forth.
+    /// Returns the runs that a line joins, from the most accurate on: those that no other run of
+    /// the method beats in both error and work. The steps of an adaptive method at its limit of
+    /// stability cost about the same at any error, and a line through them would only go back and
+    /// forth.
     #[must_use]
     pub fn joined(&self) -> Vec<&Measurement> {
         let drawn = self.runs.iter();
@@ -114,16 +115,16 @@ impl Curve {
 }
 
 impl Problem {
-    /// The least error that can be trusted, or 0 if that is not known.
+    /// Returns the least error that can be trusted, or 0 if that is not known.
     #[must_use]
     pub fn trusted(&self) -> f64 {
         let known = self.resolved.filter(|resolved| resolved.is_finite());
         known.unwrap_or(0.0)
     }
 
-    /// The runs on the Pareto front, as indices of curve and run, from the smallest error up: those
-    /// that no other run beats in both error and work. Runs with errors that the reference cannot
-    /// tell from 0 are left out, but beat others.
+    /// Returns the runs on the Pareto front, as indices of curve and run, from the smallest error
+    /// up: those that no other run beats in both error and work. Runs with errors that the
+    /// reference cannot tell from 0 are left out, but beat others.
     #[must_use]
     pub fn front(&self) -> Vec<[usize; 2]> {
         let mut runs: Vec<_> = (self.curves.iter().enumerate())

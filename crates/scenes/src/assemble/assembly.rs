@@ -42,12 +42,12 @@ pub(super) trait Body {
     /// Adds the body's particles, springs, constraints and surface.
     fn add_to(&self, assembly: &mut Assembly) -> Result<(), Fault>;
 
-    /// Largest length over rest length of the body's springs, if it is limited.
+    /// Returns the largest length over rest length of the body's springs, if it is limited.
     fn strain_limit(&self) -> Option<f64> {
         None
     }
 
-    /// Pins of the body.
+    /// Returns the pins of the body.
     fn pins(&self) -> &[Pin];
 
     /// Finds the particles of a spot, numbered from 0 in this body; `None` if the body has no such

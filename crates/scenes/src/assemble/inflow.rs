@@ -128,7 +128,7 @@ impl Column {
         is_within.all(|is| is) && (-slack..=length + slack).contains(&self.depth(*place))
     }
 
-    /// Distance (m) of a place behind the opening.
+    /// Returns the distance (m) of a place behind the opening.
     fn depth(&self, place: Vector3<f64>) -> f64 {
         (self.opening - place).dot(&self.velocity) / self.speed
     }

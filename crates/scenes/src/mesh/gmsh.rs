@@ -98,7 +98,7 @@ fn format(words: &[&str]) -> Result<Version, String> {
     }
 }
 
-/// Error of a format of Gmsh that is not supported.
+/// Returns the error of a format of Gmsh that is not supported.
 fn refused(format: &str) -> String {
     format!(
         "it is Gmsh's format {format}, and only the text formats 2.2 and 4.1 are read: save with `-format msh41` or `msh22`"

@@ -119,7 +119,8 @@ impl Lattice {
         }
     }
 
-    /// Particles at the corners of the nearest complete cell, with their weights at a place (m).
+    /// Returns the particles at the corners of the nearest complete cell, with their weights at a
+    /// place (m).
     fn corners(&self, place: &Vector3<f64>) -> Option<Vec<(usize, f64)>> {
         let at = (place - self.origin) / self.spacing;
         // Rounding must not move a place across a point of the lattice.
@@ -147,8 +148,8 @@ impl Lattice {
         (0..=MAX_DISTANCE).find_map(nearest).map(|found| found.0)
     }
 
-    /// Particles at the corners of a cell, with their weights at a place (cells). `None` if one of
-    /// them is missing.
+    /// Returns the particles at the corners of a cell, with their weights at a place (cells).
+    /// `None` if one of them is missing.
     fn weights(&self, cell: [i64; 3], at: &Vector3<f64>) -> Option<Vec<(usize, f64)>> {
         let corners = (0..1_usize << self.dimensions).map(|corner| {
             let (mut point, mut weight) = (cell, 1.0);

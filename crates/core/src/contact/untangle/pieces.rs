@@ -52,7 +52,7 @@ impl Pieces {
     }
 }
 
-/// Distances from the border along edges that are not cut (Dijkstra).
+/// Computes distances (m) from the border along edges that are not cut (Dijkstra).
 fn depths(skeleton: &Skeleton, is_cut: impl Fn(u32) -> bool, at: &[Vector3<f64>]) -> Vec<f64> {
     let mut depths = vec![f64::INFINITY; at.len()];
     // Numbers that are not negative have the order of their bits.

@@ -42,7 +42,8 @@ pub(super) fn pushes(surface: &Surface, inside: &[Candidate], at: &[Vector3<f64>
     inside.iter().map(push).collect()
 }
 
-/// Key of the body or obstacle of a vertex; all particles that belong to no rigid body have one.
+/// Returns the key of the body or obstacle of a vertex; all particles that belong to no rigid body
+/// have one.
 fn whole(vertex: Vertex) -> (u8, usize) {
     match vertex {
         Vertex::Particle(_) => (0, 0),

@@ -260,7 +260,8 @@ impl Force for Fluid {
         });
     }
 
-    /// With s the factor of d = `x_i` - `x_j` in the force of a pair, dF = ds d + s dd.
+    /// Adds the differential of the forces: with s the factor of d = `x_i` - `x_j` in the force of
+    /// a pair, dF = ds d + s dd.
     fn add_differential(&self, at: &At, [dx, dv]: [&[f64]; 2], df: &mut [f64]) {
         self.scratch.lend(|buffers| {
             self.weigh(at.x, buffers);
@@ -351,7 +352,8 @@ impl Force for Fluid {
         });
     }
 
-    /// Each particle acts on the neighbours of its neighbours, too, by pressure.
+    /// Returns false, because each particle acts on the neighbours of its neighbours, too, by
+    /// pressure.
     fn lists_all_couplings(&self) -> bool {
         false
     }
@@ -385,7 +387,7 @@ impl Force for Fluid {
         ITERATION
     }
 
-    /// The stiffness is that of the volume, rho0 c^2.
+    /// Scales the stiffness, which is that of the volume, rho0 c^2, and the damping.
     fn scale(&mut self, stiffness: f64, damping: f64) {
         self.law.sound *= stiffness.sqrt();
         self.law.viscosity *= damping;

@@ -224,7 +224,8 @@ pub(super) fn change<const DAMPED: bool, const PRODUCT: bool>(
     }
 }
 
-/// With p = (e - d (d . e) / L^2) / L, damping adds c (((g . d) / L + w . p) d + (w . d) p) / L.
+/// Adds the differential of damping: with p = (e - d (d . e) / L^2) / L, damping adds c (((g . d) /
+/// L + w . p) d + (w . d) p) / L.
 #[inline(always)]
 fn differential_of_damped(
     damping: f64,

@@ -117,12 +117,12 @@ impl Bdf {
         }
     }
 
-    /// Ratio of steps at which the error of an order would just be allowed.
+    /// Returns the ratio of steps at which the error of an order would just be allowed.
     fn ratio(error: f64, order: usize) -> f64 {
         libm::pow(error.max(1e-12), -1.0 / (order + 1) as f64)
     }
 
-    /// Norm of the error, without that at pins, whose positions are known.
+    /// Returns the norm of the error, without that at pins, whose positions are known.
     fn norm_of_error(&mut self, system: &dyn ParticleSystem, norm: &ErrorNorm) -> f64 {
         if let Some(mechanics) = system.mechanics() {
             let inverse_masses = mechanics.inverse_masses();
@@ -155,7 +155,7 @@ impl Bdf {
         }
     }
 
-    /// Norm of the error of an order, from the next higher difference.
+    /// Returns the norm of the error of an order, from the next higher difference.
     fn error_of(&mut self, order: usize, system: &dyn ParticleSystem, norm: &ErrorNorm) -> f64 {
         let factor = error_factor(order);
         for (sum, d) in self.sum.iter_mut().zip(&self.step.k[order]) {

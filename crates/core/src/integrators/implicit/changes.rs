@@ -54,7 +54,7 @@ impl Changes {
         (self.last, self.size, self.residual) = (change, size, residual);
     }
 
-    /// Relative residual for the linear system of the next change.
+    /// Returns the relative residual for the linear system of the next change.
     pub fn forcing(&self) -> f64 {
         // Divided by ten, because the next change may be larger than predicted.
         let enough = 0.1 * RESIDUAL_SHARE * TOLERANCE * self.size / (self.last * self.rate);
@@ -90,7 +90,7 @@ impl Changes {
         self.last.is_finite()
     }
 
-    /// Error if the changes are not negligible after all iterations.
+    /// Returns the error for changes that are not negligible after all iterations.
     pub fn failure(&self) -> Error {
         Error::NoConvergence {
             residual: self.last / self.first,

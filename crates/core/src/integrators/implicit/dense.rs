@@ -16,8 +16,8 @@ const DIFFERENCE_SHARE: f64 = 1e-6;
 /// The same for speeds, relative to that for positions: the resulting motion is tiny.
 const SPEED_DIFFERENCE_SHARE: f64 = 1e-3;
 
-/// The numbers of the state that the equations are solved for: all, except those of particles on
-/// rigid bodies, which f does not read.
+/// Lists the numbers of the state that the equations are solved for: all, except those of particles
+/// on rigid bodies, which f does not read.
 pub(super) fn unknowns(system: &dyn ParticleSystem) -> Vec<usize> {
     let mut all = vec![];
     system.measures(&mut |numbers, _| all.extend(numbers));
@@ -102,7 +102,7 @@ impl Dense {
         Err(changes.failure())
     }
 
-    /// Norm of the unknowns in a state, in their units.
+    /// Returns the norm of the unknowns in a state, in their units.
     fn norm(&self, y: &[f64]) -> f64 {
         let numbers = self.unknowns.iter().zip(&self.units);
         let squares = numbers.map(|(i, [unit, _])| (y[*i] / unit).powi(2));
@@ -248,7 +248,7 @@ impl Dense {
         }
     }
 
-    /// Change of y by the last correction.
+    /// Returns the change of y by the last correction.
     pub fn change(&self) -> &[f64] {
         &self.change
     }

@@ -11,18 +11,18 @@ const ROOT_TOLERANCE: f64 = 1e-13;
 /// Coefficient kappa of each order: it reduces the error, at about the same stability.
 pub(super) const KAPPA: [f64; MAX_ORDER + 1] = [0.0, -0.185, -1.0 / 9.0, -0.0823, -0.0415, 0.0];
 
-/// Sum g of the reciprocals of the numbers up to an order.
+/// Returns the sum g of the reciprocals of the numbers up to an order.
 pub(super) fn harmonic(order: usize) -> f64 {
     (1..=order).map(|j| 1.0 / j as f64).sum()
 }
 
-/// Factor of `D_(k+1)` in the error of a step of order k.
+/// Returns the factor of `D_(k+1)` in the error of a step of order k.
 pub(super) fn error_factor(order: usize) -> f64 {
     KAPPA[order] * harmonic(order) + 1.0 / (order + 1) as f64
 }
 
-/// Growth per step of a solution of y' = l y with z = h l = re + i im, in equal steps of the order
-/// with the largest growth.
+/// Returns the growth per step of a solution of y' = l y with z = h l = re + i im, in equal steps
+/// of the order with the largest growth.
 ///
 /// A solution `y_n = r^n` has backward differences `w^j y_n` with w = 1 - 1/r, so w is a root of
 /// `sum(w^j / j, j = 1..k) - kappa_k g_k w^(k+1) = z`.
@@ -38,8 +38,8 @@ pub fn bdf_growth(re: f64, im: f64) -> f64 {
     (1..=MAX_ORDER).map(of_order).fold(0.0, f64::max)
 }
 
-/// Roots of a polynomial, given by its coefficients from the constant on, found simultaneously
-/// (Durand and Kerner).
+/// Finds the roots of a polynomial, given by its coefficients from the constant on: all of them at
+/// the same time (Durand and Kerner).
 fn roots(coefficients: &[Complex<f64>]) -> Vec<Complex<f64>> {
     let zero = |c: &Complex<f64>| c.norm() > 0.0;
     let degree = coefficients.iter().rposition(zero).unwrap_or(0);

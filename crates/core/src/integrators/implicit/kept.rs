@@ -209,7 +209,7 @@ impl KeptSolver {
     }
 }
 
-/// Linearised view of a system with forces and masses, if it offers one.
+/// Returns the linearised view of a system with forces and masses, if it offers one.
 fn linearized(system: &dyn ParticleSystem) -> Option<&dyn Linearized> {
     system.mechanics().and_then(Mechanics::linearized)
 }

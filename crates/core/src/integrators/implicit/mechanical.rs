@@ -372,7 +372,7 @@ impl Mechanical {
     }
 }
 
-/// Largest distance of a row of an n x 3 matrix from their mean.
+/// Returns the largest distance of a row of an n x 3 matrix from their mean.
 fn spread(a: &[f64]) -> f64 {
     let n = a.len() / 3;
     let columns = [0, 1, 2].map(|axis| &a[axis * n..(axis + 1) * n]);

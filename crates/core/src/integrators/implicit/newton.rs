@@ -14,12 +14,12 @@ pub(super) enum Newton {
     Mirrored,
 }
 
-/// Euclidean norm.
+/// Returns the Euclidean norm.
 pub(super) fn norm(a: &[f64]) -> f64 {
     dot(a, a).sqrt()
 }
 
-/// Scalar product.
+/// Returns the scalar product.
 pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }

@@ -31,7 +31,7 @@ struct Secant {
 }
 
 impl Secants {
-    /// Empty, with room for secants of systems of n equations.
+    /// Creates an empty list, with room for secants of systems of n equations.
     pub fn new(equations: usize) -> Self {
         let room = || Secant {
             step: Vec::with_capacity(equations),

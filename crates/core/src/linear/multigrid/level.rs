@@ -85,7 +85,7 @@ impl Level {
         Some((level, graph))
     }
 
-    /// Begins a new matrix.
+    /// Begins a new matrix, with all blocks zero.
     pub fn clear(&mut self) {
         self.own.fill([0.0; 6]);
         self.couplings.fill([0.0; 6]);
@@ -114,7 +114,7 @@ impl Level {
         }
     }
 
-    /// Ends a new matrix.
+    /// Finishes a new matrix: reduces its couplings, and inverts its diagonal blocks.
     pub fn finish(&mut self) {
         self.inverses.copy_from_slice(&self.own);
         for (ends, coupling) in self.ends.iter().zip(&mut self.couplings) {
@@ -187,7 +187,7 @@ impl Level {
     }
 }
 
-/// The couplings between aggregates, and the one that contains each finer coupling.
+/// Returns the couplings between aggregates, and the one that contains each finer coupling.
 fn join(finer: &[[u32; 2]], of: &[u32], count: usize) -> (Vec<[u32; 2]>, Vec<u32>) {
     let between = finer.iter().enumerate().filter_map(|(k, ends)| {
         let [a, b] = ends.map(|end| of[end as usize]);

@@ -119,7 +119,7 @@ impl Multigrid {
     }
 }
 
-/// One cycle from fine to coarse and back (a V-cycle).
+/// Runs one cycle from fine to coarse and back (a V-cycle).
 fn cycle(levels: &mut [Level]) {
     let Some((level, coarser)) = levels.split_first_mut() else {
         return;

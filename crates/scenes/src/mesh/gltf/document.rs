@@ -152,7 +152,7 @@ impl Document<'_> {
     }
 }
 
-/// Error of a file that is compressed by an extension.
+/// Returns the error of a file that is compressed by an extension.
 pub(super) fn compressed(extension: &str) -> String {
     format!("it needs the extension {extension}, which is not read: save it without compression")
 }
