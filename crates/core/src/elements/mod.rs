@@ -21,6 +21,7 @@ mod region;
 pub(crate) mod sheet;
 mod solid;
 mod springs;
+mod wave;
 mod wind;
 
 pub use air::Air;

@@ -14,6 +14,7 @@ use serde::{Deserialize, Serialize};
 use super::air::Air;
 use super::force::{At, ByParticle, Force};
 use super::region::{Region, Stream};
+use super::wave::Wave;
 use crate::columns::{columns, columns_mut, row};
 use crate::error::Error;
 use crate::fused::mul_add;
@@ -29,29 +30,6 @@ pub(super) const BLOCK: usize = 32;
 
 /// A number for each position of a block.
 pub(super) type Each = [f64; BLOCK];
-
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-struct Wave {
-    /// Amplitude (N, or m/s).
-    #[serde(with = "crate::serial")]
-    amplitude: Vector3<f64>,
-    /// Wave number (rad/m).
-    #[serde(with = "crate::serial")]
-    number: Vector3<f64>,
-    /// Angular frequency (rad/s).
-    rate: f64,
-    /// Phase (rad).
-    phase: f64,
-}
-
-impl Wave {
-    #[inline(always)]
-    fn argument(&self, t: f64, [x, y, z]: [f64; 3]) -> f64 {
-        let q = self.number;
-        let begun = mul_add(-self.rate, t, self.phase);
-        mul_add(q.x, x, mul_add(q.y, y, mul_add(q.z, z, begun)))
-    }
-}
 
 /// A breeze and four waves: forces on particles, or the velocity of the air.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]

@@ -134,7 +134,7 @@ fn all_methods_let_liquid_out() {
         }
         let control = match m.default_control {
             Control::Step(_) => Control::Step(1e-4),
-            _ => m.control(1e-7),
+            Control::Tolerance(_) => m.control(1e-7),
         };
         let mut run = Simulation::new(scene.clone(), m, control).unwrap();
         run.advance_to(0.1).unwrap();
