@@ -2,6 +2,7 @@
 
 mod attraction;
 mod bodies;
+mod breaking;
 mod build;
 mod contact_layer;
 mod crossings;

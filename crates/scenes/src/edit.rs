@@ -92,7 +92,7 @@ fn check_ends(network: &Network, [i, j]: [usize; 2]) -> Result<(), String> {
         return Err("Two particles are needed to join.".into());
     }
     let fluid = network.fluid();
-    if fluid.is_some_and(|fluid| fluid.contains(i) || fluid.contains(j)) {
+    if fluid.is_some_and(|fluid| fluid.members().contains(i) || fluid.members().contains(j)) {
         return Err("Particles of a fluid cannot be joined.".into());
     }
     Ok(())
@@ -106,7 +106,7 @@ fn first_of_fluid(network: &Network) -> usize {
         fluid
             .particles()
             .iter()
-            .chain(fluid.drained())
+            .chain(fluid.members().drained())
             .min()
             .copied()
     };

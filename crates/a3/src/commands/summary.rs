@@ -92,8 +92,8 @@ impl Contact {
 /// Returns the mass (kg) of the liquid that has flowed out, if there is an outflow.
 fn flowed_out(simulation: &Simulation) -> Option<f64> {
     let fluid = simulation.model().network()?.fluid()?;
-    let mass = fluid.drained().len() as f64 * fluid.law().mass();
-    (!fluid.outflows().is_empty()).then_some(mass)
+    let mass = fluid.members().drained().len() as f64 * fluid.law().mass();
+    (!fluid.members().outflows().is_empty()).then_some(mass)
 }
 
 /// Writes the summary of a run that began at the instant `begun` and has written `frames` frames:

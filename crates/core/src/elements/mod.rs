@@ -30,7 +30,7 @@ pub use attraction::Attraction;
 pub use buckling::{Buckling, BucklingSprings};
 pub use cords::Cords;
 pub use drag::Drag;
-pub use fluid::{Fluid, FluidLaw, Outflow};
+pub use fluid::{Fluid, FluidLaw, Members, Outflow};
 pub use gas::{ATMOSPHERE, Gas, GasLaw};
 pub use gravity::Gravity;
 pub use own_force::OwnForce;

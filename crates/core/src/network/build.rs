@@ -5,6 +5,7 @@ use std::ops::Range;
 use nalgebra::Vector3;
 
 use super::bodies::Bodies;
+use super::breaking::{break_between, remove_torn};
 use super::element::Element;
 use super::elements::Elements;
 use super::outflow::{drained, entered, is_drained, leave, set_drained};
@@ -13,7 +14,7 @@ use super::parts::Network;
 use super::project;
 use super::strain::StrainLimits;
 use super::surfaces::{Surfaces, Touch};
-use super::tearing::{Tears, break_between, remove_torn};
+use super::tearing::Tears;
 use crate::constraints::{Constraint, Constraints};
 use crate::contact::{ContactLayer, Obstacle, Shape};
 use crate::elements::{Buckling, Wind};

@@ -9,17 +9,23 @@ use crate::system::Mechanics;
 
 /// Returns the boxes in which particles leave the fluid.
 pub(crate) fn outflows(network: &Network) -> &[Outflow] {
-    network.fluid().map_or(&[], Fluid::outflows)
+    network
+        .fluid()
+        .map_or(&[], |fluid| fluid.members().outflows())
 }
 
 /// Returns the particles that have left the fluid, in order.
 pub(crate) fn drained(network: &Network) -> &[u32] {
-    network.fluid().map_or(&[], Fluid::drained)
+    network
+        .fluid()
+        .map_or(&[], |fluid| fluid.members().drained())
 }
 
 /// Whether particle i has left the fluid.
 pub(super) fn is_drained(network: &Network, i: usize) -> bool {
-    network.fluid().is_some_and(|fluid| fluid.has_left(i))
+    network
+        .fluid()
+        .is_some_and(|fluid| fluid.members().has_left(i))
 }
 
 /// Lists the free particles of the fluid that are in an outflow in the state y, or less than

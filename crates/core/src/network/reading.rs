@@ -121,7 +121,7 @@ impl Network {
     /// Whether particle i is in a wall: of the fluid, and pinned or carried by a rigid body.
     #[must_use]
     pub fn is_wall(&self, i: usize) -> bool {
-        let contains = |fluid: &Fluid| fluid.contains(i);
+        let contains = |fluid: &Fluid| fluid.members().contains(i);
         (self.is_pinned(i) || self.is_carried(i)) && self.fluid().is_some_and(contains)
     }
 

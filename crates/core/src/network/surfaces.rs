@@ -105,8 +105,8 @@ impl Surfaces {
         self.triangles = self.triangles.iter().filter(whole).copied().collect();
     }
 
-    /// Creates the contact of these surfaces and bodies, if they can touch. Particles that have left
-    /// a fluid, in order, touch nothing.
+    /// Creates the contact of these surfaces and bodies, if they can touch. Particles that have
+    /// left a fluid, in order, touch nothing.
     pub fn layer(&self, bodies: Jointed, tears: &Tears, drained: &[u32]) -> Option<ContactLayer> {
         self.touch.as_ref().map(|touch| {
             let is_whole = |[a, b]: &[u32; 2]| !tears.is_torn(*a as usize, *b as usize);

@@ -4,7 +4,6 @@
 //! broken side are holes.
 
 use super::elements::Elements;
-use super::parts::Network;
 use crate::elements::force::{distance_squared, ends};
 use crate::error::Error;
 use crate::spring::{Spring, SpringKind};
@@ -99,28 +98,6 @@ impl Tears {
         let cut: Vec<_> = springs.iter().filter(is_cut).map(ends).collect();
         torn.extend(cut);
         torn
-    }
-}
-
-/// Breaks the springs between pairs of particles, given with the lower number first. Returns the
-/// number of new pairs.
-pub(super) fn break_between(
-    network: &mut Network,
-    pairs: impl IntoIterator<Item = [usize; 2]>,
-) -> usize {
-    let new = network.tears.add(pairs);
-    remove_torn(network);
-    network.surfaces.leave_out_holes(&network.tears);
-    network.renew_contact();
-    new
-}
-
-/// Removes the springs between particles where one has broken.
-pub(super) fn remove_torn(network: &mut Network) {
-    let torn = network.tears.torn();
-    if !torn.is_empty() {
-        network.strain_limits.forget();
-        network.elements.remove_springs(torn);
     }
 }
 

@@ -60,7 +60,7 @@ pub(super) fn leave_all_but(
     t: f64,
 ) {
     let fluid = network.fluid();
-    let is_of_fluid = |i: usize| fluid.is_some_and(|fluid| fluid.contains(i));
+    let is_of_fluid = |i: usize| fluid.is_some_and(|fluid| fluid.members().contains(i));
     let flows = |(i, path): &(usize, Path)| matches!(path, Path::Line { .. }) && is_of_fluid(*i);
     let flowing: Vec<usize> = network.pins().filter(flows).map(|(i, _)| i).collect();
     network.lead_pins(|i, path| {

@@ -28,7 +28,7 @@ fn network(run: &Simulation) -> &Network {
 }
 
 fn drained(run: &Simulation) -> Vec<u32> {
-    network(run).fluid().unwrap().drained().to_vec()
+    network(run).fluid().unwrap().members().drained().to_vec()
 }
 
 fn run_of(scene: &Scene, name: &str, value: f64) -> Simulation {

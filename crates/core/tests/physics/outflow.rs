@@ -9,7 +9,7 @@ fn counts(run: &Simulation) -> [usize; 2] {
     let fluid = network.fluid().unwrap();
     let flowing = fluid.particles().iter();
     let free = flowing.filter(|i| !network.is_pinned(**i as usize));
-    [fluid.drained().len(), free.count()]
+    [fluid.members().drained().len(), free.count()]
 }
 
 /// A stream through a channel without gravity: once it has filled the channel, as much flows out as

@@ -253,13 +253,14 @@ fn outflows_open_walls() {
             .unwrap()
             .fluid()
             .unwrap()
+            .members()
             .drained()
             .is_empty()
     );
     let within = text.replacen("at = [2, -0.1875, 0]", "at = [0, 0.1, 0]", 1);
     let within = fluid(&within);
     let network = within.network().unwrap();
-    let drained = network.fluid().unwrap().drained();
+    let drained = network.fluid().unwrap().members().drained();
     assert!(drained.len() == 2 && drained.iter().all(|i| network.is_pinned(*i as usize)));
     for (there, instead, expected) in [
         (

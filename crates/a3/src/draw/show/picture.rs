@@ -320,7 +320,7 @@ impl Show {
         }
         let fluid = network.and_then(Network::fluid);
         for i in self.parts.single().to_vec() {
-            if fluid.is_some_and(|fluid| fluid.contains(i)) {
+            if fluid.is_some_and(|fluid| fluid.members().contains(i)) {
                 self.draw_drop(simulation, i);
                 continue;
             }
@@ -344,7 +344,9 @@ impl Show {
     fn draw_drop(&mut self, simulation: &Simulation, i: usize) {
         let fluid = simulation.model().network().and_then(Network::fluid);
         let in_wall = self.presentation.tanks.iter().any(|tank| tank.contains(&i));
-        let shows = |fluid: &&Fluid| self.style != Style::Shaded && !in_wall && !fluid.has_left(i);
+        let shows = |fluid: &&Fluid| {
+            self.style != Style::Shaded && !in_wall && !fluid.members().has_left(i)
+        };
         if let Some(fluid) = fluid.filter(shows) {
             let color = self.colouring.of(i, BLUE);
             self.ball(i, 0.3 * fluid.law().spacing as f32 / self.unit, color);

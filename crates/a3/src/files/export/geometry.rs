@@ -43,7 +43,7 @@ impl Geometry {
         let has_left = |i: usize| {
             network
                 .and_then(Network::fluid)
-                .is_some_and(|it| it.has_left(i))
+                .is_some_and(|it| it.members().has_left(i))
         };
         let is_wall = |i: usize| {
             network.is_some_and(|n| n.is_wall(i)) && (!flowing.contains(&i) || has_left(i))

@@ -109,14 +109,14 @@ impl View {
         }
     }
 
-    /// Moves the camera, without turning it, so that all particles of all panes are visible, and the
-    /// obstacles and the floor near them. Liquid that has flowed out is not looked for.
+    /// Moves the camera, without turning it, so that all particles of all panes are visible, and
+    /// the obstacles and the floor near them. Liquid that has flowed out is not looked for.
     pub fn see_all(&mut self, panes: &[Pane]) {
         let (mut low, mut high) = ([f32::INFINITY; 3], [f32::NEG_INFINITY; 3]);
         for pane in panes {
             let run = &pane.simulation;
             let fluid = run.model().network().and_then(Network::fluid);
-            let has_left = |i: &usize| fluid.is_some_and(|fluid| fluid.has_left(*i));
+            let has_left = |i: &usize| fluid.is_some_and(|fluid| fluid.members().has_left(*i));
             let seen = (0..run.particles()).filter(|i| !has_left(i));
             for point in seen.map(|i| run.position(i)) {
                 for axis in 0..3 {

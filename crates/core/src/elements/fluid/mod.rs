@@ -13,8 +13,8 @@
 
 mod kernel;
 mod law;
+mod members;
 mod neighbours;
-mod outflow;
 mod triple;
 
 use super::force::{At, Cost, Force, Matter, check_particle};
@@ -25,10 +25,10 @@ use crate::scratch::Scratch;
 use crate::threads::threads;
 use kernel::{Kernel, each};
 use neighbours::Neighbours;
-use triple::{Triple, add_scaled, dot, minus, squared_distance};
+use triple::{Triple, add_scaled, dot, minus};
 
 pub use law::FluidLaw;
-pub use outflow::Outflow;
+pub use members::{Members, Outflow};
 
 /// Work on a particle of fluid, over that on a particle of a sheet. Threads pay for fewer
 /// particles.
@@ -47,9 +47,7 @@ const ITERATION: f64 = 0.4;
 pub struct Fluid {
     law: FluidLaw,
     kernel: Kernel,
-    particles: Vec<u32>,
-    outflows: Vec<Outflow>,
-    drained: Vec<u32>,
+    members: Members,
     scratch: Scratch<Buffers>,
 }
 
@@ -73,28 +71,46 @@ impl Fluid {
     ///
     /// # Errors
     /// A number of the law is out of its range, or a particle is named twice.
-    pub fn new(law: FluidLaw, mut particles: Vec<u32>) -> Result<Self, Error> {
+    pub fn new(law: FluidLaw, particles: Vec<u32>) -> Result<Self, Error> {
         law.check()?;
-        particles.sort_unstable();
-        let twice = particles.windows(2).find(|pair| pair[0] == pair[1]);
-        if let Some([i, ..]) = twice {
-            let why = format!("particle {i} is named twice in a fluid");
-            return Err(Error::Invalid(why));
-        }
         Ok(Self {
             kernel: law.kernel(),
             law,
-            particles,
-            outflows: vec![],
-            drained: vec![],
+            members: Members::new(particles)?,
             scratch: Scratch::default(),
         })
+    }
+
+    /// Sets the boxes in which particles leave the fluid; a new one has none.
+    ///
+    /// # Errors
+    /// An edge is not a finite number above 0.
+    pub fn with_outflows(mut self, outflows: Vec<Outflow>) -> Result<Self, Error> {
+        self.members.set_outflows(outflows)?;
+        Ok(self)
+    }
+
+    /// Lets exactly these particles, given in order, have left the fluid. The others are back.
+    pub(crate) fn set_drained(&mut self, drained: &[u32]) {
+        self.members.set_drained(drained);
+    }
+
+    /// Returns the particles of the fluid, and those that have left it.
+    #[must_use]
+    pub fn members(&self) -> &Members {
+        &self.members
     }
 
     /// Returns the law of the fluid.
     #[must_use]
     pub fn law(&self) -> &FluidLaw {
         &self.law
+    }
+
+    /// Returns the numbers of the fluid's particles, without those that have left it, in order.
+    #[must_use]
+    pub fn particles(&self) -> &[u32] {
+        self.members.flowing()
     }
 
     /// Returns the density (kg/m3) at each particle at x (m), n x 3.
@@ -147,26 +163,14 @@ impl Fluid {
             buffers
                 .neighbours
                 .cover(x, self.kernel.reach, self.is_shared());
-            let mut nearest = vec![(f64::INFINITY, 0); x.len()];
-            buffers
-                .neighbours
-                .map(&mut nearest, self.is_shared(), |i, near| {
-                    let of = |j: &u32| (squared_distance(&x[i], &x[*j as usize]), *j);
-                    let smaller = |a: (f64, u32), b: (f64, u32)| if b.0 < a.0 { b } else { a };
-                    near.iter().map(of).fold((f64::INFINITY, 0), smaller)
-                });
-            let (i, (square, j)) = nearest
-                .into_iter()
-                .enumerate()
-                .min_by(|(_, (a, _)), (_, (b, _))| a.total_cmp(b))?;
-            let pair = [i, j as usize].map(|i| self.particles[i]);
-            square.is_finite().then(|| (pair, square.sqrt()))
+            let ([i, j], distance) = buffers.neighbours.nearest(x, self.is_shared())?;
+            Some(([i, j].map(|i| self.particles()[i]), distance))
         })
     }
 
     /// Whether threads share the work.
     fn is_shared(&self) -> bool {
-        threads(RELATIVE_WORK * self.particles.len()) > 1
+        threads(RELATIVE_WORK * self.particles().len()) > 1
     }
 
     /// Copies the rows of the fluid's particles from an n x 3 matrix. In two dimensions z is 0.
@@ -174,7 +178,7 @@ impl Fluid {
         let n = from.len() / 3;
         let depth = if self.law.dimensions == 3 { 1.0 } else { 0.0 };
         to.clear();
-        to.extend(self.particles.iter().map(|i| {
+        to.extend(self.particles().iter().map(|i| {
             let i = *i as usize;
             [from[i], from[n + i], depth * from[2 * n + i]]
         }));
@@ -183,7 +187,7 @@ impl Fluid {
     /// Adds the rows of the fluid's particles to an n x 3 matrix.
     fn add(&self, rows: &[Triple], to: &mut [f64]) {
         let n = to.len() / 3;
-        for (i, row) in self.particles.iter().zip(rows) {
+        for (i, row) in self.particles().iter().zip(rows) {
             for (axis, part) in row.iter().enumerate() {
                 to[axis * n + *i as usize] += part;
             }
@@ -220,7 +224,7 @@ impl Force for Fluid {
     }
 
     fn check(&self, particles: usize) -> Result<(), Error> {
-        let mut all = self.particles.iter();
+        let mut all = self.particles().iter();
         all.try_for_each(|i| check_particle(*i as usize, particles))
     }
 
@@ -340,8 +344,8 @@ impl Force for Fluid {
                     }
                     let damping = -viscous * kernel.slope(r) * r * r / (r * r + soft);
                     visit(Coupling::Axial(AxialCoupling {
-                        i: self.particles[i] as usize,
-                        j: self.particles[j] as usize,
+                        i: self.particles()[i] as usize,
+                        j: self.particles()[j] as usize,
                         direction: d.map(|d| d / r),
                         along: 0.0,
                         across: 0.0,
@@ -372,7 +376,7 @@ impl Force for Fluid {
     }
 
     fn cost(&self) -> Cost {
-        let particles = self.particles.len() as f64;
+        let particles = self.particles().len() as f64;
         Cost {
             couplings: particles,
             price: particles,

@@ -90,6 +90,22 @@ impl Neighbours {
         }
     }
 
+    /// Returns the two particles at x that are nearest to each other, and their distance (m); `None`
+    /// if the lists hold no two.
+    pub fn nearest(&self, x: &[Triple], parallel: bool) -> Option<([usize; 2], f64)> {
+        let mut nearest = vec![(f64::INFINITY, 0); x.len()];
+        self.map(&mut nearest, parallel, |i, near| {
+            let of = |j: &u32| (squared_distance(&x[i], &x[*j as usize]), *j);
+            let smaller = |a: (f64, u32), b: (f64, u32)| if b.0 < a.0 { b } else { a };
+            near.iter().map(of).fold((f64::INFINITY, 0), smaller)
+        });
+        let (i, (square, j)) = nearest
+            .into_iter()
+            .enumerate()
+            .min_by(|(_, (a, _)), (_, (b, _))| a.total_cmp(b))?;
+        square.is_finite().then(|| ([i, j as usize], square.sqrt()))
+    }
+
     /// Visits each particle and those near it, in the order of their numbers, as [`map`](Self::map)
     /// does.
     pub fn visit(&self, mut visit: impl FnMut(usize, &[u32])) {

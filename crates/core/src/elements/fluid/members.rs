@@ -1,0 +1,95 @@
+//! Particles of a fluid, and the boxes in which they leave it for good.
+
+use nalgebra::Vector3;
+
+use crate::error::{Error, positive};
+
+/// Box in which particles of a fluid leave it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Outflow {
+    /// Centre (m).
+    pub at: Vector3<f64>,
+    /// Half of the edges (m).
+    pub half: Vector3<f64>,
+}
+
+impl Outflow {
+    /// Whether a place (m) is inside, or at most `slack` (m) outside.
+    #[must_use]
+    pub fn contains(&self, place: &Vector3<f64>, slack: f64) -> bool {
+        let from_centre = (place - self.at).abs();
+        (0..3).all(|axis| from_centre[axis] <= self.half[axis] + slack)
+    }
+}
+
+/// Particles of a fluid by their numbers, and those that have left it.
+#[derive(Clone, Debug)]
+pub struct Members {
+    flowing: Vec<u32>,
+    drained: Vec<u32>,
+    outflows: Vec<Outflow>,
+}
+
+impl Members {
+    /// Creates a list of these particles, none of which is named twice.
+    pub(super) fn new(mut particles: Vec<u32>) -> Result<Self, Error> {
+        particles.sort_unstable();
+        let twice = particles.windows(2).find(|pair| pair[0] == pair[1]);
+        if let Some([i, ..]) = twice {
+            let why = format!("particle {i} is named twice in a fluid");
+            return Err(Error::Invalid(why));
+        }
+        Ok(Self {
+            flowing: particles,
+            drained: vec![],
+            outflows: vec![],
+        })
+    }
+
+    /// Sets the boxes in which particles leave, whose edges are above 0.
+    pub(super) fn set_outflows(&mut self, outflows: Vec<Outflow>) -> Result<(), Error> {
+        let mut edges = outflows.iter().flat_map(|outflow| outflow.half.iter());
+        edges.try_for_each(|edge| positive("half an edge of an outflow", *edge))?;
+        self.outflows = outflows;
+        Ok(())
+    }
+
+    /// Lets exactly these particles, given in order, have left. The others are back.
+    pub(super) fn set_drained(&mut self, drained: &[u32]) {
+        let mut all = std::mem::take(&mut self.flowing);
+        all.append(&mut self.drained);
+        all.sort_unstable();
+        let is_drained = |i: &u32| drained.binary_search(i).is_ok();
+        (self.drained, self.flowing) = all.into_iter().partition(is_drained);
+    }
+
+    /// Returns the numbers of the particles that have not left, in order.
+    #[must_use]
+    pub fn flowing(&self) -> &[u32] {
+        &self.flowing
+    }
+
+    /// Returns the numbers of the particles that have left, in order.
+    #[must_use]
+    pub fn drained(&self) -> &[u32] {
+        &self.drained
+    }
+
+    /// Returns the boxes in which particles leave.
+    #[must_use]
+    pub fn outflows(&self) -> &[Outflow] {
+        &self.outflows
+    }
+
+    /// Whether particle i has left.
+    #[must_use]
+    pub fn has_left(&self, i: usize) -> bool {
+        self.drained.binary_search(&(i as u32)).is_ok()
+    }
+
+    /// Whether particle i is one of these, or has left.
+    #[must_use]
+    pub fn contains(&self, i: usize) -> bool {
+        self.flowing.binary_search(&(i as u32)).is_ok() || self.has_left(i)
+    }
+}
