@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use super::joint::{Joint, JointEquation, Side, Stop, normals};
+use super::joint::{Joint, JointEquation, Side, Stop, check_restitution, normals};
 use crate::error::{Error, positive};
 
 /// Distance from the centre of a circle or a sphere, in radii, up to which the direction outwards
@@ -170,11 +170,7 @@ impl Constraint {
             } => {
                 positive("the length of a rope", length)?;
                 check_different("rope", i, j)?;
-                if !(0.0..=1.0).contains(&restitution) {
-                    return Err(Error::Invalid(format!(
-                        "the restitution of a rope must be from 0 to 1, not {restitution}"
-                    )));
-                }
+                check_restitution("a rope", restitution)?;
             }
             Self::Joint(joint) => joint.check()?,
             Self::Stop(stop) => stop.check()?,

@@ -69,7 +69,7 @@ fn with_other_forces<T>(
         torques.clear();
         torques.resize(2 * count, 0.0);
         let (torques, held) = torques.split_at_mut(count);
-        network.bodies.drive(y, torques);
+        network.bodies.drive(y, f, torques);
         run(x, v, f, [torques, held])
     })
 }
