@@ -13,6 +13,18 @@ const CENTER_SHARE: f64 = 1e-12;
 /// that is shorter is slack.
 pub(super) const SLACK_SHARE: f64 = 1e-3;
 
+/// Distance from its end, over its length, at which a joint is there.
+const AT_END_SHARE: f64 = 1e-9;
+
+/// What a step of a projection changes.
+#[derive(Clone, Copy, PartialEq)]
+pub(crate) enum Projected {
+    /// Positions (m) and orientations (rad), by the errors of the constraints.
+    Places,
+    /// Velocities (m/s) and angular velocities (rad/s), by the rates of these errors.
+    Velocities,
+}
+
 /// A constraint on the positions of one or two particles.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Constraint {
@@ -122,6 +134,25 @@ impl Constraint {
     /// Whether it is the end of a joint that is clearly away from it.
     pub(super) fn is_away(&self, equation: &JointEquation) -> bool {
         matches!(self, Self::Stop(Stop { joint, .. }) if equation.value < -SLACK_SHARE * joint.length)
+    }
+
+    /// Whether it is the end of a joint.
+    pub(super) fn is_end(&self) -> bool {
+        matches!(self, Self::Stop(_))
+    }
+
+    /// Whether it is the end of a joint, and a joint with this equation is past it, or moves past
+    /// it from there.
+    pub(super) fn is_passed(&self, equation: &JointEquation, what: Projected) -> bool {
+        let Self::Stop(Stop { joint, .. }) = self else {
+            return false;
+        };
+        match what {
+            Projected::Places => equation.value > 0.0,
+            Projected::Velocities => {
+                equation.value > -AT_END_SHARE * joint.length && equation.rate > 0.0
+            }
+        }
     }
 
     /// Whether it is a rope that is clearly shorter than its length.

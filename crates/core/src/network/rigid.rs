@@ -207,7 +207,7 @@ impl Rigid for Network {
 
     fn project(&self, y: &mut [f64]) {
         if has_joints(self) {
-            project(self, y);
+            project(self, y, false);
         }
     }
 

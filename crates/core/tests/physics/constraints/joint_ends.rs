@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::common::described;
+use a3_core::Control;
 use a3_core::integrators::METHODS;
 
 /// A door that turns freely stops at its limit, and not behind it.
@@ -241,5 +242,52 @@ fn every_method_holds_joints_or_refuses_them() {
             }
             Err(refused) => assert!(refused.to_string().contains("rigid"), "{refused}"),
         }
+    }
+}
+
+/// A doll whose knees end at limits is thrown at the floor: the impact turns no knee past its end,
+/// and the energy never grows.
+#[test]
+fn impacts_end_where_joints_end() {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/scenes/doll.toml");
+    let doll = std::fs::read_to_string(path).unwrap();
+    let doll = doll.replace(
+        "axis = [1, 0, 0] }",
+        "axis = [1, 0, 0], limits = [-0.1, 2.2] }",
+    );
+    assert_eq!(doll.matches("limits").count(), 2);
+    let doll = doll.replace("spin = [0.8, 0, 0.4]", "");
+    for seed in [2_u64, 4, 7] {
+        let mut bits = seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) | 1;
+        let mut random = |least: f64, most: f64| {
+            bits ^= bits << 13;
+            bits ^= bits >> 7;
+            bits ^= bits << 17;
+            least + (most - least) * (bits >> 11) as f64 / (1_u64 << 53) as f64
+        };
+        let speed = random(5.0, 30.0);
+        let (around, down) = (random(0.0, 6.283), random(0.3, 1.5));
+        let level = speed * down.cos();
+        let (x, y, z) = (
+            level * around.cos(),
+            -speed * down.sin(),
+            level * around.sin(),
+        );
+        let spin = [random(-8.0, 8.0), random(-8.0, 8.0), random(-8.0, 8.0)];
+        let thrown = format!("[[body]]\nvelocity = [{x}, {y}, {z}]\nspin = {spin:?}\n");
+        let scene = described(&doll.replace("[[body]]", &thrown));
+        let mut run = Simulation::new(scene, method("rk4"), Control::Step(0.002)).unwrap();
+        let begun = energy(&run);
+        for _ in 0..20 {
+            run.take_steps(5).unwrap();
+            assert!(
+                energy(&run) <= begun * (1.0 + 1e-6),
+                "{seed}: {}",
+                energy(&run)
+            );
+            let worst = run.worst_constraint().unwrap();
+            assert!(worst.share < 0.1, "{seed}: {}", worst.share);
+        }
+        assert!(energy(&run) < 0.9 * begun, "{seed}: it hits the floor");
     }
 }
