@@ -11,14 +11,14 @@ use crate::pin::Pin;
 pub(super) const PULL_TIME: f64 = 1.0 / 30.0;
 
 /// Natural frequency of the spring that attracts a particle, over that of the particle on its own
-/// springs: with the inertia of the hand, enough to pull a cloth along, and too little to change the
-/// largest stable step.
+/// springs: with the inertia of the hand, enough to pull a cloth along, and too little to change
+/// the largest stable step.
 const PULL_FREQUENCY_SHARE: f64 = 0.1;
 
 /// Inertia that the hand adds to a particle that nothing else holds, in masses of the particle: it
-/// makes the spring of the hand stiff at a low frequency. At a soft one, the particle would give way
-/// to every swing of the cloth, and the hand, which moves on by its distance from the target, with
-/// a delay, would drive that swing.
+/// makes the spring of the hand stiff at a low frequency. On a soft spring, the particle would give
+/// way to every swing of the cloth, and the hand, which moves on by the distance from the target,
+/// would drive that swing with its delay.
 const HAND_INERTIA: f64 = 60.0;
 
 /// A particle in the hand.

@@ -124,8 +124,8 @@ fn a_motor_between_two_bodies_gives_no_momentum() {
     assert!(energy(&run) > 0.1 && joint_error(&run) < 1e-10);
 }
 
-/// The motor of a slider lifts a box with F / m - g, or takes it to its speed with the time constant
-/// m w0 / F, and its work is the energy.
+/// The motor of a slider lifts a box with F / m - g, or takes it to its speed with the time
+/// constant m w0 / F, and its work is the energy.
 #[test]
 fn a_motor_pushes_a_box_along_its_slider() {
     let lift = |keys: &str, motor: &str| {
