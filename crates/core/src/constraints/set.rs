@@ -77,7 +77,7 @@ impl Constraints {
     /// body to which a particle belongs, as its centre or as a point.
     pub fn add(
         &mut self,
-        constraint: Constraint,
+        constraint: &Constraint,
         carrier: impl Fn(usize) -> Option<(usize, usize)>,
     ) -> Result<(), Error> {
         let constraint = constraint.checked()?;
@@ -133,7 +133,7 @@ impl Constraints {
             ..Self::default()
         };
         for constraint in &self.all {
-            constraints.add(*constraint, &carrier)?;
+            constraints.add(constraint, &carrier)?;
         }
         constraints.holds.clone_from(&self.holds);
         Ok(constraints)
