@@ -57,8 +57,7 @@ fn pulling() {
         go(x + dx, y + dy);
         until("the particle under the pointer", || {
             let (hx, hy) = hand()?;
-            // It trembles by some pixels where folds touch.
-            (hx.abs_diff(x + dx + off.0) < 12 && hy.abs_diff(y + dy + off.1) < 12).then_some(())
+            (hx.abs_diff(x + dx + off.0) < 3 && hy.abs_diff(y + dy + off.1) < 3).then_some(())
         });
         assert_eq!(app.get("grabbed"), particle);
         app.expect_frames();

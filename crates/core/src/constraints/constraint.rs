@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use super::joint::{Joint, JointEquation, Side, Stop, normals};
+use super::joint::{Joint, JointEquation, Side, Stop, check_restitution, normals};
 use crate::error::{Error, positive};
 
 /// Distance from the centre of a circle or a sphere, in radii, up to which the direction outwards
@@ -12,6 +12,18 @@ const CENTER_SHARE: f64 = 1e-12;
 /// Share of its length by which a taut rope may be shorter, because of the errors of a method: one
 /// that is shorter is slack.
 pub(super) const SLACK_SHARE: f64 = 1e-3;
+
+/// Distance from its end, over its length, at which a joint is there.
+const AT_END_SHARE: f64 = 1e-9;
+
+/// What a step of a projection changes.
+#[derive(Clone, Copy, PartialEq)]
+pub(crate) enum Projected {
+    /// Positions (m) and orientations (rad), by the errors of the constraints.
+    Places,
+    /// Velocities (m/s) and angular velocities (rad/s), by the rates of these errors.
+    Velocities,
+}
 
 /// A constraint on the positions of one or two particles.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -124,6 +136,25 @@ impl Constraint {
         matches!(self, Self::Stop(Stop { joint, .. }) if equation.value < -SLACK_SHARE * joint.length)
     }
 
+    /// Whether it is the end of a joint.
+    pub(super) fn is_end(&self) -> bool {
+        matches!(self, Self::Stop(_))
+    }
+
+    /// Whether it is the end of a joint, and a joint with this equation is past it, or moves past
+    /// it from there.
+    pub(super) fn is_passed(&self, equation: &JointEquation, what: Projected) -> bool {
+        let Self::Stop(Stop { joint, .. }) = self else {
+            return false;
+        };
+        match what {
+            Projected::Places => equation.value > 0.0,
+            Projected::Velocities => {
+                equation.value > -AT_END_SHARE * joint.length && equation.rate > 0.0
+            }
+        }
+    }
+
     /// Whether it is a rope that is clearly shorter than its length.
     pub(super) fn is_slack(&self, equation: &Equation) -> bool {
         matches!(self, Self::Rope { length, .. } if equation.value < -SLACK_SHARE * length)
@@ -170,11 +201,7 @@ impl Constraint {
             } => {
                 positive("the length of a rope", length)?;
                 check_different("rope", i, j)?;
-                if !(0.0..=1.0).contains(&restitution) {
-                    return Err(Error::Invalid(format!(
-                        "the restitution of a rope must be from 0 to 1, not {restitution}"
-                    )));
-                }
+                check_restitution("a rope", restitution)?;
             }
             Self::Joint(joint) => joint.check()?,
             Self::Stop(stop) => stop.check()?,

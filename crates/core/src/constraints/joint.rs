@@ -67,6 +67,9 @@ pub struct Stop {
     pub limits: [f64; 2],
     /// Whether it stops at the largest.
     pub is_upper: bool,
+    /// Coefficient of restitution, from 0 to 1: the speed after the joint has reached its end, over
+    /// that before.
+    pub restitution: f64,
 }
 
 /// Side of a joint in a state.
@@ -259,6 +262,7 @@ impl Stop {
     /// Checks the kind of the joint, and the limits.
     pub(super) fn check(&self) -> Result<(), Error> {
         self.joint.check()?;
+        check_restitution("the end of a joint", self.restitution)?;
         let [least, most] = self.limits;
         let right = match self.joint.kind {
             JointKind::Hinge => most - least < TAU,
@@ -339,6 +343,16 @@ fn along(
         gradient: axis,
         levers: [own.arm.cross(&axis), -arm.cross(&axis)],
     }
+}
+
+/// Checks that a coefficient of restitution is from 0 to 1.
+pub(super) fn check_restitution(of: &str, restitution: f64) -> Result<(), Error> {
+    if (0.0..=1.0).contains(&restitution) {
+        return Ok(());
+    }
+    Err(Error::Invalid(format!(
+        "the restitution of {of} must be from 0 to 1, not {restitution}"
+    )))
 }
 
 /// Two unit vectors, perpendicular to a third and to one another.

@@ -3,7 +3,7 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::constraint::Constraint;
+use super::constraint::{Constraint, Projected};
 use super::set::{Constraints, Moved};
 use super::solve::System;
 use super::turning::Turning;
@@ -75,7 +75,7 @@ pub(crate) fn project(
     constraints.scratch.lend(|system| {
         for _ in 0..MAX_ITERATIONS {
             let state = [&*x, &*v];
-            push(constraints, weight, none, state, system, |c, _| -c);
+            push(constraints, weight, none, state, (system, None), |c, _| -c);
             spread(constraints, system, x);
             let longest = system.vectors.iter().map(Vector3::norm).fold(0.0, f64::max);
             if longest.is_nan() || longest <= ROUNDING * size {
@@ -83,29 +83,22 @@ pub(crate) fn project(
             }
         }
         let state = [&*x, &*v];
-        push(constraints, weight, none, state, system, |_, rate| -rate);
+        let to = (&mut *system, None);
+        push(constraints, weight, none, state, to, |_, rate| -rate);
         spread(constraints, system, v);
     });
 }
 
-/// What a step of a projection changes.
-#[derive(Clone, Copy, PartialEq)]
-pub(crate) enum Projected {
-    /// Positions (m) and orientations (rad), by the errors of the constraints.
-    Places,
-    /// Velocities (m/s) and angular velocities (rad/s), by the rates of these errors.
-    Velocities,
-}
-
 /// Visits the least changes, weighted by the masses, of all that the constraints move, in the
 /// world: a step of Newton's method towards a state that meets them. `weight` returns the inverse
-/// mass (1/kg) of a particle on no body or of the centre of one.
+/// mass (1/kg) of a particle on no body or of the centre of one. `ends_hold` is whether ends of
+/// joints hold that a joint has passed.
 pub(crate) fn nearest(
     constraints: &Constraints,
     weight: impl Fn(usize) -> f64,
     turning: impl Fn(usize) -> Turning,
     state: [&[f64]; 2],
-    what: Projected,
+    (what, ends_hold): (Projected, bool),
     visit: &mut dyn FnMut(Moved, Vector3<f64>),
 ) {
     constraints.scratch.lend(|system| {
@@ -113,7 +106,9 @@ pub(crate) fn nearest(
             Projected::Places => -error,
             Projected::Velocities => -rate,
         };
-        push(constraints, weight, turning, state, system, target);
+        let ends_hold = ends_hold.then_some(what);
+        let to = (&mut *system, ends_hold);
+        push(constraints, weight, turning, state, to, target);
         for (k, moved) in constraints.moved.iter().enumerate() {
             let change = system.vectors[k];
             let turning = system.turnings[k].as_ref();
@@ -126,17 +121,18 @@ pub(crate) fn nearest(
 }
 
 /// Writes the least changes of all that moves that have the effect on each equation that `target`
-/// returns for its error and its rate of change, to the vectors of the system.
+/// returns for its error and its rate of change, to the vectors of the system. Ends of joints that
+/// are passed hold in a projection of that kind, if one is given.
 fn push(
     constraints: &Constraints,
     weight: impl Fn(usize) -> f64,
     turning: impl Fn(usize) -> Turning,
     state: [&[f64]; 2],
-    system: &mut System,
+    (system, ends_hold): (&mut System, Option<Projected>),
     target: impl Fn(f64, f64) -> f64 + Sync,
 ) {
     constraints.prepare(system, weight, turning);
-    constraints.build(state, system, |_, _, equation, rate, _| {
+    constraints.build(state, system, ends_hold, |_, _, equation, rate, _| {
         target(equation.value, rate)
     });
     system.solve_exactly(|| constraints.pattern());

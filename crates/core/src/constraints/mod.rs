@@ -26,8 +26,9 @@ mod solve;
 mod turning;
 
 pub use constraint::Constraint;
+pub(crate) use constraint::Projected;
 pub use joint::{Joint, JointKind, Stop};
-pub(crate) use joints::{Projected, joints, multipliers, nearest, project};
+pub(crate) use joints::{joints, multipliers, nearest, project};
 pub(crate) use ropes::{
     beyond, has_ropes, least_tension, loosen, open_ends, set_all_taut, set_taut, strike, taut,
 };

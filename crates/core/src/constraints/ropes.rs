@@ -4,7 +4,7 @@
 //! to push. In an impact, rods and ropes that are already taut keep their lengths, and a rope that
 //! would have to push slackens (Moreau, *Unilateral contact and dry friction in finite freedom
 //! dynamics*, 1988). The end of a joint, C <= 0, is like a rope: it holds while it would push back,
-//! and the joint reaches it by an impact without a rebound.
+//! and the joint reaches it by an impact.
 
 use nalgebra::{Matrix3, Vector3};
 
@@ -79,7 +79,10 @@ pub(crate) fn beyond(
         .map(|(number, _, rate)| Stretched {
             number,
             rate,
-            restitution: 0.0,
+            restitution: match constraints.all[number] {
+                Constraint::Stop(stop) => stop.restitution,
+                _ => 0.0,
+            },
         })
         .collect();
     for (number, (constraint, holds)) in constraints.all.iter().zip(&constraints.holds).enumerate()

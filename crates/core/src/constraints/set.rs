@@ -5,7 +5,7 @@ use std::sync::{Arc, OnceLock};
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::constraint::{Constraint, Equation};
+use super::constraint::{Constraint, Equation, Projected};
 use super::direct::Pattern;
 use super::joint::{JointEquation, Side};
 use super::row::Row;
@@ -77,7 +77,7 @@ impl Constraints {
     /// body to which a particle belongs, as its centre or as a point.
     pub fn add(
         &mut self,
-        constraint: Constraint,
+        constraint: &Constraint,
         carrier: impl Fn(usize) -> Option<(usize, usize)>,
     ) -> Result<(), Error> {
         let constraint = constraint.checked()?;
@@ -133,7 +133,7 @@ impl Constraints {
             ..Self::default()
         };
         for constraint in &self.all {
-            constraints.add(*constraint, &carrier)?;
+            constraints.add(constraint, &carrier)?;
         }
         constraints.holds.clone_from(&self.holds);
         Ok(constraints)
@@ -270,7 +270,7 @@ impl Constraints {
         system: &mut System,
         target: impl Fn(usize, &Row, &Equation, f64, &[Vector3<f64>]) -> f64 + Sync,
     ) -> bool {
-        self.build(state, system, target);
+        self.build(state, system, None, target);
         system.solve(|| self.pattern())
     }
 
@@ -279,6 +279,7 @@ impl Constraints {
         &self,
         [x, v]: [&[f64]; 2],
         system: &mut System,
+        ends_hold: Option<Projected>,
         target: impl Fn(usize, &Row, &Equation, f64, &[Vector3<f64>]) -> f64 + Sync,
     ) {
         let System {
@@ -293,13 +294,15 @@ impl Constraints {
             let (owner, number) = self.owners[k];
             let (constraint, ends) = (&self.all[owner], self.ends[owner]);
             *row = Row::default();
-            if !self.holds[owner] {
+            if !self.holds[owner] && (ends_hold.is_none() || !constraint.is_end()) {
                 return;
             }
             let turned = |turn: usize| turnings[turn].as_ref().map(Turning::turned);
             if let Some(sides) = self.sides(owner, [x, v], turned) {
                 let equation = constraint.joint_equation(number, &sides);
-                if constraint.is_away(&equation) {
+                let passed = |what| constraint.is_passed(&equation, what);
+                let holds = self.holds[owner] || ends_hold.is_some_and(passed);
+                if !holds || constraint.is_away(&equation) {
                     return;
                 }
                 fill(row, ends, turnings, &equation);

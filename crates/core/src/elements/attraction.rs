@@ -1,4 +1,4 @@
-//! The pull of a hand on a particle that constraints hold: F = -m (w2 (x - p) + 2 w (v - p')), a
+//! The pull of a hand on a particle: F = -m (w2 (x - p) + 2 w (v - p')), a
 //! critically damped spring from the position p of the hand.
 
 use super::force::{At, Force, check_particle};
@@ -10,7 +10,7 @@ use crate::path::Path;
 pub struct Attraction {
     /// The particle.
     pub particle: usize,
-    /// Mass m (kg): that of the particle, or of the rigid body that carries it.
+    /// Mass m (kg): that of the particle and of the hand, or of the rigid body that carries it.
     pub mass: f64,
     /// Path of the point.
     pub path: Path,

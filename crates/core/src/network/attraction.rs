@@ -1,15 +1,25 @@
-//! The pull of a hand on a particle that constraints hold.
+//! The pull of a hand on a particle.
 
 use super::parts::Network;
 use crate::elements::Attraction;
 use crate::path::Path;
 
-/// Attracts a particle that constraints hold to a path, by a spring of a natural frequency (1/s). A
-/// pin would violate the constraints.
-pub(crate) fn attract(network: &mut Network, particle: usize, path: Path, frequency: f64) {
+/// Attracts a particle to a path, by a spring of a natural frequency (1/s). The hand adds an
+/// inertia to the particle, in masses of the particle.
+pub(crate) fn attract(
+    network: &mut Network,
+    particle: usize,
+    path: Path,
+    (frequency, inertia): (f64, f64),
+) {
+    let mass = mass_behind(network, particle);
+    network.particles.unburden();
+    if inertia > 0.0 {
+        network.particles.burden(particle, inertia * mass);
+    }
     let attraction = Attraction {
         particle,
-        mass: mass_behind(network, particle),
+        mass: (1.0 + inertia) * mass,
         path,
         frequency,
     };
@@ -18,6 +28,7 @@ pub(crate) fn attract(network: &mut Network, particle: usize, path: Path, freque
 
 /// Ends the attraction.
 pub(crate) fn let_go(network: &mut Network) {
+    network.particles.unburden();
     network.elements.replace_all::<Attraction>(None);
 }
 

@@ -5,8 +5,9 @@ use std::ops::Range;
 
 use super::elements::Elements;
 use super::particles::Particles;
+use crate::columns::row;
 use crate::error::Error;
-use crate::rigid::{Body, Motor, Moving, ROTATION, Rotation};
+use crate::rigid::{Body, Driven, Motor, Moving, ROTATION, Rotation};
 use crate::scratch::Scratch;
 
 /// Rigid bodies of a network.
@@ -93,16 +94,27 @@ impl Bodies {
         &self.motors
     }
 
-    /// Adds the torques (N m) of motors in the state y, three numbers for each body.
-    pub fn drive(&self, y: &[f64], torques: &mut [f64]) {
-        let moving = |k: usize| self.all[k].moving(&self.rotation(k, y));
+    /// Adds the forces of motors (N) in the state y to f, n x 3, and their torques (N m), three
+    /// numbers for each body.
+    pub fn drive(&self, y: &[f64], f: &mut [f64], torques: &mut [f64]) {
+        let n = self.particles;
+        let driven = |k: usize| Driven {
+            moving: self.all[k].moving(&self.rotation(k, y)),
+            place: row(y, n, self.all[k].center()),
+            velocity: row(&y[3 * n..], n, self.all[k].center()),
+        };
         for motor in &self.motors {
-            let torque = motor.torque(&moving(motor.first), motor.second.map(moving).as_ref());
-            let sides = [(Some(motor.first), torque), (motor.second, -torque)];
-            for (body, torque) in sides {
-                let out = body.map(|k| &mut torques[3 * k..3 * k + 3]);
-                for (sum, torque) in out.into_iter().flatten().zip(&torque) {
-                    *sum += torque;
+            let second = motor.second.map(driven);
+            let [force, own, other] = motor.load(&driven(motor.first), second.as_ref());
+            let sides = [
+                (Some(motor.first), force, own),
+                (motor.second, -force, other),
+            ];
+            for (body, force, torque) in sides {
+                let Some(k) = body else { continue };
+                for axis in 0..3 {
+                    f[axis * n + self.all[k].center()] += force[axis];
+                    torques[3 * k + axis] += torque[axis];
                 }
             }
         }

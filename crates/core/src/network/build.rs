@@ -269,7 +269,7 @@ impl Network {
         self.particles.check(first)?;
         self.particles.check(second.unwrap_or(first))?;
         let bodies = &self.bodies;
-        self.constraints.add(constraint, |i| bodies.belonging(i))?;
+        self.constraints.add(&constraint, |i| bodies.belonging(i))?;
         self.renew_contact();
         Ok(())
     }

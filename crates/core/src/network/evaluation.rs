@@ -29,9 +29,10 @@ pub(super) fn other_forces(network: &Network, t: f64, x: &[f64], v: &[f64], f: &
 }
 
 /// Whether drifts apply gravity and drag, and kicks the other forces: not with constraints, which
-/// hold against all forces together.
+/// hold against all forces together, nor with a particle whose inertia is not its mass.
 pub(super) fn is_split(network: &Network, terms: Terms) -> bool {
-    terms == Terms::KickForces && network.constraints.all().is_empty()
+    let together = !network.constraints.all().is_empty() || network.particles.is_burdened();
+    terms == Terms::KickForces && !together
 }
 
 /// Returns gravity and drag where drifts apply them; otherwise nothing.

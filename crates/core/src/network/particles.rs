@@ -15,6 +15,8 @@ pub(super) struct Particles {
     uniform_inverse_mass: Option<f64>,
     /// One over the mass of each particle (1/kg), 0 where it is pinned.
     inverse_masses: Vec<f64>,
+    /// Particle with an inertia beyond its mass.
+    burdened: Option<usize>,
     /// Pins that hold, in the order of their particles.
     pins: Vec<Pin>,
     /// Pins that have let go.
@@ -37,10 +39,10 @@ impl Particles {
         for &m in &masses {
             positive("a particle's mass", m)?;
         }
-        let uniform = masses.iter().all(|&m| m == masses[0]);
         Ok(Self {
             inverse_masses: masses.iter().map(|m| 1.0 / m).collect(),
-            uniform_inverse_mass: uniform.then(|| 1.0 / masses[0]),
+            uniform_inverse_mass: uniform_inverse(&masses),
+            burdened: None,
             pins: vec![],
             released: vec![],
             span: ALWAYS,
@@ -188,6 +190,30 @@ impl Particles {
         }
     }
 
+    /// Lets particle i move as if an inertia (kg) were added to its mass.
+    pub fn burden(&mut self, i: usize, inertia: f64) {
+        if self.inverse_masses[i] > 0.0 {
+            self.inverse_masses[i] = 1.0 / (self.masses[i] + inertia);
+            self.uniform_inverse_mass = None;
+            self.burdened = Some(i);
+        }
+    }
+
+    /// Lets all particles move by their masses alone.
+    pub fn unburden(&mut self) {
+        if let Some(i) = self.burdened.take() {
+            if self.inverse_masses[i] > 0.0 {
+                self.inverse_masses[i] = 1.0 / self.masses[i];
+            }
+            self.uniform_inverse_mass = uniform_inverse(&self.masses);
+        }
+    }
+
+    /// Whether a particle has an inertia beyond its mass.
+    pub fn is_burdened(&self) -> bool {
+        self.burdened.is_some()
+    }
+
     pub fn pins(&self) -> &[Pin] {
         &self.pins
     }
@@ -206,4 +232,10 @@ impl Particles {
     pub fn is_pinned(&self, i: usize) -> bool {
         self.inverse_masses[i] == 0.0 && !self.is_carried(i)
     }
+}
+
+/// One over the mass of each particle (1/kg), if all masses are the same.
+fn uniform_inverse(masses: &[f64]) -> Option<f64> {
+    let first = masses[0];
+    (first > 0.0 && masses.iter().all(|m| *m == first)).then(|| 1.0 / first)
 }

@@ -25,31 +25,32 @@ pub(crate) fn has_joints(network: &Network) -> bool {
 /// constraints stay met, if there are joints.
 pub(super) fn project_velocities(network: &Network, y: &mut [f64]) {
     if has_joints(network) {
-        push(network, y, Projected::Velocities);
+        push(network, y, (Projected::Velocities, false));
     }
 }
 
 /// Moves the state y by the least distance, weighted by the masses, to where all constraints are
-/// met and stay so.
-pub(crate) fn project(network: &Network, y: &mut [f64]) {
+/// met and stay so. `ends_hold` is whether that includes the ends that joints have passed, as in an
+/// impact.
+pub(crate) fn project(network: &Network, y: &mut [f64], ends_hold: bool) {
     let size = network
         .halves(y)
         .0
         .iter()
         .fold(0.0, |most: f64, x| most.max(x.abs()));
     for _ in 0..MAX_ITERATIONS {
-        let [moved, turned] = push(network, y, Projected::Places);
+        let [moved, turned] = push(network, y, (Projected::Places, ends_hold));
         // Written so that NaN ends the iteration.
         if !(moved > ROUNDING * size || turned > ROUNDING) {
             break;
         }
     }
-    push(network, y, Projected::Velocities);
+    push(network, y, (Projected::Velocities, ends_hold));
 }
 
 /// Changes places or velocities by one step. Returns the largest changes of positions or velocities
 /// (m, m/s), and of orientations or angular velocities (rad, rad/s).
-fn push(network: &Network, y: &mut [f64], what: Projected) -> [f64; 2] {
+fn push(network: &Network, y: &mut [f64], (what, ends_hold): (Projected, bool)) -> [f64; 2] {
     let n = network.particles();
     let none = (vec![0.0; 3 * n], vec![0.0; 3 * network.bodies().len()]);
     let before = y.to_vec();
@@ -68,7 +69,7 @@ fn push(network: &Network, y: &mut [f64], what: Projected) -> [f64; 2] {
         weight,
         turning,
         state,
-        what,
+        (what, ends_hold),
         &mut |moved, change| {
             let kind = usize::from(matches!(moved, Moved::Body(_)));
             largest[kind] = largest[kind].max(change.norm());

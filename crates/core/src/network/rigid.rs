@@ -69,7 +69,7 @@ fn with_other_forces<T>(
         torques.clear();
         torques.resize(2 * count, 0.0);
         let (torques, held) = torques.split_at_mut(count);
-        network.bodies.drive(y, torques);
+        network.bodies.drive(y, f, torques);
         run(x, v, f, [torques, held])
     })
 }
@@ -207,7 +207,7 @@ impl Rigid for Network {
 
     fn project(&self, y: &mut [f64]) {
         if has_joints(self) {
-            project(self, y);
+            project(self, y, false);
         }
     }
 

@@ -16,6 +16,9 @@ const MAX_IMPACTS: usize = 100;
 /// Largest number of impacts at one time with rebounds, which may follow one another without end.
 const MAX_REBOUNDS: usize = 10;
 
+/// Half of the interval of the difference quotient for the acceleration past an end of a joint (s).
+const HALF_MOMENT: f64 = 1e-7;
+
 /// Conditions for a rebound: heights (m) and times (s) that are too small for one.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Least {
@@ -170,9 +173,18 @@ fn strike(network: &mut Network, t: f64, y: &mut [f64], ropes: &[(usize, f64)]) 
     network.hold(t, y);
 }
 
-/// Returns the acceleration (m/s2) at which the ends of a slack rope part, with the rates of change
-/// of the state y.
+/// Returns the acceleration (m/s2) at which the ends of a slack rope part, or a joint passes its
+/// end, with the rates of change of the state y.
 fn parting(network: &Network, number: usize, y: &[f64], rates: &[f64]) -> f64 {
+    if let Constraint::Stop(_) = network.constraints()[number] {
+        let rate_at = |moment: f64| {
+            let state: Vec<_> = y.iter().zip(rates).map(|(y, r)| y + moment * r).collect();
+            let ends = open_ends(network, &state);
+            let own = ends.iter().find(|(end, ..)| *end == number);
+            own.map_or(0.0, |(.., rate)| *rate)
+        };
+        return (rate_at(HALF_MOMENT) - rate_at(-HALF_MOMENT)) / (2.0 * HALF_MOMENT);
+    }
     let (i, j) = network.constraints()[number].ends();
     let (n, j) = (network.particles(), j.unwrap_or(i));
     let between = |a: &[f64]| -> Vector3<f64> { row(a, n, i) - row(a, n, j) };

@@ -22,6 +22,7 @@ mod rotation;
 pub(crate) use body::Moving;
 pub use body::{Body, Part};
 pub use mass::MassProperties;
-pub use motor::Motor;
+pub(crate) use motor::Driven;
+pub use motor::{Drive, Motor};
 pub use rotation::{ROTATION, Rotation};
 pub(crate) use rotation::{rotation_vector, turn};

@@ -11,9 +11,15 @@ use crate::pin::Pin;
 pub(super) const PULL_TIME: f64 = 1.0 / 30.0;
 
 /// Natural frequency of the spring that attracts a particle, over that of the particle on its own
-/// springs. The spring is stiff enough to pull a cloth along, and soft enough to leave the largest
-/// stable step almost unchanged.
-const PULL_FREQUENCY_SHARE: f64 = 0.3;
+/// springs: with the inertia of the hand, enough to pull a cloth along, and too little to change
+/// the largest stable step.
+const PULL_FREQUENCY_SHARE: f64 = 0.1;
+
+/// Inertia that the hand adds to a particle that nothing else holds, in masses of the particle: it
+/// makes the spring of the hand stiff at a low frequency. On a soft spring, the particle would give
+/// way to every swing of the cloth, and the hand, which moves on by the distance from the target,
+/// would drive that swing with its delay.
+const HAND_INERTIA: f64 = 60.0;
 
 /// A particle in the hand.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -45,12 +51,12 @@ impl Grabbed {
             let own = (stiffness / mass_behind(network, self.particle)).sqrt();
             let free = !network.is_held(self.particle);
             let least = 1.0 / PULL_TIME;
-            let frequency = if free {
-                least.max(PULL_FREQUENCY_SHARE * own)
+            let strength = if free {
+                (least.max(PULL_FREQUENCY_SHARE * own), HAND_INERTIA)
             } else {
-                least
+                (least, 0.0)
             };
-            attract(network, self.particle, self.path, frequency);
+            attract(network, self.particle, self.path, strength);
         }
     }
 

@@ -19,7 +19,7 @@ const PULL_SPEED: f64 = 10.0;
 const HELD_REACH: f64 = 0.05;
 
 /// Largest distance from which a spring attracts any other particle, in radii of the scene.
-const FREE_REACH: f64 = 2.0;
+const FREE_REACH: f64 = 0.5;
 
 /// Share of the particle's distance from its target by which each pull moves the hand further: so
 /// the particle gets there under any load.
@@ -79,14 +79,15 @@ impl<'a> Hand<'a> {
             |share: f64, ahead: Vector3<f64>| from + ahead.cap_magnitude(share * self.radius);
         let path = match grabbed.is_attracted(self.network) {
             true if self.network.is_held(i) => self.way(from, within(HELD_REACH, target - from)),
-            // The hand moves on from where it was, until the particle is at the target, or until
+            // The hand moves on from where it was, until the particle is at the target, or where
             // its springs are as long as they may be.
             true => {
                 let hand = grabbed.path.at(self.time).position;
-                let ahead = if self.within_reach(i, from, target) == from {
+                let goal = self.within_reach(i, from, target);
+                let ahead = if goal == from {
                     (hand - from) * EASED_SHARE
                 } else {
-                    hand - from + (target - from) * FOLLOWED_SHARE
+                    hand - from + (goal - from) * FOLLOWED_SHARE
                 };
                 self.way(hand, within(FREE_REACH, ahead))
             }

@@ -189,7 +189,7 @@ impl Phases {
                 if last <= SETTLED_SHARE * first {
                     break;
                 }
-                project(network, y1);
+                project(network, y1, true);
                 before.copy_from_slice(y1);
                 self.guard(network, layer, (t, h), y1)?;
                 last = largest_shift(network, [before, y1]);

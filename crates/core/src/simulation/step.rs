@@ -2,10 +2,10 @@
 //!
 //! It has five phases: *integrate* (the method takes the state from t to t + h), *shorten* (springs
 //! that are too long), *contact* (particles leave obstacles, surfaces do not pass through one
-//! another), *watch* (blow-ups, and the balance of energy) and *change* (springs that are
-//! stretched too far break, liquid flows out, pins let go). Fixed and adaptive steps share them. They differ in two respects: whether a step ends
-//! at the first event within it, and whether it is taken again with a shorter length (see
-//! [`retry`](super::retry)).
+//! another), *watch* (blow-ups, and the balance of energy) and *change* (springs that are stretched
+//! too far break, liquid flows out, pins let go). Fixed and adaptive steps share them. They differ
+//! in two respects: whether a step ends at the first event within it, and whether it is taken again
+//! with a shorter length (see [`retry`](super::retry)).
 
 use super::bounds::Bounds;
 use super::depths::Depths;

@@ -1,6 +1,6 @@
 //! Hands, wind, pins, tears and rewinds where surfaces touch: nothing ever crosses.
 
-use a3_core::{Model, Network, Scene, Simulation, Vector3};
+use a3_core::{Control, Mechanics, Model, Network, Scene, Simulation, Vector3};
 
 use crate::common::{described, method};
 
@@ -114,6 +114,32 @@ fn a_hand_lifts_a_cloth_and_a_pin_stays_where_it_is_let_go() {
     let there = run.position(PIN);
     run.advance_to(run.time() + 0.1).unwrap();
     assert_eq!(run.position(PIN), there);
+}
+
+/// A hand that holds still does not drive the swings of the curtain: the particle stays in its
+/// place, where a hand without inertia lets it swing by centimetres for ever. The hand weighs
+/// nothing, and leaves no trace.
+#[test]
+fn a_particle_in_a_hand_that_holds_still_rests() {
+    for (name, h) in [("trapezoid", 0.01), ("verlet", 0.005)] {
+        let scene = a3_scenes::find("cloth").unwrap().build(None).unwrap().scene;
+        let mut run = Simulation::new(scene, method(name), Control::Step(h)).unwrap();
+        run.set_touching(true).unwrap();
+        run.advance_to(1.0).unwrap();
+        let before = run.model().network().unwrap().inverse_masses().to_vec();
+        let energy = run.energy().unwrap();
+        run.grab(210).unwrap();
+        assert_eq!(run.energy().unwrap(), energy);
+        let target = run.position(210) + Vector3::new(0.86, 0.5, -0.51);
+        while run.time() < 10.0 {
+            run.pull(target);
+            run.take_steps(2).unwrap();
+            let off = (run.position(210) - target).norm();
+            assert!(run.time() < 4.0 || off < 5e-3, "{name}: {off} m off");
+        }
+        run.release();
+        assert_eq!(run.model().network().unwrap().inverse_masses(), before);
+    }
 }
 
 /// Back to an earlier moment and forward again: the same bits.

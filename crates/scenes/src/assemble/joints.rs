@@ -1,13 +1,13 @@
 //! Joints of rigid bodies, and particles that are attached to them.
 
 use a3_core::constraints::{Joint, JointKind, Stop};
-use a3_core::rigid::Motor;
+use a3_core::rigid::{Drive, Motor};
 use a3_core::{Constraint, Network, Path, Pose, Vector3};
 
 use super::pins::Pinned;
 use crate::budget::{Budget, RODS};
 use crate::check::{at, key_of};
-use crate::description::{Description, HingeSpec, JointSpec};
+use crate::description::{Description, JointSpec};
 use crate::fault::Fault;
 
 /// Largest numbers of joints and of attached particles: the time of a step may grow with the square
@@ -130,61 +130,104 @@ fn join(spec: &JointSpec, network: &mut Network, state: &[f64]) -> Result<(), Fa
     let length = network.bodies()[moved].radius();
     let joint = at(key, Joint::new(kind, sides, place, length))?;
     at("", network.add_constraint(Constraint::Joint(joint)))?;
-    let (key, limits) = match (&spec.hinge, &spec.slider) {
-        (Some(hinge), _) => ("hinge.limits", hinge.limits),
-        (_, slider) => ("slider.limits", slider.as_ref().and_then(|it| it.limits)),
+    let free = match (&spec.hinge, &spec.slider) {
+        (Some(hinge), _) => Free {
+            name: "hinge",
+            limits: hinge.limits,
+            restitution: hinge.restitution,
+            drive: Drive::Rotary,
+            effort: ("torque", hinge.torque),
+            speed: hinge.speed,
+        },
+        (_, Some(slider)) => Free {
+            name: "slider",
+            limits: slider.limits,
+            restitution: slider.restitution,
+            drive: Drive::Linear,
+            effort: ("force", slider.force),
+            speed: slider.speed,
+        },
+        _ => return Ok(()),
     };
-    if let Some(limits) = limits {
-        at(key, limit(network, joint, limits))?;
-    }
-    if let Some(hinge) = &spec.hinge {
-        drive(network, hinge, (moved, other), &joint)?;
-    }
-    Ok(())
+    let added = free.limit(network, joint);
+    added
+        .and_then(|()| free.drive(network, (moved, other), &joint))
+        .map_err(|fault| fault.within(free.name))
 }
 
-/// Adds the limits of a joint.
-fn limit(network: &mut Network, joint: Joint, limits: [f64; 2]) -> Result<(), String> {
-    if !(limits[0] <= 0.0 && limits[1] >= 0.0) {
-        let [least, most] = limits;
-        return Err(format!(
-            "the first must be at most 0 and the second at least 0, because the joint is at 0 \
-             where the bodies are as described, not {least} and {most}"
-        ));
-    }
-    for is_upper in [false, true] {
-        let stop = Stop {
-            joint,
-            limits,
-            is_upper,
-        };
-        let added = network.add_constraint(Constraint::Stop(stop));
-        added.map_err(|e| e.to_string())?;
-    }
-    Ok(())
+/// Motion that a hinge or a slider lets free: its limits and its motor.
+struct Free {
+    /// Key of the joint.
+    name: &'static str,
+    limits: Option<[f64; 2]>,
+    restitution: Option<f64>,
+    drive: Drive,
+    /// Key and value of the torque (N m) or the force (N) of the motor.
+    effort: (&'static str, Option<f64>),
+    speed: Option<f64>,
 }
 
-/// Adds the motor of a hinge, if it has one.
-fn drive(
-    network: &mut Network,
-    hinge: &HingeSpec,
-    (first, second): (usize, Option<usize>),
-    joint: &Joint,
-) -> Result<(), Fault> {
-    let Some(torque) = hinge.torque else {
-        return match hinge.speed {
-            None => Ok(()),
-            Some(_) => Err(Fault::new("hinge.speed", "a motor also needs its `torque`")),
+impl Free {
+    /// Adds the limits, if there are any.
+    fn limit(&self, network: &mut Network, joint: Joint) -> Result<(), Fault> {
+        let Some(limits) = self.limits else {
+            return match self.restitution {
+                None => Ok(()),
+                Some(_) => Err(Fault::new("restitution", "a rebound needs `limits`")),
+            };
         };
-    };
-    let motor = Motor {
-        first,
-        second,
-        axis: joint.axes[0].column(0).into_owned(),
-        torque,
-        speed: hinge.speed,
-    };
-    at("hinge.torque", network.add_motor(motor))
+        if !(limits[0] <= 0.0 && limits[1] >= 0.0) {
+            let [least, most] = limits;
+            let why = format!(
+                "the first must be at most 0 and the second at least 0, because the joint is at 0 \
+                 where the bodies are as described, not {least} and {most}"
+            );
+            return Err(Fault::new("limits", why));
+        }
+        let restitution = self.restitution.unwrap_or(0.0);
+        if !(0.0..=1.0).contains(&restitution) {
+            let why = format!("must be from 0 to 1, not {restitution}");
+            return Err(Fault::new("restitution", why));
+        }
+        for is_upper in [false, true] {
+            let stop = Stop {
+                joint,
+                limits,
+                is_upper,
+                restitution,
+            };
+            at("limits", network.add_constraint(Constraint::Stop(stop)))?;
+        }
+        Ok(())
+    }
+
+    /// Adds the motor, if there is one.
+    fn drive(
+        &self,
+        network: &mut Network,
+        (first, second): (usize, Option<usize>),
+        joint: &Joint,
+    ) -> Result<(), Fault> {
+        let (key, effort) = self.effort;
+        let Some(effort) = effort else {
+            return match self.speed {
+                None => Ok(()),
+                Some(_) => {
+                    let why = format!("a motor also needs its `{key}`");
+                    Err(Fault::new("speed", why))
+                }
+            };
+        };
+        let motor = Motor {
+            drive: self.drive,
+            first,
+            second,
+            axis: joint.axes[0].column(0).into_owned(),
+            effort,
+            speed: self.speed,
+        };
+        at(key, network.add_motor(motor))
+    }
 }
 
 fn check_body(network: &Network, k: usize) -> Result<(), String> {

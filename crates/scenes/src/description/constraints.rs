@@ -97,6 +97,9 @@ pub struct HingeSpec {
     /// bodies are as described.
     #[serde(default)]
     pub limits: Option<[f64; 2]>,
+    /// Coefficient of restitution at the limits, from 0 to 1; 0 if not given.
+    #[serde(default)]
+    pub restitution: Option<f64>,
     /// Torque of a motor (N m), at rest if there is a `speed`.
     #[serde(default)]
     pub torque: Option<f64>,
@@ -105,7 +108,7 @@ pub struct HingeSpec {
     pub speed: Option<f64>,
 }
 
-/// Slider.
+/// Slider, with limits and a motor.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SliderSpec {
@@ -114,4 +117,13 @@ pub struct SliderSpec {
     /// Least and largest displacement (m). It is 0 where the bodies are as described.
     #[serde(default)]
     pub limits: Option<[f64; 2]>,
+    /// Coefficient of restitution at the limits, from 0 to 1; 0 if not given.
+    #[serde(default)]
+    pub restitution: Option<f64>,
+    /// Force of a motor (N), at rest if there is a `speed`.
+    #[serde(default)]
+    pub force: Option<f64>,
+    /// Speed at which the force of the motor vanishes (m/s); if not given, it is constant.
+    #[serde(default)]
+    pub speed: Option<f64>,
 }

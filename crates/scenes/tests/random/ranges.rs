@@ -43,7 +43,7 @@ pub const NUMBERS: &[(&[&str], Range)] = &[
     (&["length", "rest_length", "width", "scale"], LENGTH),
     (&["thickness"], (1e-4, 0.01, true)),
     (&["limits"], (0.1, 2.0, true)),
-    (&["torque", "speed"], (1e-3, 10.0, true)),
+    (&["torque", "force", "speed"], (1e-3, 10.0, true)),
     (&["pressure"], (-100.0, 1000.0, false)),
     (&["fill"], (0.9, 1.1, true)),
     (&["rolling_friction"], (1e-4, 0.1, true)),
@@ -145,6 +145,9 @@ pub const NEEDS: &[(&str, &str, &str)] = &[
     ("WindSpec", "drag", "velocity"),
     ("WindSpec", "lift", "velocity"),
     ("HingeSpec", "speed", "torque"),
+    ("HingeSpec", "restitution", "limits"),
+    ("SliderSpec", "speed", "force"),
+    ("SliderSpec", "restitution", "limits"),
     ("", "step", "solver"),
 ];
 

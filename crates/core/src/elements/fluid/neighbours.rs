@@ -90,8 +90,8 @@ impl Neighbours {
         }
     }
 
-    /// Returns the two particles at x that are nearest to each other, and their distance (m); `None`
-    /// if the lists hold no two.
+    /// Returns the two particles at x that are nearest to each other, and their distance (m);
+    /// `None` if the lists hold no two.
     pub fn nearest(&self, x: &[Triple], parallel: bool) -> Option<([usize; 2], f64)> {
         let mut nearest = vec![(f64::INFINITY, 0); x.len()];
         self.map(&mut nearest, parallel, |i, near| {

@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::common::described;
+use a3_core::Control;
 use a3_core::integrators::METHODS;
 
 /// A door that turns freely stops at its limit, and not behind it.
@@ -77,6 +78,67 @@ fn a_box_slides_along_its_axis_to_its_end() {
         assert!(slid.norm() < 1e-7, "{name}: {slid}");
         let stopped = run_to(1.5).position(0) - way * 1.2;
         assert!(stopped.norm() < 1e-7, "{name}: {stopped}");
+    }
+}
+
+/// A bar on a hinge falls from an angle A, rebounds at the lowest point with the share e of its
+/// speed, and rises to 1 - cos A' = e2 (1 - cos A): between two rebounds, half of a period passes.
+#[test]
+fn a_pendulum_rebounds_at_its_limit() {
+    let (angle, restitution): (f64, f64) = (1.2, 0.7);
+    let (sin, cos) = angle.sin_cos();
+    let scene = described(&format!(
+        "gravity = [0, -{G}, 0]
+        [[body]]
+        parts = [{{ box = [0.1, 1.2, 0.2] }}]
+        mass = 2
+        at = [{}, {}, 0]
+        rotation = [0, 0, {angle}]
+        [[joint]]
+        body = 0
+        hinge = {{ at = [0, 0, 0], axis = [0, 0, 1], limits = [-{angle}, 2], restitution = {restitution} }}",
+        0.6 * sin,
+        -0.6 * cos,
+    ));
+    let frequency = (2.0 * G * 0.6 / (2.0 * (1.45 / 12.0 + 0.36))).sqrt();
+    let rises = |count: i32| (1.0 - restitution.powi(2 * count) * (1.0 - cos)).acos();
+    let quarter = |count: i32| 0.25 * period(frequency, rises(count));
+    let mut time = quarter(0);
+    for count in 1..=3 {
+        time += quarter(count);
+        for (name, value, most) in [("dop853", 1e-10, 1e-7), ("rk4", 0.01, 1e-5)] {
+            let run = simulated(&scene, name, value, time);
+            let off = run.position(0).x.atan2(-run.position(0).y) - rises(count);
+            let speed = velocity_of(&run, 0).norm();
+            assert!(
+                off.abs() < most && speed < 10.0 * most,
+                "{name}, {count} rebounds: {off:e}, {speed:e}"
+            );
+        }
+        time += quarter(count);
+    }
+}
+
+/// A box falls along a slider on its end, rebounds to e2 times the height again and again, and lies
+/// there after the sum of all these times: t (1 + e) / (1 - e).
+#[test]
+fn a_box_on_a_slider_rebounds_and_comes_to_rest() {
+    let scene = described(&format!(
+        "gravity = [0, -{G}, 0]
+        [[body]]
+        parts = [{{ box = [0.2, 0.3, 0.4] }}]
+        mass = 5
+        [[joint]]
+        body = 0
+        slider = {{ axis = [0, 1, 0], limits = [-1, 1], restitution = 0.5 }}"
+    ));
+    let falls = (2.0 / G).sqrt();
+    for (name, value) in [("dop853", 1e-9), ("rk4", 0.01), ("verlet", 0.01)] {
+        let height = |time: f64| simulated(&scene, name, value, time * falls).position(0).y + 1.0;
+        for (time, exact) in [(1.5, 0.25), (2.25, 0.0625), (3.1, 0.0), (6.0, 0.0)] {
+            let off = height(time) - exact;
+            assert!(off.abs() < 1e-6, "{name}, {time}: {off:e}");
+        }
     }
 }
 
@@ -180,5 +242,52 @@ fn every_method_holds_joints_or_refuses_them() {
             }
             Err(refused) => assert!(refused.to_string().contains("rigid"), "{refused}"),
         }
+    }
+}
+
+/// A doll whose knees end at limits is thrown at the floor: the impact turns no knee past its end,
+/// and the energy never grows.
+#[test]
+fn impacts_end_where_joints_end() {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/scenes/doll.toml");
+    let doll = std::fs::read_to_string(path).unwrap();
+    let doll = doll.replace(
+        "axis = [1, 0, 0] }",
+        "axis = [1, 0, 0], limits = [-0.1, 2.2] }",
+    );
+    assert_eq!(doll.matches("limits").count(), 2);
+    let doll = doll.replace("spin = [0.8, 0, 0.4]", "");
+    for seed in [2_u64, 4, 7] {
+        let mut bits = seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) | 1;
+        let mut random = |least: f64, most: f64| {
+            bits ^= bits << 13;
+            bits ^= bits >> 7;
+            bits ^= bits << 17;
+            least + (most - least) * (bits >> 11) as f64 / (1_u64 << 53) as f64
+        };
+        let speed = random(5.0, 30.0);
+        let (around, down) = (random(0.0, 6.283), random(0.3, 1.5));
+        let level = speed * down.cos();
+        let (x, y, z) = (
+            level * around.cos(),
+            -speed * down.sin(),
+            level * around.sin(),
+        );
+        let spin = [random(-8.0, 8.0), random(-8.0, 8.0), random(-8.0, 8.0)];
+        let thrown = format!("[[body]]\nvelocity = [{x}, {y}, {z}]\nspin = {spin:?}\n");
+        let scene = described(&doll.replace("[[body]]", &thrown));
+        let mut run = Simulation::new(scene, method("rk4"), Control::Step(0.002)).unwrap();
+        let begun = energy(&run);
+        for _ in 0..20 {
+            run.take_steps(5).unwrap();
+            assert!(
+                energy(&run) <= begun * (1.0 + 1e-6),
+                "{seed}: {}",
+                energy(&run)
+            );
+            let worst = run.worst_constraint().unwrap();
+            assert!(worst.share < 0.1, "{seed}: {}", worst.share);
+        }
+        assert!(energy(&run) < 0.9 * begun, "{seed}: it hits the floor");
     }
 }

@@ -124,6 +124,65 @@ fn a_motor_between_two_bodies_gives_no_momentum() {
     assert!(energy(&run) > 0.1 && joint_error(&run) < 1e-10);
 }
 
+/// The motor of a slider lifts a box with F / m - g, or takes it to its speed with the time
+/// constant m w0 / F, and its work is the energy.
+#[test]
+fn a_motor_pushes_a_box_along_its_slider() {
+    let lift = |keys: &str, motor: &str| {
+        described(&format!(
+            "{keys}\n[[body]]\nparts = [{{ box = [0.4, 0.2, 0.1] }}]\nmass = 3\n\
+             [[joint]]\nbody = 0\nslider = {{ axis = [0, 2, 0], {motor} }}"
+        ))
+    };
+    for (name, value) in [
+        ("dop853", 1e-10),
+        ("rk4", 0.01),
+        ("tr-bdf2", 0.01),
+        ("verlet", 0.01),
+    ] {
+        let weight = format!("gravity = [0, -{G}, 0]");
+        let constant = simulated(&lift(&weight, "force = 36"), name, value, 1.5);
+        let risen = constant.position(0) - vector(0.0, 0.5 * (12.0 - G) * 2.25, 0.0);
+        assert!(risen.norm() < 1e-8, "{name}: {risen}");
+        assert!(constant.gained().is_none(), "{name}");
+        let work = energy(&constant) / (36.0 * constant.position(0).y) - 1.0;
+        assert!(work.abs() < 1e-8, "{name}: {work:e}");
+        let limited = simulated(&lift("", "force = -6, speed = -2"), name, value, 1.0);
+        let off = velocity_of(&limited, 0).y / (-2.0 * (1.0 - (-1_f64).exp())) - 1.0;
+        assert!(off.abs() < 1e-4, "{name}: {off:e}");
+    }
+}
+
+/// The motor of a slider between two bodies that float freely: their momenta stay zero, also about
+/// a line that is not through the centre of the second one, and the work of a constant force is
+/// that of its displacement.
+#[test]
+fn a_motor_of_a_slider_between_two_bodies_gives_no_momentum() {
+    let scene = described(
+        "[[body]]
+        parts = [{ box = [0.4, 0.2, 0.1] }]
+        mass = 3
+        [[body]]
+        parts = [{ box = [0.1, 0.5, 0.3] }]
+        mass = 1
+        at = [0.3, 0.4, 0.1]
+        [[joint]]
+        bodies = [0, 1]
+        slider = { axis = [1, 0, 0], force = 0.4 }",
+    );
+    let run = simulated(&scene, "dop853", 1e-11, 2.0);
+    let (p, l) = momenta(&run);
+    assert!(p.norm() < 1e-10 && l.norm() < 1e-10, "{p} {l}");
+    let network = run.model().network().unwrap();
+    let other = network.bodies()[1].center();
+    let apart = run.position(other) - run.position(0);
+    let slid = network.pose(0, run.state()).inwards(apart).x - 0.3;
+    let work = energy(&run) / (0.4 * slid) - 1.0;
+    assert!(slid > 0.5 && work.abs() < 1e-8, "{slid} {work:e}");
+    let turned = network.rotation(0, run.state()).momentum.norm();
+    assert!(turned > 5e-3 && joint_error(&run) < 1e-10, "{turned}");
+}
+
 /// Three links on ball joints, of which the first hangs from the world.
 #[test]
 fn a_chain_on_ball_joints_keeps_energy_and_angular_momentum() {
