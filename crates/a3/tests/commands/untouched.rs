@@ -168,6 +168,7 @@ fn files_that_are_not_read_are_named() {
             "{name}: .{ending} files are not read: a3 reads meshes from files that end in .obj"
         );
         assert!(refused(name).contains(&expected), "{}", refused(name));
+        assert!(refused(name).contains("scenes are in files that end in .toml or .json"));
         write(
             folder.path(),
             "m.toml",
