@@ -115,8 +115,8 @@ fn end_of_single(network: &Network) -> usize {
 impl Edited {
     fn add_body(&mut self, body: &RigidBody, network: &Network) -> Result<(), String> {
         if network.fluid().is_some() {
-            let why = "Here a rigid body would carry particles of the fluid, which come first in a scene: \
-                       write it into the scene file.";
+            let why = "A rigid body carries particles of the fluid, which no tool adds: write it into the \
+                       scene file.";
             return Err(why.into());
         }
         let alone = Description {

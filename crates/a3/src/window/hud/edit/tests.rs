@@ -219,7 +219,7 @@ fn what_is_impossible_is_refused_and_changes_nothing() {
     assert!(said.contains("cross"), "{said}");
     assert!(!session.scenes.shown.edited);
     for (scene, tool, why) in [
-        ("dam-break", Tool::ThrowBall, "carry particles of the fluid"),
+        ("dam-break", Tool::ThrowBall, "particles of the fluid"),
         ("dam-break", Tool::Delete, "cannot be removed"),
         ("simple", Tool::ThrowBall, "first-order"),
     ] {
