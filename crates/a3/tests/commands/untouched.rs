@@ -241,7 +241,7 @@ fn scenes_come_by_standard_input() {
     }
     let said = complaint(&piped("[[chian]]\n", &words), 2);
     assert!(
-        said.starts_with("error: -:1: chian: there is no key"),
+        said.starts_with("error: standard input:1: chian: there is no key"),
         "{said}"
     );
     let said = complaint(&piped(CHAIN, &["--scene", "-", "--watch"]), 2);
