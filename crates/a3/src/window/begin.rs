@@ -50,10 +50,12 @@ fn window_on(mut request: Request, options: &WindowOptions) -> Result<Session, F
     origin.crossed = crossed && !options.look.no_self_collision;
     let mut session = Session::new(origin, &setup, vec![simulation], &beginning)?;
     let is_asked = options.step.is_some() || options.resume.is_some();
-    if !is_asked && session.scenes.shown.source.description.step.is_none() {
-        if let Some(why) = session.runs.fit_steps() {
-            session.readings.say(why);
-        }
+    let names_none = session.scenes.shown.source.description.step.is_none();
+    if !is_asked
+        && names_none
+        && let Some(why) = session.runs.fit_steps()
+    {
+        session.readings.say(why);
     }
     offer_at_start(&mut session);
     Ok(session)

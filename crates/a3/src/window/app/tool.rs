@@ -171,11 +171,9 @@ mod tests {
     fn rods_are_links_and_joints_are_not() {
         let rods = session(&["r", "0.001", "--scene", "double-pendulum"]);
         let network = rods.runs.first().model().network().unwrap();
-        let all = network.constraints().iter();
-        let rod = all
-            .filter_map(|it| Some([it.ends().0, it.ends().1?]))
-            .next()
-            .unwrap();
+        let mut all = network.constraints().iter();
+        let rod = all.find_map(|it| Some([it.ends().0, it.ends().1?]));
+        let rod = rod.unwrap();
         assert_eq!(between(&rods, rod), Some(rod));
         let path = concat!(
             env!("CARGO_MANIFEST_DIR"),

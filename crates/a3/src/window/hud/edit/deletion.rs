@@ -1,6 +1,7 @@
 //! Tests of deletions: what names particles and bodies by their numbers follows them.
 
 use a3_core::Vector3;
+use a3_core::rigid::Body;
 
 use super::{Aim, click};
 use crate::draw::show::Target;
@@ -64,7 +65,7 @@ fn a_crank_takes_its_joints_and_its_motor_along() {
 fn plots_and_the_ruler_follow_what_they_show() {
     let mut session = linkage();
     let network = session.runs.first().model().network().unwrap();
-    let centers: Vec<_> = network.bodies().iter().map(|body| body.center()).collect();
+    let centers: Vec<_> = network.bodies().iter().map(Body::center).collect();
     for k in 0..3 {
         let pane = &mut session.runs.panes[0];
         pane.traces.toggle(Pick::Body(k), &pane.simulation);
