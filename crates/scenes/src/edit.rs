@@ -4,8 +4,9 @@ use a3_core::Network;
 use a3_core::elements::Fluid;
 
 use crate::description::{
-    ConstraintSpec, Description, Particles, Pin, RigidBody, SpringSpec, State, Triple,
+    ConstraintSpec, Description, Particles, RigidBody, SpringSpec, State, Triple,
 };
+use crate::renumber;
 use crate::splice::{Splice, keep};
 
 /// Edit of a scene. Particles have the numbers that they have before the edit.
@@ -69,9 +70,9 @@ impl Edit {
                 }
                 edited.description.springs.push(*spring);
             }
-            Self::AddConstraint(joint) => {
-                check_ends(network, joint.rod.or(joint.rope).unwrap_or_default())?;
-                edited.description.constraint.push(joint.clone());
+            Self::AddConstraint(link) => {
+                check_ends(network, link.rod.or(link.rope).unwrap_or_default())?;
+                edited.description.constraint.push(link.clone());
             }
             Self::Disjoin(ends) => edited.disjoin(*ends, network)?,
             Self::RemoveParticle(i) => edited.remove_particle(*i, network)?,
@@ -79,7 +80,7 @@ impl Edit {
                 let body = network.bodies().get(*k).ok_or("There is no such body.")?;
                 edited.description.body.remove(*k);
                 edited.remove(body.center(), 1 + body.points().len());
-                edited.remove_body_state(*k);
+                edited.forget_body(*k);
             }
         }
         Ok(edited)
@@ -123,7 +124,9 @@ fn end_of_single(network: &Network) -> usize {
 impl Edited {
     fn add_body(&mut self, body: &RigidBody, network: &Network) -> Result<(), String> {
         if network.fluid().is_some() {
-            return Err("A rigid body does not touch a fluid: it would fall through.".into());
+            let why = "A rigid body carries particles of the fluid, which no tool adds: write it into the \
+                       scene file.";
+            return Err(why.into());
         }
         let alone = Description {
             body: vec![body.clone()],
@@ -260,11 +263,12 @@ impl Edited {
 
     /// Adds rows of particles to the state, and numbers all others anew.
     fn insert(&mut self, at: usize, (positions, velocities): (Vec<Triple>, Vec<Triple>)) {
-        self.renumber(Splice {
+        self.particles = Splice {
             at,
             removed: 0,
             added: positions.len(),
-        });
+        };
+        renumber::particles(&mut self.description, self.particles);
         if let Some(state) = &mut self.description.state {
             let moves = velocities.iter().any(|v| *v != [0.0; 3]);
             if state.velocities.is_empty() && moves {
@@ -282,11 +286,12 @@ impl Edited {
     /// Removes particles from the state and from all that is joined to them, and numbers the others
     /// anew.
     fn remove(&mut self, at: usize, removed: usize) {
-        self.renumber(Splice {
+        self.particles = Splice {
             at,
             removed,
             added: 0,
-        });
+        };
+        renumber::particles(&mut self.description, self.particles);
         if let Some(state) = &mut self.description.state {
             for rows in [&mut state.positions, &mut state.velocities] {
                 if !rows.is_empty() {
@@ -296,13 +301,14 @@ impl Edited {
         }
     }
 
-    /// Removes the rotation of body k from the state.
-    fn remove_body_state(&mut self, k: usize) {
+    /// Removes body k from joints, pins and the state, and numbers the others anew.
+    fn forget_body(&mut self, k: usize) {
         self.bodies = Splice {
             at: k,
             removed: 1,
             added: 0,
         };
+        renumber::bodies(&mut self.description, self.bodies);
         if let Some(state) = &mut self.description.state {
             if !state.orientations.is_empty() {
                 self.bodies.of(&mut state.orientations, []);
@@ -311,41 +317,6 @@ impl Edited {
                 self.bodies.of(&mut state.angular_momenta, []);
             }
         }
-    }
-
-    /// Numbers all particles anew that the scene names, and forgets what names a removed one.
-    fn renumber(&mut self, particles: Splice) {
-        self.particles = particles;
-        let number = |i: usize| particles.number(i);
-        let pair = |[i, j]: [usize; 2]| Some([number(i)?, number(j)?]);
-        let Description {
-            springs,
-            constraint,
-            pin,
-            torn,
-            trail,
-            ..
-        } = &mut self.description;
-        keep(springs, |it| {
-            let [i, j] = pair([it.0, it.1])?;
-            Some((i, j, it.2, it.3, it.4))
-        });
-        keep(torn, |it| pair(*it));
-        keep(constraint, |it| {
-            let mut it = it.clone();
-            for ends in [&mut it.rod, &mut it.rope].into_iter().flatten() {
-                *ends = pair(*ends)?;
-            }
-            if let Some(i) = &mut it.particle {
-                *i = number(*i)?;
-            }
-            Some(it)
-        });
-        for Pin { particles, .. } in pin.iter_mut() {
-            keep(particles, |i| number(*i));
-        }
-        pin.retain(|pin| !pin.particles.is_empty());
-        *trail = trail.and_then(number);
     }
 }
 

@@ -15,6 +15,7 @@ mod listed;
 mod mesh;
 mod parts;
 mod reader;
+mod renumber;
 mod resolution;
 mod setup;
 pub mod snapshot;

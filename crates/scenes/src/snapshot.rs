@@ -249,7 +249,7 @@ fn write_strain_limits(description: &mut Description, network: &Network) {
 }
 
 /// Returns the pins of each body.
-fn body_pins(description: &mut Description) -> impl Iterator<Item = &mut Vec<Pin>> {
+pub(crate) fn body_pins(description: &mut Description) -> impl Iterator<Item = &mut Vec<Pin>> {
     let cloths = description.cloth.iter_mut().map(|body| &mut body.pin);
     let rigid = description.body.iter_mut().map(|body| &mut body.pin);
     let jellies = description.jelly.iter_mut().map(|body| &mut body.pin);

@@ -70,6 +70,15 @@ pub fn shorter_step(run: &Simulation) -> Option<f64> {
     shorter.filter(|shorter| fails && (SMALLEST_STEP..step).contains(shorter))
 }
 
+/// Returns a shorter step (s), as [`shorter_step`] does, for a run whose own fixed step is beyond
+/// the limit of the modes at the start of its scene: without trials if it is not.
+pub fn step_within_limit(run: &Simulation) -> Option<f64> {
+    let step = run.control().step()?;
+    let modes = spectrum(run.model().system(), 0.0, &run.scene().state);
+    let limit = largest_step(run.method(), &modes).ok().flatten()?;
+    (step > limit.step).then(|| shorter_step(run)).flatten()
+}
+
 /// Returns the longest step (s) of the trials that is shorter than the run's own and holds until
 /// the time `until` (s), at least for ten seconds. Trials start just below the stability limit of
 /// these modes, those at the start of the scene, so that the result depends neither on the state in

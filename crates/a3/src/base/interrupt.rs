@@ -111,8 +111,8 @@ fn end() -> ! {
     for cleanup in cleanups.iter().rev() {
         cleanup.run();
     }
-    let words =
-        thread::spawn(|| writeln!(io::stderr(), "interrupted: no unfinished file was kept"));
+    let said = last_words(&cleanups);
+    let words = thread::spawn(move || writeln!(io::stderr(), "{said}"));
     let begun = Instant::now();
     while !words.is_finished() && begun.elapsed() < MESSAGE_TIMEOUT {
         thread::sleep(Duration::from_millis(1));
@@ -122,6 +122,15 @@ fn end() -> ! {
     signal_hook::low_level::exit(i32::from(exit_code()));
     #[cfg(not(all(unix, feature = "window")))]
     std::process::exit(i32::from(exit_code()))
+}
+
+/// Returns the last message, after which nothing is left of what is cleaned up.
+fn last_words(cleanups: &[Cleanup]) -> &'static str {
+    if cleanups.is_empty() {
+        "interrupted"
+    } else {
+        "interrupted: no unfinished file was kept"
+    }
 }
 
 /// A temporary file or child process that must not outlive the program.

@@ -24,6 +24,13 @@ use super::window::{Compare, Render, WindowOptions};
 /// Number of lessons.
 pub const LESSONS: u8 = 8;
 
+/// Reads the number of a lesson.
+fn lesson(text: &str) -> Result<u8, String> {
+    let number = text.parse().ok();
+    let number = number.filter(|number| (1..=LESSONS).contains(number));
+    number.ok_or_else(|| format!("lessons are numbered 1 to {LESSONS}"))
+}
+
 /// End of the help.
 #[cfg(feature = "window")]
 const EXAMPLES: &str = "Examples:
@@ -94,7 +101,7 @@ pub enum Command {
     /// Print a lesson on solvers, or the list of lessons; key F1 of the window goes through them
     Lessons {
         /// Number of the lesson
-        #[arg(value_parser = clap::value_parser!(u8).range(1..=i64::from(LESSONS)))]
+        #[arg(value_parser = lesson)]
         lesson: Option<u8>,
     },
     /// Print the completion script of a shell

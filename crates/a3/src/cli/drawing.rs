@@ -37,7 +37,7 @@ fn arrows() -> impl TypedValueParser<Value = Arrows> {
 #[derive(Args, Clone, Copy)]
 pub struct Drawing {
     /// Draw the wireframe instead of the surface
-    #[arg(long)]
+    #[arg(long, conflicts_with = "springs")]
     pub wireframe: bool,
     /// Draw all springs instead of the surface: structural, shear and bend springs, each in its
     /// own colour and width

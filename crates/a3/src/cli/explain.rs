@@ -4,8 +4,10 @@ use std::error::Error;
 use std::ffi::OsString;
 
 use a3_scenes::nearest;
+use clap::CommandFactory;
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 
+use super::command::Cli;
 use crate::base::failure::Failure;
 use crate::base::terminal;
 
@@ -116,6 +118,10 @@ fn conflict(error: &clap::Error, arg: &str) -> String {
     let both = [&[arg.to_owned()], &others[..]].concat();
     if both.iter().any(|arg| arg.contains("--error")) {
         return either_error_or_budget();
+    }
+    let word = text(error, ContextKind::InvalidSubcommand);
+    if !word.is_empty() && Cli::command().find_subcommand(&word).is_none() {
+        return unknown(&word, "");
     }
     if arg.is_empty() || others.is_empty() {
         return "a command comes before everything else, as in `a3 chart --scene flag`; without one, there is a \

@@ -12,7 +12,8 @@ use super::values::{error, horizon, picture_size, seconds, step};
     after_help = "Files, with times in s from 0 on, positions in m, and velocities in m/s if the program has them:\n  \
     FILE.csv   t,x0,y0,z0,x1,... and perhaps vx0,vy0,vz0,...: a row for each time; or, as a3 simulate\n             \
                writes them, time,particle,x,y,z,vx,vy,vz: a row for each particle. The names in the first\n             \
-               line decide: other columns are left out, and a column seconds is the computing time\n  \
+               line decide: other columns are left out, and a column seconds is the computing time;\n             \
+               FILE.txt and FILE.tsv too\n  \
     FILE.json  {\"t\": [0, ...], \"x\": [[[x, y, z], ...], ...], \"v\": ..., \"seconds\": 0.5}, or the JSON of a3\n             \
                simulate\n  \
     FILE.npz   np.savez(FILE, t=t, x=x, v=v), with x and v of the shape (times, particles, 3)\n\n\
@@ -21,8 +22,8 @@ use super::values::{error, horizon, picture_size, seconds, step};
     every solver, and with the usual mistakes."
 )]
 pub struct Judge {
-    /// Files with the states of other programs, ending in .csv, .json or .npz; give several runs of
-    /// a program with different steps to see its order
+    /// Files with the states of other programs, ending in .csv, .txt, .tsv, .json or .npz; give
+    /// several runs of a program with different steps to see its order
     #[arg(required = true, value_name = "FILE")]
     pub files: Vec<PathBuf>,
     #[command(flatten)]

@@ -124,6 +124,11 @@ fn solver_or_command(text: &str, cli: &Command) -> Result<&'static Method, Strin
     }
     let commands = cli.get_subcommands().map(Command::get_name);
     let commands: Vec<_> = commands.filter(|name| *name != "help").collect();
+    if commands.contains(&text) {
+        return Err(format!(
+            "a command comes before its options, as in `a3 {text} --scene flag`"
+        ));
+    }
     Err(match nearest_of(text, &commands) {
         Some(name) => format!(
             "there is no such command or solver; did you mean {name}? `a3 --help` lists the commands, and `a3 solvers` \

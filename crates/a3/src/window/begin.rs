@@ -49,6 +49,14 @@ fn window_on(mut request: Request, options: &WindowOptions) -> Result<Session, F
     let mut origin = origin(request, options.limits.given());
     origin.crossed = crossed && !options.look.no_self_collision;
     let mut session = Session::new(origin, &setup, vec![simulation], &beginning)?;
+    let is_asked = options.step.is_some() || options.resume.is_some();
+    let names_none = session.scenes.shown.source.description.step.is_none();
+    if !is_asked
+        && names_none
+        && let Some(why) = session.runs.fit_steps()
+    {
+        session.readings.say(why);
+    }
     offer_at_start(&mut session);
     Ok(session)
 }
@@ -164,4 +172,40 @@ pub fn check_drawing(
         (None, None) => return Ok(()),
     };
     Err(Failure::usage(why))
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::window::session::{frames, session};
+
+    /// A tiny stiff jelly opens with a step that holds, unless a step is asked for.
+    #[test]
+    fn a_scene_opens_with_a_step_that_holds() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("tiny.toml");
+        let jelly = "gravity = [0, -9.81, 0]\nfloor = { height = 0 }\n[[jelly]]\ngrid = [2, 2, 2]\n\
+            size = [0.02, 0.02, 0.02]\ndensity = 1000\nat = [0, 0.03, 0]\nstiffness = [20, 20, 20]\n";
+        let open = |text: &str, more: &[&str]| {
+            std::fs::write(&path, text).unwrap();
+            session(&[more, &["--scene", path.to_str().unwrap()]].concat())
+        };
+        let mut opened = open(jelly, &[]);
+        let wanted = opened.runs.panes[0].wanted_step.unwrap();
+        let step = opened.runs.first().control().step().unwrap();
+        let said = opened.readings.message.clone().unwrap();
+        let why = format!("the step is {step} s here, since {wanted} s would blow up");
+        assert!(step < wanted && said.contains(&why), "{said}");
+        frames(&mut opened, 0.2);
+        assert!(opened.runs.any_alive());
+        let named = format!("step = 0.005\n{jelly}");
+        for as_asked in [open(jelly, &["t", "0.005"]), open(&named, &[])] {
+            let control = as_asked.runs.first().control();
+            assert_eq!(control.step(), Some(0.005));
+        }
+        // A step that holds stays.
+        for scene in ["cloth", "jelly", "boxes"] {
+            let step = session(&["--scene", scene]).runs.panes[0].wanted_step;
+            assert_eq!(step, None, "{scene}");
+        }
+    }
 }

@@ -168,6 +168,7 @@ fn files_that_are_not_read_are_named() {
             "{name}: .{ending} files are not read: a3 reads meshes from files that end in .obj"
         );
         assert!(refused(name).contains(&expected), "{}", refused(name));
+        assert!(refused(name).contains("scenes are in files that end in .toml or .json"));
         write(
             folder.path(),
             "m.toml",
@@ -240,7 +241,7 @@ fn scenes_come_by_standard_input() {
     }
     let said = complaint(&piped("[[chian]]\n", &words), 2);
     assert!(
-        said.starts_with("error: -:1: chian: there is no key"),
+        said.starts_with("error: standard input:1: chian: there is no key"),
         "{said}"
     );
     let said = complaint(&piped(CHAIN, &["--scene", "-", "--watch"]), 2);

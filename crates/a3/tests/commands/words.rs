@@ -134,6 +134,24 @@ const WRONG: &[(&str, &str)] = &[
         "`cloth` is one word too many; --help shows what is expected",
     ),
     (
+        "t 0.01 0.02",
+        "`0.02` is one word too many; --help shows what is expected",
+    ),
+    (
+        "t 0.01 chart",
+        "a command comes before everything else, as in `a3 chart --scene flag`",
+    ),
+    (
+        "--scene chain chart",
+        "`chart`: a command comes before its options, as in `a3 chart --scene flag`",
+    ),
+    ("lessons 9", "`9`: lessons are numbered 1 to 8"),
+    ("lessons x", "`x`: lessons are numbered 1 to 8"),
+    (
+        "render -o x.png --wireframe --springs",
+        "give either `--wireframe` or `--springs`, not both",
+    ),
+    (
         "scenes --list",
         "`--print NAME` is missing; --help explains it",
     ),

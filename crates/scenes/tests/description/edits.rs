@@ -1,6 +1,6 @@
 //! Edits of scenes: what stays has the same state, and names the same particles.
 
-use a3_core::{Network, Scene};
+use a3_core::{Constraint, Network, Scene};
 use a3_scenes::{ConstraintSpec, Description, Edit, PartSpec, RigidBody};
 
 /// A scene with bodies of many kinds, which name one another's particles.
@@ -36,7 +36,7 @@ fn particle(scene: &Scene, i: usize) -> ([f64; 6], f64, bool) {
 }
 
 /// The ends of all springs, rods and ropes, in order.
-fn joints(scene: &Scene, number: impl Fn(usize) -> Option<usize>) -> Vec<[usize; 2]> {
+fn links(scene: &Scene, number: impl Fn(usize) -> Option<usize>) -> Vec<[usize; 2]> {
     let network = network(scene);
     let springs = network.all_springs().map(|it| [it.i, it.j]);
     let constraints = network.constraints().iter();
@@ -90,7 +90,7 @@ fn an_edit_leaves_all_else_as_it_was() {
         length: Some(20.0),
         ..ConstraintSpec::default()
     };
-    // Each with the particles, bodies and joints that come or go.
+    // Each with the particles, bodies and links that come or go.
     let edits = [
         (Edit::AddBody(ball([0.0, 5.0, 0.0])), 2, 1, 0),
         (
@@ -134,8 +134,8 @@ fn an_edit_leaves_all_else_as_it_was() {
             for (k, l) in (0..2).filter_map(|k| Some((k, edited.bodies.number(k)?))) {
                 assert_eq!(rotation(&scene, k), rotation(&after, l), "{edit:?}");
             }
-            let (before, now) = (joints(&scene, number), joints(&after, Some));
-            let lost = joints(&scene, Some).len() as i32 - before.len() as i32;
+            let (before, now) = (links(&scene, number), links(&after, Some));
+            let lost = links(&scene, Some).len() as i32 - before.len() as i32;
             let more = now.len() as i32 - before.len() as i32 - lost;
             assert_eq!(more, *joined, "{edit:?}");
             let [few, many] = if *joined > 0 {
@@ -175,5 +175,64 @@ fn an_edit_that_makes_no_sense_is_refused() {
     ] {
         let said = edit.apply(&own, network(&scene)).unwrap_err();
         assert!(said.contains(why), "{said}");
+    }
+}
+
+/// Four bodies in a row, on hinges that motors drive, with chains and particles attached to them.
+const JOINED: &str = "pin = [{ particles = [4], body = 0 }, { particles = [5], body = 2 }]\n\
+    [[chain]]\nparticles = 2\nfrom = [0, 1, 0]\nto = [0, 2, 0]\nmass = 0.1\nstiffness = 50\n\
+    pin = [{ at = ['first'], body = 1 }]\n\
+    [[chain]]\nparticles = 2\nfrom = [3, 1, 0]\nto = [3, 2, 0]\nmass = 0.1\nstiffness = 50\n\
+    pin = [{ at = ['first'], body = 3 }]\n\
+    [particles]\npositions = [[0, 5, 0], [2, 5, 0]]\nmass = 0.2\n\
+    [[body]]\nparts = [{ ball = 0.3 }]\nmass = 1\n\
+    [[body]]\nparts = [{ ball = 0.3 }]\nmass = 2\nat = [1, 0, 0]\n\
+    pin = [{ particles = [0], body = 2 }]\n\
+    [[body]]\nparts = [{ ball = 0.3 }]\nmass = 3\nat = [2, 0, 0]\n\
+    [[body]]\nparts = [{ ball = 0.3 }]\nmass = 4\nat = [3, 0, 0]\n\
+    pin = [{ particles = [0], body = 2 }]\n\
+    [[joint]]\nbody = 0\nhinge = { at = [0, 0, 0], axis = [0, 0, 1], torque = 5, speed = 1 }\n\
+    [[joint]]\nbodies = [0, 1]\nfixed = true\n\
+    [[joint]]\nbodies = [3, 2]\nhinge = { at = [2, 0, 0], axis = [0, 0, 1], torque = 7, limits = [-1, 1] }\n\
+    [[joint]]\nbody = 3\nhinge = { at = [3, 0, 0], axis = [0, 0, 1], torque = 9 }\n";
+
+/// Joints, limits and attachments of the scene of a description, and torques of its motors, each
+/// with the masses of what it joins: 0 for the world.
+fn joined_masses(description: &Description) -> Vec<(String, [f64; 2])> {
+    let scene = built(description);
+    let network = network(&scene);
+    let mass = |i: usize| network.masses()[i];
+    let constraints = network.constraints().iter();
+    let constraints = constraints.filter_map(|it| match it {
+        Constraint::Joint(joint) => Some((format!("{:?}", joint.kind), joint)),
+        Constraint::Stop(stop) => Some((format!("stop {}", stop.is_upper), &stop.joint)),
+        _ => None,
+    });
+    let constraints = constraints.map(|(name, joint)| {
+        let second = joint.second.map_or(0.0, mass);
+        (name, [mass(joint.first), second])
+    });
+    let center = |k: usize| network.bodies()[k].center();
+    let motors = description.joint.iter().filter_map(|joint| {
+        let torque = joint.hinge.as_ref()?.torque?;
+        let [second, first] = joint.bodies.map_or([None, joint.body], |it| it.map(Some));
+        let masses = [first, second].map(|k| k.map_or(0.0, |k| mass(center(k))));
+        Some((format!("{torque} N m"), masses))
+    });
+    constraints.chain(motors).collect()
+}
+
+/// Joints, motors, limits and attachments stay with their bodies, and go with them.
+#[test]
+fn what_is_joined_to_a_body_goes_with_it() {
+    let own = Description::parse(JOINED).unwrap();
+    let scene = built(&own);
+    let whole = joined_masses(&own);
+    assert_eq!(whole.len(), 4 + 2 + 6 + 3);
+    for (k, mass) in [1.0, 2.0, 3.0, 4.0].into_iter().enumerate() {
+        let edited = Edit::RemoveBody(k).apply(&own, network(&scene)).unwrap();
+        let others = whole.iter().filter(|(_, masses)| !masses.contains(&mass));
+        let others: Vec<_> = others.cloned().collect();
+        assert_eq!(joined_masses(&edited.description), others, "{k}");
     }
 }

@@ -5,13 +5,16 @@ mod table;
 #[cfg(test)]
 mod tests;
 
-use a3_core::{Control, ParticleSystem, Refusal, integrators};
+use a3_core::{Control, Method, ParticleSystem, Refusal, integrators};
 
 use crate::base::failure::Failure;
 use crate::base::report;
 use crate::base::terminal;
 use crate::cli::Solvers;
 use crate::files::setup::find;
+
+/// Largest order of the backward differentiation formulas.
+const BDF_ORDER: u32 = 5;
 
 /// Lists the solvers, says which serve a scene, or prints the table of solvers and kinds of scenes.
 pub fn run(options: &Solvers) -> Result<(), Failure> {
@@ -45,6 +48,14 @@ fn serving(system: &dyn ParticleSystem) -> String {
     groups.iter().map(line).collect()
 }
 
+/// Returns the order of a solver, or its orders if it changes them.
+fn order(method: &Method) -> String {
+    match method.name {
+        "bdf" => format!("1 to {BDF_ORDER}"),
+        _ => method.order.to_string(),
+    }
+}
+
 /// Lists all solvers.
 fn all() -> String {
     let heading = [
@@ -61,7 +72,7 @@ fn all() -> String {
         rows.push(vec![
             m.letter.map(String::from).unwrap_or_default(),
             m.name.into(),
-            m.order.to_string(),
+            order(m),
             if m.is_implicit() && !m.needs_springs() {
                 format!("{} and linear solves", m.evaluations)
             } else if m.solves_linear_systems() {

@@ -2,6 +2,7 @@
 
 use a3_core::{Control, Simulation, integrators};
 
+use super::all;
 use super::kinds::kinds;
 use super::table::table;
 
@@ -41,4 +42,14 @@ fn the_manual_has_the_table() {
         text.contains(&table),
         "put this into docs/methods.md:\n{table}"
     );
+}
+
+/// A solver that changes its order is listed with all its orders, as in the manual.
+#[test]
+fn orders_that_change_are_listed() {
+    let list = all();
+    let line = list.lines().find(|line| line.contains(" bdf ")).unwrap();
+    assert!(line.contains(" 1 to 5 "), "{line}");
+    let line = list.lines().find(|line| line.contains(" rk4 ")).unwrap();
+    assert!(line.contains(" 4 ") && !line.contains(" to "), "{line}");
 }

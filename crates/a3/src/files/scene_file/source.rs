@@ -14,8 +14,9 @@ use super::hung;
 use super::mesh;
 use crate::base::input_error::InputError;
 
-/// Argument that stands for standard input.
+/// Argument that stands for standard input, and its name in messages.
 const INPUT: &str = "-";
+const INPUT_NAME: &str = "standard input";
 /// Name of a scene whose text is in no file.
 const TEXT: &str = "scene";
 
@@ -65,7 +66,7 @@ impl Source {
         let mut is_written = true;
         let (text, json) = match extension.as_deref() {
             None if typed == INPUT => {
-                let text = read_input().map_err(|why| wrong("standard input", why))?;
+                let text = read_input().map_err(|why| wrong(INPUT_NAME, why))?;
                 let json = text.trim_start().starts_with('{');
                 (text, json)
             }
@@ -76,7 +77,9 @@ impl Source {
                 (hung::scene(path).map_err(|why| wrong(typed, why))?, false)
             }
             Some(extension) if path.is_file() => {
-                return Err(wrong(typed, mesh::not_read(Some(extension))));
+                let scenes = "scenes are in files that end in .toml or .json";
+                let why = format!("{}; {scenes}", mesh::not_read(Some(extension)));
+                return Err(wrong(typed, why));
             }
             _ => return Err(InputError::Unknown(unknown(typed))),
         };
@@ -86,7 +89,7 @@ impl Source {
             parse_toml(&text)
         };
         let (mut description, places) = parsed.map_err(|fault| InputError::Text {
-            file: Some(typed.into()),
+            file: Some(said(typed)),
             fault,
         })?;
         if description.name.is_none() {
@@ -255,7 +258,7 @@ impl Source {
         let built = self.description.build(grid, &mut mesh);
         self.meshes.store(reader.hash.value(), Ordering::Relaxed);
         built.map_err(|fault| InputError::Text {
-            file: self.path.as_ref().map(|_| self.typed.clone()),
+            file: self.path.as_ref().map(|_| said(&self.typed)),
             fault: self.places.locate(fault),
         })
     }
@@ -287,6 +290,11 @@ impl Source {
         hash.add(scene.state.iter().flat_map(|y| y.to_le_bytes()));
         format!("{} {:016x}", scene.name, hash.value())
     }
+}
+
+/// Returns the name of a file in messages.
+fn said(typed: &str) -> String {
+    if typed == INPUT { INPUT_NAME } else { typed }.into()
 }
 
 /// Fault of a text that is in no file.

@@ -19,8 +19,8 @@ impl ApplicationHandler<Event> for App {
         }
         event_loop.set_control_flow(ControlFlow::Wait);
         let whole = self.settings.as_ref().is_some_and(|it| it.full_screen);
-        let attributes =
-            platform::attributes().with_fullscreen(whole.then_some(Fullscreen::Borderless(None)));
+        let attributes = platform::attributes(event_loop)
+            .with_fullscreen(whole.then_some(Fullscreen::Borderless(None)));
         match event_loop.create_window(attributes) {
             Ok(window) => self.screen.window = Some(Arc::new(window)),
             Err(why) => return self.fail(event_loop, format!("no window ({why})")),

@@ -7,6 +7,7 @@ use std::time::Instant;
 use a3_render::{GpuError, Offscreen};
 use arboard::Clipboard;
 use winit::dpi::LogicalSize;
+use winit::event_loop::ActiveEventLoop;
 #[cfg(target_os = "linux")]
 use winit::platform::wayland::WindowAttributesExtWayland;
 use winit::window::{Window, WindowAttributes};
@@ -22,15 +23,33 @@ use crate::files::output;
 use crate::window::hud::Studio;
 use crate::window::session::{Readings, Session};
 
-/// Returns the initial attributes of the window.
-pub fn attributes() -> WindowAttributes {
+/// Size of the window (points) where the screen has room for it.
+const SIZE: [f64; 2] = [1280.0, 720.0];
+/// Height that the window leaves to its title and to the bars of the desktop (points).
+const BARS: f64 = 64.0;
+
+/// Returns the initial attributes of the window, which fits on the screen.
+pub fn attributes(event_loop: &ActiveEventLoop) -> WindowAttributes {
+    let first = || event_loop.available_monitors().next();
+    let monitor = event_loop.primary_monitor().or_else(first);
+    let room = monitor.map(|it| it.size().to_logical(it.scale_factor()));
     let attributes = Window::default_attributes()
-        .with_inner_size(LogicalSize::new(1280.0, 720.0))
+        .with_inner_size(room.map_or(SIZE.into(), fitting))
         .with_min_inner_size(LogicalSize::new(64.0, 48.0));
     // A desktop finds the icon by this name. On X11, winit sets this name by itself.
     #[cfg(target_os = "linux")]
     let attributes = WindowAttributesExtWayland::with_name(attributes, "a3", "a3");
     attributes
+}
+
+/// Returns the size of a window for a screen of a size (points).
+fn fitting(screen: LogicalSize<f64>) -> LogicalSize<f64> {
+    let [width, height] = SIZE;
+    // A monitor of unknown size has none.
+    if screen.width < 1.0 || screen.height <= BARS {
+        return SIZE.into();
+    }
+    LogicalSize::new(width.min(screen.width), height.min(screen.height - BARS))
 }
 
 /// Whether the program closes its window; a page is closed by the browser.
@@ -125,4 +144,21 @@ fn write_picture(session: &mut Session, graphics: Option<&Graphics>) -> Result<S
     let scene = &session.runs.first().scene().name;
     let path = output::write_new("".as_ref(), scene, "png", &output::png(&pixels, size)?)?;
     Ok(path.display().to_string())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_window_fits_on_the_screen() {
+        for (screen, expected) in [
+            ([1920.0, 1080.0], [1280.0, 720.0]),
+            ([1024.0, 768.0], [1024.0, 704.0]),
+            ([0.0, 0.0], [1280.0, 720.0]),
+        ] {
+            let fitted: [f64; 2] = fitting(screen.into()).into();
+            assert_eq!(fitted, expected);
+        }
+    }
 }

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 
 use a3_render::{Gpu, GpuError};
 use web_time::Instant;
-use winit::event_loop::EventLoopProxy;
+use winit::event_loop::{ActiveEventLoop, EventLoopProxy};
 use winit::platform::web::WindowAttributesExtWebSys;
 use winit::window::{Window, WindowAttributes};
 
@@ -23,7 +23,7 @@ thread_local! {
 }
 
 /// Returns the attributes of the window: the canvas of the page.
-pub fn attributes() -> WindowAttributes {
+pub fn attributes(_: &ActiveEventLoop) -> WindowAttributes {
     Window::default_attributes().with_canvas(browser::canvas())
 }
 

@@ -1,6 +1,6 @@
 //! The tools at the pointer: the targets of clicks and drags, and the edits that they make.
 
-use a3_core::{Simulation, Vector3};
+use a3_core::{Constraint, Simulation, Vector3};
 use a3_render::Camera;
 
 use super::pick;
@@ -11,7 +11,7 @@ use crate::window::hud::edit::{Aim, click, join};
 use crate::window::session::{Session, Tool};
 
 /// Distance from the pointer within which a spring, a rod or a rope is found (points).
-const JOINT_DISTANCE: f32 = 9.0;
+const LINK_DISTANCE: f32 = 9.0;
 /// Share of a spring at either end in which its particle is found in its place.
 const END: f32 = 0.25;
 /// Share of its depth by which a spring may be behind a surface on which it lies.
@@ -36,7 +36,7 @@ pub fn release(
             if let Some(j) = other() {
                 join(session, [i, j]);
             } else {
-                let why = "There is no particle here to which a joint could go.";
+                let why = "There is no particle here to join.";
                 session.readings.say(why);
             }
         }
@@ -107,19 +107,19 @@ fn aim(pointer: &Pointer, session: &Session, screen: &Screen, at: usize) -> Aim 
         }),
         normal: hit.map(|(_, normal)| normal * -normal.dot(&(ahead - eye)).signum()),
         target: pointer.hit(session, screen, at).map(|(target, _)| target),
-        joint: joint(
+        link: link(
             run,
             camera,
             place,
             aspect,
-            JOINT_DISTANCE * screen.scale() / tile.height as f32,
+            LINK_DISTANCE * screen.scale() / tile.height as f32,
         ),
     }
 }
 
 /// Returns the particles that the spring, the rod or the rope at the pointer joins, if there is one
 /// within `reach`, a share of the picture's height, that no surface hides.
-fn joint(
+fn link(
     simulation: &Simulation,
     camera: &Camera,
     pointer: [f32; 2],
@@ -132,9 +132,9 @@ fn joint(
     let most = front.map_or(f32::INFINITY, |(depth, _)| depth * (1.0 + DEPTH_TOLERANCE));
     let springs = network.all_springs();
     let structural = springs.filter(|it| it.kind == a3_core::SpringKind::Structural);
-    let joints = network.constraints().iter().filter_map(|it| {
-        let (i, j) = it.ends();
-        Some([i, j?])
+    let rods = network.constraints().iter().filter_map(|it| match *it {
+        Constraint::Rod { i, j, .. } | Constraint::Rope { i, j, .. } => Some([i, j]),
+        _ => None,
     });
     let near = |ends: [usize; 2]| {
         let [a, b] = ends.map(|i| project(to_f32(simulation.position(i))));
@@ -148,7 +148,40 @@ fn joint(
         let is_there = (END..=1.0 - END).contains(&share) && gap < reach && depth <= most;
         is_there.then_some((gap, ends))
     };
-    let all = structural.map(|it| [it.i, it.j]).chain(joints);
+    let all = structural.map(|it| [it.i, it.j]).chain(rods);
     let nearest = all.filter_map(near).min_by(|a, b| a.0.total_cmp(&b.0));
     nearest.map(|(_, ends)| ends)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::window::session::session;
+
+    /// Returns the link found in the middle between two particles.
+    fn between(session: &Session, [i, j]: [usize; 2]) -> Option<[usize; 2]> {
+        let (run, camera) = (session.runs.first(), &session.view.camera);
+        let middle = (run.position(i) + run.position(j)) / 2.0;
+        let (place, _) = camera.project(to_f32(middle), 1.6).unwrap();
+        link(run, camera, place, 1.6, 0.02)
+    }
+
+    /// A rod is found between its particles, and nothing between bodies that a joint joins.
+    #[test]
+    fn rods_are_links_and_joints_are_not() {
+        let rods = session(&["r", "0.001", "--scene", "double-pendulum"]);
+        let network = rods.runs.first().model().network().unwrap();
+        let mut all = network.constraints().iter();
+        let rod = all.find_map(|it| Some([it.ends().0, it.ends().1?]));
+        let rod = rod.unwrap();
+        assert_eq!(between(&rods, rod), Some(rod));
+        let path = concat!(
+            env!("CARGO_MANIFEST_DIR"),
+            "/../../docs/scenes/linkage.toml"
+        );
+        let linkage = session(&["r", "0.002", "--scene", path]);
+        let network = linkage.runs.first().model().network().unwrap();
+        let centers = [0, 1].map(|k| network.bodies()[k].center());
+        assert_eq!(between(&linkage, centers), None);
+    }
 }

@@ -6,7 +6,7 @@ use super::blow_up::explain;
 use super::layout;
 use super::legend::legend;
 use super::style::{PAPER, faint, sheet, text, title};
-use super::words::{self, digits, energy, frame_cost, frames, scene, speed, states, time};
+use super::words::{self, digits, energy, frames, scene, speed, states, time};
 use crate::window::session::{Pane, Readings};
 
 /// Distance of a sheet from the edge of its pane (points).
@@ -87,18 +87,14 @@ fn bar(ui: &mut Ui, panes: &[Pane], readings: &Readings) {
                 say(text(time(latest.unwrap_or(run))));
                 // In a wide bar, the states below include the pause.
                 let stands = readings.paused && width > 600.0;
-                if (readings.rate > 0.0 || readings.paused) && !stands {
-                    say(text(speed(readings)));
+                if let Some(speed) = speed(readings).filter(|_| !stands) {
+                    say(text(speed));
                 }
                 if let Some(slow) = words::slow_motion(readings) {
                     say(faint(format!("slow  {slow}")));
                 }
-                if readings.rate > 0.0 && !readings.paused && width > 900.0 {
-                    say(text(format!(
-                        "{},  {}",
-                        frames(readings),
-                        frame_cost(readings)
-                    )));
+                if let Some([frames, each]) = frames(readings).filter(|_| width > 900.0) {
+                    say(text(format!("{frames},  {each}")));
                 }
                 if width > 600.0 {
                     say(states(run, readings));

@@ -54,8 +54,8 @@ fn run(ui: &mut Ui, pane: &Pane, readings: &Readings) {
                 ui.end_row();
             };
             row("time", text(words::time(simulation)));
-            if !readings.paused {
-                row("speed", text(words::speed(readings)));
+            if let Some(speed) = words::speed(readings).filter(|_| !readings.paused) {
+                row("speed", text(speed));
             }
             if let Some(slow) = words::slow_motion(readings) {
                 row("slow", text(slow));
@@ -80,9 +80,9 @@ fn run(ui: &mut Ui, pane: &Pane, readings: &Readings) {
             if let Some(contact) = words::contact(simulation) {
                 row("contact", text(contact));
             }
-            if !readings.paused {
-                row("frames", text(words::frames(readings)));
-                row("each", text(words::frame_cost(readings)));
+            if let Some([frames, each]) = words::frames(readings) {
+                row("frames", text(frames));
+                row("each", text(each));
             }
         });
     ui.label(words::states(simulation, readings));
@@ -174,6 +174,11 @@ mod tests {
         assert_eq!(words.matches("paused").count(), 1, "{words}");
         assert!(!words.contains("per second") && !words.contains("drawing"));
         let circle = [crate::window::hud::pane("simple", "e", 1e-7)];
+        // Nothing is said of rates before they are measured.
+        let (words, _) = read(&circle, &Readings::default(), [1280.0, 720.0]);
+        for said in ["speed\n", "frames\n", "each\n"] {
+            assert!(!words.contains(said), "{words}");
+        }
         let slow = Readings {
             factor: 0.0005,
             ..Readings::default()

@@ -185,15 +185,15 @@ pub fn worst_constraint(simulation: &Simulation) -> Option<RichText> {
     unmet.is_visible().then(|| WARNING.text(&words))
 }
 
-/// Returns the frame rate.
-pub fn frames(readings: &Readings) -> String {
-    format!("{:.0} per second", readings.rate)
-}
-
-/// Returns the time per frame.
-pub fn frame_cost(readings: &Readings) -> String {
+/// Returns the frame rate and the time per frame, while frames are measured.
+pub fn frames(readings: &Readings) -> Option<[String; 2]> {
     let (simulating, drawing) = (readings.simulating, readings.drawing);
-    format!("{simulating:.1} ms steps + {drawing:.1} ms drawing")
+    (!readings.paused && readings.rate > 0.0).then(|| {
+        [
+            format!("{:.0} per second", readings.rate),
+            format!("{simulating:.1} ms steps + {drawing:.1} ms drawing"),
+        ]
+    })
 }
 
 /// Draws the progress of a film, after a red dot.
@@ -228,13 +228,13 @@ pub fn states(simulation: &Simulation, readings: &Readings) -> RichText {
     }
 }
 
-/// Returns simulated time over real time.
-pub fn speed(readings: &Readings) -> String {
+/// Returns simulated time over real time, once it was measured.
+pub fn speed(readings: &Readings) -> Option<String> {
     match readings.factor {
-        _ if readings.paused => "paused".into(),
-        0.0 => "-".into(),
-        slow if slow < 0.01 => format!("{slow:.1e} × real time"),
-        factor => format!("{factor:.2} × real time"),
+        _ if readings.paused => Some("paused".into()),
+        0.0 => None,
+        slow if slow < 0.01 => Some(format!("{slow:.1e} × real time")),
+        factor => Some(format!("{factor:.2} × real time")),
     }
 }
 

@@ -20,8 +20,8 @@ pub struct Former {
     presentation: Arc<Presentation>,
     tuning: Tuning,
     origin: Origin,
-    /// How the exchange back to them numbers particles.
-    particles: Splice,
+    /// How the exchange back to them numbers particles and rigid bodies.
+    numbers: [Splice; 2],
 }
 
 /// An obstacle in the whole scene: its kind, as in [`PartChange::Obstacle`], and its number among
@@ -52,7 +52,13 @@ pub fn edit(
     let left_out = names.filter_map(|name| parts.iter().position(|part| part.name == *name));
     let parts = (parts.clone(), left_out.collect());
     session.release();
-    go_on(session, origin, parts, (passage, then))
+    let former = go_on(session, origin, parts, (passage, then))?;
+    let panes = session.runs.panes.iter_mut();
+    for (pane, before) in panes.zip(&former.simulations) {
+        let now = &pane.simulation;
+        pane.traces.drop_removed(before, now, passage.particles);
+    }
+    Ok(former)
 }
 
 /// Continues all runs in a scene, without some of its parts.
@@ -95,7 +101,7 @@ fn go_on(
         presentation: setup.presentation,
         tuning: next,
         origin,
-        particles: passage.particles,
+        numbers: [passage.particles, passage.bodies],
     };
     Ok(exchange(session, next))
 }
@@ -112,12 +118,13 @@ fn exchange(session: &mut Session, next: Former) -> Former {
     let mut next_runs = next.simulations.into_iter();
     let mut simulations = vec![];
     for (pane, run) in runs.panes.iter_mut().zip(next_runs.by_ref()) {
-        simulations.push(pane.exchange(run, &next.presentation, next.particles));
+        simulations.push(pane.exchange(run, &next.presentation, next.numbers));
     }
     for (reference, run) in runs.reference.iter_mut().zip(next_runs) {
         simulations.push(reference.exchange(run));
     }
-    session.view.renumber(next.particles);
+    session.view.renumber(next.numbers[0]);
+    session.panel.plotting.renumber(next.numbers[0]);
     let tuning = std::mem::replace(&mut session.tuning, next.tuning);
     let origin = std::mem::replace(&mut session.scenes.shown, next.origin);
     let parts = &session.tuning.parts;
@@ -133,7 +140,7 @@ fn exchange(session: &mut Session, next: Former) -> Former {
         presentation,
         tuning,
         origin,
-        particles: next.particles.back(),
+        numbers: next.numbers.map(Splice::back),
     }
 }
 

@@ -163,7 +163,7 @@ impl Measuring {
             answer,
         });
         let work = move || {
-            let answer = apart(|| answerer(&task, &*watch));
+            let answer = in_own_pool(|| answerer(&task, &*watch));
             let notes = std::mem::take(&mut watch.progress().notes);
             let answer = answer.map(|answer| Answer { notes, ..answer });
             // If nobody waits any longer, the answer is dropped.
@@ -211,7 +211,7 @@ impl Measuring {
 
 /// Calls a function in its own pool of threads, which leaves a processor to the window: the window
 /// does not wait for it.
-fn apart(work: impl FnOnce() -> Result<Answer, Failure> + Send) -> Result<Answer, Failure> {
+fn in_own_pool(work: impl FnOnce() -> Result<Answer, Failure> + Send) -> Result<Answer, Failure> {
     let processors = thread::available_parallelism().map_or(1, usize::from);
     let pool = rayon::ThreadPoolBuilder::new()
         .num_threads((processors - 1).max(1))

@@ -1,6 +1,7 @@
 //! What is plotted, in the page: nothing, to keep it small.
 
 use a3_core::{Simulation, Vector3};
+use a3_scenes::Splice;
 
 /// What is plotted of a run.
 #[derive(Default)]
@@ -25,6 +26,12 @@ impl Traces {
     /// Adds nothing.
     pub fn take(&mut self, _: &Simulation) {}
 
+    /// Renumbers nothing.
+    pub fn renumber(&mut self, _: [Splice; 2]) {}
+
+    /// Drops nothing.
+    pub fn drop_removed(&mut self, _: &Simulation, _: &Simulation, _: Splice) {}
+
     /// Forgets nothing.
     pub fn forget(&mut self) {}
 }
@@ -46,6 +53,9 @@ impl PlotSettings {
 
     /// Chooses no end.
     pub fn begin_end(&mut self, _: RulerEnd) {}
+
+    /// Renumbers no end.
+    pub fn renumber(&mut self, _: Splice) {}
 
     /// Moves no end.
     pub fn move_end(&mut self, _: RulerEnd) {}

@@ -269,13 +269,13 @@ impl Pane {
         self.restart_cost();
     }
 
-    /// Replaces the run by one of a changed scene, which goes on from the same state, and returns
-    /// the former run. The camera stays.
+    /// Replaces the run by one of a changed scene, which goes on from the same state with particles
+    /// and rigid bodies of new numbers, and returns the former run. The camera stays.
     pub fn exchange(
         &mut self,
         simulation: Simulation,
         presentation: &Arc<Presentation>,
-        particles: Splice,
+        [particles, bodies]: [Splice; 2],
     ) -> Simulation {
         let before = std::mem::replace(&mut self.simulation, simulation);
         let viewpoint = self.show.presentation.viewpoint;
@@ -285,6 +285,7 @@ impl Pane {
         });
         self.show.hovered = None;
         self.show.springs_of = self.show.springs_of.and_then(|i| particles.number(i));
+        self.traces.renumber([particles, bodies]);
         if particles != Splice::default() {
             self.set_errors(vec![]);
         }

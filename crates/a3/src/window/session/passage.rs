@@ -61,15 +61,24 @@ impl Passage {
             .all_pins()
             .filter(|pin| back.number(pin.particle).is_none());
         moment.pins.extend(added);
-        let ends = |k: &usize| {
-            let (i, j) = old.constraints().get(*k)?.ends();
-            pair([i, j?])
+        // Ropes, and ends of joints.
+        let kind = |it: &Constraint| match it {
+            Constraint::Rope { .. } => Some(None),
+            Constraint::Stop(stop) => Some(Some(stop.is_upper)),
+            _ => None,
         };
-        let ropes: Vec<_> = moment.taut.iter().filter_map(ends).collect();
-        let is_taut = |rope: &Constraint| match *rope {
-            Constraint::Rope { i, j, .. } => ropes.contains(&[i, j]),
-            _ => false,
+        let before = |k: &usize| {
+            let constraint = old.constraints().get(*k)?;
+            let (first, second) = constraint.ends();
+            let second = match second {
+                Some(j) => Some(number(j)?),
+                None => None,
+            };
+            Some((kind(constraint)?, (number(first)?, second)))
         };
+        let taut: Vec<_> = moment.taut.iter().filter_map(before).collect();
+        let is_taut =
+            |it: &Constraint| kind(it).is_some_and(|kind| taut.contains(&(kind, it.ends())));
         let all = new.constraints().iter().enumerate();
         moment.taut = all.filter(|(_, it)| is_taut(it)).map(|(k, _)| k).collect();
     }

@@ -33,7 +33,7 @@ impl Question {
             Self::Chart => "Chart this scene",
             Self::Stability => "Where does it fail?",
             Self::Choose => "Which solver?",
-            Self::Simplify => "What is it made of too much?",
+            Self::Simplify => "What can be left out?",
         }
     }
 

@@ -10,7 +10,7 @@ use super::pane::{ADAPTIVE_SLICE, Pane};
 use super::reference::ReferenceRun;
 use crate::base::bounds;
 use crate::base::failure::Failure;
-use crate::base::holding::shorter_step;
+use crate::base::holding::{shorter_step, step_within_limit};
 use crate::draw::show::Quantity;
 
 /// Longest real time of the steps that a key causes.
@@ -157,22 +157,31 @@ impl Runs {
         };
         let simulations: Result<Vec<_>, Error> = self.panes.iter().map(&mut start).collect();
         for (pane, mut simulation) in self.panes.iter_mut().zip(simulations?) {
-            let asked = simulation.control().step();
-            let shorter = shorter_step(&simulation)
-                .filter(|shorter| simulation.set_control(Control::Step(*shorter)).is_ok());
-            pane.wanted_step = asked.filter(|_| shorter.is_some());
-            if let (Some(asked), Some(shorter)) = (pane.wanted_step, shorter) {
-                let solver = simulation.method().title;
-                said = Some(format!(
-                    "{solver}: the step is {shorter} s here, since {asked} s would blow up"
-                ));
-            }
+            let shorter = shorter_step(&simulation);
+            let (asked, why) = shortened(&mut simulation, shorter).unzip();
+            pane.wanted_step = asked;
+            said = why.or(said);
             pane.set_simulation(simulation, setup.presentation.clone());
         }
         self.touched = false;
         // The reference does not fail where the panes did not.
         self.reference = ReferenceRun::new(&self.panes).ok().flatten();
         Ok(said)
+    }
+
+    /// Shortens steps that are beyond the limit at the start of the scene. Returns a message if one
+    /// was shortened.
+    pub fn fit_steps(&mut self) -> Option<String> {
+        let mut said = None;
+        for pane in &mut self.panes {
+            let shorter = step_within_limit(&pane.simulation);
+            if let Some((asked, why)) = shortened(&mut pane.simulation, shorter) {
+                pane.wanted_step = Some(asked);
+                pane.restart_cost();
+                said = Some(why);
+            }
+        }
+        said
     }
 
     /// Resets the runs to the initial state of their scene.
@@ -270,6 +279,15 @@ impl Runs {
             reference.adapt(&self.panes);
         }
     }
+}
+
+/// Gives a run a shorter step (s), if there is one. Returns the step that it had (s), and why.
+fn shortened(run: &mut Simulation, shorter: Option<f64>) -> Option<(f64, String)> {
+    let (asked, shorter) = run.control().step().zip(shorter)?;
+    run.set_control(Control::Step(shorter)).ok()?;
+    let solver = run.method().title;
+    let why = format!("{solver}: the step is {shorter} s here, since {asked} s would blow up");
+    Some((asked, why))
 }
 
 #[cfg(test)]

@@ -76,12 +76,17 @@ pub fn description(session: &Session, run: &Simulation) -> Description {
     );
     snapshot::scale_wind(&mut description, session.tuning.gusts);
     snapshot::begin_with(&mut description, run.model(), &run.moment());
-    let triple = |p: nalgebra::Point3<f32>| [p.x, p.y, p.z].map(f64::from);
+    let triple = |p: nalgebra::Point3<f32>| [p.x, p.y, p.z].map(shortest);
     description.camera = Some(Camera {
         eye: triple(session.view.camera.eye()),
         target: triple(session.view.camera.target()),
     });
     description
+}
+
+/// Returns the number of the fewest digits that single precision rounds to this one.
+fn shortest(x: f32) -> f64 {
+    x.to_string().parse().unwrap_or(f64::from(x))
 }
 
 /// Writes an array of rows; their numbers are read back exactly.
@@ -291,6 +296,23 @@ mod tests {
             let expected = folder.path().join(format!("a3-leaf-{k}.toml"));
             assert_eq!(name, expected.to_str().unwrap());
             check(&session, &expected);
+        }
+    }
+
+    /// The camera is written by few digits, which are read as the same numbers.
+    #[test]
+    fn the_camera_is_written_in_short() {
+        let path = concat!(
+            env!("CARGO_MANIFEST_DIR"),
+            "/../../docs/scenes/linkage.toml"
+        );
+        let session = session(&["--scene", path]);
+        let camera = description(&session, session.runs.first()).camera.unwrap();
+        assert_eq!(camera.target, [0.4, 0.3, 0.0]);
+        let eye = session.view.camera.eye();
+        for (written, exact) in camera.eye.into_iter().zip([eye.x, eye.y, eye.z]) {
+            assert_eq!(written as f32, exact);
+            assert!(written.to_string().len() < 12, "{written}");
         }
     }
 }

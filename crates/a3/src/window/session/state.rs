@@ -225,7 +225,7 @@ impl Session {
     /// advances.
     pub fn count_frame(&mut self, drawing: Duration) {
         if !self.animated() {
-            self.readings.factor = 0.0;
+            (self.readings.factor, self.readings.rate) = (0.0, 0.0);
             self.meter = Meter::new();
             return;
         }

@@ -34,7 +34,7 @@ pub struct Aim {
     /// The particle or the obstacle under the pointer.
     pub target: Option<Target>,
     /// The particles that a spring, a rod or a rope under the pointer joins.
-    pub joint: Option<[usize; 2]>,
+    pub link: Option<[usize; 2]>,
 }
 
 /// Does what the chosen tool does by a click, and shows a message.
@@ -184,7 +184,7 @@ fn delete(session: &mut Session, aim: &Aim) -> Result<String, String> {
     let network = session.runs.first().model().network();
     let network = network.ok_or("There are no masses here.")?;
     let body_of = |target: Target| network.body_of(target.particle()?);
-    let (edits, name) = match (aim.target, aim.joint) {
+    let (edits, name) = match (aim.target, aim.link) {
         (Some(Target::Obstacle(k)), _) => return leave_out_obstacle(session, k),
         (Some(target), _) if body_of(target).is_some() => {
             let k = body_of(target).unwrap_or_default();

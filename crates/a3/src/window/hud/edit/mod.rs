@@ -8,4 +8,6 @@ pub use act::{Aim, click, join};
 pub use palette::show;
 
 #[cfg(test)]
+mod deletion;
+#[cfg(test)]
 mod tests;

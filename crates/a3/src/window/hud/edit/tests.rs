@@ -30,6 +30,10 @@ const MANY: &str = "gravity = [0, -9.81, 0]\n\
     [[box]]\ncenter = [9, 0, 0]\nsize = [1, 1, 1]\n\
     [camera]\neye = [0, 3, 9]\ntarget = [0, 1, 0]\n";
 
+/// Joints of its bodies, of which the first is driven.
+const JOINTS: &str = "[[joint]]\nbody = 0\nhinge = { at = [-3, 1, 0], axis = [0, 0, 1], torque = 1 }\n\
+    [[joint]]\nbodies = [0, 1]\nball = [-4, 1, 0]\n";
+
 fn open(folder: &Path, text: &str) -> Session {
     let path = folder.join("own.toml");
     std::fs::write(&path, text).unwrap();
@@ -45,7 +49,7 @@ fn at(point: [f64; 3]) -> Aim {
         point: point.into(),
         normal: None,
         target: None,
-        joint: None,
+        link: None,
     }
 }
 
@@ -124,11 +128,10 @@ fn every_edit_keeps_the_rest_and_can_be_undone() {
         }
     };
     let gone = |target| move |session: &mut Session| drop(delete(session, target));
-    let disjoin = |joint| {
+    let disjoin = |ends| {
         move |session: &mut Session| {
-            let joint = Some(joint);
             let aim = Aim {
-                joint,
+                link: Some(ends),
                 ..at([0.0; 3])
             };
             use_tool(session, Tool::Delete, &aim);
@@ -216,7 +219,7 @@ fn what_is_impossible_is_refused_and_changes_nothing() {
     assert!(said.contains("cross"), "{said}");
     assert!(!session.scenes.shown.edited);
     for (scene, tool, why) in [
-        ("dam-break", Tool::ThrowBall, "does not touch a fluid"),
+        ("dam-break", Tool::ThrowBall, "particles of the fluid"),
         ("dam-break", Tool::Delete, "cannot be removed"),
         ("simple", Tool::ThrowBall, "first-order"),
     ] {
@@ -298,7 +301,7 @@ fn random_edits_can_all_be_undone() {
     // One scene begins as it is built, and another one in a given state.
     let written = write_scene(&session, session.runs.first()).unwrap();
     let given = std::fs::read_to_string(written).unwrap();
-    for (seed, text) in [(1, MANY), (2, MANY), (3, &given)] {
+    for (seed, text) in [(1, MANY), (2, &format!("{MANY}{JOINTS}")), (3, &given)] {
         let mut session = open(folder.path(), text);
         let own = session.scenes.shown.source.description.clone();
         let mut seed: u64 = seed;
@@ -310,18 +313,18 @@ fn random_edits_can_all_be_undone() {
         for _ in 0..24 {
             let n = session.runs.first().particles();
             let [x, y, z] = [10, 4, 6].map(|range| next(10 * range) as f64 / 10.0);
-            let joint = [next(n), next(n)];
+            let ends = [next(n), next(n)];
             let target = Some(Target::Particle(next(n))).filter(|_| next(3) > 0);
             let aim = Aim {
                 target,
-                joint: Some(joint).filter(|_| next(3) == 0),
+                link: Some(ends).filter(|_| next(3) == 0),
                 ..at([x - 5.0, y, z])
             };
             let tool = Tool::ALL[next(Tool::ALL.len())];
             let before = session.scenes.shown.source.description.clone();
             if tool.joins() && next(4) > 0 {
                 session.panel.editor.tool = tool;
-                join(&mut session, joint);
+                join(&mut session, ends);
             } else {
                 use_tool(&mut session, tool, &aim);
             }

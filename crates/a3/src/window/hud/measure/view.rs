@@ -206,7 +206,8 @@ fn settings(ui: &Ui, rect: Rect, session: &Session) -> Option<MeasureRequest> {
         }
         Question::Stability => {}
     }
-    let place = Rect::from_min_max(pos2(rect.right() - 92.0, rect.top()), rect.max);
+    let width = (rect.right() - place(0.0).left()).clamp(92.0, 108.0);
+    let place = Rect::from_min_max(pos2(rect.right() - width, rect.top()), rect.max);
     let response = ui.interact(place, Id::unique("measure it"), Sense::click());
     let words = match (measuring.progress(), measuring.known()) {
         (Some(_), _) => "stop",

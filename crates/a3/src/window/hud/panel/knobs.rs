@@ -79,7 +79,7 @@ pub static KNOBS: &[Knob] = &[
     ),
     starts_group(tunes_scene(knob(
         "stiffness",
-        "Stiffness of all springs, as a multiple of the scene's own.",
+        "Stiffness of all springs and, in a liquid, square of the speed of sound, as a multiple of the scene's own.",
         stiffness,
         |session, _, factor| {
             session.tuning.stiffness = factor;
@@ -88,7 +88,7 @@ pub static KNOBS: &[Knob] = &[
     ))),
     tunes_scene(knob(
         "damping",
-        "Damping of all springs, as a multiple of the scene's own.",
+        "Damping of all springs, and viscosity of a liquid, as a multiple of the scene's own.",
         damping,
         |session, _, factor| {
             session.tuning.damping = factor;

@@ -201,7 +201,7 @@ fn choice(ui: &Ui, room: Rect, id: impl Fn(&'static str) -> Id, dial: &Dial) -> 
     turn
 }
 
-/// Draws a button with its label and key.
+/// Draws a button with its label, and with its key if there is room for both.
 pub fn button(ui: &Ui, rect: Rect, response: &Response, words: &str, key: &str) {
     let painter = ui.painter();
     let fill = if response.is_pointer_button_down_on() {
@@ -218,15 +218,45 @@ pub fn button(ui: &Ui, rect: Rect, response: &Response, words: &str, key: &str) 
         Stroke::new(1.0, EDGE),
         egui::StrokeKind::Inside,
     );
-    let font = || FontId::proportional(13.0);
     let at = pos2(rect.left() + 8.0, rect.center().y);
-    painter.text(at, Align2::LEFT_CENTER, words, font(), TEXT);
-    let at = pos2(rect.right() - 7.0, rect.center().y);
-    painter.text(
-        at,
-        Align2::RIGHT_CENTER,
-        key,
-        FontId::proportional(12.5),
-        FAINT,
-    );
+    let font = FontId::proportional(13.0);
+    let label = painter.text(at, Align2::LEFT_CENTER, words, font, TEXT);
+    let key = painter.layout_no_wrap(key.into(), FontId::proportional(12.5), FAINT);
+    let place = Align2::RIGHT_CENTER.anchor_size(pos2(rect.right() - 7.0, at.y), key.size());
+    if place.left() > label.right() + 4.0 {
+        painter.galley(place.min, key, FAINT);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::window::hud::style::context;
+
+    /// The key is left out where it would run into the label.
+    #[test]
+    fn a_button_has_its_key_where_there_is_room() {
+        for (width, shown) in [(92.0, 1), (108.0, 2)] {
+            let ctx = context();
+            let mut output = ctx.run_ui(egui::RawInput::default(), |ui| {
+                let rect = Rect::from_min_size(pos2(10.0, 10.0), vec2(width, 26.0));
+                let response = ui.interact(rect, Id::unique("it"), Sense::click());
+                button(ui, rect, &response, "measure", "Enter");
+            });
+            output.textures_delta.set.clear();
+            let texts = output.shapes.iter();
+            let texts: Vec<_> = texts
+                .filter_map(|it| match &it.shape {
+                    egui::Shape::Text(text) => Some(text.visual_bounding_rect()),
+                    _ => None,
+                })
+                .collect();
+            assert_eq!(texts.len(), shown, "{width}");
+            assert!(
+                texts
+                    .windows(2)
+                    .all(|it| it[0].right() + 2.0 < it[1].left())
+            );
+        }
+    }
 }

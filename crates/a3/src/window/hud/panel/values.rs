@@ -223,6 +223,7 @@ pub fn sphere(session: &Session, _: usize) -> Option<Dial> {
 
 pub fn springs_of(session: &Session, at: usize) -> Option<Dial> {
     let network = network(session)?;
+    own(session)?.all_springs().next()?;
     let i = session.runs.panes.get(at)?.show.springs_of;
     Some(Dial {
         value: i.map_or(-1.0, |i| i as f64),

@@ -98,7 +98,11 @@ pub fn show(ui: &Ui, room: Rect, session: &Session) {
     let panels = panels(room, &plotted);
     let painter = ui.painter();
     if panels.is_empty() {
-        let words = "Choose what to show.";
+        let words = if plotted.chart.panels.is_empty() {
+            "Choose what to show."
+        } else {
+            "There is no room for the plots: make the window higher."
+        };
         let font = FontId::proportional(13.0);
         painter.text(room.left_top(), Align2::LEFT_TOP, words, font, FAINT);
         return;

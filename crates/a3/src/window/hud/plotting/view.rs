@@ -358,4 +358,22 @@ mod tests {
         apply(&mut session, PlotRequest::Ruler);
         assert!(session.panel.plotting.ruler.is_none());
     }
+
+    #[test]
+    fn a_small_window_says_that_plots_have_no_room() {
+        let mut session = curtain();
+        apply(&mut session, PlotRequest::Mode(Mode::Phase));
+        let said = |session: &Session, size, words: &str| {
+            let drawn = draw(session, size, Pos2::new(5.0, 5.0));
+            drawn.all.iter().any(|it| it.contains(words))
+        };
+        assert!(said(&session, [640.0, 400.0], "There is no room"));
+        assert!(!said(&session, [640.0, 400.0], "Choose what to show"));
+        assert!(!said(&session, [1280.0, 800.0], "There is no room"));
+        apply(&mut session, PlotRequest::Mode(Mode::Time));
+        for variable in session.panel.plotting.shown.clone() {
+            apply(&mut session, PlotRequest::Show(variable));
+        }
+        assert!(said(&session, [1280.0, 800.0], "Choose what to show"));
+    }
 }

@@ -2,6 +2,7 @@
 
 use a3_core::elements::{Buckling, Cords};
 use a3_core::{Element, Network, Simulation, Spring, Vector3};
+use a3_scenes::Splice;
 
 use super::row::{Row, VALUES};
 use super::variable::Kind;
@@ -23,6 +24,16 @@ impl Pick {
         body.map_or(Self::Particle(i), Self::Body)
     }
 
+    /// Returns the same pick by the numbers of particles and rigid bodies since an edit; `None` if
+    /// it was removed.
+    pub fn renumbered(self, [particles, bodies]: [Splice; 2]) -> Option<Self> {
+        Some(match self {
+            Self::Particle(i) => Self::Particle(particles.number(i)?),
+            Self::Body(k) => Self::Body(bodies.number(k)?),
+            Self::Spring(i, j) => Self::Spring(particles.number(i)?, particles.number(j)?),
+        })
+    }
+
     pub fn kind(self) -> Kind {
         match self {
             Self::Particle(_) => Kind::Particle,
@@ -38,6 +49,11 @@ impl Pick {
             Self::Body(k) => format!("body {k}"),
             Self::Spring(i, j) => format!("spring {i} to {j}"),
         }
+    }
+
+    /// Returns whether a run has this.
+    pub fn is_in(self, run: &Simulation) -> bool {
+        !self.read(run).values[0].is_nan()
     }
 
     /// Returns the values in the present state of a run; NaN if it has no such thing.

@@ -3,6 +3,7 @@
 use std::collections::VecDeque;
 
 use a3_core::Simulation;
+use a3_scenes::Splice;
 
 use super::pick::Pick;
 use super::row::Row;
@@ -148,6 +149,24 @@ impl Traces {
         for (pick, series) in &mut self.all {
             series.search_again(trigger.of(pick.kind()));
         }
+    }
+
+    /// Follows the same things by the numbers that particles and rigid bodies have since an edit.
+    /// What was removed is plotted no longer.
+    pub fn renumber(&mut self, numbers: [Splice; 2]) {
+        self.all.retain_mut(|(pick, _)| {
+            let now = pick.renumbered(numbers);
+            *pick = now.unwrap_or(*pick);
+            now.is_some()
+        });
+    }
+
+    /// Plots those springs no longer that an edit of a run removed, but not their particles.
+    pub fn drop_removed(&mut self, before: &Simulation, now: &Simulation, particles: Splice) {
+        let back = [particles.back(), Splice::default()];
+        let was_there = |pick: Pick| pick.renumbered(back).is_some_and(|it| it.is_in(before));
+        self.all
+            .retain(|(pick, _)| pick.is_in(now) || !was_there(*pick));
     }
 
     /// Adds the values of the present state of a run.

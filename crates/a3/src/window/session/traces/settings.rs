@@ -1,6 +1,7 @@
 //! The settings of plots, and what a user asks of them.
 
 use a3_core::{Simulation, Vector3};
+use a3_scenes::Splice;
 
 use super::pick::Pick;
 use super::section::Trigger;
@@ -72,6 +73,17 @@ impl PlotSettings {
         let ends = self.ruler.get_or_insert_default();
         ends.truncate(1);
         ends.push(end);
+    }
+
+    /// Keeps the ends of the ruler at the same particles by their numbers since an edit. If one was
+    /// removed, the ruler is, too.
+    pub fn renumber(&mut self, particles: Splice) {
+        let now = |end: &RulerEnd| match *end {
+            RulerEnd::Particle(i) => particles.number(i).map(RulerEnd::Particle),
+            end @ RulerEnd::Point(_) => Some(end),
+        };
+        let ends = self.ruler.take();
+        self.ruler = ends.and_then(|ends| ends.iter().map(now).collect());
     }
 }
 

@@ -298,3 +298,18 @@ fn turns_are_undone_and_redone() {
         }
     }
 }
+
+/// A liquid has a stiffness and a viscosity, but no springs to list.
+#[test]
+fn a_liquid_has_no_row_of_springs() {
+    let names = |scene: &str| {
+        let session = opened(&["--scene", scene]);
+        rows(&session)
+            .iter()
+            .map(|row| row.1.name)
+            .collect::<Vec<_>>()
+    };
+    let [liquid, cloth] = ["dam-break", "cloth"].map(names);
+    assert!(liquid.contains(&"stiffness") && !liquid.contains(&"springs of"));
+    assert!(cloth.contains(&"springs of"));
+}
