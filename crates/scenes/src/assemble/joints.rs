@@ -210,13 +210,11 @@ impl Free {
     ) -> Result<(), Fault> {
         let (key, effort) = self.effort;
         let Some(effort) = effort else {
-            return match self.speed {
-                None => Ok(()),
-                Some(_) => {
-                    let why = format!("a motor also needs its `{key}`");
-                    Err(Fault::new("speed", why))
-                }
-            };
+            if self.speed.is_some() {
+                let why = format!("a motor also needs its `{key}`");
+                return Err(Fault::new("speed", why));
+            }
+            return Ok(());
         };
         let motor = Motor {
             drive: self.drive,

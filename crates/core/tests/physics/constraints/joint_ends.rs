@@ -266,7 +266,7 @@ fn impacts_end_where_joints_end() {
             least + (most - least) * (bits >> 11) as f64 / (1_u64 << 53) as f64
         };
         let speed = random(5.0, 30.0);
-        let (around, down) = (random(0.0, 6.283), random(0.3, 1.5));
+        let (around, down) = (random(0.0, std::f64::consts::TAU), random(0.3, 1.5));
         let level = speed * down.cos();
         let (x, y, z) = (
             level * around.cos(),
