@@ -197,7 +197,7 @@ mod tests {
         assert!(step < wanted && said.contains(&why), "{said}");
         frames(&mut opened, 0.2);
         assert!(opened.runs.any_alive());
-        let named = format!("step = 0.005\n{jelly}");
+        let named = format!("solver = 't'\nstep = 0.005\n{jelly}");
         for as_asked in [open(jelly, &["t", "0.005"]), open(&named, &[])] {
             let control = as_asked.runs.first().control();
             assert_eq!(control.step(), Some(0.005));
