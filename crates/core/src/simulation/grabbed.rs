@@ -49,7 +49,7 @@ impl Grabbed {
             let own = network.springs_of(self.particle);
             let stiffness: f64 = own.map(|s| s.law.stiffness).sum();
             let own = (stiffness / mass_behind(network, self.particle)).sqrt();
-            let free = !network.is_held(self.particle);
+            let free = !network.is_held(self.particle) && !network.is_carried(self.particle);
             let least = 1.0 / PULL_TIME;
             let strength = if free {
                 (least.max(PULL_FREQUENCY_SHARE * own), HAND_INERTIA)
