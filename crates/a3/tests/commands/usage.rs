@@ -52,7 +52,7 @@ fn wrong_usage_is_one_line_that_says_what_is_right() {
         (vec!["t", "1e9"], "such as 0.01"),
         (vec!["t", "1e-300"], "such as 0.01"),
         (vec!["t", "fast"], "such as 0.01"),
-        (vec!["t", "0.01", "0.02"], "a3 t 0.01"),
+        (vec!["t", "0.01", "0.02"], "`0.02` is one word too many"),
         (vec!["t", "0.01", "--scene", "rug"], "mit-sphere"),
         (vec!["t", "0.01", "--grid", "1x5"], "at least 2x2"),
         (vec!["t", "0.01", "--grid", "5"], "such as 20x30"),
