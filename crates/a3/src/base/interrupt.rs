@@ -124,7 +124,7 @@ fn end() -> ! {
     std::process::exit(i32::from(exit_code()))
 }
 
-/// Returns the last message, after which nothing is left of what is cleaned up.
+/// Returns the message of a program that ends after these cleanups.
 fn last_words(cleanups: &[Cleanup]) -> &'static str {
     if cleanups.is_empty() {
         "interrupted"

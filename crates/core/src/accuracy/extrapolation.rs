@@ -9,7 +9,7 @@ const ORDER: i32 = 4;
 const MAX_POWERS: usize = 3;
 
 /// Returns the next row of the extrapolation: the run with half of the step, and its combinations
-/// with the row before, each of which lacks one more power of the step.
+/// with the row before. Each combination removes one more power of the step from the error.
 pub(super) fn extrapolate(row: Vec<Vec<Snapshot>>, halved: Vec<Snapshot>) -> Vec<Vec<Snapshot>> {
     let mut next = vec![halved];
     for (power, coarse) in row.into_iter().take(MAX_POWERS).enumerate() {

@@ -68,8 +68,8 @@ impl Pattern {
         Some(Self::in_order(&order, &meets))
     }
 
-    /// Creates the pattern for a matrix of which the neighbours of each row are given, in that
-    /// order of elimination.
+    /// Creates the pattern of a matrix from the neighbours of each row and the order of
+    /// elimination.
     fn in_order(order: &[u32], meets: &[Vec<u32>]) -> Self {
         let n = order.len();
         let (ranks, columns) = columns(order, meets);

@@ -50,9 +50,8 @@ pub struct Surface {
 }
 
 impl Surface {
-    /// Creates the surface of particles with these skins, some of which are corners of triangles,
-    /// ends of edges or points of rigid bodies, and of obstacles. An edge with equal ends is a
-    /// point.
+    /// Creates the surface of obstacles, and of particles with these skins: corners of triangles,
+    /// ends of edges, and points of rigid bodies. An edge with equal ends is a point.
     #[must_use]
     pub fn new(
         skins: &[Skin],

@@ -1,4 +1,4 @@
-//! Plane waves, of which gusts of wind consist.
+//! Plane waves: gusts of wind are sums of them.
 
 #![expect(
     clippy::inline_always,

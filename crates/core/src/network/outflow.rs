@@ -62,7 +62,7 @@ pub(super) fn leave(network: &mut Network, y: &mut [f64], particles: &[u32]) {
     set_drained(network, &all);
 }
 
-/// Lets exactly these particles, given in order, have left the fluid.
+/// Sets which particles have left the fluid: these, given in order. All others flow.
 pub(crate) fn set_drained(network: &mut Network, particles: &[u32]) {
     if drained(network) == particles {
         return;
@@ -75,8 +75,8 @@ pub(crate) fn set_drained(network: &mut Network, particles: &[u32]) {
     }
 }
 
-/// Lets exactly these particles, given in order, have left the fluid: those are pinned where they
-/// are in the state y, and others are free again. Returns whether that changes any.
+/// Sets which particles have left the fluid: these, given in order. They are pinned where they are
+/// in the state y, and all others that had left are free again. Returns whether any changes.
 pub(crate) fn go_back(network: &mut Network, y: &[f64], particles: &[u32]) -> bool {
     let before = drained(network).to_vec();
     set_drained(network, particles);

@@ -31,7 +31,10 @@ pub struct Members {
 }
 
 impl Members {
-    /// Creates a list of these particles, none of which is named twice.
+    /// Creates a list of particles, given by their numbers in any order.
+    ///
+    /// # Errors
+    /// A particle is named twice.
     pub(super) fn new(mut particles: Vec<u32>) -> Result<Self, Error> {
         particles.sort_unstable();
         let twice = particles.windows(2).find(|pair| pair[0] == pair[1]);
@@ -46,7 +49,10 @@ impl Members {
         })
     }
 
-    /// Sets the boxes in which particles leave, whose edges are above 0.
+    /// Sets the boxes in which particles leave.
+    ///
+    /// # Errors
+    /// An edge is not a finite number above 0.
     pub(super) fn set_outflows(&mut self, outflows: Vec<Outflow>) -> Result<(), Error> {
         let mut edges = outflows.iter().flat_map(|outflow| outflow.half.iter());
         edges.try_for_each(|edge| positive("half an edge of an outflow", *edge))?;
@@ -54,7 +60,7 @@ impl Members {
         Ok(())
     }
 
-    /// Lets exactly these particles, given in order, have left. The others are back.
+    /// Sets which particles have left: these, given in order. All others flow.
     pub(super) fn set_drained(&mut self, drained: &[u32]) {
         let mut all = std::mem::take(&mut self.flowing);
         all.append(&mut self.drained);

@@ -90,7 +90,7 @@ impl Fluid {
         Ok(self)
     }
 
-    /// Lets exactly these particles, given in order, have left the fluid. The others are back.
+    /// Sets which particles have left the fluid: these, given in order. All others flow.
     pub(crate) fn set_drained(&mut self, drained: &[u32]) {
         self.members.set_drained(drained);
     }

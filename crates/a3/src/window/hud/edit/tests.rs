@@ -30,7 +30,7 @@ const MANY: &str = "gravity = [0, -9.81, 0]\n\
     [[box]]\ncenter = [9, 0, 0]\nsize = [1, 1, 1]\n\
     [camera]\neye = [0, 3, 9]\ntarget = [0, 1, 0]\n";
 
-/// Joints of its bodies, of which the first is driven.
+/// Joints of its bodies: a hinge with a motor, and a ball joint.
 const JOINTS: &str = "[[joint]]\nbody = 0\nhinge = { at = [-3, 1, 0], axis = [0, 0, 1], torque = 1 }\n\
     [[joint]]\nbodies = [0, 1]\nball = [-4, 1, 0]\n";
 
