@@ -160,8 +160,8 @@ pub fn choose_among(
 /// Does what [`choose`] does, for errors that the caller measures. `measure` runs the scene, or a
 /// variant of it, by one of the methods with a step or a tolerance, and returns `None` to end the
 /// search. The methods are tried in their order. A method is given up if it would cost more than
-/// `max_cost` evaluations, a bound that may depend on the choices so far. Methods that do not support
-/// the scene are left out.
+/// `max_cost` evaluations, a bound that may depend on the choices so far. Methods that do not
+/// support the scene are left out.
 ///
 /// # Errors
 /// Those of `measure`, or the scene cannot be run.
