@@ -99,7 +99,7 @@ impl OpenScene {
         }
     }
 
-    /// Whether a program has built the scene.
+    /// Returns whether a program has built the scene.
     #[must_use]
     pub fn is_built(&self) -> bool {
         matches!(self.made, Made::Built(_))

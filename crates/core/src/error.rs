@@ -138,7 +138,7 @@ pub struct Unmet {
 }
 
 impl Unmet {
-    /// Whether the error is large enough to be seen: 1 % or more.
+    /// Returns whether the error is large enough to be seen: 1 % or more.
     #[must_use]
     pub fn is_visible(&self) -> bool {
         self.share >= VISIBLE_SHARE

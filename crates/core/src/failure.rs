@@ -28,8 +28,8 @@ impl<E: Display> Outcome for Result<(), E> {
     }
 }
 
-/// Whether a run or a step succeeded. A failure of a [callback](Error::Callback) stays an error: it
-/// says nothing about the method or its step.
+/// Returns whether a run or a step succeeded. A failure of a [callback](Error::Callback) stays an
+/// error: it says nothing about the method or its step.
 pub(crate) fn succeeded<T>(done: Result<T, Error>) -> Result<bool, Error> {
     match done {
         Err(error @ Error::Callback(_)) => Err(error),

@@ -58,7 +58,7 @@ impl Turn {
         [self.start, self.end.unwrap_or(f64::INFINITY)]
     }
 
-    /// Whether the body turns at any time in an interval (s).
+    /// Returns whether the body turns at any time in an interval (s).
     pub(crate) fn is_on(&self, [from, to]: [f64; 2]) -> bool {
         self.rate != 0.0 && from < self.end.unwrap_or(f64::INFINITY) && to > self.start
     }
@@ -258,7 +258,7 @@ impl Path {
         self
     }
 
-    /// Whether the point is at rest at time t (s) and ever after.
+    /// Returns whether the point is at rest at time t (s) and ever after.
     #[must_use]
     pub fn is_still_from(&self, t: f64) -> bool {
         match self {

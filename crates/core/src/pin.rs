@@ -27,7 +27,7 @@ impl Pin {
         }
     }
 
-    /// Whether the particle is held at time t (s).
+    /// Returns whether the particle is held at time t (s).
     #[must_use]
     pub fn holds_at(&self, t: f64) -> bool {
         self.until.is_none_or(|until| t < until)

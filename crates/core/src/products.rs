@@ -49,9 +49,9 @@ impl Default for SolverHints {
 }
 
 impl SolverHints {
-    /// Whether the same particles are coupled at all x, because no force begins and ends within its
-    /// reach. If not, no factorisation is tried, because the pattern of each would have to be
-    /// analysed.
+    /// Returns whether the same particles are coupled at all x, because no force begins and ends
+    /// within its reach. If not, no factorisation is tried, because the pattern of each would have
+    /// to be analysed.
     pub(crate) fn pattern_is_fixed(&self) -> bool {
         self.reach.is_infinite()
     }

@@ -61,12 +61,12 @@ pub(crate) enum Next {
 }
 
 impl Next {
-    /// Whether the next stage is formed from the y at which the step began.
+    /// Returns whether the next stage is formed from the y at which the step began.
     pub fn is_from_y(self) -> bool {
         matches!(self, Self::FromY(_))
     }
 
-    /// Whether the next stage is extrapolated from the sum.
+    /// Returns whether the next stage is extrapolated from the sum.
     pub fn is_ahead(self) -> bool {
         matches!(self, Self::Ahead { .. })
     }

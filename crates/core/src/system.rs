@@ -143,8 +143,8 @@ pub trait Mechanics {
     /// Visits each pinned particle with its place at time t (s). By default there are none.
     fn pins(&self, _t: f64, _visit: &mut dyn FnMut(usize, Place)) {}
 
-    /// Whether forces depend on positions and time alone, except viscous drag. By default this is
-    /// known of systems that offer both other views, and whose kicks do not read v.
+    /// Returns whether forces depend on positions and time alone, except viscous drag. By default
+    /// this is known of systems that offer both other views, and whose kicks do not read v.
     fn is_positional(&self) -> bool {
         let splitting = self.splitting();
         let reads_velocity = splitting.is_none_or(Splitting::kick_reads_velocity);
@@ -198,8 +198,8 @@ pub trait Splitting {
     /// Writes the forces (N) that [`drift`](Self::drift) leaves out to `f`.
     fn kick_forces(&self, t: f64, x: &[f64], v: &[f64], f: &mut [f64]);
 
-    /// Whether [`kick_forces`](Self::kick_forces) depend on v. A step of velocity Verlet takes one
-    /// evaluation if not, and three otherwise.
+    /// Returns whether [`kick_forces`](Self::kick_forces) depend on v. A step of velocity Verlet
+    /// takes one evaluation if not, and three otherwise.
     fn kick_reads_velocity(&self) -> bool {
         true
     }
@@ -228,8 +228,8 @@ pub trait Linearized: Mechanics {
     /// definite.
     fn couplings(&self, t: f64, x: &[f64], clamped: bool, visit: &mut dyn FnMut(Coupling));
 
-    /// Whether [`couplings`](Self::couplings) are all couplings. If not, implicit methods refuse
-    /// the system.
+    /// Returns whether [`couplings`](Self::couplings) are all couplings. If not, implicit methods
+    /// refuse the system.
     fn lists_all_couplings(&self) -> bool {
         true
     }
@@ -282,13 +282,13 @@ pub(crate) fn rows_of(system: &dyn ParticleSystem) -> Option<&dyn Rows> {
     system.rows().map(|RowsView(rows)| rows)
 }
 
-/// Whether kicks depend on v, or the system has no view that says so.
+/// Returns whether kicks depend on v, or the system has no view that says so.
 pub(crate) fn kick_reads_velocity<M: Mechanics + ?Sized>(system: &M) -> bool {
     let splitting = system.splitting();
     splitting.is_none_or(Splitting::kick_reads_velocity)
 }
 
-/// Whether kicks depend on v; true if unknown.
+/// Returns whether kicks depend on v; true if unknown.
 pub(crate) fn reads_velocity(system: &dyn ParticleSystem) -> bool {
     if let Some(rigid) = rigid_of(system) {
         return rigid.kick_reads_velocity();

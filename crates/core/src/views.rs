@@ -26,14 +26,14 @@ pub(crate) trait Rigid {
     /// and 0 for all the rest of y.
     fn kick(&self, t: f64, terms: Terms, y: &[f64], rates: &mut [f64]);
 
-    /// Whether the forces of a kick depend on velocities.
+    /// Returns whether the forces of a kick depend on velocities.
     fn kick_reads_velocity(&self) -> bool;
 
     /// Moves y from t to t + h (s) by its motion without the forces of a kick.
     fn drift(&self, t: f64, h: f64, terms: Terms, y: &mut [f64]);
 
-    /// Whether number k of the state is a position or a velocity of a point of a body: no f reads
-    /// it, and [`place`](Self::place) writes it.
+    /// Returns whether number k of the state is a position or a velocity of a point of a body: no f
+    /// reads it, and [`place`](Self::place) writes it.
     fn is_carried(&self, k: usize) -> bool;
 
     /// Puts pins and the points of bodies in their places at time t (s).

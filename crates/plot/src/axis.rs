@@ -98,7 +98,7 @@ impl Axis {
         self.places[0] + part.clamp(0.0, 1.0) * (self.places[1] - self.places[0])
     }
 
-    /// Whether a number lies between the ends.
+    /// Returns whether a number lies between the ends.
     #[must_use]
     pub fn is_inside(&self, value: f64) -> bool {
         let value = if self.log { value.log10() } else { value };

@@ -86,12 +86,12 @@ impl Figure {
         self.labels.push(room);
     }
 
-    /// Whether a rectangle is on the sheet and clear of labels.
+    /// Returns whether a rectangle is on the sheet and clear of labels.
     pub(crate) fn is_free(&self, room: Rect) -> bool {
         self.sheet().holds(room) && !self.labels.iter().any(|label| label.overlaps(room))
     }
 
-    /// Whether all labels are on the sheet and none overlaps another.
+    /// Returns whether all labels are on the sheet and none overlaps another.
     pub(crate) fn is_sound(&self) -> bool {
         let free = |(k, label): (usize, &Rect)| {
             let others = &self.labels[..k];

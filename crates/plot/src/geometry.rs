@@ -37,12 +37,12 @@ impl Rect {
         ]
     }
 
-    /// Whether the rectangles overlap in an area.
+    /// Returns whether the rectangles overlap in an area.
     pub fn overlaps(self, other: Self) -> bool {
         self.x0 < other.x1 && other.x0 < self.x1 && self.y0 < other.y1 && other.y0 < self.y1
     }
 
-    /// Whether the other rectangle lies entirely in this one.
+    /// Returns whether the other rectangle lies entirely in this one.
     pub fn holds(self, other: Self) -> bool {
         self.x0 <= other.x0 && other.x1 <= self.x1 && self.y0 <= other.y0 && other.y1 <= self.y1
     }
@@ -57,7 +57,7 @@ impl Rect {
         ]
     }
 
-    /// Whether the line from a to b meets the rectangle (Liang and Barsky, 1984).
+    /// Returns whether the line from a to b meets the rectangle (Liang and Barsky, 1984).
     pub fn meets(self, a: Point, b: Point) -> bool {
         let (mut from, mut to) = (0.0_f64, 1.0_f64);
         for (start, end, lo, hi) in [

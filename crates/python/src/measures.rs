@@ -234,7 +234,7 @@ impl Stability {
         self.0.table()
     }
 
-    /// Whether all was measured.
+    /// Returns whether all was measured.
     fn complete(&self) -> bool {
         self.0.complete
     }

@@ -212,7 +212,7 @@ impl Run {
         Ok(self.simulation(py)?.control().value())
     }
 
-    /// Whether the method chooses its steps.
+    /// Returns whether the method chooses its steps.
     #[getter]
     fn adaptive(&self, py: Python<'_>) -> PyResult<bool> {
         Ok(self.simulation(py)?.control().step().is_none())

@@ -18,7 +18,7 @@ pub struct Simplified(a3::Simplified);
 
 #[pymethods]
 impl Simplified {
-    /// Whether the chart of models was measured.
+    /// Returns whether the chart of models was measured.
     fn has_chart(&self) -> bool {
         self.0.has_chart()
     }

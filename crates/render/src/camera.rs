@@ -79,7 +79,7 @@ impl Camera {
         self.focus = focus;
     }
 
-    /// Whether another camera shows the same in its focus.
+    /// Returns whether another camera shows the same in its focus.
     #[must_use]
     pub fn shows_as(&self, other: &Self) -> bool {
         Self {
@@ -99,7 +99,7 @@ impl Camera {
         }
     }
 
-    /// Whether the projection is parallel: orthographic, not perspective.
+    /// Returns whether the projection is parallel: orthographic, not perspective.
     #[must_use]
     pub fn is_parallel(&self) -> bool {
         self.parallel

@@ -175,7 +175,7 @@ impl Gpu {
         format!("{} ({})", info.name, info.backend)
     }
 
-    /// Whether the adapter is software that runs on the processor.
+    /// Returns whether the adapter is software that runs on the processor.
     #[must_use]
     pub fn is_software(&self) -> bool {
         self.adapter.get_info().device_type == wgpu::DeviceType::Cpu

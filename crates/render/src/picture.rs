@@ -251,7 +251,7 @@ impl Tile {
         self.width as f32 / self.height as f32
     }
 
-    /// Whether a point of the target (px) is in this part.
+    /// Returns whether a point of the target (px) is in this part.
     #[must_use]
     pub fn contains(&self, [x, y]: [f32; 2]) -> bool {
         let (left, top) = (self.x as f32, self.y as f32);

@@ -76,7 +76,7 @@ impl Budget {
     }
 }
 
-/// Whether the system can give the process this much memory (bytes).
+/// Returns whether the system can give the process this much memory (bytes).
 fn is_free(bytes: usize) -> bool {
     std::hint::black_box(&mut Vec::<u8>::new())
         .try_reserve_exact(bytes)

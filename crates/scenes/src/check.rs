@@ -13,12 +13,12 @@ const MAX_COORDINATE: f64 = 1e9;
 /// Message for a place with a coordinate beyond the bounds.
 pub(crate) const COORDINATES: &str = "each coordinate must be a number from -1e9 to 1e9";
 
-/// Whether a number of a scene is within the bounds, and not NaN.
+/// Returns whether a number of a scene is within the bounds, and not NaN.
 pub(crate) fn within(x: f64) -> bool {
     x.abs() <= MAX_NUMBER
 }
 
-/// Whether a coordinate is within the bounds, and not NaN.
+/// Returns whether a coordinate is within the bounds, and not NaN.
 pub(crate) fn is_coordinate(x: f64) -> bool {
     x.abs() <= MAX_COORDINATE
 }

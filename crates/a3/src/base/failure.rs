@@ -43,12 +43,12 @@ pub enum Failure {
 impl std::error::Error for Failure {}
 
 impl Failure {
-    /// A failure of the work itself.
+    /// Returns a failure of the work itself.
     pub fn run(why: impl Display) -> Self {
         Self::Run(why.to_string())
     }
 
-    /// A mistake in the command line.
+    /// Returns a mistake in the command line.
     pub fn usage(why: impl Display) -> Self {
         Self::Usage(why.to_string())
     }

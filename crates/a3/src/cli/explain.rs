@@ -87,14 +87,14 @@ fn mistake(error: &clap::Error, args: &[OsString]) -> String {
     }
 }
 
-/// Message for a name that is not UTF-8, which is the first such argument.
+/// Returns the message for a name that is not UTF-8, which is the first such argument.
 fn not_utf_8(args: &[OsString]) -> String {
     let name = args.iter().find(|arg| arg.to_str().is_none());
     let name = quoted(&name.map(|name| name.to_string_lossy()).unwrap_or_default());
     format!("{name} is not UTF-8: give the file a name in UTF-8")
 }
 
-/// Message for an unknown argument.
+/// Returns the message for an unknown argument.
 fn unknown(arg: &str, similar: &str) -> String {
     let arg = quoted(arg);
     if !similar.is_empty() {
@@ -112,7 +112,7 @@ fn unknown(arg: &str, similar: &str) -> String {
     format!("{arg} is one word too many; --help shows what is expected")
 }
 
-/// Message for two arguments that exclude each other.
+/// Returns the message for two arguments that exclude each other.
 fn conflict(error: &clap::Error, arg: &str) -> String {
     let others = list(error, ContextKind::PriorArg);
     let both = [&[arg.to_owned()], &others[..]].concat();
@@ -135,7 +135,7 @@ fn conflict(error: &clap::Error, arg: &str) -> String {
     format!("give either {}, not both", both.join(" or "))
 }
 
-/// Whether a mistake is one of the options of `a3 choose`.
+/// Returns whether a mistake is one of the options of `a3 choose`.
 fn is_of_choose(error: &clap::Error) -> bool {
     let usage = error.get(ContextKind::Usage);
     usage.is_some_and(|usage| usage.to_string().contains("a3 choose"))
@@ -145,7 +145,7 @@ fn either_error_or_budget() -> String {
     "choose takes either --error E (in m) or --budget MS (in ms per frame)".into()
 }
 
-/// An argument as it is typed, without clap's brackets.
+/// Returns an argument as it is typed, without clap's brackets.
 fn without_brackets(arg: &str) -> String {
     quoted(&arg.replace(['<', '>', '[', ']'], ""))
 }

@@ -27,7 +27,7 @@ fn within(text: &str, range: RangeInclusive<f64>, right: &str) -> Result<f64, St
     }
 }
 
-/// Message for a number with a decimal comma.
+/// Returns the message for a number with a decimal comma.
 fn decimal_point_advice(text: &str) -> Option<String> {
     let point = text.replacen(',', ".", 1);
     (point != text && number(&point).is_some()).then(|| format!("use a decimal point: {point}"))

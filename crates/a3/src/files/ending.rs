@@ -17,7 +17,7 @@ impl Ending {
     /// All formats.
     pub const ALL: [Self; 3] = [Self::Gif, Self::Mp4, Self::Png];
 
-    /// Name for people.
+    /// Returns the name for people.
     pub fn name(self) -> &'static str {
         match self {
             Self::Gif => "GIF",
@@ -26,7 +26,7 @@ impl Ending {
         }
     }
 
-    /// Ending of the names of its files.
+    /// Returns the ending of the names of its files.
     pub fn of_files(self) -> &'static str {
         match self {
             Self::Gif => ".gif",

@@ -69,8 +69,8 @@ impl Request {
         })
     }
 
-    /// The same request by a description alone: the grid, the wind and the self-collision of the
-    /// options are in it.
+    /// Returns the same request by a description alone: the grid, the wind and the self-collision
+    /// of the options are in it.
     pub fn described(&self) -> Self {
         let mut options = self.options.clone();
         let mut description = Description::clone(&self.source.description);
@@ -87,7 +87,7 @@ impl Request {
         }
     }
 
-    /// The same request with another description.
+    /// Returns the same request with another description.
     pub fn with(&self, description: Description) -> Self {
         Self {
             source: self.source.described(description),

@@ -167,8 +167,8 @@ impl TwoRuns {
     }
 }
 
-/// Whether particles start in a plane, with velocities in it, and two runs separate mostly out of
-/// it.
+/// Returns whether particles start in a plane, with velocities in it, and two runs separate mostly
+/// out of it.
 fn leaves_plane(start: &[f64], run: &Simulation, beside: &Simulation) -> bool {
     let n = run.particles();
     if n == 0 {

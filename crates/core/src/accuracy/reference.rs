@@ -192,7 +192,7 @@ impl Reference {
         (count > 0).then(|| (self.frames.time(count as u64), worst))
     }
 
-    /// Whether errors at frame k, counted from 1, count.
+    /// Returns whether errors at frame k, counted from 1, count.
     #[must_use]
     pub fn counts(&self, k: u64) -> bool {
         !self.scope.at_end || k == self.frames.count
@@ -253,7 +253,7 @@ impl Making<'_> {
         }
     }
 
-    /// Whether errors are small enough.
+    /// Returns whether errors are small enough.
     fn is_enough(&self, errors: &Errors) -> bool {
         self.precision.metric.of(errors) <= self.precision.uncertainty
     }
@@ -384,7 +384,7 @@ impl Making<'_> {
     }
 }
 
-/// Whether disagreements no longer fall.
+/// Returns whether disagreements no longer fall.
 fn is_stuck(history: &[f64]) -> bool {
     match history {
         [.., before, _, last] => before.is_finite() && *last > STUCK_RATIO * before,

@@ -92,7 +92,7 @@ pub enum Constraint {
 }
 
 impl Constraint {
-    /// Its particle, and the other one of a rod, a rope or a joint.
+    /// Returns its particle, and the other one of a rod, a rope or a joint.
     #[must_use]
     pub fn ends(&self) -> (usize, Option<usize>) {
         match *self {
@@ -105,7 +105,7 @@ impl Constraint {
         }
     }
 
-    /// Its joint, if it is a joint or the end of one.
+    /// Returns its joint, if it is a joint or the end of one.
     pub(super) fn joint(&self) -> Option<&Joint> {
         match self {
             Self::Joint(joint) | Self::Stop(Stop { joint, .. }) => Some(joint),
@@ -113,7 +113,7 @@ impl Constraint {
         }
     }
 
-    /// Number of its equations as a joint.
+    /// Returns the number of its equations as a joint.
     pub(super) fn joint_equations(&self) -> usize {
         match self {
             Self::Joint(joint) => joint.count(),
@@ -122,7 +122,7 @@ impl Constraint {
         }
     }
 
-    /// Equation of a number as a joint with these sides.
+    /// Returns the equation of a number as a joint with these sides.
     pub(super) fn joint_equation(&self, number: usize, sides: &[Side; 2]) -> JointEquation {
         match self {
             Self::Joint(joint) => joint.equation(number, sides),
@@ -131,18 +131,18 @@ impl Constraint {
         }
     }
 
-    /// Whether it is the end of a joint that is clearly away from it.
+    /// Returns whether it is the end of a joint that is clearly away from it.
     pub(super) fn is_away(&self, equation: &JointEquation) -> bool {
         matches!(self, Self::Stop(Stop { joint, .. }) if equation.value < -SLACK_SHARE * joint.length)
     }
 
-    /// Whether it is the end of a joint.
+    /// Returns whether it is the end of a joint.
     pub(super) fn is_end(&self) -> bool {
         matches!(self, Self::Stop(_))
     }
 
-    /// Whether it is the end of a joint, and a joint with this equation is past it, or moves past
-    /// it from there.
+    /// Returns whether it is the end of a joint, and a joint with this equation is past it, or
+    /// moves past it from there.
     pub(super) fn is_passed(&self, equation: &JointEquation, what: Projected) -> bool {
         let Self::Stop(Stop { joint, .. }) = self else {
             return false;
@@ -155,12 +155,12 @@ impl Constraint {
         }
     }
 
-    /// Whether it is a rope that is clearly shorter than its length.
+    /// Returns whether it is a rope that is clearly shorter than its length.
     pub(super) fn is_slack(&self, equation: &Equation) -> bool {
         matches!(self, Self::Rope { length, .. } if equation.value < -SLACK_SHARE * length)
     }
 
-    /// Distance (m) that one of its equations is about; `None` for one that is linear.
+    /// Returns the distance (m) that one of its equations is about; `None` for one that is linear.
     pub(super) fn distance(&self, equation: &Equation) -> Option<f64> {
         let length = match *self {
             Self::Point { .. } | Self::Line { .. } | Self::Joint(_) | Self::Stop(_) => return None,
@@ -171,12 +171,13 @@ impl Constraint {
         (distance > CENTER_SHARE * length).then_some(distance)
     }
 
-    /// Whether it is a rope, which holds only while it is taut, or the end of a joint.
+    /// Returns whether it is a rope, which holds only while it is taut, or the end of a joint.
     pub(super) fn is_one_sided(&self) -> bool {
         matches!(self, Self::Rope { .. } | Self::Stop(_))
     }
 
-    /// The same constraint with directions of length 1, or an error if its numbers are invalid.
+    /// Returns the same constraint with directions of length 1, or an error if its numbers are
+    /// invalid.
     pub(super) fn checked(self) -> Result<Self, Error> {
         match self {
             Self::Point { position, .. } => finite("a constraint's point", position)?,

@@ -26,8 +26,8 @@ pub(super) struct Pattern {
 }
 
 impl Pattern {
-    /// Pattern of rows, each with the places of all that it moves, or 0; there are `places` of
-    /// them.
+    /// Creates a pattern of rows, each with the places of all that it moves, or 0; there are
+    /// `places` of them.
     pub fn new(rows: &[[usize; 4]], places: usize) -> Self {
         let mut at_place = vec![vec![]; places];
         let (mut meeting, most) = (vec![], MAX_ELEMENTS_PER_ROW * rows.len());
@@ -80,7 +80,7 @@ impl Factor {
         })
     }
 
-    /// Whether it is a factor of that pattern.
+    /// Returns whether it is a factor of that pattern.
     pub fn is_of(&self, pattern: &Arc<Pattern>) -> bool {
         Arc::ptr_eq(&self.pattern, pattern)
     }

@@ -26,7 +26,7 @@ const MAX_DISPLACEMENT: f64 = 0.3;
 const JITTER: f64 = 1e-2;
 
 impl Constraint {
-    /// Its name.
+    /// Returns its name.
     pub(crate) fn name(&self) -> ConstraintName {
         let (kind, particle, other) = match *self {
             Self::Point { particle, .. } => ("point", particle, None),
@@ -45,7 +45,7 @@ impl Constraint {
         }
     }
 
-    /// Error (m) of one of its equations: a rope may be shorter than its length.
+    /// Returns the error (m) of one of its equations: a rope may be shorter than its length.
     pub(super) fn error(&self, equation: &Equation) -> f64 {
         if self.is_one_sided() {
             equation.value.max(0.0)
@@ -54,7 +54,7 @@ impl Constraint {
         }
     }
 
-    /// Its own length (m), if it has one.
+    /// Returns its own length (m), if it has one.
     fn length(&self) -> Option<f64> {
         match *self {
             Self::Rod { length, .. } | Self::Rope { length, .. } => Some(length),
@@ -66,13 +66,13 @@ impl Constraint {
 }
 
 impl Constraints {
-    /// The largest error |C| (m) at x. `rotation` returns the rotation matrix of a body.
+    /// Returns the largest error |C| (m) at x. `rotation` returns the rotation matrix of a body.
     pub fn error(&self, x: &[f64], rotation: impl Fn(usize) -> Matrix3<f64>) -> Option<f64> {
         let all = (0..self.all.len()).map(|number| self.error_of(number, x, &rotation));
         all.reduce(f64::max)
     }
 
-    /// The largest error (m) of the constraint of a number at x.
+    /// Returns the largest error (m) of the constraint of a number at x.
     fn error_of(&self, number: usize, x: &[f64], rotation: impl Fn(usize) -> Matrix3<f64>) -> f64 {
         let (constraint, mut error) = (&self.all[number], 0.0_f64);
         let turned = |place: usize| match self.moved[place] {
@@ -92,8 +92,8 @@ impl Constraints {
         error
     }
 
-    /// The constraint with the largest error at x, in a scene of that radius (m). `rotation`
-    /// returns the rotation matrix of a body.
+    /// Returns the constraint with the largest error at x, in a scene of that radius (m).
+    /// `rotation` returns the rotation matrix of a body.
     pub fn worst(
         &self,
         x: &[f64],
@@ -115,8 +115,8 @@ impl Constraints {
         worst
     }
 
-    /// A constraint that no positions near x (m) can meet, if there is one; particles without
-    /// inverse mass are fixed. Always `None` if constraints hold rigid bodies.
+    /// Returns a constraint that no positions near x (m) can meet, if there is one; particles
+    /// without inverse mass are fixed. Always `None` if constraints hold rigid bodies.
     pub fn contradiction(
         &self,
         inverse_masses: &[f64],
@@ -137,7 +137,7 @@ impl Constraints {
         self.approach(inverse_masses, x, radius).map(|_| left)
     }
 
-    /// The shortest length of a constraint (m).
+    /// Returns the shortest length of a constraint (m).
     fn shortest(&self, radius: f64) -> f64 {
         let lengths = self.all.iter().map(|c| c.length().unwrap_or(radius));
         lengths.fold(f64::INFINITY, f64::min)
@@ -200,7 +200,8 @@ impl Constraints {
         system.spread();
     }
 
-    /// Position of the first particle of a constraint, relative to the second one if it has one.
+    /// Returns the position of the first particle of a constraint, relative to the second one if it
+    /// has one.
     pub(super) fn relative(&self, number: usize, x: &[f64]) -> Vector3<f64> {
         let (first, second) = self.all[number].ends();
         let from = second.map_or_else(Vector3::zeros, |j| vector(x, j));

@@ -100,7 +100,7 @@ pub(super) struct JointEquation {
 }
 
 impl JointKind {
-    /// Its name.
+    /// Returns its name.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -113,9 +113,9 @@ impl JointKind {
 }
 
 impl Joint {
-    /// Joint of bodies with these centres and poses, the second one of which may be the world, at a
-    /// point (m), about or along an axis, of any length but 0. A particle of no body has the pose
-    /// of a place. Errors of directions count at the end of a length (m).
+    /// Creates a joint of bodies with these centres and poses, the second one of which may be the
+    /// world, at a point (m), about or along an axis, of any length but 0. A particle of no body
+    /// has the pose of a place. Errors of directions count at the end of a length (m).
     ///
     /// # Errors
     /// The axis has no length.
@@ -147,7 +147,7 @@ impl Joint {
         })
     }
 
-    /// Number of its equations.
+    /// Returns the number of its equations.
     pub(super) fn count(&self) -> usize {
         match self.kind {
             JointKind::Ball => 3,
@@ -156,7 +156,7 @@ impl Joint {
         }
     }
 
-    /// The same joint, or an error if its numbers are invalid.
+    /// Returns the same joint, or an error if its numbers are invalid.
     pub(super) fn check(&self) -> Result<(), Error> {
         positive("the length of a joint", self.length)?;
         if self.second == Some(self.first) {
@@ -193,8 +193,8 @@ impl Joint {
         ))
     }
 
-    /// Its sides in the state (x, v). `turned` returns the rotation matrix and the angular velocity
-    /// of the body on a side, if there is one.
+    /// Returns its sides in the state (x, v). `turned` returns the rotation matrix and the angular
+    /// velocity of the body on a side, if there is one.
     pub(super) fn sides(
         &self,
         [x, v]: [&[f64]; 2],
@@ -223,7 +223,7 @@ impl Joint {
         })
     }
 
-    /// Equation of a number with these sides.
+    /// Returns the equation of a number with these sides.
     pub(super) fn equation(&self, number: usize, sides: &[Side; 2]) -> JointEquation {
         let [own, other] = sides;
         match (self.kind, number) {
@@ -241,7 +241,7 @@ impl Joint {
         }
     }
 
-    /// The equation that two axes are perpendicular: one of three.
+    /// Returns the equation that two axes are perpendicular: one of three.
     fn right_angle(&self, own: &Side, other: &Side, number: usize) -> JointEquation {
         let (i, j) = [(0, 1), (0, 2), (1, 2)][number];
         let (a, u) = (own.axes.column(i), other.axes.column(j));
@@ -278,7 +278,7 @@ impl Stop {
         )))
     }
 
-    /// Its equation with these sides. The error is negative between the limits.
+    /// Returns its equation with these sides. The error is negative between the limits.
     pub(super) fn equation(&self, [own, other]: &[Side; 2]) -> JointEquation {
         let axis = other.axes.column(0).into_owned();
         let (sign, bound) = if self.is_upper {
@@ -311,7 +311,7 @@ impl Stop {
         equation
     }
 
-    /// Angle of a hinge (rad), within half a turn of the middle of its limits.
+    /// Returns the angle of a hinge (rad), within half a turn of the middle of its limits.
     fn angle(&self, own: &Side, other: &Side) -> f64 {
         let (side, [_, u, w]) = (own.axes.column(1), [0, 1, 2].map(|j| other.axes.column(j)));
         let middle = 0.5 * (self.limits[0] + self.limits[1]);
@@ -320,8 +320,8 @@ impl Stop {
     }
 }
 
-/// The equation that the sides are at the same place along an axis, which turns with the second
-/// body at this angular velocity (rad/s), or not at all.
+/// Returns the equation that the sides are at the same place along an axis, which turns with the
+/// second body at this angular velocity (rad/s), or not at all.
 fn along(
     own: &Side,
     other: &Side,
@@ -355,7 +355,7 @@ pub(super) fn check_restitution(of: &str, restitution: f64) -> Result<(), Error>
     )))
 }
 
-/// Two unit vectors, perpendicular to a third and to one another.
+/// Returns two unit vectors, perpendicular to a third and to one another.
 pub(super) fn normals(direction: Vector3<f64>) -> [Vector3<f64>; 2] {
     let mut axis = Vector3::zeros();
     axis[direction.iamin()] = 1.0;

@@ -151,8 +151,8 @@ fn spread(constraints: &Constraints, system: &System, out: &mut [f64]) {
     }
 }
 
-/// Second derivative (1/m) of the last equation of a constraint at a distance from its centre, or
-/// between its ends, along a unit vector.
+/// Returns the second derivative (1/m) of the last equation of a constraint at a distance from its
+/// centre, or between its ends, along a unit vector.
 fn curvature(constraint: &Constraint, outwards: Vector3<f64>, distance: f64) -> Matrix3<f64> {
     let mut within = Matrix3::identity() - outwards * outwards.transpose();
     if let Constraint::Circle { normal, .. } = constraint {

@@ -27,7 +27,7 @@ pub(crate) struct Stretched {
 /// Function that returns the rotation matrix and the angular velocity (rad/s) of a body.
 pub(crate) type Turned<'a> = &'a dyn Fn(usize) -> (Matrix3<f64>, Vector3<f64>);
 
-/// Whether there are ropes, or joints that end.
+/// Returns whether there are ropes, or joints that end.
 pub(crate) fn has_ropes(constraints: &Constraints) -> bool {
     constraints.all.iter().any(Constraint::is_one_sided)
 }

@@ -36,12 +36,12 @@ impl Row {
         }
     }
 
-    /// Its parts, with their places.
+    /// Returns its parts, with their places.
     fn parts(&self) -> &[(usize, Vector3<f64>)] {
         &self.parts[..self.used]
     }
 
-    /// Its product with a vector.
+    /// Returns its product with a vector.
     pub fn product(&self, vectors: &[Vector3<f64>]) -> f64 {
         let terms = self.parts().iter().map(|(i, part)| part.dot(&vectors[*i]));
         terms.sum()
@@ -54,7 +54,7 @@ impl Row {
         }
     }
 
-    /// Element J W J^T of this row and another.
+    /// Returns the element J W J^T of this row and another.
     pub fn element(&self, other: &Self, weights: &[Vector3<f64>]) -> f64 {
         let mut sum = 0.0;
         for (i, part) in self.parts() {
@@ -82,23 +82,23 @@ impl Row {
         self.target = target * self.scale;
     }
 
-    /// Whether the row is left out, because no force has an effect.
+    /// Returns whether the row is left out, because no force has an effect.
     pub fn is_left_out(&self) -> bool {
         self.scale == 0.0
     }
 
-    /// Multiplier of the row as it was before it was scaled.
+    /// Returns the multiplier of the row as it was before it was scaled.
     pub fn unscaled(&self) -> f64 {
         self.scale * self.multiplier
     }
 
-    /// What J^T lambda has at a place.
+    /// Returns the product J^T lambda at a place.
     pub fn at(&self, place: usize) -> Vector3<f64> {
         let own = self.parts().iter().filter(|(own, _)| *own == place);
         own.map(|(_, part)| part * self.multiplier).sum()
     }
 
-    /// The force J^T lambda on its first particle (N).
+    /// Returns the force J^T lambda on its first particle (N).
     pub fn force(&self) -> Vector3<f64> {
         self.parts[0].1 * self.multiplier
     }

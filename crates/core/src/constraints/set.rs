@@ -123,7 +123,7 @@ impl Constraints {
         Ok(())
     }
 
-    /// The same constraints, after particles were assigned to other bodies.
+    /// Returns the same constraints, after particles were assigned to other bodies.
     pub fn with_carriers(
         &self,
         carrier: impl Fn(usize) -> Option<(usize, usize)>,
@@ -139,12 +139,12 @@ impl Constraints {
         Ok(constraints)
     }
 
-    /// All constraints, in the order in which they were added.
+    /// Returns all constraints, in the order in which they were added.
     pub fn all(&self) -> &[Constraint] {
         &self.all
     }
 
-    /// Natural frequency (1/s) with which errors decay.
+    /// Returns the natural frequency (1/s) with which errors decay.
     pub fn baumgarte_frequency(&self) -> f64 {
         self.baumgarte_frequency
     }
@@ -379,7 +379,7 @@ fn fill(row: &mut Row, ends: [Held; 2], turnings: &[Option<Turning>], equation: 
     }
 }
 
-/// The row of particle i.
+/// Returns the row of particle i.
 pub(super) fn vector(a: &[f64], i: usize) -> Vector3<f64> {
     let n = a.len() / 3;
     Vector3::new(a[i], a[n + i], a[2 * n + i])

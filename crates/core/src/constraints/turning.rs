@@ -17,7 +17,7 @@ pub(crate) struct Turning {
 }
 
 impl Turning {
-    /// Rotation matrix, and angular velocity (rad/s).
+    /// Returns the rotation matrix, and angular velocity (rad/s).
     pub(super) fn turned(&self) -> (Matrix3<f64>, Vector3<f64>) {
         (self.rotation, self.spin)
     }
@@ -42,7 +42,7 @@ impl Lever {
         }
     }
 
-    /// Torque of a force at the point, along the principal axes.
+    /// Returns the torque of a force at the point, along the principal axes.
     pub(super) fn of(&self, force: Vector3<f64>) -> Vector3<f64> {
         self.rotation.tr_mul(&self.arm.cross(&force))
     }

@@ -226,8 +226,8 @@ fn sinks_to(gap: f64, height: f64, rise: f64, tolerance: f64, approach: f64) -> 
     (above + rise < near).then(|| (above - near) / -rise)
 }
 
-/// Whether the boxes of two primitives in motion, relative to point 0, are farther apart than a
-/// gap.
+/// Returns whether the boxes of two primitives in motion, relative to point 0, are farther apart
+/// than a gap.
 pub(super) fn are_apart(
     kind: PairKind,
     from: &[Vector3<f64>; 4],

@@ -252,7 +252,8 @@ impl Candidates {
             .list(surface, &course, renewed, self.parallel, &mut self.pairs);
     }
 
-    /// Whether a pair may come nearer than its thickness and a gap (m) in the stretch covered last.
+    /// Returns whether a pair may come nearer than its thickness and a gap (m) in the stretch
+    /// covered last.
     fn is_near(&self, pair: &Listed, gap: f64) -> bool {
         let room = pair.gap(self.since) - gap;
         room < 2.0 * self.farthest && room < pair.candidate.approach(&self.travel)

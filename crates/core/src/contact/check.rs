@@ -63,8 +63,8 @@ pub fn crossed(layer: &ContactLayer, t: f64, x: &[f64]) -> Vec<Crossed> {
         .lend(|buffers| crossed_with(layer, buffers, t, x))
 }
 
-/// Whether too many primitives of a thickness (m) are close together at time t (s), with particles
-/// at x (m), n x 3, to list their pairs: those whose boxes meet.
+/// Returns whether too many primitives of a thickness (m) are close together at time t (s), with
+/// particles at x (m), n x 3, to list their pairs: those whose boxes meet.
 pub(crate) fn is_crowded(layer: &ContactLayer, t: f64, x: &[f64], thickness: f64) -> bool {
     let surface = layer.surface();
     let mut places = vec![];

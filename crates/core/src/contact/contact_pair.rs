@@ -167,7 +167,7 @@ impl ContactPair {
         arms.into_iter().flatten().flatten()
     }
 
-    /// Whether a side is a rigid body.
+    /// Returns whether a side is a rigid body.
     pub fn is_rigid(&self) -> bool {
         self.rigid.is_some()
     }
@@ -183,8 +183,8 @@ impl ContactPair {
         Some([first?, second?])
     }
 
-    /// Whether impulses at this contact have the same effect on two rigid bodies as those at
-    /// another.
+    /// Returns whether impulses at this contact have the same effect on two rigid bodies as those
+    /// at another.
     pub fn is_at(&self, other: &Self) -> bool {
         let arms = self.both_arms().zip(other.both_arms());
         arms.is_some_and(|(own, others)| {
@@ -228,7 +228,7 @@ impl ContactPair {
         }
     }
 
-    /// Whether the closest points do not approach.
+    /// Returns whether the closest points do not approach.
     pub fn parts(&self, field: &Field) -> bool {
         self.relative(field).dot(&self.normal) >= 0.0
     }

@@ -69,7 +69,7 @@ fn tree<const N: usize>(primitives: impl Iterator<Item = [Vector3<f64>; N]>) -> 
     Bvh::new(&primitives.map(Aabb::around).collect::<Vec<_>>())
 }
 
-/// Whether a closed edge and a closed triangle have a point in common.
+/// Returns whether a closed edge and a closed triangle have a point in common.
 fn edge_meets_triangle([p, q]: [Vector3<f64>; 2], [a, b, c]: [Vector3<f64>; 3]) -> bool {
     let sides = [[a, b], [b, c], [c, a]];
     // Most pairs of a smooth surface lie beside one another. This test is cheaper than that of
@@ -98,7 +98,7 @@ fn edge_meets_triangle([p, q]: [Vector3<f64>; 2], [a, b, c]: [Vector3<f64>; 3]) 
         })
 }
 
-/// Whether two closed edges have a point in common.
+/// Returns whether two closed edges have a point in common.
 fn edges_meet([p, q]: [Vector3<f64>; 2], [a, b]: [Vector3<f64>; 2]) -> bool {
     if side(p, q, a, b) != 0.0 {
         return false;

@@ -17,8 +17,8 @@ use super::surface::Surface;
 use crate::geometry::PairKind;
 
 impl Surface {
-    /// Whether a pair at these positions (m) does not repel, because a neighbouring triangle in the
-    /// same plane does.
+    /// Returns whether a pair at these positions (m) does not repel, because a neighbouring
+    /// triangle in the same plane does.
     pub(super) fn is_beside(&self, candidate: &Candidate, x: &[Vector3<f64>; 4]) -> bool {
         let [i, a, b, c] = candidate.points;
         match candidate.kind {

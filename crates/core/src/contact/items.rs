@@ -62,7 +62,7 @@ impl Items {
         &self.corners[..self.triangles]
     }
 
-    /// Whether edge k is a side of a triangle.
+    /// Returns whether edge k is a side of a triangle.
     pub fn is_side(&self, k: usize) -> bool {
         k < self.sides
     }

@@ -174,7 +174,7 @@ impl ContactLayer {
         });
     }
 
-    /// Whether the forces depend on velocities.
+    /// Returns whether the forces depend on velocities.
     pub(crate) fn is_damped(&self) -> bool {
         self.surface.is_damped()
     }

@@ -183,7 +183,7 @@ struct Query<'a> {
 }
 
 impl Query<'_> {
-    /// Whether one of these vertices has a new course.
+    /// Returns whether one of these vertices has a new course.
     fn is_new(&self, points: &[u32]) -> bool {
         self.renewed
             .is_none_or(|renewed| points.iter().any(|i| renewed[*i as usize]))

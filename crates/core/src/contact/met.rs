@@ -183,8 +183,8 @@ impl Met<'_> {
         }
     }
 
-    /// Whether a particle that the step took from x0 to x may have passed through the obstacle:
-    /// whether it moved relative to it by more than half of its greatest depth.
+    /// Returns whether a particle that the step took from x0 to x may have passed through the
+    /// obstacle: whether it moved relative to it by more than half of its greatest depth.
     fn may_pass(&self, x0: Vector3<f64>, x: Vector3<f64>) -> bool {
         let shape = &self.obstacle.shape;
         let way = (x - self.carried(x0)).norm();

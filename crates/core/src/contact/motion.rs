@@ -172,7 +172,7 @@ impl Motion {
         self.solids[k].rotate_points(k, &self.x0, &mut self.moves);
     }
 
-    /// Whether vertex i of a surface is kinematic, so that contact does not move it.
+    /// Returns whether vertex i of a surface is kinematic, so that contact does not move it.
     pub fn is_kinematic(&self, surface: &Surface, i: u32) -> bool {
         match surface.solid(i) {
             Some(k) => self.solids[k].is_kinematic(),

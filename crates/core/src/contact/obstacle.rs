@@ -57,7 +57,7 @@ impl Obstacle {
         -self.shape.separation(seen).distance
     }
 
-    /// Whether it neither moves nor turns.
+    /// Returns whether it neither moves nor turns.
     #[must_use]
     pub fn is_still(&self) -> bool {
         matches!(self.path, Path::Still(_)) && self.turn.is_none()

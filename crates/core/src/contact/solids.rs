@@ -153,7 +153,7 @@ impl Solid {
         })
     }
 
-    /// Whether the body is kinematic: its centre is pinned.
+    /// Returns whether the body is kinematic: its centre is pinned.
     pub fn is_kinematic(&self) -> bool {
         self.inverse_mass == 0.0
     }
@@ -295,7 +295,7 @@ impl Arm {
         solids[self.solid].inverse_inertia
     }
 
-    /// Whether another arm of the body ends at the same point.
+    /// Returns whether another arm of the body ends at the same point.
     pub fn is_at(&self, other: &Self) -> bool {
         (self.lever - other.lever).norm() < SAME_TOLERANCE * self.lever.norm()
     }

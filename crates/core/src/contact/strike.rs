@@ -278,8 +278,8 @@ impl Impact {
         Some(impact)
     }
 
-    /// Whether impulses of this impact have the same effect as those of another one between the
-    /// same bodies.
+    /// Returns whether impulses of this impact have the same effect as those of another one between
+    /// the same bodies.
     fn is_same_as(&self, other: &Self, surface: &Surface) -> bool {
         let first = self.candidate.kind.first();
         let bodies = |impact: &Self| {

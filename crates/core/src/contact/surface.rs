@@ -212,7 +212,7 @@ impl Surface {
         edges.copied().filter(|[a, b]| a != b)
     }
 
-    /// Whether damping acts anywhere.
+    /// Returns whether damping acts anywhere.
     pub(super) fn is_damped(&self) -> bool {
         let takes = |skin: &Skin| skin.damping > 0.0 || skin.restitution > 0.0;
         self.skins.iter().any(takes)
@@ -229,19 +229,20 @@ impl Surface {
         (solid > 0).then(|| solid as usize - 1)
     }
 
-    /// Whether an edge of a rigid shape is between coplanar triangles.
+    /// Returns whether an edge of a rigid shape is between coplanar triangles.
     pub(super) fn is_flat(&self, [a, b]: [u32; 2]) -> bool {
         !self.flat.is_empty() && self.flat.binary_search(&[a.min(b), a.max(b)]).is_ok()
     }
 
-    /// Whether a vertex is a particle without triangles and edges, or a point of a round shape.
+    /// Returns whether a vertex is a particle without triangles and edges, or a point of a round
+    /// shape.
     pub(super) fn is_single(&self, vertex: u32) -> bool {
         let is_alone = || self.singles.get(vertex as usize).is_some_and(|is| *is);
         self.radius(vertex) > 0.0 || is_alone()
     }
 
-    /// Whether two primitives, given by their vertices, do not touch: on the same rigid body, where
-    /// a joint joins them, or as a fluid and a rigid body.
+    /// Returns whether two primitives, given by their vertices, do not touch: on the same rigid
+    /// body, where a joint joins them, or as a fluid and a rigid body.
     pub(super) fn are_one(&self, a: &[u32], b: &[u32]) -> bool {
         let solids = [self.solid(a[0]), self.solid(b[0])];
         let is_drop = |i: u32| self.drops.vertices.binary_search(&i).is_ok();
@@ -267,19 +268,19 @@ impl Surface {
         self.thickest
     }
 
-    /// Whether friction acts anywhere.
+    /// Returns whether friction acts anywhere.
     pub(super) fn is_rough(&self) -> bool {
         self.skins
             .iter()
             .any(|skin| skin.friction > 0.0 || skin.rolling > 0.0)
     }
 
-    /// Whether anything is rigid or elastic.
+    /// Returns whether anything is rigid or elastic.
     pub(super) fn is_rigid_or_elastic(&self) -> bool {
         !self.rigid.is_empty() || self.skins.iter().any(|skin| skin.restitution > 0.0)
     }
 
-    /// Whether a side of a pair is rigid, or the pair elastic.
+    /// Returns whether a side of a pair is rigid, or the pair elastic.
     pub(super) fn is_rigid_or_elastic_pair(&self, kind: PairKind, points: &[u32; 4]) -> bool {
         let sides = [points[0], points[kind.first()]];
         sides

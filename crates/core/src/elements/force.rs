@@ -74,12 +74,12 @@ pub(crate) trait Force {
         None
     }
 
-    /// Whether the force depends on time, and so does work on the network from outside.
+    /// Returns whether the force depends on time, and so does work on the network from outside.
     fn is_driven(&self) -> bool {
         false
     }
 
-    /// Whether the force is that of the wind.
+    /// Returns whether the force is that of the wind.
     fn is_wind(&self) -> bool {
         false
     }
@@ -99,13 +99,13 @@ pub(crate) trait Force {
     /// `clamped`, each stiffness is positive semi-definite.
     fn couplings(&self, _t: f64, _x: &[f64], _clamped: bool, _visit: &mut dyn FnMut(Coupling)) {}
 
-    /// Whether [`couplings`](Self::couplings) visits all pairs. If not, implicit methods refuse the
-    /// network.
+    /// Returns whether [`couplings`](Self::couplings) visits all pairs. If not, implicit methods
+    /// refuse the network.
     fn lists_all_couplings(&self) -> bool {
         true
     }
 
-    /// Whether products with the couplings are computed together, and not one by one.
+    /// Returns whether products with the couplings are computed together, and not one by one.
     fn multiplies_together(&self) -> bool {
         false
     }
@@ -127,7 +127,7 @@ pub(crate) trait Force {
         None
     }
 
-    /// Whether the forces depend on velocities.
+    /// Returns whether the forces depend on velocities.
     fn reads_velocity(&self) -> bool {
         false
     }

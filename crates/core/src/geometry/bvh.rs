@@ -78,7 +78,7 @@ impl Aabb {
         }
     }
 
-    /// Whether two boxes have a point in common, such as a corner.
+    /// Returns whether two boxes have a point in common, such as a corner.
     fn meets(&self, other: &Self) -> bool {
         // One branch for all axes.
         let gap = |k: usize| most(self.low[k] - other.high[k], other.low[k] - self.high[k]);

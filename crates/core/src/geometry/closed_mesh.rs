@@ -182,7 +182,7 @@ impl ClosedMesh {
         Self::of_parts(self.points, triangles, &part_of, count)
     }
 
-    /// Whether a point d is inside a solid.
+    /// Returns whether a point d is inside a solid.
     fn is_inside(&self, solid: &Tree, d: Vector3<f64>) -> bool {
         self.offset_from(solid, d)
             .is_some_and(|(offset, normal)| normal.dot(&offset) < 0.0)

@@ -38,8 +38,8 @@ impl Shape {
         }
     }
 
-    /// Whether the shape is convex: then the tangent plane at the nearest point is a lower bound of
-    /// the distance.
+    /// Returns whether the shape is convex: then the tangent plane at the nearest point is a lower
+    /// bound of the distance.
     pub(crate) fn is_convex(&self) -> bool {
         !matches!(self, Self::Mesh(_))
     }

@@ -99,7 +99,8 @@ pub struct Adaptive {
     first: [Vec<f64>; 3],
 }
 
-/// Whether two states are equal, except for particles on rigid bodies, which follow from the rest.
+/// Returns whether two states are equal, except for particles on rigid bodies, which follow from
+/// the rest.
 fn is_same(system: &dyn ParticleSystem, a: &[f64], b: &[f64]) -> bool {
     match rigid_of(system) {
         None => {

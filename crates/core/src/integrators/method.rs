@@ -87,45 +87,48 @@ pub struct Method {
 }
 
 impl Method {
-    /// Whether this is its letter, its name or one of its aliases.
+    /// Returns whether this is its letter, its name or one of its aliases.
     pub(super) fn is_called(&self, name: &str) -> bool {
         let is_letter = |letter: char| name.chars().eq([letter]);
         self.letter.is_some_and(is_letter) || self.name == name || self.aliases.contains(&name)
     }
 
-    /// Whether a step solves equations for the positions, so that no stiffness limits its length.
+    /// Returns whether a step solves equations for the positions, so that no stiffness limits its
+    /// length.
     #[must_use]
     pub fn is_implicit(&self) -> bool {
         matches!(self.view, View::Tangent | View::Springs)
     }
 
-    /// Whether a step solves linear systems in addition to the evaluations, if any force depends on
-    /// the velocity.
+    /// Returns whether a step solves linear systems in addition to the evaluations, if any force
+    /// depends on the velocity.
     #[must_use]
     pub fn solves_linear_systems(&self) -> bool {
         matches!(self.view, View::Tangent | View::Damping)
     }
 
-    /// Whether another method of the table takes the same steps on a system: implicit damping is
-    /// velocity Verlet where no force of a kick depends on velocities.
+    /// Returns whether another method of the table takes the same steps on a system: implicit
+    /// damping is velocity Verlet where no force of a kick depends on velocities.
     #[must_use]
     pub fn repeats_another(&self, system: &dyn ParticleSystem) -> bool {
         self.view == View::Damping && !reads_velocity(system)
     }
 
-    /// Whether the method needs forces and masses, instead of an arbitrary f(t, y).
+    /// Returns whether the method needs forces and masses, instead of an arbitrary f(t, y).
     #[must_use]
     pub fn needs_mechanics(&self) -> bool {
         !matches!(self.view, View::Derivative | View::Tangent)
     }
 
-    /// Whether the method supports only forces that depend on positions and time, apart from drag.
+    /// Returns whether the method supports only forces that depend on positions and time, apart
+    /// from drag.
     #[must_use]
     pub fn positions_only(&self) -> bool {
         self.view == View::Accelerations
     }
 
-    /// Whether the method solves spring by spring, and supports no other forces between particles.
+    /// Returns whether the method solves spring by spring, and supports no other forces between
+    /// particles.
     #[must_use]
     pub fn needs_springs(&self) -> bool {
         self.view == View::Springs
@@ -187,14 +190,14 @@ impl Method {
         })
     }
 
-    /// Whether the method is not of the table, but made by the caller of this library.
+    /// Returns whether the method is not of the table, but made by the caller of this library.
     #[must_use]
     pub fn is_own(&self) -> bool {
         matches!(self.create, Create::Own(_))
     }
 
-    /// Whether both methods use the same integrator for fixed steps. Own methods share theirs with
-    /// no other.
+    /// Returns whether both methods use the same integrator for fixed steps. Own methods share
+    /// theirs with no other.
     #[must_use]
     pub fn shares_integrator(&self, other: &Self) -> bool {
         match (self.create, other.create) {
@@ -211,7 +214,7 @@ impl Method {
             .map(|create| Adaptive::new(create(system), tolerance))
     }
 
-    /// Whether the method can choose its steps by itself, to a tolerance.
+    /// Returns whether the method can choose its steps by itself, to a tolerance.
     #[must_use]
     pub fn is_adaptive(&self) -> bool {
         self.trial.is_some()

@@ -58,7 +58,7 @@ impl Sweeper {
         }
     }
 
-    /// Whether the sweeper is for this system and number of stages.
+    /// Returns whether the sweeper is for this system and number of stages.
     pub fn fits(&self, system: &dyn Rows, stages: usize) -> bool {
         let patches = (0..system.patches()).map(|k| system.patch(k));
         self.stages == stages && patches.eq(self.patches.iter().copied())

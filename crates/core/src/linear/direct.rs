@@ -62,7 +62,7 @@ impl Direct {
         })
     }
 
-    /// Whether the couplings are still those of the pattern.
+    /// Returns whether the couplings are still those of the pattern.
     pub fn fits(&self, tangent: &Tangent) -> bool {
         self.couplings == tangent.pattern()
     }

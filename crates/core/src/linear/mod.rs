@@ -148,8 +148,8 @@ impl Solver {
         }
     }
 
-    /// Whether a solve to a relative residual is cheaper by a factorisation than by conjugate
-    /// gradients. Analyses the pattern if it may be.
+    /// Returns whether a solve to a relative residual is cheaper by a factorisation than by
+    /// conjugate gradients. Analyses the pattern if it may be.
     fn goes_direct(&mut self, system: &dyn Linearized, tolerance: f64) -> bool {
         let [alone, with] = self.prices(tolerance);
         let iterative = alone.min(with);

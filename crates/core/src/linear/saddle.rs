@@ -53,7 +53,7 @@ impl Saddle {
         })
     }
 
-    /// Whether the couplings are still those of the pattern.
+    /// Returns whether the couplings are still those of the pattern.
     pub fn fits(&self, tangent: &Tangent) -> bool {
         self.couplings == tangent.pattern()
     }

@@ -248,7 +248,7 @@ impl Tangent {
         }
     }
 
-    /// Whether A is without K.
+    /// Returns whether A is without K.
     pub fn is_only_damping(&self) -> bool {
         self.only_damping
     }

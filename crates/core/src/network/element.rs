@@ -102,7 +102,7 @@ elements! {
 }
 
 impl Element {
-    /// Whether the force is elastic: springs or a solid.
+    /// Returns whether the force is elastic: springs or a solid.
     pub(crate) fn is_elastic(&self) -> bool {
         matches!(
             self.force().matter(),
@@ -110,7 +110,7 @@ impl Element {
         )
     }
 
-    /// Whether the element couples no particles.
+    /// Returns whether the element couples no particles.
     pub(crate) fn is_empty(&self) -> bool {
         self.force().cost().couplings == 0.0
     }

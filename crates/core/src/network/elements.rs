@@ -194,7 +194,7 @@ impl Elements {
         self.all.iter().filter_map(|e| e.force().by_particle())
     }
 
-    /// Whether sheets alone couple particles, and all particles are in sheets.
+    /// Returns whether sheets alone couple particles, and all particles are in sheets.
     pub fn are_in_rows(&self) -> bool {
         let in_rows = |element: &Element| {
             let force = element.force();
@@ -205,7 +205,7 @@ impl Elements {
         self.single.is_empty() && self.all.iter().all(in_rows)
     }
 
-    /// Whether all matter consists of springs of constant stiffness and damping.
+    /// Returns whether all matter consists of springs of constant stiffness and damping.
     pub fn are_springs(&self) -> bool {
         let is_spring = |e: &Element| match e.force().matter() {
             None | Some(Matter::Springs) => true,

@@ -62,13 +62,13 @@ pub(crate) fn add_wind(network: &Network, t: f64, x: &[f64], v: &[f64], f: &mut 
     }
 }
 
-/// Whether motors drive bodies.
+/// Returns whether motors drive bodies.
 pub(crate) fn has_motors(network: &Network) -> bool {
     !network.bodies.motors().is_empty()
 }
 
-/// Whether the forces conserve energy: there is no damping, no wind, no motor and no prescribed
-/// motion, and no spring is shortened or breaks. Contact with obstacles is left out.
+/// Returns whether the forces conserve energy: there is no damping, no wind, no motor and no
+/// prescribed motion, and no spring is shortened or breaks. Contact with obstacles is left out.
 pub(crate) fn is_conservative(network: &Network) -> bool {
     let loses = |element: &Element| {
         let force = element.force();

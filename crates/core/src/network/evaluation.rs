@@ -28,8 +28,8 @@ pub(super) fn other_forces(network: &Network, t: f64, x: &[f64], v: &[f64], f: &
     network.elements.evaluate(&at(network, t, x, v), f, &finish);
 }
 
-/// Whether drifts apply gravity and drag, and kicks the other forces: not with constraints, which
-/// hold against all forces together, nor with a particle whose inertia is not its mass.
+/// Returns whether drifts apply gravity and drag, and kicks the other forces: not with constraints,
+/// which hold against all forces together, nor with a particle whose inertia is not its mass.
 pub(super) fn is_split(network: &Network, terms: Terms) -> bool {
     let together = !network.constraints.all().is_empty() || network.particles.is_burdened();
     terms == Terms::KickForces && !together

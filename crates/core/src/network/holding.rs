@@ -45,8 +45,8 @@ pub(super) fn worst(network: &Network, y: &[f64], radius: f64) -> Option<Unmet> 
     network.constraints.worst(x, rotation, radius)
 }
 
-/// Whether the constraints in the state (x, v) at time t (s) are nearly singular, as those of a
-/// chain that is stretched straight between two pins, where no force can hold it. False for
+/// Returns whether the constraints in the state (x, v) at time t (s) are nearly singular, as those
+/// of a chain that is stretched straight between two pins, where no force can hold it. False for
 /// networks with rigid bodies, for which it is not known. Writes the forces to f.
 pub(crate) fn is_nearly_singular(
     network: &Network,

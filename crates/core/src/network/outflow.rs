@@ -21,7 +21,7 @@ pub(crate) fn drained(network: &Network) -> &[u32] {
         .map_or(&[], |fluid| fluid.members().drained())
 }
 
-/// Whether particle i has left the fluid.
+/// Returns whether particle i has left the fluid.
 pub(super) fn is_drained(network: &Network, i: usize) -> bool {
     network
         .fluid()

@@ -71,7 +71,7 @@ impl Particles {
         self.uniform_inverse_mass
     }
 
-    /// Whether a rigid body carries particle i.
+    /// Returns whether a rigid body carries particle i.
     pub fn is_carried(&self, i: usize) -> bool {
         self.masses[i] == 0.0
     }
@@ -209,7 +209,7 @@ impl Particles {
         }
     }
 
-    /// Whether a particle has an inertia beyond its mass.
+    /// Returns whether a particle has an inertia beyond its mass.
     pub fn is_burdened(&self) -> bool {
         self.burdened.is_some()
     }
@@ -234,7 +234,7 @@ impl Particles {
     }
 }
 
-/// One over the mass of each particle (1/kg), if all masses are the same.
+/// Returns one over the mass of each particle (1/kg), if all masses are the same.
 fn uniform_inverse(masses: &[f64]) -> Option<f64> {
     let first = masses[0];
     (first > 0.0 && masses.iter().all(|m| *m == first)).then(|| 1.0 / first)

@@ -15,7 +15,7 @@ const MAX_ITERATIONS: usize = 20;
 /// Largest step, over the positions or over 1 rad, that counts as rounding.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
-/// Whether there are joints.
+/// Returns whether there are joints.
 pub(crate) fn has_joints(network: &Network) -> bool {
     let mut all = network.constraints().iter();
     all.any(|constraint| matches!(constraint, Constraint::Joint(_)))

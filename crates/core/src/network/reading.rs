@@ -52,13 +52,13 @@ impl Network {
         released.chain(self.particles.pins()).copied()
     }
 
-    /// Whether particle i is pinned.
+    /// Returns whether particle i is pinned.
     #[must_use]
     pub fn is_pinned(&self, i: usize) -> bool {
         self.particles.is_pinned(i)
     }
 
-    /// Whether particle i is a point of a rigid body.
+    /// Returns whether particle i is a point of a rigid body.
     #[must_use]
     pub fn is_carried(&self, i: usize) -> bool {
         self.particles.is_carried(i)
@@ -118,7 +118,8 @@ impl Network {
         self.elements.fluid()
     }
 
-    /// Whether particle i is in a wall: of the fluid, and pinned or carried by a rigid body.
+    /// Returns whether particle i is in a wall: of the fluid, and pinned or carried by a rigid
+    /// body.
     #[must_use]
     pub fn is_wall(&self, i: usize) -> bool {
         let contains = |fluid: &Fluid| fluid.members().contains(i);
@@ -151,13 +152,13 @@ impl Network {
         solids.flat_map(move |solid| solid.neighbours(i))
     }
 
-    /// Whether there are springs or solids.
+    /// Returns whether there are springs or solids.
     #[must_use]
     pub fn is_elastic(&self) -> bool {
         self.elements.elastic().any(|element| !element.is_empty())
     }
 
-    /// Whether springs or solids are damped.
+    /// Returns whether springs or solids are damped.
     #[must_use]
     pub fn is_damped(&self) -> bool {
         let mut elastic = self.elements.elastic();
@@ -205,20 +206,20 @@ impl Network {
         self.tears.torn()
     }
 
-    /// Whether a spring between particles i and j has broken.
+    /// Returns whether a spring between particles i and j has broken.
     #[must_use]
     pub fn is_torn(&self, i: usize, j: usize) -> bool {
         self.tears.is_torn(i, j)
     }
 
-    /// Whether a triangle has all its sides. Others are not drawn.
+    /// Returns whether a triangle has all its sides. Others are not drawn.
     #[must_use]
     pub fn is_whole(&self, corners: [usize; 3]) -> bool {
         self.tears.is_whole(corners)
     }
 
-    /// Whether springs at x (m) exceed the length at which they break, or fall short of it by at
-    /// most the fraction `share`.
+    /// Returns whether springs at x (m) exceed the length at which they break, or fall short of it
+    /// by at most the fraction `share`.
     pub(crate) fn is_overstretched(&self, x: &[f64], share: f64) -> bool {
         self.tears.is_overstretched(&self.elements, x, share)
     }
@@ -245,7 +246,7 @@ impl Network {
         !self.constraints.all().is_empty()
     }
 
-    /// Whether constraints hold particle i.
+    /// Returns whether constraints hold particle i.
     #[must_use]
     pub fn is_held(&self, i: usize) -> bool {
         let mut ends = self.constraints().iter().map(Constraint::ends);
@@ -329,7 +330,7 @@ impl Network {
         self.surfaces.check_obstacle(k)
     }
 
-    /// Whether pins or obstacles move at any time, or pins let go.
+    /// Returns whether pins or obstacles move at any time, or pins let go.
     #[must_use]
     pub fn moves_by_itself(&self) -> bool {
         prescribed(self).moves()
@@ -341,7 +342,7 @@ impl Network {
         self.surfaces.touch()
     }
 
-    /// Whether particles can touch obstacles, or surfaces one another.
+    /// Returns whether particles can touch obstacles, or surfaces one another.
     #[must_use]
     pub fn can_touch(&self) -> bool {
         !self.obstacles().is_empty() || self.touch().is_some_and(|touch| touch.bodies)

@@ -32,7 +32,7 @@ pub(crate) struct Least {
     pub rebounds: bool,
 }
 
-/// Whether there are ropes.
+/// Returns whether there are ropes.
 pub(crate) fn has_ropes(network: &Network) -> bool {
     network.is_constrained() && constraints::has_ropes(&network.constraints)
 }

@@ -167,7 +167,7 @@ impl Prescribed<'_> {
         self.obstacles.iter().filter_map(|obstacle| obstacle.turn)
     }
 
-    /// Whether pins or obstacles move at any time, or pins let go.
+    /// Returns whether pins or obstacles move at any time, or pins let go.
     pub fn moves(&self) -> bool {
         let moves = |path: &Path| !matches!(path, Path::Still(_));
         let lets_go = self.particles.next_release().is_finite();

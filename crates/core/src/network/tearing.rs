@@ -45,12 +45,12 @@ impl Tears {
         self.torn.clone_from(&others.torn);
     }
 
-    /// Whether a spring between particles i and j has broken.
+    /// Returns whether a spring between particles i and j has broken.
     pub fn is_torn(&self, i: usize, j: usize) -> bool {
         self.torn.binary_search(&[i.min(j), i.max(j)]).is_ok()
     }
 
-    /// Whether a triangle has all its sides.
+    /// Returns whether a triangle has all its sides.
     pub fn is_whole(&self, [a, b, c]: [usize; 3]) -> bool {
         !(self.is_torn(a, b) || self.is_torn(b, c) || self.is_torn(c, a))
     }
@@ -64,15 +64,15 @@ impl Tears {
         self.torn.len() - already
     }
 
-    /// Whether springs at x (m) exceed the length at which they break, or fall short of it by at
-    /// most the fraction `share`.
+    /// Returns whether springs at x (m) exceed the length at which they break, or fall short of it
+    /// by at most the fraction `share`.
     pub fn is_overstretched(&self, elements: &Elements, x: &[f64], share: f64) -> bool {
         let is_too_long = |s: Spring| self.is_too_long(x, &s, share);
         self.limit.is_some() && elements.all_springs().any(is_too_long)
     }
 
-    /// Whether a spring at x (m) exceeds the length at which it breaks, or falls short of it by at
-    /// most the fraction `share`.
+    /// Returns whether a spring at x (m) exceeds the length at which it breaks, or falls short of
+    /// it by at most the fraction `share`.
     fn is_too_long(&self, x: &[f64], s: &Spring, share: f64) -> bool {
         let most = self.limit.unwrap_or(f64::INFINITY) * s.law.rest_length * (1.0 - share);
         most > 0.0 && distance_squared(x, s.i, s.j) > most * most
@@ -112,7 +112,7 @@ impl Neighbours {
         Self(pairs)
     }
 
-    /// Whether a particle is a neighbour of both i and j.
+    /// Returns whether a particle is a neighbour of both i and j.
     fn share(&self, i: usize, j: usize) -> bool {
         let first = self.0.partition_point(|pair| pair[0] < i);
         let mut of_i = self.0[first..].iter().take_while(|pair| pair[0] == i);

@@ -100,12 +100,12 @@ impl Balance {
         had + (self.turnover - put_in).max(0.0).min(had)
     }
 
-    /// Whether the gain was small at the last check.
+    /// Returns whether the gain was small at the last check.
     pub(super) fn is_sound(&self) -> bool {
         self.share < NOTABLE_GAIN
     }
 
-    /// Whether another check is due at time t (s).
+    /// Returns whether another check is due at time t (s).
     pub(super) fn is_due(&self, t: f64) -> bool {
         t - self.time >= INTERVAL
     }
@@ -151,7 +151,7 @@ impl Balance {
         }
     }
 
-    /// Whether the kinetic energy alone exceeds the energy that a run may gain.
+    /// Returns whether the kinetic energy alone exceeds the energy that a run may gain.
     pub(super) fn is_exceeded(&self, network: &Network, y: &[f64]) -> bool {
         let (_, v) = network.halves(y);
         let squared = |axis: usize| {
@@ -217,7 +217,7 @@ impl Balance {
         })
     }
 
-    /// Whether constraints were nearly singular at a check.
+    /// Returns whether constraints were nearly singular at a check.
     pub(super) fn was_singular(&self) -> bool {
         self.singular
     }

@@ -29,8 +29,8 @@ pub(super) struct Bounds {
 }
 
 impl Bounds {
-    /// Whether all particles of y are close enough to the middle for a state to go back to after a
-    /// blow-up.
+    /// Returns whether all particles of y are close enough to the middle for a state to go back to
+    /// after a blow-up.
     pub fn hold_closely(&self, model: &Model, y: &[f64]) -> bool {
         self.beyond(MAX_GOOD_DISTANCE, model, y).is_none()
     }

@@ -79,7 +79,7 @@ impl Driver {
         }
     }
 
-    /// Whether the time shown is within a step.
+    /// Returns whether the time shown is within a step.
     pub fn is_within(&self) -> bool {
         self.within.times().is_some()
     }

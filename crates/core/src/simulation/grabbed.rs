@@ -33,9 +33,9 @@ pub struct Grabbed {
 }
 
 impl Grabbed {
-    /// Whether a spring attracts the particle. A pin would tear constraints on the particle, would
-    /// not stop where surfaces in contact leave it no room, and cannot move one point of a rigid
-    /// body alone.
+    /// Returns whether a spring attracts the particle. A pin would tear constraints on the
+    /// particle, would not stop where surfaces in contact leave it no room, and cannot move one
+    /// point of a rigid body alone.
     pub(super) fn is_attracted(&self, network: &Network) -> bool {
         let touches = network.contact_layer().is_some();
         touches

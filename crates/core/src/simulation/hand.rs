@@ -46,7 +46,8 @@ pub(super) struct Hand<'a> {
 }
 
 impl<'a> Hand<'a> {
-    /// Hand on a run with masses; `None` without masses. `radius` is that of the scene (m).
+    /// Returns the hand on a run with masses; `None` without masses. `radius` is that of the scene
+    /// (m).
     pub fn of(scene: &Scene, model: &'a Model, state: &'a RunState, radius: f64) -> Option<Self> {
         model.network().map(|network| Self {
             network,
@@ -108,8 +109,8 @@ impl<'a> Hand<'a> {
         Ok(())
     }
 
-    /// Path of obstacle k from its place now to a target (m); without a target, it stays. `None` if
-    /// there is no such obstacle.
+    /// Returns the path of obstacle k from its place now to a target (m); without a target, it
+    /// stays. `None` if there is no such obstacle.
     pub fn push(&self, k: usize, target: Option<Vector3<f64>>) -> Option<Path> {
         let from = self.network.obstacles().get(k)?.path.at(self.time).position;
         Some(target.map_or(Path::Still(from), |target| self.way(from, target)))
@@ -119,7 +120,7 @@ impl<'a> Hand<'a> {
         row(self.y, self.network.particles(), i)
     }
 
-    /// The path of a hand that starts to move now.
+    /// Returns the path of a hand that starts to move now.
     fn way(&self, from: Vector3<f64>, to: Vector3<f64>) -> Path {
         let start = self.time;
         let time = PULL_TIME.max((to - from).norm() / (PULL_SPEED * self.radius));
@@ -131,8 +132,8 @@ impl<'a> Hand<'a> {
         }
     }
 
-    /// The farthest point towards `target` at which no spring of particle i and no edge of its
-    /// tetrahedra is too long, no rod too long or too short, and no rope too long. One that
+    /// Returns the farthest point towards `target` at which no spring of particle i and no edge of
+    /// its tetrahedra is too long, no rod too long or too short, and no rope too long. One that
     /// already is may not become worse.
     fn within_reach(&self, i: usize, from: Vector3<f64>, target: Vector3<f64>) -> Vector3<f64> {
         let way = target - from;
@@ -156,8 +157,8 @@ impl<'a> Hand<'a> {
     }
 }
 
-/// The share, at most 1, of `way` (m) after which a particle at d (m) from the other end of a
-/// spring or rod would come nearer than `shortest` or farther than `longest` (m).
+/// Returns the share, at most 1, of `way` (m) after which a particle at d (m) from the other end of
+/// a spring or rod would come nearer than `shortest` or farther than `longest` (m).
 fn share(d: Vector3<f64>, way: Vector3<f64>, shortest: f64, longest: f64) -> f64 {
     let (a, b, distance) = (way.norm_squared(), d.dot(&way), d.norm());
     if a == 0.0 {

@@ -18,33 +18,33 @@ use crate::pin::Pin;
 use crate::scene::Model;
 
 impl Simulation {
-    /// The model as it is now, with its current pins, obstacles, wind and tears.
+    /// Returns the model as it is now, with its current pins, obstacles, wind and tears.
     #[must_use]
     pub fn model(&self) -> &Model {
         &self.model
     }
 
-    /// The state y: of a network [x | v], in m and m/s, and after these
-    /// the rotation of each rigid body.
+    /// Returns the state y: of a network [x | v], in m and m/s, and after these the rotation of
+    /// each rigid body.
     #[must_use]
     pub fn state(&self) -> &[f64] {
         &self.state.y
     }
 
-    /// Number of particles; 0 where the state is plain numbers.
+    /// Returns the number of particles; 0 where the state is plain numbers.
     #[must_use]
     pub fn particles(&self) -> usize {
         self.model.particles()
     }
 
-    /// Positions (m), n x 3.
+    /// Returns the positions (m), n x 3.
     #[must_use]
     pub fn positions(&self) -> DMatrixView<'_, f64> {
         let n = self.particles();
         DMatrixView::from_slice(&self.state.y[..3 * n], n, 3)
     }
 
-    /// Position of particle i (m).
+    /// Returns the position of particle i (m).
     ///
     /// # Panics
     /// There is no such particle.
@@ -54,53 +54,53 @@ impl Simulation {
         row(&self.state.y[..3 * n], n, i)
     }
 
-    /// Velocities (m/s), n x 3 in column-major order: of particles with masses from the state, of
-    /// points from f. Without particles, the rates of change of the state.
+    /// Returns the velocities (m/s), n x 3 in column-major order: of particles with masses from the
+    /// state, of points from f. Without particles, the rates of change of the state.
     #[must_use]
     pub fn velocities(&self) -> Vec<f64> {
         let (_, velocities) = self.model.motion(self.time(), &self.state.y);
         velocities.into_owned()
     }
 
-    /// The energy (J), if the scene has forces.
+    /// Returns the energy (J), if the scene has forces.
     #[must_use]
     pub fn energy(&self) -> Option<Energy> {
         let network = self.model.network();
         network.map(|network| network.energy_of(self.time(), &self.state.y))
     }
 
-    /// Height of the lowest particle (m); 0 without particles.
+    /// Returns the height of the lowest particle (m); 0 without particles.
     #[must_use]
     pub fn lowest(&self) -> f64 {
         self.positions().column(1).min()
     }
 
-    /// Length over rest length of the most stretched structural spring, or the largest principal
-    /// stretch of a solid, if there is any.
+    /// Returns the length over rest length of the most stretched structural spring, or the largest
+    /// principal stretch of a solid, if there is any.
     #[must_use]
     pub fn largest_stretch(&self) -> Option<f64> {
         let x = &self.state.y[..3 * self.particles()];
         self.model.network()?.largest_stretch(x)
     }
 
-    /// Number of springs that have broken.
+    /// Returns the number of springs that have broken.
     #[must_use]
     pub fn tears(&self) -> usize {
         self.model.network().map_or(0, Network::tears)
     }
 
-    /// The middle of the scene as it began, and the distance of its farthest particle from there,
-    /// at least 1 (m).
+    /// Returns the middle of the scene as it began, and the distance of its farthest particle from
+    /// there, at least 1 (m).
     #[must_use]
     pub fn extent(&self) -> (Vector3<f64>, f64) {
         let bounds = &self.driver.pipeline.bounds;
         (bounds.middle, bounds.radius)
     }
 
-    /// Contact forces on the particles (N), n x 3: those of surfaces as they are now, and the
-    /// impulses of obstacles, friction and the collision safeguard in the last step, divided by its
-    /// length. After the run went to another state, these impulses are unknown until the next step.
-    /// `None` if nothing can touch.
+    /// Returns the contact forces on the particles (N), n x 3: those of surfaces as they are now,
+    /// and the impulses of obstacles, friction and the collision safeguard in the last step,
+    /// divided by its length. After the run went to another state, these impulses are unknown until
+    /// the next step. `None` if nothing can touch.
     #[must_use]
     pub fn contact_forces(&self) -> Option<Vec<f64>> {
         let network = self.model.network().filter(|n| n.can_touch())?;
@@ -145,7 +145,7 @@ impl Simulation {
         self.refit();
     }
 
-    /// Whether the wind blows.
+    /// Returns whether the wind blows.
     #[must_use]
     pub fn windy(&self) -> bool {
         self.model
@@ -167,7 +167,7 @@ impl Simulation {
         }
     }
 
-    /// Whether the pins swing.
+    /// Returns whether the pins swing.
     #[must_use]
     pub fn swinging(&self) -> bool {
         self.state.swinging
@@ -189,7 +189,7 @@ impl Simulation {
         });
     }
 
-    /// Whether surfaces touch one another and themselves.
+    /// Returns whether surfaces touch one another and themselves.
     #[must_use]
     pub fn touching(&self) -> bool {
         touches_itself(&self.model)
@@ -220,7 +220,7 @@ impl Simulation {
         held.map_or(Ok(()), |i| self.grab(i))
     }
 
-    /// Whether the scene's pins hold.
+    /// Returns whether the scene's pins hold.
     #[must_use]
     pub fn pinned(&self) -> bool {
         !self.state.unpinned
@@ -287,7 +287,7 @@ impl Simulation {
         self.disturb(|network, state, time| pin(network, &mut state.y, left, time));
     }
 
-    /// Number of the grabbed particle.
+    /// Returns the number of the grabbed particle.
     #[must_use]
     pub fn grabbed(&self) -> Option<usize> {
         self.state.grabbed.map(|grabbed| grabbed.particle)
@@ -338,12 +338,12 @@ impl Simulation {
         });
     }
 
-    /// The hand, if the scene has masses.
+    /// Returns the hand, if the scene has masses.
     fn hand(&self) -> Option<Hand<'_>> {
         Hand::of(&self.scene, &self.model, &self.state, self.extent().1)
     }
 
-    /// Number of the grabbed obstacle.
+    /// Returns the number of the grabbed obstacle.
     #[must_use]
     pub fn grabbed_obstacle(&self) -> Option<usize> {
         self.state.grabbed_obstacle

@@ -43,12 +43,12 @@ impl Locator {
         }
     }
 
-    /// Whether events are located in the steps of a stepper.
+    /// Returns whether events are located in the steps of a stepper.
     pub fn serves(&self, stepper: &Stepper) -> bool {
         stepper.is_adaptive() || self.splits_fixed_steps
     }
 
-    /// Whether fixed steps are split into parts, each up to an event.
+    /// Returns whether fixed steps are split into parts, each up to an event.
     pub fn splits(&self, stepper: &Stepper) -> bool {
         self.splits_fixed_steps && !stepper.is_adaptive()
     }

@@ -86,12 +86,12 @@ impl Power {
     }
 }
 
-/// Whether a path moves.
+/// Returns whether a path moves.
 fn moves(path: &Path) -> bool {
     !matches!(path, Path::Still(_))
 }
 
-/// Whether something other than pins on springs, and wind, works on a scene.
+/// Returns whether something other than pins on springs, and wind, works on a scene.
 fn works_together(network: &Network) -> bool {
     let has = |is: fn(&dyn Force) -> bool| {
         let mut elements = network.elements().iter();

@@ -92,13 +92,13 @@ pub(super) struct Resting<'a> {
     rests: &'a [Rest],
 }
 
-/// Whether an obstacle's reaction is known at each stage: it is flat and does not move.
+/// Returns whether an obstacle's reaction is known at each stage: it is flat and does not move.
 fn is_flat(obstacle: &Obstacle) -> bool {
     obstacle.is_still() && matches!(obstacle.shape, Shape::Floor | Shape::Box { .. })
 }
 
-/// Whether particles of a network may rest in this sense. In a network with constraints, bodies or
-/// surfaces, their forces would have to be solved together with the reactions.
+/// Returns whether particles of a network may rest in this sense. In a network with constraints,
+/// bodies or surfaces, their forces would have to be solved together with the reactions.
 pub(crate) fn may_rest(network: &Network) -> bool {
     network.obstacles().iter().any(is_flat)
         && network.contact_layer().is_none()

@@ -24,9 +24,9 @@ pub(super) const MIN_RETRY_STEP: f64 = 1e-6;
 /// impulses.
 const MIN_IMPULSE_STEP: f64 = 1e-4;
 
-/// Share of a step of h (s) with which an adaptive method takes it again, if it has to: up to just
-/// after a particle touched an obstacle, a slide ended, a spring became too long, or surfaces would
-/// have met. A slide that went too far by less than the tolerance is accepted.
+/// Returns the share of a step of h (s) with which an adaptive method takes it again, if it has to:
+/// up to just after a particle touched an obstacle, a slide ended, a spring became too long, or
+/// surfaces would have met. A slide that went too far by less than the tolerance is accepted.
 pub(super) fn share_of_retry(settled: &Settled, h: f64, depths: Depths) -> Option<f64> {
     let Settled { met, grown, .. } = settled;
     if h <= MIN_RETRY_STEP {
@@ -47,8 +47,8 @@ pub(super) fn share_of_retry(settled: &Settled, h: f64, depths: Depths) -> Optio
     held.then_some((0.5 * met.guarded.first).max(MIN_RETRY_SHARE))
 }
 
-/// Share of a step of h (s) with which it is taken again because vertices of surfaces leave their
-/// chords by `bulge` thicknesses.
+/// Returns the share of a step of h (s) with which it is taken again because vertices of surfaces
+/// leave their chords by `bulge` thicknesses.
 pub(super) fn share_of_bulge(bulge: f64, h: f64) -> Option<f64> {
     (bulge > MAX_BULGE && h > MIN_RETRY_STEP).then(|| 0.9 * (MAX_BULGE / bulge).sqrt())
 }

@@ -391,8 +391,8 @@ impl Simulation {
         self.state.balance.worst_constraint(network)
     }
 
-    /// Whether constraints were so nearly singular that bounded forces could not hold them exactly,
-    /// as a chain that is stretched straight between two pins.
+    /// Returns whether constraints were so nearly singular that bounded forces could not hold them
+    /// exactly, as a chain that is stretched straight between two pins.
     #[must_use]
     pub fn was_nearly_singular(&self) -> bool {
         self.driver.balance(&self.model, &self.state).was_singular()

@@ -45,8 +45,8 @@ impl Searched<'_> {
         obstacles.get(k).unwrap_or_else(outflow)
     }
 
-    /// Whether a particle ends the step inside its obstacle, but within the tolerance and on the
-    /// side with that normal: then it is moved to the surface at the end, without an event.
+    /// Returns whether a particle ends the step inside its obstacle, but within the tolerance and
+    /// on the side with that normal: then it is moved to the surface at the end, without an event.
     pub fn ends_shallow(&self, [particle, body]: [usize; 2], normal: &Vector3<f64>) -> bool {
         let obstacle = self.body(body);
         let (pose, n) = (obstacle.at(self.t + self.h), self.network.particles());

@@ -78,7 +78,7 @@ pub(super) struct Pipeline {
 }
 
 impl Pipeline {
-    /// Pipeline for steps of a scene.
+    /// Creates a pipeline for steps of a scene.
     pub fn new(stepper: Stepper, scene: &Scene) -> Self {
         let (middle, radius) = scene.extent();
         Self {
@@ -349,7 +349,7 @@ impl Pipeline {
     }
 }
 
-/// Whether a pin lets go before a time (s).
+/// Returns whether a pin lets go before a time (s).
 fn release_before(model: &Model, time: f64) -> bool {
     let network = model.network();
     network.is_some_and(|network| next_release(network) < time)

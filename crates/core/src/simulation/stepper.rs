@@ -38,7 +38,7 @@ impl Stepper {
         })
     }
 
-    /// Whether the method chooses its steps.
+    /// Returns whether the method chooses its steps.
     pub fn is_adaptive(&self) -> bool {
         matches!(self, Self::Adaptive(_))
     }

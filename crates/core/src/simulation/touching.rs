@@ -5,7 +5,7 @@ use crate::error::Error;
 use crate::network::{Network, Touch};
 use crate::scene::{Model, Scene};
 
-/// Whether the surfaces of a model touch one another and themselves.
+/// Returns whether the surfaces of a model touch one another and themselves.
 pub(super) fn touches_itself(model: &Model) -> bool {
     let touch = model.network().and_then(Network::touch);
     touch.is_some_and(|touch| touch.bodies)

@@ -138,8 +138,8 @@ impl Within {
         self.middle = [y, f];
     }
 
-    /// Whether the polynomials of these numbers have about the rates of change f in the middle of a
-    /// step of h (s).
+    /// Returns whether the polynomials of these numbers have about the rates of change f in the
+    /// middle of a step of h (s).
     fn is_explained(&self, numbers: impl Iterator<Item = usize>, f: &[f64], h: f64) -> bool {
         let ([y0, y1], [f0, f1]) = (&self.ends, &self.rates);
         let [mut missed, mut first, mut last] = [0.0; 3];

@@ -35,7 +35,7 @@ pub struct Limit {
 }
 
 impl Limit {
-    /// Whether modes grow fast as soon as they grow at all: both steps are nearly the same.
+    /// Returns whether modes grow fast as soon as they grow at all: both steps are nearly the same.
     #[must_use]
     pub fn is_sharp(&self) -> bool {
         self.step.is_infinite() || self.bounded > MIN_SHARP_RATIO * self.step

@@ -34,7 +34,8 @@ impl Mode {
         self.stiffness.max(0.0).sqrt()
     }
 
-    /// Whether the mode has a restoring force and does not grow by itself, except by rounding.
+    /// Returns whether the mode has a restoring force and does not grow by itself, except by
+    /// rounding.
     #[must_use]
     pub fn returns(&self) -> bool {
         self.stiffness > 0.0 && self.drag + self.damping >= -ROUNDING * self.frequency()

@@ -16,13 +16,13 @@ pub struct Observation {
 const MAX_SHARP_RATIO: f64 = 1.1;
 
 impl Observation {
-    /// Whether no run failed: even the longest trial step held.
+    /// Returns whether no run failed: even the longest trial step held.
     #[must_use]
     pub fn is_open(&self) -> bool {
         self.failed.is_infinite()
     }
 
-    /// Whether all shorter trial steps held and all longer ones failed.
+    /// Returns whether all shorter trial steps held and all longer ones failed.
     #[must_use]
     pub fn is_sharp(&self) -> bool {
         (1.0..MAX_SHARP_RATIO).contains(&(self.failed / self.held))

@@ -84,7 +84,7 @@ impl Budget {
         self.spent.get()
     }
 
-    /// Whether the budget ended a search, or shortened its runs.
+    /// Returns whether the budget ended a search, or shortened its runs.
     #[must_use]
     pub fn limits(&self) -> bool {
         self.limits.get()

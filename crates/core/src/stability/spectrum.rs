@@ -230,8 +230,8 @@ impl LargestMode {
         &self.shape
     }
 
-    /// Whether damping mixed this shape with others at the last estimate, or drag differs so much
-    /// between particles that another mode may limit the step.
+    /// Returns whether damping mixed this shape with others at the last estimate, or drag differs
+    /// so much between particles that another mode may limit the step.
     #[must_use]
     pub fn mixes(&self) -> bool {
         self.mixes

@@ -104,7 +104,7 @@ impl Extent {
 }
 
 impl Region {
-    /// Whether the method is stable at h λ.
+    /// Returns whether the method is stable at h λ.
     fn is_stable(&self, z: Point) -> bool {
         self.fate(z) == Fate::Bounded
     }

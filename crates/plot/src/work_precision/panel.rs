@@ -267,7 +267,7 @@ impl<'a> Drawing<'a> {
         self.place(figure, label, places);
     }
 
-    /// Whether a label at this place would cover nothing.
+    /// Returns whether a label at this place would cover nothing.
     fn is_clear(&self, figure: &Figure, room: Rect) -> bool {
         self.main.holds(room)
             && figure.is_free(room)

@@ -71,7 +71,7 @@ pub struct Mark {
 }
 
 impl Mark {
-    /// Whether the run has a place on the chart.
+    /// Returns whether the run has a place on the chart.
     pub(super) fn is_drawn(&self) -> bool {
         let has_place = |work: f64| work.is_finite() && work > 0.0;
         self.error.is_finite() && self.error > 0.0 && self.work.is_none_or(has_place)
@@ -79,13 +79,13 @@ impl Mark {
 }
 
 impl Measurement {
-    /// Whether the run has a place on the chart. That of an error of 0 is at the left end.
+    /// Returns whether the run has a place on the chart. That of an error of 0 is at the left end.
     #[must_use]
     pub fn is_drawn(&self) -> bool {
         self.work.is_finite() && self.work > 0.0
     }
 
-    /// Whether the run is drawn beside the chart.
+    /// Returns whether the run is drawn beside the chart.
     #[must_use]
     pub fn is_lost(&self) -> bool {
         self.lost || !self.error.is_finite() || self.error < 0.0

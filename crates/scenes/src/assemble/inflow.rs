@@ -118,7 +118,7 @@ impl Column {
         })
     }
 
-    /// Whether the column passes through a place, so that no wall can be there.
+    /// Returns whether the column passes through a place, so that no wall can be there.
     pub fn passes(&self, place: &Vector3<f64>) -> bool {
         let from = place - self.opening;
         let slack = 1e-6 * self.spacing;

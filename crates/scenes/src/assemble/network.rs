@@ -136,13 +136,14 @@ pub(super) fn build(
     })
 }
 
-/// Whether surfaces touch: those of rigid bodies and of bodies with a restitution always do.
+/// Returns whether surfaces touch: those of rigid bodies and of bodies with a restitution always
+/// do.
 fn touches(description: &Description) -> bool {
     let asked = description.self_collision || obstacles::is_one_thick(description);
     asked || !description.body.is_empty() || is_one_elastic(description)
 }
 
-/// Whether a body has a restitution of its own.
+/// Returns whether a body has a restitution of its own.
 fn is_one_elastic(description: &Description) -> bool {
     let cloths = description.cloth.iter().map(|body| body.restitution);
     let jellies = description.jelly.iter().map(|body| body.restitution);

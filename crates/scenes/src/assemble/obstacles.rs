@@ -17,7 +17,7 @@ use crate::mesh::Mesh;
 /// Largest number of obstacles of one kind.
 const MAX_OBSTACLES: usize = 1000;
 
-/// Whether an obstacle has a thickness, so that surfaces touch it.
+/// Returns whether an obstacle has a thickness, so that surfaces touch it.
 pub(super) fn is_one_thick(description: &Description) -> bool {
     let spheres = description.sphere.iter().map(|spec| spec.thickness);
     let boxes = description.boxes.iter().map(|spec| spec.thickness);

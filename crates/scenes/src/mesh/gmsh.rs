@@ -4,12 +4,14 @@
 use super::data::Mesh;
 use super::tetrahedra::{Numbered, lines, position, whole};
 
-/// Whether elements of a kind are tetrahedra, of any order: their first points are the corners.
+/// Returns whether elements of a kind are tetrahedra, of any order: their first points are the
+/// corners.
 fn is_simplex(kind: u64) -> bool {
     matches!(kind, 4 | 11 | 29..=33 | 71..=75 | 79..=83 | 87 | 137 | 139)
 }
 
-/// Whether a kind of elements is another solid: a hexahedron, a prism, a pyramid or a polyhedron.
+/// Returns whether a kind of elements is another solid: a hexahedron, a prism, a pyramid or a
+/// polyhedron.
 fn is_other_solid(kind: u64) -> bool {
     matches!(kind, 5..=7 | 12..=14 | 17..=19 | 35 | 88..=132 | 140)
 }
@@ -180,8 +182,8 @@ fn elements_4<'a>(
     Ok(())
 }
 
-/// Whether elements of a kind are tetrahedra. Other solid elements are refused, because a body
-/// without them would have holes.
+/// Returns whether elements of a kind are tetrahedra. Other solid elements are refused, because a
+/// body without them would have holes.
 fn is_tetrahedron(kind: u64) -> Result<bool, String> {
     if is_other_solid(kind) {
         return Err(format!(

@@ -104,7 +104,8 @@ impl Cutter {
         self.corners.extend(self.places.iter().map(flat));
     }
 
-    /// Whether a corner and one of the next two are at one place in the plane but not in space.
+    /// Returns whether a corner and one of the next two are at one place in the plane but not in
+    /// space.
     fn falls_together(&self) -> bool {
         let n = self.corners.len();
         let together = |a: usize, b: usize| {
@@ -193,14 +194,14 @@ impl Cutter {
         Some(())
     }
 
-    /// Whether a corner coincides with a neighbour, or is the end of a line that goes there and
-    /// back.
+    /// Returns whether a corner coincides with a neighbour, or is the end of a line that goes there
+    /// and back.
     fn is_nothing(&self, [a, b, c]: [usize; 3]) -> bool {
         let [a, b, c] = [a, b, c].map(|k| self.places[k]);
         a == b || b == c || a == c
     }
 
-    /// Whether a triangle meets the condition for an ear; `None` after too many tests.
+    /// Returns whether a triangle meets the condition for an ear; `None` after too many tests.
     fn is_ear(&mut self, ear: [usize; 3], asked: Asked) -> Option<bool> {
         self.tests += 1;
         if self.blocked[ear[1]] {
@@ -223,7 +224,7 @@ impl Cutter {
         Some(is)
     }
 
-    /// Whether a corner is in an ear, or on its sides if these count.
+    /// Returns whether a corner is in an ear, or on its sides if these count.
     fn is_in_way(&self, k: usize, ear: [usize; 3], sides_count: bool) -> bool {
         if ear.contains(&k) {
             return false;

@@ -3,22 +3,22 @@
 use wasm_bindgen::JsCast;
 use web_sys::{Document, HtmlCanvasElement, Storage, Window};
 
-/// The window of the browser.
+/// Returns the window of the browser.
 pub fn window() -> Option<Window> {
     web_sys::window()
 }
 
-/// The document of the page.
+/// Returns the document of the page.
 pub fn document() -> Option<Document> {
     window()?.document()
 }
 
-/// The canvas of the page.
+/// Returns the canvas of the page.
 pub fn canvas() -> Option<HtmlCanvasElement> {
     document()?.get_element_by_id("a3")?.dyn_into().ok()
 }
 
-/// Storage of the browser for this page, which lasts from one visit to the next.
+/// Returns the storage of the browser for this page, which lasts from one visit to the next.
 pub fn storage() -> Option<Storage> {
     window()?.local_storage().ok().flatten()
 }

@@ -130,7 +130,7 @@ impl Row for Record {
 }
 
 impl Record {
-    /// Whether both runs are of the same scene, by the same version.
+    /// Returns whether both runs are of the same scene, by the same version.
     #[must_use]
     pub fn same_scene(&self, other: &Self) -> bool {
         (&self.version, &self.scene, self.rows, self.cols)
@@ -157,7 +157,7 @@ impl Record {
         order.is_finite().then_some(order)
     }
 
-    /// Whether the collision safeguard acted in the run.
+    /// Returns whether the collision safeguard acted in the run.
     #[must_use]
     pub fn is_held(&self) -> bool {
         self.guard_impulses + self.guard_cuts > 0

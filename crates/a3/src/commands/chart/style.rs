@@ -67,7 +67,7 @@ pub fn together(methods: &[&Method]) -> Vec<CurveStyle> {
     styles
 }
 
-/// Whether the course teaches a method.
+/// Returns whether the course teaches a method.
 pub fn is_of_course(method: &Method) -> bool {
     method.letter.is_some_and(|letter| COURSE.contains(&letter))
 }

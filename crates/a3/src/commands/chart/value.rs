@@ -202,7 +202,7 @@ impl Chart {
         self.studies[0].frames.until
     }
 
-    /// Whether all runs were measured; false if the monitor stopped them.
+    /// Returns whether all runs were measured; false if the monitor stopped them.
     #[must_use]
     pub fn is_complete(&self) -> bool {
         self.complete

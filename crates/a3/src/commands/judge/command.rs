@@ -198,7 +198,8 @@ fn print(
     terminal::say(&format!("\n{orders}"))
 }
 
-/// The orders of the programs: files are of one if they agree with the same method, or with none.
+/// Returns the orders of the programs: files are of one if they agree with the same method, or with
+/// none.
 fn program_orders(judged: &[(String, Judgement)]) -> String {
     let way = |judgement: &Judgement| judgement.found.found.map(|found| found.trial.way);
     let mut ways: Vec<_> = judged.iter().map(|(_, judgement)| way(judgement)).collect();

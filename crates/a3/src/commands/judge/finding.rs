@@ -125,7 +125,7 @@ fn not_found(judgement: &Judgement) -> Vec<(&'static str, String)> {
     lines
 }
 
-/// A method with its step and its mistake.
+/// Returns a method with its step and its mistake.
 fn way(agreement: &Agreement) -> String {
     let trial = agreement.trial;
     let title = trial.way.title();
@@ -151,7 +151,7 @@ fn way(agreement: &Agreement) -> String {
     text
 }
 
-/// Where the agreement begins.
+/// Returns where the agreement begins.
 fn since(start: Start) -> &'static str {
     match start {
         Start::Scene => "",
@@ -162,7 +162,7 @@ fn since(start: Start) -> &'static str {
     }
 }
 
-/// Question to the author of a program that agrees so.
+/// Returns the question to the author of a program that agrees so.
 fn question(agreement: &Agreement) -> Option<&'static str> {
     agreement
         .trial

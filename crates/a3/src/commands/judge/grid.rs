@@ -21,8 +21,8 @@ pub struct Grid {
 }
 
 impl Grid {
-    /// Grid of increasing times, which a file gives up to an error (s). `None` if they are no
-    /// multiples of a step.
+    /// Returns the grid of increasing times, which a file gives up to an error (s). `None` if they
+    /// are no multiples of a step.
     pub fn of(times: &[f64], rounding: f64) -> Option<Self> {
         let gaps = times.windows(2).map(|pair| pair[1] - pair[0]);
         let gaps = gaps.chain(times.first().copied());
@@ -83,12 +83,13 @@ impl Grid {
     }
 }
 
-/// Largest error of a time t (s) in a file that rounds it by up to `rounding` (s).
+/// Returns the largest error of a time t (s) in a file that rounds it by up to `rounding` (s).
 fn tolerance(t: f64, rounding: f64) -> f64 {
     1.01 * rounding + TOLERANCE * t
 }
 
-/// Simplest number from `least` to `most`, both above 0: one with few digits, or a part of 1.
+/// Returns the simplest number from `least` to `most`, both above 0: one with few digits, or a part
+/// of 1.
 fn simplest(least: f64, most: f64) -> f64 {
     let middle = 0.5 * (least + most);
     let fits = |number: &f64| (least..=most).contains(number);

@@ -206,14 +206,14 @@ fn measured(scene: &Scene, states: &States, rows: &Rows, reference: &Reference) 
     }
 }
 
-/// The network of a model, if positions and velocities alone tell its energy.
+/// Returns the network of a model, if positions and velocities alone tell its energy.
 fn conserving(model: &Model) -> Option<&Network> {
     model
         .network()
         .filter(|network| network.bodies().is_empty())
 }
 
-/// Length of the difference of the momenta of particles that are not pinned (kg m/s).
+/// Returns the length of the difference of the momenta of particles that are not pinned (kg m/s).
 fn momentum_error(network: &Network, v: &[f64], own: &[f64]) -> f64 {
     let n = network.particles();
     let of_axis = |axis: usize| {

@@ -52,7 +52,7 @@ impl Mistake {
         Self::NoBendSprings,
     ];
 
-    /// The mistake in a few words, which follow "with".
+    /// Returns the mistake in a few words, which follow "with".
     pub fn words(self) -> &'static str {
         match self {
             Self::HalfGravity => "half the gravity",
@@ -79,7 +79,7 @@ impl Mistake {
         }
     }
 
-    /// Question to the author.
+    /// Returns the question to the author.
     pub fn question(self) -> &'static str {
         match self {
             Self::HalfGravity => "is a factor 1/2 in the gravity, or is its sum taken by halves?",

@@ -62,7 +62,7 @@ pub fn draw(
     ))
 }
 
-/// Mark of a file: its error, its computing time per simulated second, and its name.
+/// Returns the mark of a file: its error, its computing time per simulated second, and its name.
 fn mark(name: &str, judgement: &Judgement) -> Mark {
     let stem = Path::new(name).file_stem().unwrap_or_default();
     Mark {

@@ -29,7 +29,7 @@ pub struct Plain {
 }
 
 impl Plain {
-    /// Masses and springs of a scene, without its obstacles.
+    /// Returns the masses and springs of a scene, without its obstacles.
     ///
     /// # Errors
     /// The scene has other parts.
@@ -59,22 +59,22 @@ impl Plain {
         })
     }
 
-    /// Number of particles.
+    /// Returns the number of particles.
     pub fn particles(&self) -> usize {
         self.mass.len()
     }
 
-    /// Whether forces depend on velocities.
+    /// Returns whether forces depend on velocities.
     pub fn is_damped(&self) -> bool {
         self.drag > 0.0 || self.springs.iter().any(|spring| spring.damping > 0.0)
     }
 
-    /// Whether there is drag.
+    /// Returns whether there is drag.
     pub fn has_drag(&self) -> bool {
         self.drag > 0.0
     }
 
-    /// Whether a mistake changes anything in this network.
+    /// Returns whether a mistake changes anything in this network.
     pub fn can_have(&self, mistake: Mistake) -> bool {
         let pulls = self.gravity.iter().any(|g| *g != 0.0);
         let has_unit_masses = self.mass.iter().all(|m| *m == 1.0);
@@ -128,12 +128,12 @@ impl<'a> Forces<'a> {
         }
     }
 
-    /// Whether a particle never moves.
+    /// Returns whether a particle never moves.
     pub fn holds(&self, i: usize) -> bool {
         self.plain.pinned[i] && self.mistake != Some(Mistake::PinsMove)
     }
 
-    /// Rate at which drag slows a particle down (1/s).
+    /// Returns the rate at which drag slows a particle down (1/s).
     pub fn drag_rate(&self, i: usize) -> f64 {
         self.plain.drag / self.plain.mass[i]
     }

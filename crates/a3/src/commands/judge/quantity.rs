@@ -2,7 +2,7 @@
 
 use crate::base::rounding::short;
 
-/// A quantity with two digits, in plain decimals where these are few.
+/// Returns a quantity with two digits, in plain decimals where these are few.
 pub fn amount(value: f64) -> String {
     if value == 0.0 || (0.01..1000.0).contains(&value.abs()) {
         short(value, 2).to_string()
@@ -11,7 +11,7 @@ pub fn amount(value: f64) -> String {
     }
 }
 
-/// A time in seconds, with few digits.
+/// Returns a time in seconds, with few digits.
 pub fn seconds(time: f64) -> String {
     let time = short(time, 6);
     if (1e-3..1e6).contains(&time) || time == 0.0 {

@@ -21,7 +21,7 @@ pub struct Rows<'a> {
 }
 
 impl<'a> Rows<'a> {
-    /// Rows up to `until` (s), on a grid of steps `step` (s) if it is known.
+    /// Returns the rows up to `until` (s), on a grid of steps `step` (s) if it is known.
     ///
     /// # Errors
     /// There is no row between 0 and `until`.
@@ -66,42 +66,43 @@ impl<'a> Rows<'a> {
         })
     }
 
-    /// Number of rows that are judged.
+    /// Returns the number of rows that are judged.
     pub fn len(&self) -> usize {
         self.kept.len()
     }
 
-    /// Positions of row k (m), column-major.
+    /// Returns the positions of row k (m), column-major.
     pub fn positions(&self, k: usize) -> &'a [f64] {
         &self.states.positions[self.kept[k]]
     }
 
-    /// Velocities of row k (m/s), column-major, if the file has them.
+    /// Returns the velocities of row k (m/s), column-major, if the file has them.
     pub fn velocities(&self, k: usize) -> Option<&'a [f64]> {
         let rows = self.states.velocities.as_ref()?;
         Some(&rows[self.kept[k]])
     }
 
-    /// Largest error of the positions of row k (m) by the digits of the file.
+    /// Returns the largest error of the positions of row k (m) by the digits of the file.
     pub fn rounding(&self, k: usize) -> f64 {
         let row = self.positions(k).iter();
         let largest = row.fold(0.0, |most: f64, x| most.max(x.abs()));
         self.states.digits[1].rounding(largest)
     }
 
-    /// The last time (s).
+    /// Returns the last time (s).
     pub fn until(&self) -> f64 {
         self.times[self.times.len() - 1]
     }
 }
 
-/// Root mean square over the particles of the distance between two states' positions (m).
+/// Returns the root mean square over the particles of the distance between two states' positions
+/// (m).
 pub fn distance(a: &[f64], b: &[f64]) -> f64 {
     let squares = a.iter().zip(b).map(|(a, b)| (a - b).powi(2));
     (squares.sum::<f64>() / (a.len() as f64 / 3.0)).sqrt()
 }
 
-/// The particle that is farthest from its place, and its distance (m).
+/// Returns the particle that is farthest from its place, and its distance (m).
 pub fn farthest(a: &[f64], b: &[f64]) -> (usize, f64) {
     let n = a.len() / 3;
     let apart = |i: usize| {

@@ -59,7 +59,7 @@ impl Scheme {
         Self::SweepPositionFirst,
     ];
 
-    /// Name of the scheme.
+    /// Returns the name of the scheme.
     pub fn title(self) -> &'static str {
         match self {
             Self::Euler => "explicit Euler",
@@ -81,7 +81,7 @@ impl Scheme {
         }
     }
 
-    /// Question to the author, if the scheme is seldom meant.
+    /// Returns the question to the author, if the scheme is seldom meant.
     pub fn question(self) -> Option<&'static str> {
         Some(match self {
             Self::PositionFirst => {
@@ -104,7 +104,7 @@ impl Scheme {
         })
     }
 
-    /// Number of evaluations in a step of that many particles.
+    /// Returns the number of evaluations in a step of that many particles.
     pub fn evaluations(self, particles: usize) -> usize {
         match self {
             Self::Trapezoid
@@ -120,7 +120,7 @@ impl Scheme {
         }
     }
 
-    /// Whether the scheme differs from all before it on a network.
+    /// Returns whether the scheme differs from all before it on a network.
     pub fn serves(self, plain: &Plain) -> bool {
         match self {
             Self::VerletPredicted
@@ -147,7 +147,7 @@ pub struct PlainRun<'a> {
 }
 
 impl<'a> PlainRun<'a> {
-    /// Run from a state of positions (m) and velocities (m/s).
+    /// Creates a run from a state of positions (m) and velocities (m/s).
     pub fn new(mut forces: Forces<'a>, scheme: Scheme, h: f64, [x, v]: [Vec<Triple>; 2]) -> Self {
         forces.without_drag = scheme == Scheme::ImplicitDrag;
         Self {
@@ -160,12 +160,12 @@ impl<'a> PlainRun<'a> {
         }
     }
 
-    /// Positions (m).
+    /// Returns the positions (m).
     pub fn positions(&self) -> &[Triple] {
         &self.x
     }
 
-    /// Velocities (m/s).
+    /// Returns the velocities (m/s).
     pub fn velocities(&self) -> &[Triple] {
         &self.v
     }
@@ -313,12 +313,12 @@ fn sweep(
     [x, v]
 }
 
-/// y + h f of one particle.
+/// Returns y + h f of one particle.
 fn ahead(y: Triple, h: f64, f: Triple) -> Triple {
     std::array::from_fn(|axis| y[axis] + h * f[axis])
 }
 
-/// y + h f of all particles.
+/// Returns y + h f of all particles.
 fn moved(y: &[Triple], h: f64, f: &[Triple]) -> Vec<Triple> {
     y.iter().zip(f).map(|(y, f)| ahead(*y, h, *f)).collect()
 }

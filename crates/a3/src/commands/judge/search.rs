@@ -141,7 +141,7 @@ impl Search<'_> {
         }
     }
 
-    /// All solvers of a3 that support the scene, and schemes of textbooks.
+    /// Returns all solvers of a3 that support the scene, and schemes of textbooks.
     fn correct(&self) -> Vec<Way> {
         let scene = self.judged.scene;
         let methods = METHODS
@@ -185,8 +185,8 @@ impl Search<'_> {
         })
     }
 
-    /// The ways that agree with all rows, at the largest step at which one does, or at a slightly
-    /// smaller one at which it agrees much better. `None` if the monitor stopped it.
+    /// Returns the ways that agree with all rows, at the largest step at which one does, or at a
+    /// slightly smaller one at which it agrees much better. `None` if the monitor stopped it.
     fn agreements(
         &mut self,
         ways: &[Way],
@@ -230,12 +230,12 @@ impl Search<'_> {
         Some(best)
     }
 
-    /// Whether one of several ways agrees much better than all others.
+    /// Returns whether one of several ways agrees much better than all others.
     fn are_better(&self, ways: &[Agreement], others: &[Agreement]) -> bool {
         CLEARLY * least(ways) + self.judged.rounding(0) < least(others)
     }
 
-    /// Agreement of a trial with all rows. One with many of them is remembered.
+    /// Returns the agreement of a trial with all rows. One with many of them is remembered.
     fn agreement(&mut self, trial: Trial, work: &mut f64) -> Option<Agreement> {
         let bound = |k: usize, moved: f64| self.judged.tolerance(k, moved);
         let compared = self.judged.compare(trial, &bound, work)?;
@@ -278,8 +278,8 @@ impl Search<'_> {
         None
     }
 
-    /// The way whose largest distance from the rows is the least, if it is below `bound` (m).
-    /// `None` if the monitor stopped it.
+    /// Returns the way whose largest distance from the rows is the least, if it is below `bound`
+    /// (m). `None` if the monitor stopped it.
     #[expect(clippy::option_option, reason = "stopped, or none below the bound")]
     fn nearest(&mut self, ways: &[Way], parts: &[u64], bound: f64) -> Option<Option<Agreement>> {
         let (mut nearest, mut least, mut work) = (None, bound, 0.0);
@@ -313,7 +313,7 @@ impl Search<'_> {
     }
 }
 
-/// Least distance of several agreements (m); infinite without any.
+/// Returns the least distance of several agreements (m); infinite without any.
 fn least(agreements: &[Agreement]) -> f64 {
     let distances = agreements
         .iter()

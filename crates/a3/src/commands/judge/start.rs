@@ -61,7 +61,7 @@ pub fn difference(scene: &Scene, rows: &Rows) -> Option<Difference> {
     (far > 1e-6 * largest + 2.0 * rows.rounding(0)).then_some(Difference::Velocities(i, far))
 }
 
-/// Whether the positions are those of the scene in another order.
+/// Returns whether the positions are those of the scene in another order.
 fn is_order(start: &[f64], own: &[f64], near: f64) -> bool {
     let n = start.len() / 3;
     if n > MAX_SORTED {
@@ -86,7 +86,7 @@ fn is_order(start: &[f64], own: &[f64], near: f64) -> bool {
         .all(|(a, b)| (a - b).abs() <= 1.0)
 }
 
-/// The unit in which positions are those of the scene.
+/// Returns the unit in which positions are those of the scene.
 fn unit(start: &[f64], own: &[f64], near: f64) -> Option<&'static str> {
     let in_unit = |(_, per_metre): &(&str, f64)| {
         let scaled: Vec<_> = own.iter().map(|x| x / per_metre).collect();
@@ -99,7 +99,7 @@ fn unit(start: &[f64], own: &[f64], near: f64) -> Option<&'static str> {
     found.map(|(name, _)| name)
 }
 
-/// Positions whose axis z, which is up, becomes y; `sign` tells where y points.
+/// Returns the positions whose axis z, which is up, becomes y; `sign` tells where y points.
 pub fn with_y_up(x: &[f64], sign: f64) -> Vec<f64> {
     let n = x.len() / 3;
     let depth = x[n..2 * n].iter().map(|y| sign * y);

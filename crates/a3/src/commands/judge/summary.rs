@@ -81,7 +81,7 @@ impl Agreed {
 }
 
 impl<'a> Record<'a> {
-    /// Record of the judgement of a file.
+    /// Returns the record of the judgement of a file.
     pub fn of(file: &'a str, judgement: &Judgement, within: Option<f64>) -> Self {
         let Judgement { worst, found, .. } = judgement;
         let agreed = |agreement: &Option<Agreement>| agreement.as_ref().map(Agreed::of);

@@ -29,7 +29,7 @@ pub enum Way {
 }
 
 impl Way {
-    /// Name of the method.
+    /// Returns the name of the method.
     pub fn title(self) -> &'static str {
         match self {
             Self::Method(method) => method.title,
@@ -37,7 +37,7 @@ impl Way {
         }
     }
 
-    /// Name of the solver of a3 that it is, if it is one.
+    /// Returns the name of the solver of a3 that it is, if it is one.
     pub fn solver(self) -> Option<&'static str> {
         match self {
             Self::Method(method) => Some(method.name),
@@ -45,7 +45,7 @@ impl Way {
         }
     }
 
-    /// The mistake that it makes.
+    /// Returns the mistake that it makes.
     pub fn mistake(self) -> Option<Mistake> {
         match self {
             Self::Scheme(_, mistake) => mistake,
@@ -53,7 +53,7 @@ impl Way {
         }
     }
 
-    /// Question to the author of a program that computes steps so.
+    /// Returns the question to the author of a program that computes steps so.
     pub fn question(self) -> Option<&'static str> {
         match self {
             Self::Scheme(scheme, None) => scheme.question(),
@@ -117,7 +117,7 @@ pub struct Judged<'a> {
     pub radius: f64,
 }
 
-/// Number of particles and springs of a scene.
+/// Returns the number of particles and springs of a scene.
 pub fn size(scene: &Scene) -> f64 {
     let network = scene.model.network();
     let springs = network.map_or(0, |network| network.all_springs().count());
@@ -142,7 +142,7 @@ impl Run<'_> {
         }
     }
 
-    /// Positions (m) and velocities (m/s), column-major.
+    /// Returns the positions (m) and velocities (m/s), column-major.
     fn motion(&self) -> [Vec<f64>; 2] {
         match self {
             Self::Method(run) => {
@@ -155,17 +155,17 @@ impl Run<'_> {
 }
 
 impl Judged<'_> {
-    /// Largest distance of row k (m) that agrees, after a distance moved (m).
+    /// Returns the largest distance of row k (m) that agrees, after a distance moved (m).
     pub fn tolerance(&self, k: usize, moved: f64) -> f64 {
         AGREEMENT * moved + self.rounding(k)
     }
 
-    /// Distance of row k by rounding alone (m).
+    /// Returns the distance of row k by rounding alone (m).
     pub fn rounding(&self, k: usize) -> f64 {
         ROUNDING * self.radius + DIGITS * self.rows.rounding(k)
     }
 
-    /// Work of a step of a way: springs and particles that are visited.
+    /// Returns the work of a step of a way: springs and particles that are visited.
     pub fn price(&self, way: Way) -> f64 {
         self.size
             * match way {
@@ -237,7 +237,8 @@ impl Judged<'_> {
         Some(compared)
     }
 
-    /// Step of a trial (s): a part of that between grid points or, without a grid, the known one.
+    /// Returns the step of a trial (s): a part of that between grid points or, without a grid, the
+    /// known one.
     pub fn step_of(&self, trial: Trial) -> Option<f64> {
         match &self.rows.grid {
             Some(grid) => Some(grid.step / trial.parts as f64),
@@ -245,8 +246,8 @@ impl Judged<'_> {
         }
     }
 
-    /// Run of a trial, the first row that it shows, and the number of steps from the start of the
-    /// grid to its beginning.
+    /// Returns the run of a trial, the first row that it shows, and the number of steps from the
+    /// start of the grid to its beginning.
     fn begin(&self, trial: Trial) -> Option<(Run<'_>, usize, u64)> {
         let n = self.scene.model.particles();
         let step = self.step_of(trial)?;

@@ -38,7 +38,7 @@ impl<'a> Truth<'a> {
         }
     }
 
-    /// Reference with states at the times of rows. `None` if the monitor stopped it.
+    /// Returns the reference with states at the times of rows. `None` if the monitor stopped it.
     pub fn at(&mut self, rows: &Rows) -> Result<Option<&Reference>, Failure> {
         let known = self.references.iter().position(|known| serves(known, rows));
         if let Some(known) = known {
@@ -97,13 +97,13 @@ impl<'a> Truth<'a> {
     }
 }
 
-/// Whether a reference has states at the times of rows.
+/// Returns whether a reference has states at the times of rows.
 fn serves(reference: &Reference, rows: &Rows) -> bool {
     let all = rows.times.iter();
     all.into_iter().all(|t| frame_at(reference, *t).is_some())
 }
 
-/// Time (s) of the frame at a time t (s).
+/// Returns the time (s) of the frame at a time t (s).
 pub fn frame_at(reference: &Reference, t: f64) -> Option<f64> {
     let frames = &reference.frames;
     let k = (t / frames.spacing()).round() as u64;

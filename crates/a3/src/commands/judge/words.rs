@@ -14,7 +14,7 @@ const RESOLVED: f64 = 10.0;
 /// Order below which errors do not fall with the step.
 const MIN_ORDER: f64 = 0.5;
 
-/// The judgement of a file in lines, under its name.
+/// Returns the judgement of a file in lines, under its name.
 pub fn text(name: &str, judgement: &Judgement, within: Option<f64>) -> String {
     let mut lines = vec![format!("{name}: {}", states(judgement))];
     let mut line = |key: &str, text: String| lines.push(format!("  {key:<9} {text}"));
@@ -52,7 +52,7 @@ pub fn text(name: &str, judgement: &Judgement, within: Option<f64>) -> String {
     lines.join("\n") + "\n"
 }
 
-/// Whether all states of a file err by at most `within` (m).
+/// Returns whether all states of a file err by at most `within` (m).
 pub fn is_within(judgement: &Judgement, within: f64) -> bool {
     judgement.worst.error <= within && judgement.not_finite_at.is_none()
 }
@@ -71,7 +71,8 @@ pub fn too_large(judgement: &Judgement, within: f64) -> String {
     }
 }
 
-/// The order of a program between runs with other steps: name, step (s) and error (m) of each.
+/// Returns the order of a program between runs with other steps: name, step (s) and error (m) of
+/// each.
 pub fn orders(runs: &[(&str, f64, f64)]) -> String {
     let mut runs = runs.to_vec();
     runs.sort_by(|a, b| b.1.total_cmp(&a.1));
@@ -91,7 +92,7 @@ pub fn orders(runs: &[(&str, f64, f64)]) -> String {
     runs.windows(2).filter_map(line).collect()
 }
 
-/// Whether an error is large enough to tell an order by.
+/// Returns whether an error is large enough to tell an order by.
 pub fn is_resolved(judgement: &Judgement) -> bool {
     judgement.worst.error > RESOLVED * judgement.floor
 }

@@ -198,7 +198,7 @@ fn balanced(runs: &[Measurement], error: f64) -> Option<[f64; 2]> {
     })
 }
 
-/// The grids from the coarsest to one twice as fine, with their accurate motions.
+/// Returns the grids from the coarsest to one twice as fine, with their accurate motions.
 fn grids(models: &Models) -> Result<Option<Vec<Grid>>, Failure> {
     let own = &*models.request.source.description;
     let particles = models.scene.model.particles();

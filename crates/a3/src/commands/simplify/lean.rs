@@ -60,7 +60,7 @@ impl LeanModel {
         }
     }
 
-    /// Whether nothing is left out, and the grids are those of the scene.
+    /// Returns whether nothing is left out, and the grids are those of the scene.
     pub fn is_whole(&self) -> bool {
         self.parts.is_empty() && self.factor == 1.0
     }

@@ -147,8 +147,8 @@ impl Simplified {
         self.report.text()
     }
 
-    /// Whether there is a chart of models: it was asked for, and the scene has grids that differ by
-    /// less than the motion.
+    /// Returns whether there is a chart of models: it was asked for, and the scene has grids that
+    /// differ by less than the motion.
     #[must_use]
     pub fn has_chart(&self) -> bool {
         self.chart.is_some()

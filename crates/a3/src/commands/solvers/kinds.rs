@@ -138,7 +138,7 @@ fn liquid(keys: &str) -> String {
     )
 }
 
-/// The mesh of the balloons: a corner on each side of the three axes.
+/// Returns the mesh of the balloons: a corner on each side of the three axes.
 fn octahedron() -> Mesh {
     let corner = |axis: usize, side: f64| {
         let mut place = [0.0; 3];

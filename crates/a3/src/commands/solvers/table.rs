@@ -76,7 +76,7 @@ fn letter(method: &Method) -> String {
     format!("`{}`", method.letter.map_or(name, String::from))
 }
 
-/// Whether two reasons are of the same kind; the sizes of scenes in them may differ.
+/// Returns whether two reasons are of the same kind; the sizes of scenes in them may differ.
 fn same(a: Refusal, b: Refusal) -> bool {
     std::mem::discriminant(&a) == std::mem::discriminant(&b)
 }

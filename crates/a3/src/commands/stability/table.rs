@@ -171,13 +171,13 @@ fn reason(row: &MethodLimits, modes: &[Mode]) -> (String, String) {
 /// Meaning of an interval where the table shows one instead of a limit.
 pub const INTERVAL: &str = "not sharp: the shortest step that failed and the longest that held, between which some do either";
 
-/// Whether any observed limit is of this kind.
+/// Returns whether any observed limit is of this kind.
 pub fn any_observed(rows: &[MethodLimits], is: fn(&Observation) -> bool) -> bool {
     let observed = rows.iter().flat_map(|row| [row.seen_at_rest, row.bounded]);
     observed.flatten().any(|seen| is(&seen))
 }
 
-/// Whether a limit is not sharp, and so shown as an interval.
+/// Returns whether a limit is not sharp, and so shown as an interval.
 pub fn is_interval(seen: &Observation) -> bool {
     !seen.is_open() && !seen.is_sharp()
 }

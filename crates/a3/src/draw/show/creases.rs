@@ -74,7 +74,7 @@ fn groups(count: usize, joined: impl Fn(usize, usize) -> bool) -> Vec<usize> {
 mod tests {
     use super::*;
 
-    /// A roof of two slopes, at an angle of 90 degrees or nearly flat.
+    /// Returns a roof of two slopes, at an angle of 90 degrees or nearly flat.
     fn roof(height: f64) -> Topology {
         let places = [
             [-1.0, 0.0, 0.0],

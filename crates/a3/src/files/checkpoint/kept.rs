@@ -63,7 +63,8 @@ impl Kept {
         }
     }
 
-    /// The same run, of a scene that was edited: its text in TOML, and the scene before that.
+    /// Returns the same run, of a scene that was edited: its text in TOML, and the scene before
+    /// that.
     pub fn of_edited(self, text: String, source: &Source, grid: Option<Grid>, own: &Scene) -> Self {
         Self {
             scene: identity(source, grid, own),

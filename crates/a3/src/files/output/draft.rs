@@ -50,13 +50,13 @@ impl Draft {
         })
     }
 
-    /// The path as it was given.
+    /// Returns the path as it was given.
     pub fn path(&self) -> &Path {
         &self.path
     }
 
-    /// Path of the temporary file, to which another program may write; `None` if the target is no
-    /// ordinary file.
+    /// Returns the path of the temporary file, to which another program may write; `None` if the
+    /// target is no ordinary file.
     pub fn beside(&self) -> Option<&Path> {
         match self.file.get_ref() {
             Sink::Beside { file, .. } => Some(file.path()),

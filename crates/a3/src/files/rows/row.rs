@@ -5,7 +5,8 @@ use serde::de::DeserializeOwned;
 
 /// Row of measured data. The names of its fields are the keys of the file.
 pub trait Row: Clone + Serialize + DeserializeOwned {
-    /// Whether both rows are of the same measurement, so that the later one replaces the other.
+    /// Returns whether both rows are of the same measurement, so that the later one replaces the
+    /// other.
     fn is_same(&self, other: &Self) -> bool;
 
     /// Returns the checksum of the file up to this row, as it was read.

@@ -19,7 +19,7 @@ const CLOTH_DENSITY: f64 = 0.3;
 /// Density of a solid (kg/m3).
 const SOLID_DENSITY: f64 = 1000.0;
 
-/// Whether a file with this ending is a mesh.
+/// Returns whether a file with this ending is a mesh.
 pub fn is_mesh(extension: &str) -> bool {
     mesh::ENDINGS.contains(&extension)
 }
@@ -204,7 +204,7 @@ mod tests {
         }
     }
 
-    /// Pinned particles of the scene of a mesh, and their number.
+    /// Returns the pinned particles of the scene of a mesh, and their number.
     fn pinned(text: &str) -> (Vec<usize>, usize, Source) {
         let folder = tempfile::tempdir().unwrap();
         let file = folder.path().join("mesh.obj");
@@ -216,7 +216,7 @@ mod tests {
         (pins, network.particles(), source)
     }
 
-    /// A sheet of 3 x 3 points across y at that height.
+    /// Returns a sheet of 3 x 3 points across y at that height.
     fn sheet(y: f64, first: usize) -> String {
         let points = (0..9).map(|k| format!("v {} {y} {}\n", k % 3, k / 3));
         let corner = |k: usize| first + k + k / 2;

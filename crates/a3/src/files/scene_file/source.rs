@@ -111,8 +111,8 @@ impl Source {
         })
     }
 
-    /// The same scene as a window begins it: surfaces also touch where a scene asks for that in the
-    /// window alone.
+    /// Returns the same scene as a window begins it: surfaces also touch where a scene asks for
+    /// that in the window alone.
     pub fn in_window(mut self) -> Self {
         if self.description.window_self_collision && !self.description.self_collision {
             Arc::make_mut(&mut self.description).self_collision = true;
@@ -120,7 +120,7 @@ impl Source {
         self
     }
 
-    /// The same scene, whose surfaces do not touch from the start.
+    /// Returns the same scene, whose surfaces do not touch from the start.
     pub fn without_touch(&self) -> Self {
         let mut description = Description::clone(&self.description);
         description.self_collision = false;
@@ -236,12 +236,12 @@ impl Source {
         }
     }
 
-    /// Whether the scene has a name, or is in a file.
+    /// Returns whether the scene has a name, or is in a file.
     pub fn is_named(&self) -> bool {
         self.path.as_deref() != Some(Path::new(TEXT))
     }
 
-    /// Whether the scene came by standard input, which cannot be read again.
+    /// Returns whether the scene came by standard input, which cannot be read again.
     pub fn is_input(&self) -> bool {
         self.typed == INPUT
     }
@@ -297,7 +297,7 @@ fn said(typed: &str) -> String {
     if typed == INPUT { INPUT_NAME } else { typed }.into()
 }
 
-/// Fault of a text that is in no file.
+/// Returns the fault of a text that is in no file.
 fn in_text(fault: Fault) -> InputError {
     let file = Some(TEXT.into());
     InputError::Text { file, fault }

@@ -18,7 +18,7 @@ pub enum Column {
 }
 
 impl Column {
-    /// Column of a name, which may have a unit after it, as in `x (m)`.
+    /// Returns the column of a name, which may have a unit after it, as in `x (m)`.
     pub fn of(name: &str) -> Self {
         let name = name.trim().trim_matches('"').to_lowercase();
         let name = name.split_once(" (").map_or(&*name, |(name, _)| name);

@@ -146,7 +146,7 @@ struct Layout {
 }
 
 impl Layout {
-    /// Layout of columns, for that many particles.
+    /// Returns the layout of columns, for that many particles.
     fn of(columns: &[Column], particles: usize) -> Result<Self, String> {
         if !columns.contains(&Column::Time) {
             return Err(format!(
@@ -222,7 +222,7 @@ impl Layout {
         Ok(layout)
     }
 
-    /// Particle of a row, which is marked as seen.
+    /// Returns the particle of a row, which is marked as seen.
     fn particle(&mut self, row: &Row, raw: &Raw, seen: &mut [bool]) -> Result<usize, String> {
         let there = seen.iter().filter(|seen| **seen).count();
         let mut number = there;

@@ -42,8 +42,9 @@ impl Digits {
         }
     }
 
-    /// Largest error of numbers up to `largest` by their rounding: half a unit of the last digit.
-    /// Some programs write a fixed number of decimals, others one of significant digits.
+    /// Returns the largest error of numbers up to `largest` by their rounding: half a unit of the
+    /// last digit. Some programs write a fixed number of decimals, others one of significant
+    /// digits.
     pub fn rounding(&self, largest: f64) -> f64 {
         let Some(decimals) = self.decimals else {
             return self.share * largest;

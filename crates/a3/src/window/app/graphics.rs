@@ -157,7 +157,8 @@ impl Graphics {
         self.covers(position) || self.overlay.context.egui_is_using_pointer()
     }
 
-    /// Whether text or a button is at a position (px), so that presses there are not for the scene.
+    /// Returns whether text or a button is at a position (px), so that presses there are not for
+    /// the scene.
     pub fn covers(&self, position: [f32; 2]) -> bool {
         let (context, scale) = (&self.overlay.context, self.scale());
         let layer = context.layer_id_at(position.map(|px| px / scale).into());

@@ -204,8 +204,8 @@ fn others(session: &Session) -> Vec<Button> {
     .collect()
 }
 
-/// Whether the bar has the button of an action. A page makes no films, plots nothing and edits no
-/// scenes; a telephone has no key that fills the screen.
+/// Returns whether the bar has the button of an action. A page makes no films, plots nothing and
+/// edits no scenes; a telephone has no key that fills the screen.
 fn is_there(session: &Session, action: Action) -> bool {
     let is_page = cfg!(target_arch = "wasm32");
     match action {

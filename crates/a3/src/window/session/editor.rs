@@ -65,7 +65,7 @@ impl Tool {
         }
     }
 
-    /// Whether the tool joins two particles by a drag.
+    /// Returns whether the tool joins two particles by a drag.
     pub fn joins(self) -> bool {
         matches!(self, Self::Spring | Self::Rod | Self::Rope)
     }

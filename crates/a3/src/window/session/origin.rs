@@ -140,8 +140,8 @@ impl Origin {
     }
 }
 
-/// Whether surfaces of a scene cross at the start, or too many are at one place. The page does not
-/// ask: it has to stay small.
+/// Returns whether surfaces of a scene cross at the start, or too many are at one place. The page
+/// does not ask: it has to stay small.
 pub fn begins_crossed(scene: &Scene) -> bool {
     !cfg!(target_arch = "wasm32")
         && scene.model.network().is_some_and(|network| {

@@ -20,7 +20,7 @@ pub struct Passage {
 }
 
 impl Passage {
-    /// Whether a state of `dim` numbers passes to one of the scene.
+    /// Returns whether a state of `dim` numbers passes to one of the scene.
     pub fn fits(&self, dim: usize, scene: &Scene) -> bool {
         let change = |it: Splice, each: usize| [it.added * each, it.removed * each];
         let [more, fewer] = change(self.particles, PARTICLE);

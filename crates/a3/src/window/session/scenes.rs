@@ -87,7 +87,7 @@ impl Scenes {
         self.offered = Some(names);
     }
 
-    /// Whether the scene of a file may not be shown.
+    /// Returns whether the scene of a file may not be shown.
     pub fn leaves_out(&self, file: &Path) -> bool {
         let has = |names: &Vec<String>| names.iter().any(|name| Path::new(name) == file);
         self.offered.as_ref().is_some_and(|names| !has(names))

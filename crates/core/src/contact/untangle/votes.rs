@@ -124,7 +124,7 @@ impl Votes {
         }
     }
 
-    /// Whether nothing is on the wrong side of the curve of crossing k.
+    /// Returns whether nothing is on the wrong side of the curve of crossing k.
     pub fn is_undecided(&self, k: usize) -> bool {
         !self.decided.contains_key(&self.curves[k])
     }

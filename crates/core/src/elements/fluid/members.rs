@@ -14,7 +14,7 @@ pub struct Outflow {
 }
 
 impl Outflow {
-    /// Whether a place (m) is inside, or at most `slack` (m) outside.
+    /// Returns whether a place (m) is inside, or at most `slack` (m) outside.
     #[must_use]
     pub fn contains(&self, place: &Vector3<f64>, slack: f64) -> bool {
         let from_centre = (place - self.at).abs();
@@ -87,13 +87,13 @@ impl Members {
         &self.outflows
     }
 
-    /// Whether particle i has left.
+    /// Returns whether particle i has left.
     #[must_use]
     pub fn has_left(&self, i: usize) -> bool {
         self.drained.binary_search(&(i as u32)).is_ok()
     }
 
-    /// Whether particle i is one of these, or has left.
+    /// Returns whether particle i is one of these, or has left.
     #[must_use]
     pub fn contains(&self, i: usize) -> bool {
         self.flowing.binary_search(&(i as u32)).is_ok() || self.has_left(i)

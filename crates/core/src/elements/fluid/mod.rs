@@ -168,7 +168,7 @@ impl Fluid {
         })
     }
 
-    /// Whether threads share the work.
+    /// Returns whether threads share the work.
     fn is_shared(&self) -> bool {
         threads(RELATIVE_WORK * self.particles().len()) > 1
     }

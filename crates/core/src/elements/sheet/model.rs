@@ -77,7 +77,7 @@ impl Sheet {
         &self.laws
     }
 
-    /// Whether any spring is damped.
+    /// Returns whether any spring is damped.
     pub(crate) fn is_damped(&self) -> bool {
         self.laws.iter().any(|law| law.damping > 0.0)
     }
@@ -107,7 +107,7 @@ impl Sheet {
         whole - self.lost().len()
     }
 
-    /// Whether all springs are missing.
+    /// Returns whether all springs are missing.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.len() == 0

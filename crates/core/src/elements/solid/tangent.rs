@@ -169,7 +169,7 @@ impl Hessian {
     }
 }
 
-/// Whether a symmetric matrix is positive definite.
+/// Returns whether a symmetric matrix is positive definite.
 fn is_definite(a: &Matrix<f64>) -> bool {
     let cofactors = cofactors(a);
     a[0][0] > 0.0 && cofactors[2][2] > 0.0 && dot(a[0], cofactors[0]) > 0.0

@@ -65,14 +65,14 @@ impl Changes {
         }
     }
 
-    /// Whether changes shrink so fast that the tangent can be kept; `None` if unknown yet.
+    /// Returns whether changes shrink so fast that the tangent can be kept; `None` if unknown yet.
     pub fn shrink_fast(&self) -> Option<bool> {
         self.rate.is_finite().then_some(self.rate <= MAX_KEPT_RATE)
     }
 
-    /// Whether the last change, or the predicted next one, is negligible relative to the state and
-    /// its linear system solved accurately enough; or whether changes no longer shrink, if the last
-    /// one is below `noise`.
+    /// Returns whether the last change, or the predicted next one, is negligible relative to the
+    /// state and its linear system solved accurately enough; or whether changes no longer shrink,
+    /// if the last one is below `noise`.
     pub fn are_over(&self, noise: f64) -> bool {
         let shrinks = if self.foretell {
             self.rate.min(1.0)
@@ -85,7 +85,7 @@ impl Changes {
             || stay && self.last <= noise * self.size
     }
 
-    /// Whether the last change is finite, so that another iteration is possible.
+    /// Returns whether the last change is finite, so that another iteration is possible.
     pub fn are_finite(&self) -> bool {
         self.last.is_finite()
     }

@@ -47,7 +47,7 @@ impl StageSolver {
         }
     }
 
-    /// Whether there are constraints.
+    /// Returns whether there are constraints.
     pub(super) fn is_joined(&self) -> bool {
         matches!(self, Self::Mechanical(stage) if stage.joined.is_some())
     }

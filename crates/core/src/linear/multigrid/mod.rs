@@ -52,7 +52,7 @@ impl Multigrid {
         }
     }
 
-    /// Whether the pattern and the pinned particles are the same.
+    /// Returns whether the pattern and the pinned particles are the same.
     pub fn fits(&self, tangent: &Tangent) -> bool {
         self.pattern == tangent.pattern() && self.free == tangent.free()
     }

@@ -30,7 +30,8 @@ pub(super) struct Accessor {
 }
 
 impl Accessor {
-    /// Whether its numbers are in a buffer. If not, they are 0, or an extension stores them.
+    /// Returns whether its numbers are in a buffer. If not, they are 0, or an extension stores
+    /// them.
     pub fn is_stored(&self) -> bool {
         self.buffer_view.is_some() || self.sparse.is_some()
     }

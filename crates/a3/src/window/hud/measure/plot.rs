@@ -132,8 +132,8 @@ mod tests {
 
     use super::*;
 
-    /// Two curves: one of two runs, a decade apart in error and two in work; the other of one run,
-    /// and one that blew up.
+    /// Returns two curves: one of two runs, a decade apart in error and two in work; the other of
+    /// one run, and one that blew up.
     fn chart() -> WorkPrecision {
         let run = |error, work, lost| Measurement {
             error,
