@@ -2,8 +2,9 @@
 
 use nalgebra::Vector3;
 
-use super::joint::{Joint, JointEquation, Side, Stop, check_restitution, normals};
+use super::joint::{Joint, JointEquation, Side, Stop, check_restitution};
 use crate::error::{Error, positive};
+use crate::geometry::normals;
 
 /// Distance from the centre of a circle or a sphere, in radii, up to which the direction outwards
 /// is undefined.

@@ -23,6 +23,7 @@ use nalgebra::{Matrix3, Vector3};
 
 use crate::columns::row;
 use crate::error::{Error, positive};
+use crate::geometry::normals;
 use crate::path::Pose;
 
 /// What a joint lets free.
@@ -353,12 +354,4 @@ pub(super) fn check_restitution(of: &str, restitution: f64) -> Result<(), Error>
     Err(Error::Invalid(format!(
         "the restitution of {of} must be from 0 to 1, not {restitution}"
     )))
-}
-
-/// Returns two unit vectors, perpendicular to a third and to one another.
-pub(super) fn normals(direction: Vector3<f64>) -> [Vector3<f64>; 2] {
-    let mut axis = Vector3::zeros();
-    axis[direction.iamin()] = 1.0;
-    let first = direction.cross(&axis).normalize();
-    [first, direction.cross(&first)]
 }

@@ -1,6 +1,7 @@
 //! Wind that blows on triangles. The relative velocity of a triangle is that of the air at its
 //! middle less the mean velocity of its corners, and a third of the [force of the air](Air) acts on
-//! each corner.
+//! each corner. On a closed surface that force is halved: such a surface meets the air twice, at
+//! its front and at its back, and has the drag of its area as seen along the wind, as a sheet has.
 
 #![expect(
     clippy::inline_always,
@@ -47,15 +48,17 @@ impl Force for Airflow {
 
     fn add_differential(&self, at: &At, [dx, dv]: [&[f64]; 2], df: &mut [f64]) {
         let At { t, x, v, .. } = *at;
-        for corners in at.triangles {
-            let [a, b, c] = corners.map(|i| vector(x, i));
-            let [da, db, dc] = corners.map(|i| vector(dx, i));
-            let (middle, towards) = (((a + b + c) / 3.0).into(), mean(dx, *corners));
-            let u = self.wind.at(t, middle) - mean(v, *corners);
-            let du = self.wind.differential(t, middle, towards) - mean(dv, *corners);
-            let darea = 0.5 * ((db - da).cross(&(c - a)) + (b - a).cross(&(dc - da)));
-            let dforce = self.air.differential([u, area(a, b, c)], [du, darea]);
-            spread(dforce.into(), *corners, df);
+        for (triangles, parts) in surfaces(at) {
+            for corners in triangles {
+                let [a, b, c] = corners.map(|i| vector(x, i));
+                let [da, db, dc] = corners.map(|i| vector(dx, i));
+                let (middle, towards) = (((a + b + c) / 3.0).into(), mean(dx, *corners));
+                let u = self.wind.at(t, middle) - mean(v, *corners);
+                let du = self.wind.differential(t, middle, towards) - mean(dv, *corners);
+                let darea = 0.5 * ((db - da).cross(&(c - a)) + (b - a).cross(&(dc - da)));
+                let dforce = self.air.differential([u, area(a, b, c)], [du, darea]);
+                spread(dforce.into(), parts, *corners, df);
+            }
         }
     }
 
@@ -65,6 +68,12 @@ impl Force for Airflow {
 }
 
 impl Airflow {
+    /// Returns the force (N) at a relative velocity u (m/s) on a face of a closed surface with this
+    /// area vector (m2).
+    pub(crate) fn on_closed(&self, u: Vector3<f64>, area: Vector3<f64>) -> Vector3<f64> {
+        0.5 * Vector3::from(self.air.force(u.into(), area.into()))
+    }
+
     /// Adds the forces in a number of bands of particles. Each band computes the forces on all
     /// triangles with a corner in it, and adds them in the order of the triangles.
     fn add_in(&self, bands: usize, at: &At, f: &mut [f64]) {
@@ -93,20 +102,21 @@ impl WithSimd for Push<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(mut self, _: S) {
-        let (mut block, mut count) = ([[0; 3]; BLOCK], 0);
-        for corners in self.at.triangles {
-            let [a, b, c] = *corners;
-            if self.has(a) || self.has(b) || self.has(c) {
-                block[count] = *corners;
-                count += 1;
+        for (triangles, parts) in surfaces(self.at) {
+            let mut rest = triangles.iter();
+            while !rest.as_slice().is_empty() {
+                let (mut block, mut count) = ([[0; 3]; BLOCK], 0);
+                while count < BLOCK
+                    && let Some(corners) = rest.next()
+                {
+                    let [a, b, c] = *corners;
+                    if self.has(a) || self.has(b) || self.has(c) {
+                        block[count] = *corners;
+                        count += 1;
+                    }
+                }
+                self.add(&block[..count], parts);
             }
-            if count == BLOCK {
-                self.add(&block);
-                count = 0;
-            }
-        }
-        if count > 0 {
-            self.add(&block[..count]);
         }
     }
 }
@@ -117,9 +127,9 @@ impl Push<'_> {
         self.particles.contains(&(i as usize))
     }
 
-    /// Adds the forces on a block of triangles.
+    /// Adds the forces on a block of triangles, each of which is divided by a number of parts.
     #[inline(always)]
-    fn add(&mut self, triangles: &[[u32; 3]]) {
+    fn add(&mut self, triangles: &[[u32; 3]], parts: f64) {
         let At { t, x, v, .. } = *self.at;
         let Airflow { wind, air } = self.airflow;
         let [mut middles, mut speeds, mut areas] = [[[0.0; BLOCK]; 3]; 3];
@@ -139,7 +149,7 @@ impl Push<'_> {
             let u = [0, 1, 2].map(|axis| winds[axis][m] - speeds[axis][m]);
             let force = air.force(u, [0, 1, 2].map(|axis| areas[axis][m]));
             for axis in 0..3 {
-                forces[axis][m] = force[axis] / 3.0;
+                forces[axis][m] = force[axis] / parts;
             }
         }
         for (m, corners) in triangles.iter().enumerate() {
@@ -154,6 +164,13 @@ impl Push<'_> {
             }
         }
     }
+}
+
+/// Returns the triangles of open and of closed surfaces, each list with the number of parts of the
+/// force on a triangle, one of which acts on each corner.
+fn surfaces<'a>(at: &At<'a>) -> [(&'a [[u32; 3]], f64); 2] {
+    let [open, closed] = at.triangles.open_and_closed();
+    [(open, 3.0), (closed, 6.0)]
 }
 
 #[inline(always)]
@@ -173,11 +190,11 @@ fn mean(of: &[f64], corners: [u32; 3]) -> Vector3<f64> {
     (a + b + c) / 3.0
 }
 
-fn spread(force: [f64; 3], corners: [u32; 3], f: &mut [f64]) {
+fn spread(force: [f64; 3], parts: f64, corners: [u32; 3], f: &mut [f64]) {
     let n = f.len() / 3;
     for i in corners {
         for axis in 0..3 {
-            f[axis * n + i as usize] += force[axis] / 3.0;
+            f[axis * n + i as usize] += force[axis] / parts;
         }
     }
 }
@@ -185,6 +202,7 @@ fn spread(force: [f64; 3], corners: [u32; 3], f: &mut [f64]) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::geometry::Triangles;
     use crate::random::SplitMix;
 
     #[test]
@@ -198,6 +216,7 @@ mod tests {
             .collect();
         // A triangle without an area.
         triangles[17] = [4, 4, 9];
+        let triangles: Triangles = triangles.into_iter().collect();
         let at = At {
             t: 0.3,
             x: &x,
@@ -210,11 +229,11 @@ mod tests {
             air: Air::new(1.2, 1.1, 0.6).unwrap(),
         };
         let mut expected = vec![0.0; 3 * n];
-        for corners in &triangles {
+        for corners in triangles.iter() {
             let [a, b, c] = corners.map(|i| vector(&x, i));
             let u = airflow.wind.at(0.3, ((a + b + c) / 3.0).into()) - mean(&v, *corners);
             let force = airflow.air.force(u.into(), area(a, b, c).into());
-            spread(force, *corners, &mut expected);
+            spread(force, 3.0, *corners, &mut expected);
         }
         assert!(expected.iter().all(|f| f.is_finite()));
         for bands in [1, 2, 3, 8] {

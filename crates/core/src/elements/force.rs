@@ -5,6 +5,7 @@ use nalgebra::Vector3;
 use crate::coupling::{Coupling, Diagonal, Matrix};
 use crate::energy::Energy;
 use crate::error::Error;
+use crate::geometry::Triangles;
 use crate::products::ITERATION;
 use crate::spring::Spring;
 
@@ -20,7 +21,7 @@ pub(crate) struct At<'a> {
     /// Mass of each particle (kg).
     pub masses: &'a [f64],
     /// Triangles of the network.
-    pub triangles: &'a [[u32; 3]],
+    pub triangles: &'a Triangles,
 }
 
 /// Uniform gravity and viscous drag, which the drift of a splitting method solves exactly. Other

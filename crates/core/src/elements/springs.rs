@@ -150,6 +150,7 @@ impl Force for Springs {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::geometry::Triangles;
     use crate::random::SplitMix;
     use crate::spring::{SpringKind, SpringLaw};
 
@@ -173,7 +174,7 @@ mod tests {
                 x: &x,
                 v: &v,
                 masses: &[],
-                triangles: &[],
+                triangles: &Triangles::default(),
             };
             let [mut found, mut expected] = [vec![0.0; 150], vec![0.0; 150]];
             element.add_forces(&at, &mut found);

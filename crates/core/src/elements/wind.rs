@@ -67,8 +67,9 @@ impl Wind {
         }
     }
 
-    /// Creates a wind that blows on the [triangles](crate::Network::set_triangles) of a network,
-    /// with air that moves at `velocity` (m/s) on average, and at most 2.2 times as fast.
+    /// Creates a wind that blows on the [triangles](crate::Network::set_triangles) of a network and
+    /// on the faces of its rigid bodies, with air that moves at `velocity` (m/s) on average, and at
+    /// most 2.2 times as fast.
     #[must_use]
     pub fn on_triangles(seed: u64, velocity: Vector3<f64>, air: Air) -> Self {
         Self {

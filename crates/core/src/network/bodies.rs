@@ -6,6 +6,7 @@ use std::ops::Range;
 use super::elements::Elements;
 use super::particles::Particles;
 use crate::columns::row;
+use crate::elements::Airflow;
 use crate::error::Error;
 use crate::rigid::{Body, Driven, Motor, Moving, ROTATION, Rotation};
 use crate::scratch::Scratch;
@@ -114,6 +115,26 @@ impl Bodies {
                 let Some(k) = body else { continue };
                 for axis in 0..3 {
                     f[axis * n + self.all[k].center()] += force[axis];
+                    torques[3 * k + axis] += torque[axis];
+                }
+            }
+        }
+    }
+
+    /// Adds the forces of air (N) that streams past the bodies in the state y at time t (s) to f,
+    /// n x 3, and their torques (N m), three numbers for each body.
+    pub fn blow(&self, airflow: &Airflow, t: f64, y: &[f64], f: &mut [f64], torques: &mut [f64]) {
+        let n = self.particles;
+        for (k, body, _, moving) in self.each(y) {
+            let [place, velocity] = [y, &y[3 * n..]].map(|of| row(of, n, body.center()));
+            for face in body.faces() {
+                let arm = moving.rotation * face.middle;
+                let u =
+                    airflow.wind.at(t, (place + arm).into()) - velocity - moving.spin.cross(&arm);
+                let force = airflow.on_closed(u, moving.rotation * face.area);
+                let torque = arm.cross(&force);
+                for axis in 0..3 {
+                    f[axis * n + body.center()] += force[axis];
                     torques[3 * k + axis] += torque[axis];
                 }
             }

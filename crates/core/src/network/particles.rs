@@ -107,7 +107,7 @@ impl Particles {
             self.inverse_masses[pin.particle] = 0.0;
         }
         self.pins.extend(pins);
-        self.pins.sort_by_key(|pin| pin.particle);
+        sort(&mut self.pins);
         self.pins.dedup_by(|later, first| {
             let same = later.particle == first.particle;
             if same {
@@ -145,7 +145,7 @@ impl Particles {
         let held = all.len();
         all.append(&mut self.released);
         // A particle that was pinned again since keeps its later pin.
-        all.sort_by_key(|pin| pin.particle);
+        sort(&mut all);
         all.dedup_by_key(|pin| pin.particle);
         for pin in all {
             let i = pin.particle;
@@ -238,4 +238,9 @@ impl Particles {
 fn uniform_inverse(masses: &[f64]) -> Option<f64> {
     let first = masses[0];
     (first > 0.0 && masses.iter().all(|m| *m == first)).then(|| 1.0 / first)
+}
+
+/// Sorts pins by their particles. Those of the same particle keep their order.
+fn sort(pins: &mut [Pin]) {
+    pins.sort_by_key(|pin| pin.particle);
 }

@@ -9,8 +9,8 @@ use super::loads::{Loads, decay, turning, wrench};
 use super::parts::Network;
 use super::project::{has_joints, project};
 use crate::constraints;
-use crate::elements::Finish;
 use crate::elements::force::DriftForces;
+use crate::elements::{Airflow, Finish};
 use crate::measure::Measure;
 use crate::rigid::{ROTATION, Rotation};
 use crate::rows::Terms;
@@ -70,6 +70,9 @@ fn with_other_forces<T>(
         torques.resize(2 * count, 0.0);
         let (torques, held) = torques.split_at_mut(count);
         network.bodies.drive(y, f, torques);
+        for airflow in network.elements.of::<Airflow>() {
+            network.bodies.blow(airflow, t, y, f, torques);
+        }
         run(x, v, f, [torques, held])
     })
 }

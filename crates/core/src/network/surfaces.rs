@@ -1,13 +1,12 @@
 //! Surfaces of a network: triangles, obstacles, and their contact properties.
 
-use std::sync::Arc;
-
 use super::particles::Particles;
 use super::tearing::Tears;
 use crate::constraints::Constraint;
 use crate::contact::{ContactLayer, Obstacle, Shape, Skin, Surface};
 use crate::elements::Wind;
 use crate::error::Error;
+use crate::geometry::Triangles;
 use crate::path::{Path, Turn};
 use crate::pin::Pin;
 use crate::rigid::Body;
@@ -32,7 +31,7 @@ pub struct Touch {
 /// Triangles, obstacles, and contact properties, if surfaces can touch.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Surfaces {
-    pub triangles: Arc<[[u32; 3]]>,
+    pub triangles: Triangles,
     touch: Option<Touch>,
     obstacles: Vec<Obstacle>,
 }

@@ -1,9 +1,11 @@
 //! Rigid bodies: their parts, their mass properties, and the places of their points.
 
 use std::ops::Range;
+use std::sync::Arc;
 
 use nalgebra::{Matrix3, Quaternion, Vector3};
 
+use super::faces::{Face, faces};
 use super::rotation::Rotation;
 use crate::error::{Error, positive};
 use crate::geometry::Shape;
@@ -31,6 +33,7 @@ pub struct Body {
     inertia: Vector3<f64>,
     radius: f64,
     parts: Vec<Part>,
+    faces: Arc<[Face]>,
 }
 
 /// Body in motion: its rotation matrix and angular velocity (rad/s).
@@ -87,6 +90,7 @@ impl Body {
             anchors,
             inertia,
             radius,
+            faces: faces(&parts, radius).into(),
             parts,
         })
     }
@@ -139,6 +143,11 @@ impl Body {
     #[must_use]
     pub fn parts(&self) -> &[Part] {
         &self.parts
+    }
+
+    /// Returns the faces past which air streams.
+    pub(crate) fn faces(&self) -> &[Face] {
+        &self.faces
     }
 
     /// Returns the body in motion.

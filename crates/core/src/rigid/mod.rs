@@ -14,6 +14,7 @@
 //! forces on them act on the body.
 
 mod body;
+mod faces;
 mod flight;
 mod mass;
 mod motor;

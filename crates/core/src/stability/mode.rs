@@ -55,3 +55,8 @@ impl Mode {
         }
     }
 }
+
+/// Sorts modes, the fastest first.
+pub(super) fn sort(modes: &mut [Mode]) {
+    modes.sort_by(|a, b| b.stiffness.total_cmp(&a.stiffness));
+}

@@ -9,7 +9,7 @@
 use super::checks::take_checked;
 use super::growth::Growth;
 use super::limit::{GROWTH, HORIZON, largest_step};
-use super::mode::Mode;
+use super::mode::{Mode, sort};
 use super::observation::Observation;
 use super::search::{Budget, MAX_RUN_WORK, bisect, sharpen, steps};
 use super::spectrum::spectrum;
@@ -154,10 +154,8 @@ impl Motion {
             Model::Network(_) => MAX_EXCESS * kinetic,
             Model::FirstOrder(_) | Model::Points(_) => (GROWTH - 1.0) * kinetic,
         };
-        // The fastest come first, as they set most limits.
-        motion
-            .modes
-            .sort_by(|a, b| b.stiffness.total_cmp(&a.stiffness));
+        // The fastest set most limits.
+        sort(&mut motion.modes);
         Ok(Some(motion))
     }
 

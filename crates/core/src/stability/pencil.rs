@@ -6,7 +6,7 @@
 use nalgebra::{Complex, DMatrix, DVector};
 
 use super::eigenvalues::eigenvalues;
-use super::mode::Mode;
+use super::mode::{Mode, sort};
 use super::normalised::Normalised;
 use crate::random::SplitMix;
 use crate::system::Linearized;
@@ -100,7 +100,7 @@ impl Pencil {
                 }
             })
             .collect();
-        modes.sort_by(|a, b| b.stiffness.total_cmp(&a.stiffness));
+        sort(&mut modes);
         (!found.is_empty()).then_some(modes)
     }
 

@@ -4,7 +4,7 @@
 use nalgebra::{DMatrix, SymmetricEigen};
 
 use super::eigenvalues::{MAX_ITERATIONS, PRECISIONS, eigenvalues};
-use super::mode::Mode;
+use super::mode::{Mode, sort};
 use super::normalised::{MIN_MIXING, Mixing, Normalised, dot, normalise};
 use super::pencil::Pencil;
 use crate::system::{Linearized, Mechanics, ParticleSystem, kick_reads_velocity, rigid_of};
@@ -49,7 +49,7 @@ pub fn spectrum(system: &dyn ParticleSystem, t: f64, y: &[f64]) -> Vec<Mode> {
         }
         None => of_jacobian(system, t, y),
     };
-    modes.sort_by(|a, b| b.stiffness.total_cmp(&a.stiffness));
+    sort(&mut modes);
     modes
 }
 

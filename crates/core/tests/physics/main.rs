@@ -3,6 +3,7 @@
 #[path = "../common/mod.rs"]
 mod common;
 
+mod airborne;
 mod buckling;
 mod constraints;
 mod contact;

@@ -6,6 +6,7 @@ use super::places::Columns;
 use super::*;
 use crate::coupling::Coupling;
 use crate::elements::axial::{add_all, add_differential, coupling};
+use crate::geometry::Triangles;
 use crate::random::SplitMix;
 use crate::spring::{SpringKind, SpringLaw};
 
@@ -143,7 +144,7 @@ fn blocks_are_the_sum_of_springs_one_by_one_and_bands_change_no_bit() {
                 x: &all[0],
                 v: &all[1],
                 masses: &[],
-                triangles: &[],
+                triangles: &Triangles::default(),
             };
             let mut expected = [(); 4].map(|()| vec![0.0; 3 * particles]);
             add_all(&springs, at.x, at.v, &mut expected[0]);

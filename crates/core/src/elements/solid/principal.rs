@@ -21,7 +21,11 @@ impl Principal {
         let squares: Matrix<f64> = from_fn(|i| from_fn(|j| dot(columns[i], columns[j])));
         let (values, vectors) = eigen(squares);
         let mut order = [0, 1, 2];
-        order.sort_by(|i, j| values[*j].total_cmp(&values[*i]));
+        for (i, j) in [(0, 1), (1, 2), (0, 1)] {
+            if values[order[i]] < values[order[j]] {
+                order.swap(i, j);
+            }
+        }
         let [a, b, _] = order.map(|k| vectors[k]);
         let v = [a, b, cross(a, b)];
         let image = |v: [f64; 3]| f.map(|row| dot(row, v));
