@@ -99,18 +99,8 @@ impl Curve {
     /// forth.
     #[must_use]
     pub fn joined(&self) -> Vec<&Measurement> {
-        let drawn = self.runs.iter();
-        let mut runs: Vec<_> = drawn
-            .filter(|run| run.is_drawn() && !run.is_lost())
-            .collect();
-        runs.sort_by(|a, b| a.error.total_cmp(&b.error).then(a.work.total_cmp(&b.work)));
-        let mut least = f64::INFINITY;
-        runs.retain(|run| {
-            let better = run.work < least;
-            least = least.min(run.work);
-            better
-        });
-        runs
+        let unbeaten = unbeaten(std::slice::from_ref(self)).into_iter();
+        unbeaten.map(|(_, run)| run).collect()
     }
 }
 
@@ -127,27 +117,31 @@ impl Problem {
     /// reference cannot tell from 0 are left out, but beat others.
     #[must_use]
     pub fn front(&self) -> Vec<[usize; 2]> {
-        let mut runs: Vec<_> = (self.curves.iter().enumerate())
-            .flat_map(|(c, curve)| {
-                curve
-                    .runs
-                    .iter()
-                    .enumerate()
-                    .map(move |(r, run)| ([c, r], run))
-            })
-            .filter(|(_, run)| run.is_drawn() && !run.is_lost())
-            .collect();
-        runs.sort_by(|(_, a), (_, b)| a.error.total_cmp(&b.error).then(a.work.total_cmp(&b.work)));
-        let mut least = f64::INFINITY;
-        runs.retain(|(_, run)| {
-            let better = run.work < least;
-            least = least.min(run.work);
-            better
-                && run.error > self.trusted()
-                && self.still.is_none_or(|still| run.error <= still)
-        });
-        runs.into_iter().map(|(place, _)| place).collect()
+        let runs = unbeaten(&self.curves).into_iter();
+        runs.filter(|(_, run)| run.error > self.trusted())
+            .filter(|(_, run)| self.still.is_none_or(|still| run.error <= still))
+            .map(|(place, _)| place)
+            .collect()
     }
+}
+
+/// Returns the runs of some curves that no other run of these beats in both error and work, each
+/// with the indices of its curve and of itself, from the most accurate on.
+fn unbeaten(curves: &[Curve]) -> Vec<([usize; 2], &Measurement)> {
+    let mut runs = vec![];
+    for (c, curve) in curves.iter().enumerate() {
+        let drawn = curve.runs.iter().enumerate();
+        let drawn = drawn.filter(|(_, run)| run.is_drawn() && !run.is_lost());
+        runs.extend(drawn.map(|(r, run)| ([c, r], run)));
+    }
+    runs.sort_by(|(_, a), (_, b)| a.error.total_cmp(&b.error).then(a.work.total_cmp(&b.work)));
+    let mut least = f64::INFINITY;
+    runs.retain(|(_, run)| {
+        let better = run.work < least;
+        least = least.min(run.work);
+        better
+    });
+    runs
 }
 
 #[cfg(test)]
