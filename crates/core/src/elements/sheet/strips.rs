@@ -252,6 +252,7 @@ mod tests {
     use super::*;
     use crate::elements::axial;
     use crate::elements::force::At;
+    use crate::geometry::Triangles;
     use crate::grid::Grid;
     use crate::random::SplitMix;
 
@@ -308,13 +309,12 @@ mod tests {
                 // The oracle: spring by spring.
                 let mut expected = vec![0.0; fields[0].len()];
                 let [x, v, dx, dv] = fields;
-                let (masses, triangles) = (&[][..], &[][..]);
                 let at = At {
                     t: 0.0,
                     x,
                     v,
-                    masses,
-                    triangles,
+                    masses: &[],
+                    triangles: &Triangles::default(),
                 };
                 for spring in sheet.springs() {
                     axial::add_differential(&spring, &at, [dx, dv], &mut expected);
