@@ -1,4 +1,4 @@
-//! Rigid bodies: their parts, their mass properties, and the places of their points.
+//! Rigid bodies: their mass properties, and the places of their points.
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -6,22 +6,13 @@ use std::sync::Arc;
 use nalgebra::{Matrix3, Quaternion, Vector3};
 
 use super::faces::{Face, faces};
+use super::part::Part;
 use super::rotation::Rotation;
 use crate::error::{Error, positive};
-use crate::geometry::Shape;
 use crate::path::{Orientation, Place, Pose};
 
 /// Share of a moment of inertia that may be a rounding error.
 const ROUNDING: f64 = 1e-9;
-
-/// Part of a body, relative to its centre and along the principal axes.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Part {
-    /// Shape.
-    pub shape: Shape,
-    /// Place of the part (m).
-    pub at: Vector3<f64>,
-}
 
 /// Rigid body of a network.
 #[derive(Clone, Debug, PartialEq)]

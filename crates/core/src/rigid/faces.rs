@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use nalgebra::Vector3;
 
-use super::body::Part;
+use super::part::Part;
 use crate::geometry::{Shape, normals};
 
 /// Heights above the middle of a round end, over its radius, and shares of its area: the nodes and

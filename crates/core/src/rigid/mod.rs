@@ -18,12 +18,14 @@ mod faces;
 mod flight;
 mod mass;
 mod motor;
+mod part;
 mod rotation;
 
+pub use body::Body;
 pub(crate) use body::Moving;
-pub use body::{Body, Part};
 pub use mass::MassProperties;
 pub(crate) use motor::Driven;
 pub use motor::{Drive, Motor};
+pub use part::Part;
 pub use rotation::{ROTATION, Rotation};
 pub(crate) use rotation::{rotation_vector, turn};
