@@ -68,7 +68,9 @@ fn is_open(triangles: &[[u32; 3]]) -> Vec<bool> {
     let points = triangles.as_flattened().iter().max();
     let points = points.map_or(0, |last| *last as usize + 1);
     let mut surfaces = Sets::new(points);
-    sides.iter().for_each(|[i, j]| surfaces.join(*i, *j));
+    for [i, j] in &sides {
+        surfaces.join(*i, *j);
+    }
     let mut is_open = vec![false; points];
     for same in sides.chunk_by(|one, other| one == other) {
         is_open[surfaces.find(same[0][0]) as usize] |= same.len() != 2;
