@@ -37,8 +37,8 @@ pub(crate) struct Moving {
 
 impl Body {
     /// Creates a body with these principal moments of inertia (kg m2), whose centre of mass is the
-    /// particle `center`. The [points](Shape::simplices) of its parts are the particles from number
-    /// `first` on.
+    /// particle `center`. The [points](crate::geometry::Shape::simplices) of its parts are the
+    /// particles from number `first` on.
     ///
     /// # Errors
     /// It has no parts, or only floors; or no body can have these moments: each has to be a finite
