@@ -114,9 +114,10 @@ impl JointKind {
 }
 
 impl Joint {
-    /// Creates a joint of bodies with these centres and poses, the second one of which may be the
-    /// world, at a point (m), about or along an axis, of any length but 0. A particle of no body
-    /// has the pose of a place. Errors of directions count at the end of a length (m).
+    /// Creates a joint at a point (m) between a body and either another body or the world (`None`).
+    /// A body is given by its centre and its pose; instead of the first one, a particle of no body
+    /// is given with the pose of its place. A hinge turns about the axis, a slider moves along it;
+    /// the axis may have any length but 0. Errors of directions count at the end of a length (m).
     ///
     /// # Errors
     /// The axis has no length.

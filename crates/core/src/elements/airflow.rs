@@ -127,7 +127,8 @@ impl Push<'_> {
         self.particles.contains(&(i as usize))
     }
 
-    /// Adds the forces on a block of triangles, each of which is divided by a number of parts.
+    /// Adds the forces on a block of triangles. Each corner gets the force on its triangle divided
+    /// by `parts`.
     #[inline(always)]
     fn add(&mut self, triangles: &[[u32; 3]], parts: f64) {
         let At { t, x, v, .. } = *self.at;
@@ -166,8 +167,8 @@ impl Push<'_> {
     }
 }
 
-/// Returns the triangles of open and of closed surfaces, each list with the number of parts of the
-/// force on a triangle, one of which acts on each corner.
+/// Returns the triangles of open and of closed surfaces. With each list comes the number by which
+/// the force on a triangle is divided for each of its three corners: 3, or 6 to halve it.
 fn surfaces<'a>(at: &At<'a>) -> [(&'a [[u32; 3]], f64); 2] {
     let [open, closed] = at.triangles.open_and_closed();
     [(open, 3.0), (closed, 6.0)]

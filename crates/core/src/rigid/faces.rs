@@ -21,7 +21,8 @@ const AROUND: usize = 16;
 /// Number of faces along a capsule, between its ends.
 const ALONG: usize = 4;
 
-/// Distance from a face at which it is looked for in other parts, over the size of the body.
+/// Distance of the point in front of a face that must be outside all other parts, over the radius
+/// of the body.
 const CLEARANCE: f64 = 1e-6;
 
 /// Piece of the surface of a body, relative to its centre and along the principal axes.
@@ -32,7 +33,8 @@ pub(crate) struct Face {
     pub area: Vector3<f64>,
 }
 
-/// Lists the faces of a body of that radius (m), without those whose middle is in another part.
+/// Lists the faces of a body of that radius (m). A face whose middle is inside another part is left
+/// out as a whole.
 pub(super) fn faces(parts: &[Part], radius: f64) -> Vec<Face> {
     let of_part = |(k, part): (usize, &Part)| {
         let at = part.at;
@@ -42,9 +44,9 @@ pub(super) fn faces(parts: &[Part], radius: f64) -> Vec<Face> {
             ..face
         });
         placed.filter(move |face| {
-            let before = face.middle + face.area.normalize() * (CLEARANCE * radius);
+            let front = face.middle + face.area.normalize() * (CLEARANCE * radius);
             let mut others = parts.iter().enumerate().filter(|(other, _)| *other != k);
-            others.all(|(_, other)| other.shape.distance(before - other.at) >= 0.0)
+            others.all(|(_, other)| other.shape.distance(front - other.at) >= 0.0)
         })
     };
     parts.iter().enumerate().flat_map(of_part).collect()
