@@ -25,6 +25,10 @@ const ALONG: usize = 4;
 /// of the body.
 const CLEARANCE: f64 = 1e-6;
 
+/// Longest side of a flat face, over the radius of a body of several parts: longer faces are split,
+/// so that a small part hides little more than it covers.
+const LONGEST: f64 = 0.5;
+
 /// Piece of the surface of a body, relative to its centre and along the principal axes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Face {
@@ -36,9 +40,14 @@ pub(crate) struct Face {
 /// Lists the faces of a body of that radius (m). A face whose middle is inside another part is left
 /// out as a whole.
 pub(super) fn faces(parts: &[Part], radius: f64) -> Vec<Face> {
+    let longest = if parts.len() > 1 {
+        LONGEST * radius
+    } else {
+        f64::INFINITY
+    };
     let of_part = |(k, part): (usize, &Part)| {
         let at = part.at;
-        let faces = of_shape(&part.shape).into_iter();
+        let faces = of_shape(&part.shape, longest).into_iter();
         let placed = faces.map(move |face| Face {
             middle: at + face.middle,
             ..face
@@ -52,21 +61,39 @@ pub(super) fn faces(parts: &[Part], radius: f64) -> Vec<Face> {
     parts.iter().enumerate().flat_map(of_part).collect()
 }
 
-/// Lists the faces of a shape.
-fn of_shape(shape: &Shape) -> Vec<Face> {
+/// Lists the faces of a shape. Sides of flat ones are at most `longest` (m).
+fn of_shape(shape: &Shape, longest: f64) -> Vec<Face> {
     match shape {
         Shape::Sphere { radius } => round([Vector3::zeros(); 2], *radius),
         Shape::Capsule { ends, radius } => round(*ends, *radius),
         Shape::Box { .. } | Shape::Mesh(_) | Shape::Floor => {
             let simplices = shape.simplices();
             let corners = |t: &[u32; 3]| t.map(|i| simplices.points[i as usize]);
-            let faces = simplices.triangles.iter().map(corners);
-            let faces = faces.map(|[a, b, c]| Face {
-                middle: (a + b + c) / 3.0,
-                area: 0.5 * (b - a).cross(&(c - a)),
-            });
-            faces.filter(|face| face.area != Vector3::zeros()).collect()
+            let mut faces = vec![];
+            for triangle in simplices.triangles.iter().map(corners) {
+                split(triangle, longest, &mut faces);
+            }
+            faces
         }
+    }
+}
+
+/// Adds a triangle to the faces, in quarters while a side is longer than `longest` (m).
+fn split([a, b, c]: [Vector3<f64>; 3], longest: f64, faces: &mut Vec<Face>) {
+    if [b - a, c - b, a - c]
+        .iter()
+        .any(|side| side.norm() > longest)
+    {
+        let [d, e, f] = [[b, c], [c, a], [a, b]].map(|[i, j]| 0.5 * (i + j));
+        for quarter in [[a, f, e], [f, b, d], [e, d, c], [d, e, f]] {
+            split(quarter, longest, faces);
+        }
+        return;
+    }
+    let area = 0.5 * (b - a).cross(&(c - a));
+    if area != Vector3::zeros() {
+        let middle = (a + b + c) / 3.0;
+        faces.push(Face { middle, area });
     }
 }
 
@@ -145,7 +172,7 @@ mod tests {
                 (side + other * 0.4).normalize(),
             ),
         ] {
-            let faces = of_shape(&shape);
+            let faces = of_shape(&shape, f64::INFINITY);
             let [whole, seen] = areas(&faces, along);
             assert_relative_eq!(whole, TAU * r * (2.0 * r + l), max_relative = 1e-12);
             let expected = half * r * r + if along == axis { 0.0 } else { 2.0 * r * l };
@@ -175,5 +202,12 @@ mod tests {
         assert_relative_eq!(areas(&long, Vector3::x())[0], 10.0, max_relative = 1e-12);
         assert_relative_eq!(volume(&long), 2.0, max_relative = 1e-12);
         assert_eq!(faces(&[at(0.0)], 0.9).len(), 12);
+        // A small part that covers the middle of a triangle hides a small part of it.
+        let stick = Part {
+            shape: Shape::turned_box(Vector3::new(0.02, 0.5, 0.02), Vector3::zeros()).unwrap(),
+            at: Vector3::new(0.5 / 3.0, 0.9, -0.5 / 3.0),
+        };
+        let [whole, _] = areas(&faces(&[at(0.0), stick], 1.5), Vector3::y());
+        assert_relative_eq!(whole, 6.0 + 4.0 * 0.04 * 0.9, max_relative = 0.03);
     }
 }
