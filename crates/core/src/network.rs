@@ -12,6 +12,7 @@ mod energies;
 mod evaluation;
 mod held;
 mod holding;
+mod jump;
 mod loads;
 mod matrix;
 mod mechanics;
@@ -34,13 +35,15 @@ pub use crossings::untangle;
 pub use element::Element;
 pub(crate) use energies::{add_wind, energy_of_errors, has_motors, is_conservative};
 pub(crate) use holding::{contradiction, is_nearly_singular};
+pub(crate) use jump::{Jump, Least, fit, tighten};
 pub(crate) use outflow::{drained, entered, go_back, outflows, set_drained};
 pub use parts::Network;
 pub(crate) use project::{has_joints, project};
 pub(crate) use release::{
-    forget_released, next_known_time, next_release, pass_to, quarter_period, release_of,
+    breaks_between, forget_released, jump_near, next_break, next_known_time, next_release, pass_to,
+    quarter_period, release_of,
 };
 pub(crate) use ropes::{
-    Least, has_ropes, least_tension, open_ends, ropes_of, set_taut, settle, slack, taut, tighten,
+    has_ropes, least_tension, open_ends, ropes_of, set_taut, settle, slack, taut,
 };
 pub use surfaces::Touch;

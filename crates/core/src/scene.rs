@@ -10,7 +10,7 @@ use crate::error::Error;
 use crate::geometry::Shape;
 use crate::grid::Grid;
 use crate::integrators::Tolerance;
-use crate::network::{Network, Touch, settle};
+use crate::network::{Least, Network, Touch, fit, settle};
 use crate::system::ParticleSystem;
 
 /// Cost of an evaluation where surfaces touch, with the collision safeguard after a step, over the
@@ -169,6 +169,9 @@ pub struct Scene {
     pub reach: f64,
     /// Limits of adaptive steps.
     pub limits: StepLimits,
+    /// Largest change (m/s) by which the velocities of the state were made to fit the constraints:
+    /// 0 if they did.
+    pub fitted: f64,
 }
 
 /// Limits of adaptive steps.
@@ -196,13 +199,17 @@ impl Scene {
     /// Creates a scene without swing, wind and surfaces that can touch, in which a hand pulls
     /// springs to at most ten rest lengths. It starts from `state` with the pins in the places and
     /// with the velocities of their paths: any others would act on the springs in the first step
-    /// alone.
+    /// alone. Velocities that do not fit rods, joints and other constraints are changed least,
+    /// weighted by the masses, so that they do, as by an impact.
     #[must_use]
     pub fn new(name: impl Into<String>, model: impl Into<Model>, mut state: Vec<f64>) -> Self {
         let mut model = model.into();
+        let mut fitted = 0.0;
         if state.len() == model.system().dim() {
             model.system().hold(0.0, &mut state);
             if let Model::Network(network) = &mut model {
+                let jump = fit(network, 0.0, &mut state, Least::AT_START);
+                fitted = jump.map_or(0.0, |jump| jump.change);
                 settle(network, 0.0, &state, 0.0);
             }
         }
@@ -215,6 +222,7 @@ impl Scene {
             touch: None,
             reach: 10.0,
             limits: StepLimits::default(),
+            fitted,
         }
     }
 

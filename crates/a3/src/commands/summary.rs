@@ -27,6 +27,9 @@ struct Summary {
     energy_gained: Option<f64>,
     /// Energy gained or, below 0, lost (percent); none where forces do not conserve energy.
     energy_change_percent: Option<f64>,
+    /// Largest change (m/s) of a velocity at the start, so that it fits the constraints; none if all
+    /// did.
+    start_changed_by: Option<f64>,
     /// The constraint with the largest error; none if all were met.
     constraint: Option<Violation>,
     /// Largest length over rest length of a spring; none without springs.
@@ -115,6 +118,7 @@ pub fn write(
         energy: extremes.energy,
         energy_gained: simulation.gained().map(|gain| gain.energy),
         energy_change_percent: simulation.energy_change().map(|share| 100.0 * share),
+        start_changed_by: Some(simulation.scene().fitted).filter(|fitted| *fitted > 0.0),
         constraint: Violation::of(simulation),
         largest_stretch: extremes.stretch,
         torn: simulation.tears(),

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use a3_core::{Control, Method, Scene, Simulation, integrators};
+use a3_core::{Control, Method, Rounded, Scene, Simulation, integrators};
 use a3_scenes::{Description, Presentation, Setup};
 
 use crate::base::bounds;
@@ -119,6 +119,12 @@ impl Request {
                     setup.scene.name
                 ));
             }
+        }
+        if setup.scene.fitted > 0.0 {
+            terminal::warn(&format!(
+                "note: the velocities at the start do not fit the constraints: impulses changed them by up to {} m/s",
+                Rounded(setup.scene.fitted)
+            ));
         }
         Ok(setup)
     }

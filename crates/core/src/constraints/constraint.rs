@@ -14,7 +14,7 @@ const CENTER_SHARE: f64 = 1e-12;
 /// that is shorter is slack.
 pub(super) const SLACK_SHARE: f64 = 1e-3;
 
-/// Distance from its end, over its length, at which a joint is there.
+/// Distance from its end, over its length, at which a joint is there, and a rope is taut.
 const AT_END_SHARE: f64 = 1e-9;
 
 /// What a step of a projection changes.
@@ -142,17 +142,20 @@ impl Constraint {
         matches!(self, Self::Stop(_))
     }
 
-    /// Returns whether it is the end of a joint, and a joint with this equation is past it, or
-    /// moves past it from there.
-    pub(super) fn is_passed(&self, equation: &JointEquation, what: Projected) -> bool {
-        let Self::Stop(Stop { joint, .. }) = self else {
+    /// Returns whether it is a rope or the end of a joint that, with this error (m) and its rate
+    /// (m/s), is passed, or will be in a moment.
+    pub(super) fn is_passed(&self, [value, rate]: [f64; 2], what: Projected) -> bool {
+        let (Self::Stop(Stop {
+            joint: Joint { length, .. },
+            ..
+        })
+        | Self::Rope { length, .. }) = self
+        else {
             return false;
         };
         match what {
-            Projected::Places => equation.value > 0.0,
-            Projected::Velocities => {
-                equation.value > -AT_END_SHARE * joint.length && equation.rate > 0.0
-            }
+            Projected::Places => value > 0.0,
+            Projected::Velocities => value > -AT_END_SHARE * length && rate > 0.0,
         }
     }
 

@@ -19,6 +19,7 @@ mod direct;
 mod errors;
 mod joint;
 mod joints;
+mod jump;
 mod ropes;
 mod row;
 mod set;
@@ -29,8 +30,10 @@ pub use constraint::Constraint;
 pub(crate) use constraint::Projected;
 pub use joint::{Joint, JointKind, Stop};
 pub(crate) use joints::{joints, multipliers, nearest, project};
+pub(crate) use jump::{Struck, jump};
 pub(crate) use ropes::{
-    beyond, has_ropes, least_tension, loosen, open_ends, set_all_taut, set_taut, strike, taut,
+    OneSided, beyond, has_ropes, least_tension, loosen, open_ends, parting, set_all_taut, set_taut,
+    taut,
 };
 pub(crate) use set::{Constraints, Moved};
 pub(crate) use turning::Turning;

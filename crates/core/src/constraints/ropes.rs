@@ -1,25 +1,24 @@
 //! Ropes: |xi - xj| <= L. While a rope is taut, it has a row like that of a rod, whose multiplier
-//! is at most 0; a slack rope has none. A rope tightens by an impact, J v+ = -e J v- for the rate
-//! of its length J v, and slackens where its multiplier would become positive: then it would have
-//! to push. In an impact, rods and ropes that are already taut keep their lengths, and a rope that
-//! would have to push slackens (Moreau, *Unilateral contact and dry friction in finite freedom
-//! dynamics*, 1988). The end of a joint, C <= 0, is like a rope: it holds while it would push back,
-//! and the joint reaches it by an impact.
+//! is at most 0; a slack rope has none. A rope tightens by an impact (see [`jump`](super::jump)), and
+//! slackens where its multiplier would become positive: then it would have to push. The end of a
+//! joint, C <= 0, is like a rope: it holds while it would push back, and the joint reaches it by an
+//! impact.
 
 use nalgebra::{Matrix3, Vector3};
 
 use super::constraint::{Constraint, SLACK_SHARE};
-use super::joint::JointEquation;
+use super::joint::{JointEquation, Stop};
 use super::set::{Constraints, Moved, vector};
 use super::solve::System;
 use super::turning::Turning;
 
-/// Rope that is as long as it can be, and whose ends part; or a joint at its end.
+/// Rope or end of a joint in a state.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Stretched {
+pub(crate) struct OneSided {
     /// Number of the constraint.
     pub number: usize,
-    /// Rate of its length, or of its error (m/s).
+    /// Error (m), negative for a rope that is slack or a joint before its end, and its rate (m/s).
+    pub value: f64,
     pub rate: f64,
     pub restitution: f64,
 }
@@ -51,17 +50,46 @@ fn end_of_joint(
     Some(constraint.joint_equation(0, &sides))
 }
 
-/// Returns the number, the error (m) and its rate (m/s) of each end of a joint that is not held.
+/// Returns the rope or the end of a joint with that number, if it is one.
+fn one_sided(
+    constraints: &Constraints,
+    number: usize,
+    [x, v]: [&[f64]; 2],
+    turned: Turned,
+) -> Option<OneSided> {
+    let (value, rate, restitution) = match constraints.all[number] {
+        Constraint::Rope {
+            i,
+            j,
+            length,
+            restitution,
+        } => {
+            let (d, w) = (vector(x, i) - vector(x, j), vector(v, i) - vector(v, j));
+            (d.norm() - length, d.dot(&w) / d.norm(), restitution)
+        }
+        Constraint::Stop(Stop { restitution, .. }) => {
+            let equation = end_of_joint(constraints, number, [x, v], turned)?;
+            (equation.value, equation.rate, restitution)
+        }
+        _ => return None,
+    };
+    Some(OneSided {
+        number,
+        value,
+        rate,
+        restitution,
+    })
+}
+
+/// Returns the ends of joints that are not held.
 pub(crate) fn open_ends(
     constraints: &Constraints,
     state: [&[f64]; 2],
     turned: Turned,
-) -> impl Iterator<Item = (usize, f64, f64)> {
-    let open = (0..constraints.all.len()).filter(|number| !constraints.holds[*number]);
-    open.filter_map(move |number| {
-        let equation = end_of_joint(constraints, number, state, turned)?;
-        Some((number, equation.value, equation.rate))
-    })
+) -> impl Iterator<Item = OneSided> {
+    let all = constraints.all.iter().zip(&constraints.holds).enumerate();
+    let open = all.filter(|(_, (constraint, holds))| constraint.is_end() && !**holds);
+    open.filter_map(move |(number, _)| one_sided(constraints, number, state, turned))
 }
 
 /// Returns the slack ropes whose ends are at most `none` (m) closer than their length, and at least
@@ -71,43 +99,21 @@ pub(crate) fn beyond(
     state: [&[f64]; 2],
     turned: Turned,
     none: f64,
-) -> Vec<Stretched> {
-    let [x, v] = state;
-    let ends = open_ends(constraints, state, turned);
-    let reached = ends.filter(|(_, value, rate)| *value >= -none && *rate >= 0.0);
-    let mut all: Vec<_> = reached
-        .map(|(number, _, rate)| Stretched {
-            number,
-            rate,
-            restitution: match constraints.all[number] {
-                Constraint::Stop(stop) => stop.restitution,
-                _ => 0.0,
-            },
-        })
-        .collect();
-    for (number, (constraint, holds)) in constraints.all.iter().zip(&constraints.holds).enumerate()
-    {
-        let Constraint::Rope {
-            i,
-            j,
-            length,
-            restitution,
-        } = *constraint
-        else {
-            continue;
-        };
-        let (d, w) = (vector(x, i) - vector(x, j), vector(v, i) - vector(v, j));
-        let (distance, rate) = (d.norm(), d.dot(&w) / d.norm());
-        if !holds && distance >= length - none && rate >= 0.0 {
-            all.push(Stretched {
-                number,
-                rate,
-                restitution,
-            });
-        }
-    }
-    all.sort_by_key(|stretched| stretched.number);
-    all
+) -> Vec<OneSided> {
+    let open = (0..constraints.all.len()).filter(|number| !constraints.holds[*number]);
+    let all = open.filter_map(|number| one_sided(constraints, number, state, turned));
+    all.filter(|own| own.value >= -none && own.rate >= 0.0)
+        .collect()
+}
+
+/// Returns the numbers of the taut ropes whose ends part, and of the held ends of joints that move
+/// past them.
+pub(crate) fn parting(constraints: &Constraints, state: [&[f64]; 2], turned: Turned) -> Vec<usize> {
+    let parts = |number: &usize| {
+        let own = one_sided(constraints, *number, state, turned);
+        own.is_some_and(|own| own.rate > 0.0)
+    };
+    taut(constraints).filter(parts).collect()
 }
 
 /// Returns the ropes that are taut, by their numbers, in order.
@@ -146,52 +152,6 @@ pub(crate) fn set_all_taut(constraints: &mut Constraints, taut: &[usize]) {
     }
 }
 
-/// Applies the impact of ropes that tighten, each given by its number and the speed (m/s) at which
-/// its ends approach afterwards: it stays taut if that is 0. `weight` returns the inverse mass
-/// (1/kg) of a particle on no body or of the centre of one. Velocities are changed by `push`: that
-/// of a particle (m/s), or the angular momentum of a body (kg m2/s).
-pub(crate) fn strike(
-    constraints: &mut Constraints,
-    ropes: &[(usize, f64)],
-    weight: impl Fn(usize) -> f64,
-    turning: impl Fn(usize) -> Turning,
-    state: [&[f64]; 2],
-    push: &mut dyn FnMut(Moved, Vector3<f64>),
-) {
-    let mut system = System::default();
-    constraints.prepare(&mut system, weight, turning);
-    for (number, _) in ropes {
-        constraints.holds[*number] = true;
-    }
-    loop {
-        constraints.solve(state, &mut system, |owner, _, _, rate, _| {
-            let struck = ropes.iter().find(|(number, _)| *number == owner);
-            struck.map_or(0.0, |(_, speed)| -rate - speed)
-        });
-        match least(constraints, &system).filter(|(_, tension)| *tension < 0.0) {
-            Some((number, _)) => constraints.holds[number] = false,
-            None => break,
-        }
-    }
-    let mut impulses = vec![Vector3::zeros(); constraints.moved.len()];
-    for row in &system.rows {
-        row.spread(row.multiplier, &mut impulses);
-    }
-    for (k, moved) in constraints.moved.iter().enumerate() {
-        let impulse = impulses[k];
-        push(
-            *moved,
-            match &system.turnings[k] {
-                Some(turning) => turning.rotation * impulse,
-                None => impulse.component_mul(&system.weights[k]),
-            },
-        );
-    }
-    for (number, _) in ropes.iter().filter(|(_, speed)| *speed > 0.0) {
-        constraints.holds[*number] = false;
-    }
-}
-
 /// Returns the number of the taut rope with the least tension, and that tension divided by a
 /// positive number that is its own: it is negative for a rope that would have to push. `motion`,
 /// `turning` and the other forces f (N) are those of [`Constraints::add_forces`].
@@ -208,7 +168,7 @@ pub(crate) fn least_tension(
     })
 }
 
-fn least(constraints: &Constraints, system: &System) -> Option<(usize, f64)> {
+pub(super) fn least(constraints: &Constraints, system: &System) -> Option<(usize, f64)> {
     let rows = system.rows.iter().zip(&constraints.owners);
     let taut = rows.filter(|(_, (owner, _))| {
         constraints.all[*owner].is_one_sided() && constraints.holds[*owner]

@@ -144,6 +144,11 @@ impl Constraints {
         &self.all
     }
 
+    /// Returns whether they act on a particle, or on the body whose centre it is.
+    pub fn moves(&self, i: usize) -> bool {
+        self.particles.contains_key(&i)
+    }
+
     /// Returns the natural frequency (1/s) with which errors decay.
     pub fn baumgarte_frequency(&self) -> f64 {
         self.baumgarte_frequency
@@ -294,15 +299,18 @@ impl Constraints {
             let (owner, number) = self.owners[k];
             let (constraint, ends) = (&self.all[owner], self.ends[owner]);
             *row = Row::default();
-            if !self.holds[owner] && (ends_hold.is_none() || !constraint.is_end()) {
+            // In a projection of that kind, ropes and ends of joints hold where they are passed.
+            let of_ends = ends_hold.filter(|_| constraint.is_one_sided());
+            if !self.holds[owner] && of_ends.is_none() {
                 return;
             }
+            let holds = |value: f64, rate: f64| {
+                of_ends.is_none_or(|what| constraint.is_passed([value, rate], what))
+            };
             let turned = |turn: usize| turnings[turn].as_ref().map(Turning::turned);
             if let Some(sides) = self.sides(owner, [x, v], turned) {
                 let equation = constraint.joint_equation(number, &sides);
-                let passed = |what| constraint.is_passed(&equation, what);
-                let holds = self.holds[owner] || ends_hold.is_some_and(passed);
-                if !holds || constraint.is_away(&equation) {
+                if !holds(equation.value, equation.rate) || constraint.is_away(&equation) {
                     return;
                 }
                 fill(row, ends, turnings, &equation);
@@ -326,6 +334,10 @@ impl Constraints {
                 return;
             };
             let gradient = equation.gradient;
+            let rate = gradient.dot(&v_relative);
+            if !holds(equation.value, rate) {
+                return;
+            }
             for (end, sign) in ends.iter().zip([1.0, -1.0]) {
                 row.add(end.place, gradient * sign);
                 if let Some(turning) = &turnings[end.turn] {
@@ -334,7 +346,6 @@ impl Constraints {
                     equation.bend += gradient.dot(&lever.inwards) * sign;
                 }
             }
-            let rate = gradient.dot(&v_relative);
             let target = target(owner, row, &equation, rate, vectors);
             row.set_target(target, weights);
         });

@@ -11,7 +11,6 @@ use super::elements::Elements;
 use super::outflow::{drained, entered, is_drained, leave, set_drained};
 use super::particles::Particles;
 use super::parts::Network;
-use super::project;
 use super::strain::StrainLimits;
 use super::surfaces::{Surfaces, Touch};
 use super::tearing::Tears;
@@ -298,11 +297,6 @@ impl Network {
         self.constraints = (self.constraints).with_carriers(|i| self.bodies.belonging(i))?;
         self.renew_contact();
         Ok(())
-    }
-
-    /// Changes the velocities in y least, weighted by the masses, so that joints stay met.
-    pub fn meet_joints(&self, y: &mut [f64]) {
-        project::project_velocities(self, y);
     }
 
     /// Adds a motor.

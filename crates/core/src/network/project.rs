@@ -22,16 +22,14 @@ pub(crate) fn has_joints(network: &Network) -> bool {
 }
 
 /// Changes the velocities in the state y by the least amount, weighted by the masses, so that all
-/// constraints stay met, if there are joints.
-pub(super) fn project_velocities(network: &Network, y: &mut [f64]) {
-    if has_joints(network) {
-        push(network, y, (Projected::Velocities, false));
-    }
+/// constraints stay met.
+pub(crate) fn project_velocities(network: &Network, y: &mut [f64]) {
+    push(network, y, (Projected::Velocities, false));
 }
 
 /// Moves the state y by the least distance, weighted by the masses, to where all constraints are
-/// met and stay so. `ends_hold` is whether that includes the ends that joints have passed, as in an
-/// impact.
+/// met and stay so. With `ends_hold`, as in an impact, ropes and ends of joints hold where they are
+/// passed, else where they are taut.
 pub(crate) fn project(network: &Network, y: &mut [f64], ends_hold: bool) {
     let size = network
         .halves(y)

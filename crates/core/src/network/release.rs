@@ -23,6 +23,38 @@ pub(crate) fn next_release(network: &Network) -> f64 {
     network.particles.next_release()
 }
 
+/// Returns the first time after t (s) at which the velocity of a pin that constraints hold may jump;
+/// infinite if there is none.
+fn next_jump(network: &Network, t: f64) -> f64 {
+    if !network.is_constrained() {
+        return f64::INFINITY;
+    }
+    let pins = network.particles.pins().iter();
+    let held = pins.filter(|pin| network.constraints.moves(pin.particle));
+    let times = held.flat_map(|pin| pin.path.known_times());
+    times.filter(|time| *time > t).fold(f64::INFINITY, f64::min)
+}
+
+/// Returns a time within `none` (s) of t (s) at which the velocity of a pin that constraints hold
+/// may jump, if there is one.
+pub(crate) fn jump_near(network: &Network, t: f64, none: f64) -> Option<f64> {
+    let jump = next_jump(network, (t - none).next_down());
+    (jump <= t + none).then_some(jump)
+}
+
+/// Returns the first time (s) past which no step of any method goes that begins at t (s): where a
+/// pin lets go or, after more than `none` (s), the velocity of one jumps that constraints hold.
+/// Infinite if there is none.
+pub(crate) fn next_break(network: &Network, t: f64, none: f64) -> f64 {
+    next_release(network).min(next_jump(network, t + none))
+}
+
+/// Returns whether a step between two times (s) would go past such a time, or end within `none` (s)
+/// of a jump.
+pub(crate) fn breaks_between(network: &Network, [t, end]: [f64; 2], none: f64) -> bool {
+    next_release(network) < end || next_jump(network, t + none) <= end + none
+}
+
 /// Forgets the pins that have let go: none of them holds again at an earlier time.
 pub(crate) fn forget_released(network: &mut Network) {
     network.particles.forget_released();

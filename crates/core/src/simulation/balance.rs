@@ -121,9 +121,11 @@ impl Balance {
         self.work -= work;
     }
 
-    /// Changes the reference energy by the change (J) that a tear caused: that is no gain.
+    /// Changes the reference energy by the change (J) that a tear or a release caused: that is no
+    /// gain, and what it adds is of the scene from then on.
     pub(super) fn allow(&mut self, change: f64) {
         self.begin += change;
+        self.own += change.max(0.0);
         self.open = true;
     }
 

@@ -1,6 +1,5 @@
-//! Changes of the network at the ends of steps and of their parts: ropes tighten and slacken,
-//! springs break, liquid flows out,
-//! and pins let go.
+//! Changes of the network at the ends of steps and of their parts: velocities jump with pins, ropes
+//! tighten and slacken, springs break, liquid flows out, and pins let go.
 
 use super::depths::{Depths, NEGLIGIBLE_SHARE};
 use super::power::energy_of;
@@ -8,7 +7,8 @@ use super::state::RunState;
 use super::step::Pipeline;
 use crate::integrators::Work;
 use crate::network::{
-    Least, Network, entered, has_ropes, next_release, pass_to, settle, taut, tighten,
+    Jump, Least, Network, entered, fit, has_ropes, jump_near, next_release, pass_to, settle, taut,
+    tighten,
 };
 use crate::scene::Model;
 
@@ -28,16 +28,71 @@ impl Pipeline {
         if !has_ropes(network) || state.y.iter().any(|y| !y.is_finite()) {
             return;
         }
+        let least = self.least(state, rebounds);
+        self.jump(network, state, t, |network, y| {
+            tighten(network, t, y, least)
+        });
+    }
+
+    /// Makes velocities fit, and accounts for the work, where the velocity of a pin that constraints
+    /// hold jumps at time t (s), or so near that no step ends between.
+    fn follow_pins(&mut self, model: &mut Model, state: &mut RunState, t: f64) {
+        if let Model::Network(network) = model
+            && let Some(time) = jump_near(network, t, state.sliver())
+        {
+            let least = self.least(state, true);
+            self.jump(network, state, t, |network, y| {
+                fit(network, t.max(time), y, least)
+            });
+            self.watch.forget_power();
+        }
+    }
+
+    /// Does so without an account.
+    pub(super) fn fit_at_jump(&self, model: &mut Model, state: &mut RunState, t: f64) {
+        if let Model::Network(network) = model
+            && let Some(time) = jump_near(network, t, state.sliver())
+        {
+            self.fit(network, state, t.max(time));
+        }
+    }
+
+    /// Makes velocities fit the constraints at time t (s), where something else has changed them.
+    pub(super) fn fit(&self, network: &mut Network, state: &mut RunState, t: f64) {
+        let least = self.least(state, true);
+        fit(network, t, &mut state.y, least);
+    }
+
+    /// Returns the conditions for rebounds of ropes.
+    fn least(&self, state: &RunState, rebounds: bool) -> Least {
         let depths = Depths::new(self.bounds.radius, self.limits, state.control);
-        let least = Least {
+        Least {
             none: depths.none,
             height: depths.none.max(depths.shallow),
             time: state.control.step().unwrap_or(0.0),
             rebounds,
-        };
-        self.change(network, state, t, |network, y| {
-            tighten(network, t, y, least)
-        });
+        }
+    }
+
+    /// Changes velocities in the state y at time t (s), and accounts for the work and for the energy
+    /// that ropes lose when they tighten.
+    fn jump(
+        &mut self,
+        network: &mut Network,
+        state: &mut RunState,
+        t: f64,
+        jump: impl FnOnce(&mut Network, &mut [f64]) -> Option<Jump>,
+    ) {
+        let before = energy_of(network, t, &state.y).total();
+        if let Some(jump) = jump(network, &mut state.y) {
+            let after = energy_of(network, t, &state.y).total();
+            state.balance.add(jump.work);
+            if jump.tightened {
+                state.balance.allow(after - before - jump.work);
+            }
+            self.watch.forget_power();
+            self.stepper.forget();
+        }
     }
 
     /// Changes the network or the state y at time t (s), and accounts for the change of energy.
@@ -113,6 +168,7 @@ impl Pipeline {
         self.tear(model, state);
         self.drain(model, state, t);
         self.let_go(model, state, t);
+        self.follow_pins(model, state, t);
     }
 
     /// Lets go of pins at time t (s), where the run has arrived, and accounts for the energy of

@@ -6,14 +6,15 @@ use serde::{Deserialize, Serialize};
 
 use super::balance::Balance;
 use super::failure::Failure;
+use super::reach::STEP_END_TOLERANCE;
 use super::state::RunState;
-use super::step::{Pipeline, STEP_END_TOLERANCE};
+use super::step::Pipeline;
 use super::stepper::Stepper;
 use super::within::{Span, Within};
 use crate::control::Control;
 use crate::error::Error;
 use crate::integrators::AdaptiveState;
-use crate::network::{next_release, pass_to};
+use crate::network::{breaks_between, next_break, pass_to};
 use crate::scene::Model;
 use crate::threads::among_threads;
 
@@ -202,15 +203,16 @@ impl Driver {
     }
 
     /// Shows the state at a time (s) within the step: interpolated, then corrected for contact and
-    /// pins as at the end of a step. If pins let go in a fixed step, it is taken again up to there:
-    /// no polynomial follows the motion past such a time.
+    /// pins as at the end of a step. If pins let go or jump in a fixed step, it is taken again up to
+    /// there: no polynomial follows the motion past such a time.
     fn show(&mut self, model: &mut Model, state: &mut RunState, time: f64) {
         let Some([begin, end]) = self.within.times() else {
             return;
         };
         pass_model_to(model, begin);
-        let lets_go = model.network().is_some_and(|it| next_release(it) < end);
-        if lets_go && self.shorten_step(model, state, begin, time) {
+        let network = model.network();
+        let breaks = network.is_some_and(|it| breaks_between(it, [begin, end], state.sliver()));
+        if breaks && self.shorten_step(model, state, begin, time) {
             state.shown = Some(time);
             return;
         }
@@ -251,8 +253,8 @@ impl Driver {
         self.pipeline.watch.disturb(model, state, time, end);
     }
 
-    /// Takes the step that began at time t (s) again, up to a time (s): in parts, if pins let go
-    /// before. Returns whether that succeeded; if not, the state stays as it is.
+    /// Takes the step that began at time t (s) again, up to a time (s): in parts, if pins let go or
+    /// jump before. Returns whether that succeeded; if not, the state stays as it is.
     fn shorten_step(
         &mut self,
         model: &mut Model,
@@ -260,25 +262,28 @@ impl Driver {
         mut t: f64,
         time: f64,
     ) -> bool {
-        let Pipeline {
-            stepper, phases, ..
-        } = &mut self.pipeline;
-        let mut y = self.within.y0().to_vec();
+        let shown = std::mem::replace(&mut state.y, self.within.y0().to_vec());
         pass_model_to(model, t);
         let mut succeeds = true;
         while succeeds && t < time {
-            let end = model.network().map_or(time, next_release).min(time);
-            phases.begin(model, &y, false);
+            let Pipeline {
+                stepper, phases, ..
+            } = &mut self.pipeline;
+            let next = model.network().map(|it| next_break(it, t, state.sliver()));
+            let y = &mut state.y;
+            let end = next.unwrap_or(time).min(time);
+            phases.begin(model, y, false);
             let step = Control::Step(end - t);
-            let taken = stepper.integrate(model.system(), step, t, end - t, &mut y);
-            let settled = phases.settle(model, (t, end - t), &mut y);
+            let taken = stepper.integrate(model.system(), step, t, end - t, y);
+            let settled = phases.settle(model, (t, end - t), y);
             succeeds = taken.is_ok() && settled.is_ok() && y.iter().all(|y| y.is_finite());
             pass_model_to(model, end);
+            self.pipeline.fit_at_jump(model, state, end);
             t = end;
         }
         pass_model_to(model, time);
-        if succeeds {
-            state.y = y;
+        if !succeeds {
+            state.y = shown;
         }
         succeeds
     }

@@ -108,7 +108,8 @@ impl Simulation {
         Some(phases.contact_forces(network, self.time(), &self.state.y))
     }
 
-    /// Ends the step at the time shown (s), and changes the network and the state there.
+    /// Ends the step at the time shown (s), and changes the network and the state there. Velocities
+    /// that do not fit the constraints afterwards are made to.
     fn disturb<T>(
         &mut self,
         change: impl FnOnce(&mut Network, &mut RunState, f64) -> T,
@@ -117,7 +118,11 @@ impl Simulation {
         self.stop();
         match &mut self.model {
             Model::FirstOrder(_) | Model::Points(_) => None,
-            Model::Network(network) => Some(change(network, &mut self.state, time)),
+            Model::Network(network) => {
+                let changed = change(network, &mut self.state, time);
+                self.driver.pipeline.fit(network, &mut self.state, time);
+                Some(changed)
+            }
         }
     }
 

@@ -9,6 +9,7 @@ use super::resting::{Resting, Rests, first_end, first_negative, may_rest};
 use super::searched::{EventKind, Searched};
 use super::state::RunState;
 use super::stepper::Stepper;
+use crate::constraints::OneSided;
 use crate::contact::{Obstacle, Shape};
 use crate::elements::Outflow;
 use crate::integrators::Work;
@@ -182,8 +183,8 @@ fn first_stop(
     let Searched { network, h, .. } = *step;
     let [begun, ended] = step.ends.map(|y| open_ends(network, y));
     // Half of the most by which an error can leave its chord.
-    let is_near = |(a, b): (&(usize, f64, f64), &(usize, f64, f64))| {
-        a.1.max(b.1) + 0.5 * h * (a.2.abs() + b.2.abs()) > 0.0
+    let is_near = |(a, b): (&OneSided, &OneSided)| {
+        a.value.max(b.value) + 0.5 * h * (a.rate.abs() + b.rate.abs()) > 0.0
     };
     if !begun.iter().zip(&ended).any(is_near) {
         return None;
@@ -204,7 +205,7 @@ fn first_stop(
         let left = begun
             .iter()
             .zip(&now)
-            .map(|(begun, now)| passed(begun.1) - now.1);
+            .map(|(begun, now)| passed(begun.value) - now.value);
         left.fold(f64::INFINITY, f64::min)
     };
     let ends = (1..=INTERVALS).map(|k| before * f64::from(k) / f64::from(INTERVALS));

@@ -10,7 +10,7 @@ use crate::contact::{
     bulge, guard, resolve,
 };
 use crate::error::Cause;
-use crate::network::{Network, has_joints, has_ropes, outflows, project};
+use crate::network::{Network, has_ropes, outflows, project};
 use crate::scene::Model;
 use crate::system::{Mechanics, ParticleSystem};
 
@@ -180,7 +180,7 @@ impl Phases {
         if y1.iter().any(|y| !y.is_finite()) {
             return Ok(Statistics::default());
         }
-        let mut before = has_joints(network).then(|| y1.to_vec());
+        let mut before = network.is_constrained().then(|| y1.to_vec());
         let met = self.guard(network, layer, (t, h), y1)?;
         if let Some(before) = &mut before {
             let first = largest_shift(network, [before, y1]);
@@ -216,19 +216,11 @@ impl Phases {
     }
 }
 
-/// Returns the largest displacement (m) between two states of anything that joints join.
+/// Returns the largest displacement (m) between two states of anything that constraints hold.
 fn largest_shift(network: &Network, [a, b]: [&[f64]; 2]) -> f64 {
     let n = network.particles();
-    let joints = network
-        .constraints()
-        .iter()
-        .filter_map(|constraint| match constraint {
-            Constraint::Joint(joint) => Some([Some(joint.first), joint.second]),
-            _ => None,
-        });
-    let shifts = joints
-        .flatten()
-        .flatten()
-        .map(|i| (row(b, n, i) - row(a, n, i)).norm());
+    let ends = network.constraints().iter().map(Constraint::ends);
+    let held = ends.flat_map(|(first, second)| [Some(first), second]);
+    let shifts = held.flatten().map(|i| (row(b, n, i) - row(a, n, i)).norm());
     shifts.fold(0.0, f64::max)
 }

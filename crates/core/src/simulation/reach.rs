@@ -1,7 +1,11 @@
 //! Reach of a step: how far it may go, and how far it has gone.
 
-use crate::network::{Network, next_known_time, next_release, quarter_period};
+use crate::network::{Network, jump_near, next_break, next_known_time, quarter_period};
 use crate::scene::{Model, StepLimits};
+
+/// Share of a step by which its end may miss a requested time: 1/60 s written as 0.01666667 is
+/// accurate enough for sixty frames a second.
+pub(super) const STEP_END_TOLERANCE: f64 = 1e-6;
 
 /// Part of a run that one step covers: its length (s), and the time at its end (s).
 #[derive(Clone, Copy)]
@@ -67,12 +71,28 @@ impl Reach {
         reach.or_before(t, target)
     }
 
+    /// Returns the same limits if they end where the velocity of a pin jumps that constraints hold,
+    /// or within `none` (s) of it, but with all evaluations before that.
+    pub fn before_jump(self, network: &Network, t: f64, none: f64) -> Self {
+        let jump = self
+            .until
+            .and_then(|end| Some((end, jump_near(network, end, none)?)));
+        match jump {
+            Some((end, jump)) => Self {
+                until: Some(end),
+                ..Self::up_to(t, jump.min(end))
+            },
+            None => self,
+        }
+    }
+
     /// Returns the limits of a part of a fixed step of a network from time t (s) by a method that
-    /// locates no events. The part ends where the next pin lets go, or at `target` (s).
-    pub fn of_part(network: &Network, t: f64, target: Option<f64>) -> Self {
-        let release = next_release(network);
-        let reach = if release.is_finite() {
-            Self::up_to(t, release)
+    /// locates no events. The part ends where the next pin lets go or, after more than `none` (s),
+    /// jumps, or at `target` (s).
+    pub fn of_part(network: &Network, t: f64, none: f64, target: Option<f64>) -> Self {
+        let until = next_break(network, t, none);
+        let reach = if until.is_finite() {
+            Self::up_to(t, until)
         } else {
             Self::default()
         };

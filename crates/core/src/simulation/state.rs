@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use super::balance::Balance;
 use super::grabbed::Grabbed;
+use super::reach::STEP_END_TOLERANCE;
 use crate::contact::Guarded;
 use crate::control::Control;
 use crate::error::{BlowUp, Cause, Error};
@@ -135,6 +136,11 @@ impl RunState {
     /// Returns the time at the end of the last step (s).
     pub(super) fn end(&self) -> f64 {
         self.since + self.taken as f64 * self.control.step().unwrap_or(0.0)
+    }
+
+    /// Returns the time (s) by which the end of a fixed step may miss a known time.
+    pub(super) fn sliver(&self) -> f64 {
+        STEP_END_TOLERANCE * self.control.step().unwrap_or(0.0)
     }
 
     /// Sets the time (s), from which steps are then counted.

@@ -14,7 +14,7 @@ use super::failure::{Failure, cause_of};
 use super::locator::Locator;
 use super::phases::{Phases, Settled};
 use super::power::End;
-use super::reach::{Part, Reach};
+use super::reach::{Part, Reach, STEP_END_TOLERANCE};
 use super::retry::{MIN_RETRY_SHARE, MIN_RETRY_STEP, limit_next, share_of_bulge, share_of_retry};
 use super::searched::EventKind;
 use super::state::RunState;
@@ -22,13 +22,9 @@ use super::stepper::Stepper;
 use super::watch::Watch;
 use crate::control::Control;
 use crate::error::{Cause, Error};
-use crate::network::{Network, has_ropes, next_release, outflows};
+use crate::network::{Network, breaks_between, has_ropes, jump_near, outflows};
 use crate::scene::{Model, Scene, StepLimits};
 use crate::system::ParticleSystem;
-
-/// Share of a step by which its end may miss a requested time: 1/60 s written as 0.01666667 is
-/// accurate enough for sixty frames a second.
-pub(super) const STEP_END_TOLERANCE: f64 = 1e-6;
 
 /// Largest distance, over the scene's radius, that a particle flies in a step of an adaptive method
 /// in which it may arrive somewhere.
@@ -99,8 +95,10 @@ impl Pipeline {
         let mut begin = state.end();
         let whole = state.control.step();
         let target = whole.map(|h| state.since + (state.taken + 1) as f64 * h);
-        let lets_go = target.is_some_and(|target| release_before(model, target));
-        let in_parts = lets_go || self.locator.splits(&self.stepper);
+        let network = model.network().zip(target);
+        let breaks =
+            network.is_some_and(|(it, target)| breaks_between(it, [begin, target], state.sliver()));
+        let in_parts = breaks || self.locator.splits(&self.stepper);
         for number in 1.. {
             let rebounds = number <= MAX_REBOUNDING_PARTS;
             if let Model::Network(network) = model {
@@ -115,8 +113,9 @@ impl Pipeline {
             let (cause, part) = match taken {
                 Err(cause) => (Some(cause), Part::of(begin, whole.unwrap_or(0.0))),
                 Ok((part, settled)) => {
+                    let cause = self.end_part(model, state, part.end, &settled);
                     self.tighten(model, state, part.end, rebounds);
-                    (self.end_part(model, state, part.end, &settled), part)
+                    (cause, part)
                 }
             };
             let is_last = cause.is_some() || !in_parts || target == Some(part.end);
@@ -156,9 +155,13 @@ impl Pipeline {
         let locates = self.locator.serves(stepper);
         let reach = match (locates, model.network().filter(|_| target.is_some())) {
             (true, _) => Reach::of_step(model, flying, stepper.is_adaptive(), t, target),
-            (false, Some(network)) => Reach::of_part(network, t, target),
+            (false, Some(network)) => Reach::of_part(network, t, state.sliver(), target),
             (false, None) => Reach::default(),
         };
+        let none = state.sliver();
+        let reach = model
+            .network()
+            .map_or(reach, |network| reach.before_jump(network, t, none));
         self.locator.list_rests(model, state, stepper, t, depths);
         let plan = Plan {
             t,
@@ -244,10 +247,11 @@ impl Pipeline {
                 adaptive.restart();
             }
         }
-        if part.ends_at_event
-            && let Some(network) = model.network()
-        {
-            network.hold(part.end, &mut state.y);
+        if let Some(network) = model.network() {
+            let last = last_moment(network, state, part.end);
+            if part.ends_at_event || last < part.end {
+                network.hold(last, &mut state.y);
+            }
         }
         state.guarded += settled.met.guarded;
         Ok((part, settled))
@@ -342,6 +346,7 @@ impl Pipeline {
         settled: &Settled,
     ) -> Option<Cause> {
         let lost = self.bounds.violation(model, &state.y);
+        let t = model.network().map_or(t, |it| last_moment(it, state, t));
         let RunState { y, balance, .. } = state;
         let order = state.method.order;
         let end = End { order, t, y };
@@ -349,8 +354,9 @@ impl Pipeline {
     }
 }
 
-/// Returns whether a pin lets go before a time (s).
-fn release_before(model: &Model, time: f64) -> bool {
-    let network = model.network();
-    network.is_some_and(|network| next_release(network) < time)
+/// Returns the last moment (s) up to time t (s) at which pins that constraints hold have the
+/// velocities of a step that ends there: just before they jump, if they do.
+fn last_moment(network: &Network, state: &RunState, t: f64) -> f64 {
+    let jump = jump_near(network, t, state.sliver());
+    jump.map_or(t, |jump| jump.min(t).next_down())
 }

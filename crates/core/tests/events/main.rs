@@ -4,6 +4,7 @@
 mod common;
 
 mod frames;
+mod jumps;
 mod known_times;
 mod outflows;
 mod rebounds;

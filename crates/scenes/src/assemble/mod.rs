@@ -135,9 +135,6 @@ impl Description {
         let mut scene = Scene::new(self.name.clone().unwrap_or_default(), model, state);
         scene.limits.max_step = self.max_step;
         scene.touch = touch;
-        if let (Model::Network(network), None) = (&scene.model, &self.state) {
-            network.meet_joints(&mut scene.state);
-        }
         // A given state comes from a run, which reports the errors of its constraints.
         let given = self.state.as_ref();
         if given.is_none_or(|given| given.positions.is_empty()) {

@@ -1,0 +1,211 @@
+//! Jumps of velocities in a network at one time: at the start, where the velocity of a pin jumps,
+//! after a hand has changed something, and where ropes tighten.
+
+use nalgebra::Vector3;
+
+use super::loads::{self, Loads};
+use super::parts::Network;
+use super::ropes::{halves, open_ends, turned};
+use crate::columns::{row, set_row};
+use crate::constraints::{self, Constraint, Moved, Struck, beyond};
+use crate::rows::Terms;
+use crate::system::ParticleSystem;
+
+/// Largest number of impacts at one time: an impact may tighten further ropes.
+const MAX_IMPACTS: usize = 100;
+
+/// Largest number of impacts at one time with rebounds, which may follow one another without end.
+const MAX_REBOUNDS: usize = 10;
+
+/// Half of the interval of the difference quotient for the acceleration past an end of a joint (s).
+const HALF_MOMENT: f64 = 1e-7;
+
+/// Conditions for a rebound: heights (m) and times (s) that are too small for one.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Least {
+    /// Distance from its length that counts as zero.
+    pub none: f64,
+    /// Change of length up to which a rebound is left out.
+    pub height: f64,
+    /// Time up to which a rebound is left out.
+    pub time: f64,
+    /// Whether there are rebounds at all.
+    pub rebounds: bool,
+}
+
+impl Least {
+    /// Conditions at the start of a run: every rope that is at its length rebounds.
+    pub const AT_START: Self = Self {
+        none: 0.0,
+        height: 0.0,
+        time: 0.0,
+        rebounds: true,
+    };
+}
+
+/// Largest change of a velocity, over the fastest one, that counts as rounding.
+const ROUNDING: f64 = 1e-12;
+
+/// Result of jumps at one time.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Jump {
+    /// Work (J) of the impulses at pins.
+    pub work: f64,
+    /// Largest change of a velocity (m/s).
+    pub change: f64,
+    /// Whether ropes tightened, or joints reached their ends.
+    pub tightened: bool,
+}
+
+/// Makes the velocities in the state y at time t (s) fit the constraints and the velocities of
+/// pins, by the least impulses, and lets ropes tighten that have to. Returns `None` if they fit.
+pub(crate) fn fit(network: &mut Network, t: f64, y: &mut [f64], least: Least) -> Option<Jump> {
+    if !network.is_constrained() || y.iter().any(|y| !y.is_finite()) {
+        return None;
+    }
+    let before = network.halves(y).1.to_vec();
+    network.hold(t, y);
+    let [x, v] = halves(network, y);
+    let parting = constraints::parting(&network.constraints, [x, v], &|k| turned(network, k, y));
+    for number in parting {
+        constraints::set_taut(&mut network.constraints, number, false);
+    }
+    let mut all = Jump::default();
+    all.add(strike(network, (t, &before), y, &[]));
+    if let Some(tightened) = tighten(network, t, y, least) {
+        all.add(tightened);
+    }
+    (all.change > 0.0).then_some(all)
+}
+
+/// Applies the impacts of the ropes that tighten in the state y at time t (s), if there are any.
+pub(crate) fn tighten(network: &mut Network, t: f64, y: &mut [f64], least: Least) -> Option<Jump> {
+    let mut all: Option<Jump> = None;
+    for number in 0..MAX_IMPACTS {
+        let may_rebound = least.rebounds && number < MAX_REBOUNDS;
+        let turned = |k| turned(network, k, y);
+        let state = halves(network, y);
+        let mut ropes = beyond(&network.constraints, state, &turned, least.none);
+        ropes.retain(|rope| rope.rate > 0.0);
+        if ropes.is_empty() {
+            break;
+        }
+        let mut rates = vec![];
+        if may_rebound && ropes.iter().any(|rope| rope.restitution > 0.0) {
+            rates.resize(y.len(), 0.0);
+            network.eval_f(t, y, &mut rates);
+        }
+        let speeds = ropes.iter().map(|rope| {
+            let speed = rope.restitution * rope.rate;
+            let rebounds = may_rebound && speed > 0.0 && {
+                let press = parting(network, rope.number, y, &rates);
+                speed * speed > 2.0 * press * least.height && 2.0 * speed > press * least.time
+            };
+            Struck {
+                number: rope.number,
+                speed: if rebounds { speed } else { 0.0 },
+            }
+        });
+        let struck: Vec<_> = speeds.collect();
+        let before = network.halves(y).1.to_vec();
+        let jump = strike(network, (t, &before), y, &struck);
+        all.get_or_insert_default().add(jump);
+    }
+    all
+}
+
+impl Jump {
+    /// Adds a later jump at the same time.
+    fn add(&mut self, later: Self) {
+        self.work += later.work;
+        self.change = self.change.max(later.change);
+        self.tightened |= later.tightened;
+    }
+}
+
+/// Applies a jump at time t (s), in which ropes tighten, to the state y. `before` are the
+/// velocities (m/s) before it, n x 3.
+fn strike(
+    network: &mut Network,
+    (t, before): (f64, &[f64]),
+    y: &mut [f64],
+    struck: &[Struck],
+) -> Jump {
+    let (n, still) = (network.particles(), vec![0.0; 3 * network.particles()]);
+    let begun = y.to_vec();
+    let (x, v) = network.halves(&begun);
+    let mut all = std::mem::take(&mut network.constraints);
+    let weight = |i: usize| network.particles.inverse_masses()[i];
+    let loads = Loads {
+        x,
+        f: &still,
+        torques: &vec![0.0; 3 * network.bodies().len()],
+    };
+    let turning = |k: usize| loads::turning(network, k, &begun, Terms::KickForces, loads).0;
+    let pushed = constraints::jump(&mut all, struck, weight, turning, [x, v]);
+    network.constraints = all;
+    let mut jump = Jump {
+        tightened: !struck.is_empty(),
+        ..Jump::default()
+    };
+    for pushed in &pushed {
+        jump.change = jump.change.max(match pushed.moved {
+            Moved::Body(k) => pushed.change.norm() * network.bodies()[k].radius(),
+            Moved::Nothing | Moved::Particle(_) => pushed.change.norm(),
+        });
+    }
+    let fastest = begun[3 * n..6 * n]
+        .iter()
+        .fold(0.0, |most: f64, v| most.max(v.abs()));
+    if struck.is_empty() && jump.change <= ROUNDING * fastest {
+        return Jump {
+            change: 0.0,
+            ..jump
+        };
+    }
+    for pushed in pushed {
+        match pushed.moved {
+            Moved::Nothing => {}
+            Moved::Particle(i) if weight(i) == 0.0 => {
+                jump.work -= 0.5 * pushed.impulse.dot(&(row(before, n, i) + row(v, n, i)));
+            }
+            Moved::Particle(i) => {
+                let v = &mut y[3 * n..6 * n];
+                let changed = row(v, n, i) + pushed.change;
+                set_row(v, n, i, changed);
+            }
+            Moved::Body(k) => {
+                let numbers = network.bodies.numbers(k);
+                for (y, push) in y[numbers.end - 3..numbers.end]
+                    .iter_mut()
+                    .zip(&pushed.impulse)
+                {
+                    *y += push;
+                }
+            }
+        }
+    }
+    network.hold(t, y);
+    jump
+}
+
+/// Returns the acceleration (m/s2) at which the ends of a slack rope part, or a joint passes its
+/// end, with the rates of change of the state y.
+fn parting(network: &Network, number: usize, y: &[f64], rates: &[f64]) -> f64 {
+    if let Constraint::Stop(_) = network.constraints()[number] {
+        let rate_at = |moment: f64| {
+            let state: Vec<_> = y.iter().zip(rates).map(|(y, r)| y + moment * r).collect();
+            let ends = open_ends(network, &state);
+            let own = ends.iter().find(|end| end.number == number);
+            own.map_or(0.0, |end| end.rate)
+        };
+        return (rate_at(HALF_MOMENT) - rate_at(-HALF_MOMENT)) / (2.0 * HALF_MOMENT);
+    }
+    let (i, j) = network.constraints()[number].ends();
+    let (n, j) = (network.particles(), j.unwrap_or(i));
+    let between = |a: &[f64]| -> Vector3<f64> { row(a, n, i) - row(a, n, j) };
+    let [d, v, a] = [between(y), between(&y[3 * n..]), between(&rates[3 * n..])];
+    let along = d / d.norm();
+    let across = v - along * along.dot(&v);
+    a.dot(&along) + across.norm_squared() / d.norm()
+}
