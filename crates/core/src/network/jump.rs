@@ -43,8 +43,9 @@ impl Least {
     };
 }
 
-/// Largest change of a velocity, over the fastest one, that counts as rounding.
-const ROUNDING: f64 = 1e-12;
+/// Largest change of a velocity, over the fastest one, that is left to the feedback of the
+/// constraints: methods leave errors of that size, and a run may start from a state of another.
+const MAX_DRIFT: f64 = 1e-6;
 
 /// Result of jumps at one time.
 #[derive(Clone, Copy, Debug, Default)]
@@ -157,7 +158,7 @@ fn strike(
     let fastest = begun[3 * n..6 * n]
         .iter()
         .fold(0.0, |most: f64, v| most.max(v.abs()));
-    if struck.is_empty() && jump.change <= ROUNDING * fastest {
+    if struck.is_empty() && jump.change <= MAX_DRIFT * fastest {
         return Jump {
             change: 0.0,
             ..jump

@@ -14,7 +14,7 @@ use super::within::{Span, Within};
 use crate::control::Control;
 use crate::error::Error;
 use crate::integrators::AdaptiveState;
-use crate::network::{breaks_between, next_break, pass_to};
+use crate::network::{next_break, pass_to};
 use crate::scene::Model;
 use crate::threads::among_threads;
 
@@ -210,8 +210,8 @@ impl Driver {
             return;
         };
         pass_model_to(model, begin);
-        let network = model.network();
-        let breaks = network.is_some_and(|it| breaks_between(it, [begin, end], state.sliver()));
+        let fixed = model.network().filter(|_| state.control.step().is_some());
+        let breaks = fixed.is_some_and(|it| next_break(it, begin, state.sliver()) < end);
         if breaks && self.shorten_step(model, state, begin, time) {
             state.shown = Some(time);
             return;

@@ -6,8 +6,8 @@ use super::depths::Depths;
 use crate::columns::row;
 use crate::constraints::Constraint;
 use crate::contact::{
-    ContactLayer, ContactPhase, Impulses, Pinched, Statistics, Step, StrainLimiter, Strained,
-    bulge, guard, resolve,
+    ContactPhase, Impulses, Pinched, Statistics, Step, StrainLimiter, Strained, bulge, guard,
+    resolve,
 };
 use crate::error::Cause;
 use crate::network::{Network, has_ropes, outflows, project};
@@ -137,6 +137,9 @@ impl Phases {
             resolve(network.obstacles(), inverse_masses, &Step { t, h, y0 }, y);
         }
         network.hold(t + h, y);
+        if network.is_constrained() && network.can_touch() {
+            project(network, y, true);
+        }
     }
 
     /// Returns the contact forces (N), n x 3, on the particles of a network at y at time t (s):
@@ -160,9 +163,38 @@ impl Phases {
     }
 
     /// Moves particles out of obstacles, or keeps surfaces from passing through one another. That
-    /// stops a body alone: where joints are, those on which it then pulls are moved after it, in
-    /// turns, until contact moves hardly anything any more.
+    /// moves a particle or a body alone: where constraints are, those on which it then pulls are
+    /// moved after it, in turns, until contact moves hardly anything any more.
     fn part(
+        &mut self,
+        network: &Network,
+        times: (f64, f64),
+        y1: &mut [f64],
+    ) -> Result<Statistics, Cause> {
+        if network.contact_layer().is_some() || network.is_constrained() {
+            network.hold(times.0 + times.1, y1);
+        }
+        let mut before = network.is_constrained().then(|| y1.to_vec());
+        let met = self.meet(network, times, y1)?;
+        if let Some(before) = &mut before {
+            let first = largest_shift(network, [before, y1]);
+            let mut last = first;
+            for _ in 0..MAX_ROUNDS {
+                // Written so that a state that is not finite, which is reported later, ends it.
+                if !(last > SETTLED_SHARE * first) {
+                    break;
+                }
+                project(network, y1, true);
+                before.copy_from_slice(y1);
+                self.meet(network, times, y1)?;
+                last = largest_shift(network, [before, y1]);
+            }
+        }
+        Ok(met)
+    }
+
+    /// Moves particles out of obstacles, or keeps surfaces from passing through one another.
+    fn meet(
         &mut self,
         network: &Network,
         (t, h): (f64, f64),
@@ -175,38 +207,10 @@ impl Phases {
             network.hold(t + h, y1);
             return Ok(met);
         };
-        network.hold(t + h, y1);
         // A state that is not finite is reported afterwards.
         if y1.iter().any(|y| !y.is_finite()) {
             return Ok(Statistics::default());
         }
-        let mut before = network.is_constrained().then(|| y1.to_vec());
-        let met = self.guard(network, layer, (t, h), y1)?;
-        if let Some(before) = &mut before {
-            let first = largest_shift(network, [before, y1]);
-            let mut last = first;
-            for _ in 0..MAX_ROUNDS {
-                if last <= SETTLED_SHARE * first {
-                    break;
-                }
-                project(network, y1, true);
-                before.copy_from_slice(y1);
-                self.guard(network, layer, (t, h), y1)?;
-                last = largest_shift(network, [before, y1]);
-            }
-        }
-        Ok(met)
-    }
-
-    /// Keeps surfaces from passing through one another.
-    fn guard(
-        &mut self,
-        network: &Network,
-        layer: &ContactLayer,
-        (t, h): (f64, f64),
-        y1: &mut [f64],
-    ) -> Result<Statistics, Cause> {
-        let inverse_masses = network.inverse_masses();
         let guarded = self.contact.guard(layer, inverse_masses, (t, h), y1);
         let met = guarded.map_err(|Pinched { vertices }| Cause::Pinched { vertices })?;
         if !network.bodies().is_empty() {
