@@ -109,6 +109,14 @@ fn guard_with(
     motion.cover(surface, candidates);
     let mut changed = apply_friction(surface, h, candidates, motion, &mut guarded);
     if surface.is_rigid_or_elastic() {
+        let Motion {
+            flight,
+            v0,
+            v,
+            moves,
+            ..
+        } = motion;
+        flight.read(h, [v0, v, moves]);
         changed |= strike(surface, h, candidates, motion, &mut guarded);
     }
     let mut rounds = 0;

@@ -22,6 +22,7 @@ mod contact_pair;
 mod cut;
 mod exact;
 mod flat;
+mod flight;
 mod friction;
 mod guard;
 mod hits;

@@ -173,14 +173,21 @@ impl Solid {
         change.turned += self.inverse_inertia * arm.lever.cross(&impulse) * arm.sign;
     }
 
-    /// Returns the angular velocity (rad/s) and the inverse inertia (1/(kg m2)) at a share of the
-    /// step, `left` (s) before its end, if the angular velocity at the end is `spin`.
-    pub fn at(&self, spin: Vector3<f64>, share: f64, left: f64) -> (Vector3<f64>, Matrix3<f64>) {
+    /// Returns the angular velocity (rad/s) and the inverse inertia (1/(kg m2)) `left` (s) and the
+    /// share `share` of the step before its end, if the angular velocity at the end is `spin`, and
+    /// lags behind the course by `lag` (rad/s).
+    pub fn before(
+        &self,
+        [spin, lag]: [Vector3<f64>; 2],
+        share: f64,
+        left: f64,
+    ) -> (Vector3<f64>, Matrix3<f64>) {
         let back = UnitQuaternion::new_unchecked(turn(spin * -left));
         let back = back.to_rotation_matrix().into_inner();
         let inverse_inertia = back * self.inverse_inertia * back.transpose();
-        let momentum = self.ends[0].momentum.lerp(&(self.inertia * spin), share);
-        (inverse_inertia * momentum, inverse_inertia)
+        let gain = self.ends[1].momentum - self.ends[0].momentum;
+        let momentum = self.inertia * spin - gain * share;
+        (inverse_inertia * momentum + lag, inverse_inertia)
     }
 
     /// Changes the motion of this body, number k, by an impulse (N s) at the end of a lever (m),

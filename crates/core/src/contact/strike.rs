@@ -90,7 +90,6 @@ pub(super) fn strike(
     guarded: &mut Guarded,
 ) -> bool {
     let mut changed = false;
-    let mut struck = vec![false; motion.x0.len()];
     let mut moved = vec![];
     for time in 0..MAX_TIMES {
         let again = (time > 0).then_some(&moved[..]);
@@ -101,7 +100,7 @@ pub(super) fn strike(
         let hits = first_hits(surface, motion, hits, &mut moved);
         let mut impacts: Vec<Impact> = vec![];
         for (pair, time) in hits {
-            let Some(impact) = Impact::new(surface, &pair, (time, h), motion, &struck) else {
+            let Some(impact) = Impact::new(surface, &pair, (time, h), motion) else {
                 continue;
             };
             if !impacts
@@ -126,16 +125,20 @@ pub(super) fn strike(
             impact.apply(&changes, h, motion);
             guarded.impulses += 1;
             guarded.impulse += impact.impulse.norm();
-            for i in parties(surface, motion, &impact.candidate) {
-                struck[i as usize] = true;
+            let struck: Vec<_> = parties(surface, motion, &impact.candidate).collect();
+            for i in struck {
                 moved[i as usize] = true;
+                motion.flight.since[i as usize] = 1.0 - impact.left / h;
             }
         }
         for k in 0..motion.solids.len() {
             motion.solids[k].settle(k, &mut motion.v);
             if motion.solids[k].settle(k, &mut motion.moves) {
                 motion.rotate_points(k);
-                moved[motion.solids[k].points.clone()].fill(true);
+                let (center, points) = (motion.solids[k].center, motion.solids[k].points.clone());
+                moved[points.clone()].fill(true);
+                let since = motion.flight.since[center];
+                motion.flight.since[points].fill(since);
             }
         }
         motion.cover(surface, candidates);
@@ -176,24 +179,21 @@ fn solve(impacts: &mut [Impact], changes: &mut Changes, inverse_masses: &[f64]) 
 }
 
 impl Impact {
-    /// Returns the impact of a pair that touches at a share of a step of h (s). Parts that were
-    /// `struck` earlier in the step have the velocities of its end.
+    /// Returns the impact of a pair that touches at a share of a step of h (s).
     fn new(
         surface: &Surface,
         pair: &Candidate,
         (time, h): (f64, f64),
         motion: &Motion,
-        struck: &[bool],
     ) -> Option<Self> {
-        let (x0, moves) = (pair.of(&motion.x0), pair.of(&motion.moves));
-        let at: [_; 4] = std::array::from_fn(|k| x0[k] + moves[k] * time);
+        let law: Law = surface.law(pair.kind, &pair.points);
+        let at = motion.places(pair, &law, time);
         let Closest { weights, offset } = closest(pair.kind, &at);
         let distance = offset.norm();
         if distance == 0.0 {
             return None;
         }
         let normal = offset / distance;
-        let law: Law = surface.law(pair.kind, &pair.points);
         let first = pair.kind.first();
         let last = if pair.kind == PairKind::VertexFloor {
             2
@@ -201,13 +201,10 @@ impl Impact {
             4
         };
         let sides = [(0, 0..first, 1.0), (1, first..last, -1.0)];
-        // The middle between the two surfaces.
-        let mut point = Vector3::zeros();
-        for (_, side, sign) in sides.clone() {
-            let radius = surface.radius(pair.points[side.start]);
-            let on_axis: Vector3<f64> = side.map(|k| at[k] * (weights[k] * sign)).sum();
-            point += (on_axis - normal * (radius * sign)) * 0.5;
-        }
+        // The middle between the two surfaces. A floor has no point below the vertex.
+        let [radius, other] = [0, first].map(|k| surface.radius(pair.points[k]));
+        let on_axis: Vector3<f64> = (0..first).map(|k| at[k] * weights[k]).sum();
+        let point = on_axis - (offset + normal * (radius - other)) * 0.5;
         let left = (1.0 - time) * h;
         let mut impact = Self {
             candidate: *pair,
@@ -225,15 +222,14 @@ impl Impact {
             wanted: 0.0,
             impulse: Vector3::zeros(),
         };
-        let share = |is_struck: bool| if is_struck { 1.0 } else { time };
-        // Relative velocities at the beginning and the end of the step.
+        // Relative velocities at the beginning and the end of the step, without other impacts.
         let mut ends = [Vector3::zeros(); 2];
         for (number, side, sign) in sides {
             let Some(k) = surface.solid(pair.points[side.start]) else {
                 for k in side {
                     let (i, weight) = (pair.points[k] as usize, weights[k]);
-                    let own = [motion.v0[i], motion.v[i]];
-                    impact.before += motion.velocity(i, share(struck[i]), h) * weight;
+                    let own = [motion.v[i] - motion.flight.gain(i), motion.v[i]];
+                    impact.before += motion.velocity(i, time) * weight;
                     ends = [0, 1].map(|e| ends[e] + own[e] * weight);
                     let inverse_mass = weight * weight * motion.inverse_masses[i];
                     impact.mobility += Matrix3::identity() * inverse_mass;
@@ -244,12 +240,13 @@ impl Impact {
             let center = solid.center;
             let v = motion.v[center];
             let lever = point - (motion.x0[center] + motion.moves[center] - v * left);
-            let at = share(struck[center]);
-            let (spin, inverse_inertia) = solid.at(motion.v.turns[k], at, left);
-            let spins = [motion.v0.turns[k], motion.v.turns[k]];
-            let speeds = [motion.v0[center], v];
+            let turn = motion.v.turns[k];
+            let [gain, lag] = motion.flight.turn(k);
+            let (spin, inverse_inertia) = solid.before([turn, lag], 1.0 - time, left);
+            let spins = [turn - gain, turn];
+            let speeds = [v - motion.flight.gain(center), v];
             ends = [0, 1].map(|e| ends[e] + (speeds[e] + spins[e].cross(&lever)) * sign);
-            impact.before += (motion.velocity(center, at, h) + spin.cross(&lever)) * sign;
+            impact.before += (motion.velocity(center, time) + spin.cross(&lever)) * sign;
             let cross = lever.cross_matrix();
             let inverse_mass = motion.inverse_masses[center];
             impact.mobility += Matrix3::identity() * inverse_mass - cross * inverse_inertia * cross;
@@ -270,7 +267,7 @@ impl Impact {
         if !impact.rebounds {
             // They do not approach at the end of the step either.
             impact.speed = (speed - end).max(0.0);
-            let approach = weighted(&weights, &moves).dot(&normal);
+            let approach = weighted(&weights, &pair.of(&motion.moves)).dot(&normal);
             impact.wanted = RESTORED_SHARE * (law.max_kept() - distance).max(0.0)
                 - (1.0 - time) * approach
                 + MARGIN_SHARE * approach.abs();
