@@ -36,7 +36,7 @@ pub(crate) use energies::{add_wind, energy_of_errors, has_motors, is_conservativ
 pub(crate) use holding::{contradiction, is_nearly_singular};
 pub(crate) use outflow::{drained, entered, go_back, outflows, set_drained};
 pub use parts::Network;
-pub(crate) use project::{has_joints, project};
+pub(crate) use project::{has_joints, project, project_velocities};
 pub(crate) use release::{
     forget_released, next_known_time, next_release, pass_to, quarter_period, release_of,
 };

@@ -40,6 +40,12 @@ impl Field {
         self.turns[solid] + self.changes[solid].turned
     }
 
+    /// Changes the centre and the turn of a body, number k.
+    pub fn change(&mut self, k: usize, [along, turned]: [Vector3<f64>; 2]) {
+        self.changes[k].along += along;
+        self.changes[k].turned += turned;
+    }
+
     /// Adds a body with that turn.
     pub fn add_solid(&mut self, turn: Vector3<f64>) {
         self.turns.push(turn);
@@ -200,9 +206,8 @@ impl Solid {
         span: f64,
         field: &mut Field,
     ) {
-        let change = &mut field.changes[k];
-        change.along += impulse * (span * self.inverse_mass);
-        change.turned += self.inverse_inertia * lever.cross(&impulse) * span;
+        let turned = self.inverse_inertia * lever.cross(&impulse) * span;
+        field.change(k, [self.along(impulse) * span, turned]);
     }
 
     /// Returns the angular momentum (kg m2/s) of the body about a point (m) at the end of the step,
@@ -214,6 +219,11 @@ impl Solid {
         about: Vector3<f64>,
     ) -> Vector3<f64> {
         (x - about).cross(&(v / self.inverse_mass)) + self.inertia * spin
+    }
+
+    /// Returns the change of the centre's velocity (m/s) by an impulse (N s).
+    pub fn along(&self, impulse: Vector3<f64>) -> Vector3<f64> {
+        impulse * self.inverse_mass
     }
 
     /// Returns the angular velocity (rad/s) that an angular momentum (kg m2/s) gives the body.

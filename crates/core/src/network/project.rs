@@ -23,7 +23,7 @@ pub(crate) fn has_joints(network: &Network) -> bool {
 
 /// Changes the velocities in the state y by the least amount, weighted by the masses, so that all
 /// constraints stay met, if there are joints.
-pub(super) fn project_velocities(network: &Network, y: &mut [f64]) {
+pub(crate) fn project_velocities(network: &Network, y: &mut [f64]) {
     if has_joints(network) {
         push(network, y, (Projected::Velocities, false));
     }

@@ -4,13 +4,13 @@
 
 use super::depths::Depths;
 use crate::columns::row;
-use crate::constraints::Constraint;
+use crate::constraints::{Constraint, Joint};
 use crate::contact::{
-    ContactLayer, ContactPhase, Impulses, Pinched, Statistics, Step, StrainLimiter, Strained,
-    bulge, guard, resolve,
+    Bodies, ContactLayer, ContactPhase, Impulses, Joints, Pinched, Statistics, Step, StrainLimiter,
+    Strained, bulge, guard, resolve,
 };
 use crate::error::Cause;
-use crate::network::{Network, has_joints, has_ropes, outflows, project};
+use crate::network::{Network, has_joints, has_ropes, outflows, project, project_velocities};
 use crate::scene::Model;
 use crate::system::{Mechanics, ParticleSystem};
 
@@ -132,7 +132,8 @@ impl Phases {
         if let Some(layer) = network.contact_layer() {
             // If prescribed motions leave no room, the step itself has ended the run.
             let none = &mut Impulses::default();
-            let _ = guard(layer, inverse_masses, (t, h), y0, y, none);
+            let joints = JointsOf(network);
+            let _ = guard(layer, joints.bodies(), (t, h), y0, y, none);
         } else if !knows_obstacles {
             resolve(network.obstacles(), inverse_masses, &Step { t, h, y0 }, y);
         }
@@ -206,8 +207,8 @@ impl Phases {
         (t, h): (f64, f64),
         y1: &mut [f64],
     ) -> Result<Statistics, Cause> {
-        let inverse_masses = network.inverse_masses();
-        let guarded = self.contact.guard(layer, inverse_masses, (t, h), y1);
+        let joints = JointsOf(network);
+        let guarded = self.contact.guard(layer, joints.bodies(), (t, h), y1);
         let met = guarded.map_err(|Pinched { vertices }| Cause::Pinched { vertices })?;
         if !network.bodies().is_empty() {
             network.hold(t + h, y1);
@@ -216,16 +217,42 @@ impl Phases {
     }
 }
 
+/// Joints of the rigid bodies of a network.
+struct JointsOf<'a>(&'a Network);
+
+impl JointsOf<'_> {
+    /// Returns what impulses of contact act on.
+    fn bodies(&self) -> Bodies<'_> {
+        Bodies {
+            inverse_masses: self.0.inverse_masses(),
+            joints: has_joints(self.0).then_some(self),
+        }
+    }
+}
+
+impl Joints for JointsOf<'_> {
+    fn hold(&self, center: usize) -> bool {
+        joints(self.0).any(|joint| joint.first == center || joint.second == Some(center))
+    }
+
+    fn fit(&self, y: &mut [f64]) {
+        project_velocities(self.0, y);
+    }
+}
+
+/// Returns the joints of a network.
+fn joints(network: &Network) -> impl Iterator<Item = &Joint> {
+    let all = network.constraints().iter();
+    all.filter_map(|constraint| match constraint {
+        Constraint::Joint(joint) => Some(joint),
+        _ => None,
+    })
+}
+
 /// Returns the largest displacement (m) between two states of anything that joints join.
 fn largest_shift(network: &Network, [a, b]: [&[f64]; 2]) -> f64 {
     let n = network.particles();
-    let joints = network
-        .constraints()
-        .iter()
-        .filter_map(|constraint| match constraint {
-            Constraint::Joint(joint) => Some([Some(joint.first), joint.second]),
-            _ => None,
-        });
+    let joints = joints(network).map(|joint| [Some(joint.first), joint.second]);
     let shifts = joints
         .flatten()
         .flatten()
