@@ -6,7 +6,7 @@ use super::contact_pair::{RESTORED_SHARE, limited_to};
 use super::listing::Candidate;
 use super::motion::Motion;
 use super::rebound::rebound_speed;
-use super::response::{Changes, Joined, Response};
+use super::response::{Changes, Joined, Joints, Response};
 use super::skin::Law;
 use super::solids::SAME_TOLERANCE;
 use super::surface::Surface;
@@ -284,6 +284,14 @@ impl Impact {
         }
         let held = so_far - slip * (squared / slip.dot(&(self.mobility * slip)));
         limited_to(held, self.friction * pressed)
+    }
+
+    /// Tells joints of the impulse, if they pass it on.
+    pub fn note(&self, changes: &Changes, joints: &dyn Joints) {
+        if !self.responses.is_empty() {
+            let sum = self.before + self.relative(changes);
+            joints.note(self.impulse.norm(), 0.5 * self.impulse.dot(&sum));
+        }
     }
 
     /// Changes the motion by the impulse.

@@ -115,7 +115,8 @@ impl ContactLayer {
             rounding: self.surface.rounding(),
         };
         let reach = |pair: &Candidate| Some(self.surface.reach(pair.kind, &pair.points));
-        self.surface.each_bare(candidates, &still, reach, find, visit);
+        self.surface
+            .each_bare(candidates, &still, reach, find, visit);
     }
 
     /// Adds the forces (N) at time t (s) in the state (x, v) to f.

@@ -218,7 +218,10 @@ impl Motion {
         let Closest { weights, offset } = closest(pair.kind, &at);
         let normal = offset.normalize();
         let along = |vector: &dyn Fn(usize) -> Vector3<f64>| {
-            normal.dot(&weighted(&weights, &pair.points.map(|i| vector(i as usize))))
+            normal.dot(&weighted(
+                &weights,
+                &pair.points.map(|i| vector(i as usize)),
+            ))
         };
         let end = normal.dot(&weighted(&weights, &ends));
         let rate = along(&|i| self.v[i]);

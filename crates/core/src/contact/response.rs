@@ -17,6 +17,9 @@ pub(crate) trait Joints {
     /// Changes the velocities in the state y by the least amount, weighted by the masses, so that
     /// they fit the joints.
     fn fit(&self, y: &mut [f64]);
+
+    /// Is told of an impulse (N s) that they have passed on, and of its work (J).
+    fn note(&self, impulse: f64, work: f64);
 }
 
 /// Joints, with the state at the end of a step.
@@ -86,7 +89,9 @@ impl Response {
         Self {
             direction,
             points: points.map(|i| (i, speed(i))).collect(),
-            solids: changed.filter(|(_, it)| *it != [Vector3::zeros(); 2]).collect(),
+            solids: changed
+                .filter(|(_, it)| *it != [Vector3::zeros(); 2])
+                .collect(),
         }
     }
 

@@ -69,6 +69,9 @@ pub(super) fn strike(
         changed = true;
         for impact in &impacts {
             impact.apply(&changes, h, motion);
+            if let Some(Joined { joints, .. }) = joined {
+                impact.note(&changes, joints);
+            }
             guarded.impulses += 1;
             guarded.impulse += impact.impulse.norm();
             let struck: Vec<_> = parties(surface, motion, &impact.candidate).collect();

@@ -3,14 +3,14 @@
 //! places.
 
 use super::depths::Depths;
+use super::jointed::{JointsOf, joints};
 use crate::columns::row;
-use crate::constraints::{Constraint, Joint};
 use crate::contact::{
-    Bodies, ContactLayer, ContactPhase, Impulses, Joints, Pinched, Statistics, Step, StrainLimiter,
-    Strained, bulge, guard, resolve,
+    ContactLayer, ContactPhase, Impulses, Pinched, Statistics, Step, StrainLimiter, Strained,
+    bulge, guard, resolve,
 };
 use crate::error::Cause;
-use crate::network::{Network, has_joints, has_ropes, outflows, project, project_velocities};
+use crate::network::{Network, has_joints, has_ropes, outflows, project};
 use crate::scene::Model;
 use crate::system::{Mechanics, ParticleSystem};
 
@@ -132,7 +132,7 @@ impl Phases {
         if let Some(layer) = network.contact_layer() {
             // If prescribed motions leave no room, the step itself has ended the run.
             let none = &mut Impulses::default();
-            let joints = JointsOf(network);
+            let joints = JointsOf::new(network);
             let _ = guard(layer, joints.bodies(), (t, h), y0, y, none);
         } else if !knows_obstacles {
             resolve(network.obstacles(), inverse_masses, &Step { t, h, y0 }, y);
@@ -181,8 +181,10 @@ impl Phases {
         if y1.iter().any(|y| !y.is_finite()) {
             return Ok(Statistics::default());
         }
-        let mut before = has_joints(network).then(|| y1.to_vec());
-        let met = self.guard(network, layer, (t, h), y1)?;
+        let joints = JointsOf::new(network);
+        let unstruck = has_joints(network).then(|| y1.to_vec());
+        let mut before = unstruck.clone();
+        let met = self.guard(&joints, layer, (t, h), y1)?;
         if let Some(before) = &mut before {
             let first = largest_shift(network, [before, y1]);
             let mut last = first;
@@ -192,9 +194,12 @@ impl Phases {
                 }
                 project(network, y1, true);
                 before.copy_from_slice(y1);
-                self.guard(network, layer, (t, h), y1)?;
+                self.guard(&joints, layer, (t, h), y1)?;
                 last = largest_shift(network, [before, y1]);
             }
+        }
+        if let Some(unstruck) = unstruck {
+            joints.balance(t + h, met.impulse, &unstruck, y1);
         }
         Ok(met)
     }
@@ -202,51 +207,20 @@ impl Phases {
     /// Keeps surfaces from passing through one another.
     fn guard(
         &mut self,
-        network: &Network,
+        joints: &JointsOf,
         layer: &ContactLayer,
         (t, h): (f64, f64),
         y1: &mut [f64],
     ) -> Result<Statistics, Cause> {
-        let joints = JointsOf(network);
-        let guarded = self.contact.guard(layer, joints.bodies(), (t, h), y1);
+        let network = joints.network();
+        let bodies = joints.bodies();
+        let guarded = self.contact.guard(layer, bodies, (t, h), y1);
         let met = guarded.map_err(|Pinched { vertices }| Cause::Pinched { vertices })?;
         if !network.bodies().is_empty() {
             network.hold(t + h, y1);
         }
         Ok(met)
     }
-}
-
-/// Joints of the rigid bodies of a network.
-struct JointsOf<'a>(&'a Network);
-
-impl JointsOf<'_> {
-    /// Returns what impulses of contact act on.
-    fn bodies(&self) -> Bodies<'_> {
-        Bodies {
-            inverse_masses: self.0.inverse_masses(),
-            joints: has_joints(self.0).then_some(self),
-        }
-    }
-}
-
-impl Joints for JointsOf<'_> {
-    fn hold(&self, center: usize) -> bool {
-        joints(self.0).any(|joint| joint.first == center || joint.second == Some(center))
-    }
-
-    fn fit(&self, y: &mut [f64]) {
-        project_velocities(self.0, y);
-    }
-}
-
-/// Returns the joints of a network.
-fn joints(network: &Network) -> impl Iterator<Item = &Joint> {
-    let all = network.constraints().iter();
-    all.filter_map(|constraint| match constraint {
-        Constraint::Joint(joint) => Some(joint),
-        _ => None,
-    })
 }
 
 /// Returns the largest displacement (m) between two states of anything that joints join.
