@@ -38,7 +38,7 @@ pub(crate) use holding::{contradiction, is_nearly_singular};
 pub(crate) use jump::{Jump, Least, fit, tighten};
 pub(crate) use outflow::{drained, entered, go_back, outflows, set_drained};
 pub use parts::Network;
-pub(crate) use project::{has_joints, project};
+pub(crate) use project::{has_joints, project, project_velocities};
 pub(crate) use release::{
     breaks_between, forget_released, jump_near, next_break, next_known_time, next_release, pass_to,
     quarter_period, release_of,

@@ -11,7 +11,7 @@ use crate::error::Vertex;
 use crate::geometry::{PairKind, weighted};
 
 /// Fraction of the missing separation of rigid bodies that is restored in a step.
-const RESTORED_SHARE: f64 = 0.1;
+pub(super) const RESTORED_SHARE: f64 = 0.1;
 
 /// Contact of a pair: the weights of its closest points, the normal from the second primitive to
 /// the first, and the sum of the weighted inverse masses (1/kg).

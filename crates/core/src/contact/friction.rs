@@ -37,7 +37,7 @@ pub(super) fn apply_friction(
         let (x0, moves) = (candidate.of(&motion.x0), candidate.of(&motion.moves));
         let x = std::array::from_fn(|k| x0[k] + moves[k]);
         let skin = law.skin;
-        if skin.friction == 0.0 && skin.rolling == 0.0 || surface.is_beside(candidate, &x) {
+        if skin.friction == 0.0 && skin.rolling == 0.0 || surface.is_inner(candidate) {
             return None;
         }
         let (kind, v) = (candidate.kind, candidate.of(&motion.v));
@@ -45,7 +45,8 @@ pub(super) fn apply_friction(
         let (force, weights, normal) = pair.force()?;
         let mut contact = ContactPair::new(surface, candidate, weights, normal, motion);
         contact.resist_turns(skin.rolling * force * h, surface, motion);
-        (contact.inverse_mass > 0.0).then_some((contact, skin.friction * force * h))
+        let footing = surface.footing(candidate, &pair);
+        (contact.inverse_mass > 0.0).then_some((footing, (contact, skin.friction * force * h)))
     };
     let mut pressed = Pressed::default();
     let ended = Linear {
@@ -54,7 +55,7 @@ pub(super) fn apply_friction(
         rounding: surface.rounding(),
     };
     let reach = |pair: &Candidate| Some(surface.reach(pair.kind, &pair.points));
-    candidates.each(0.0, &ended, reach, find, |(contact, most)| {
+    surface.each_bare(candidates, &ended, reach, find, |(contact, most)| {
         pressed.add(contact, most);
     });
     if pressed.contacts.is_empty() {

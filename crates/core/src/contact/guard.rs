@@ -18,6 +18,7 @@ use super::impulses::Impulses;
 use super::layer::{Buffers, ContactLayer};
 use super::listing::Candidate;
 use super::motion::{Guarded, Motion};
+use super::response::{Joined, Joints};
 use super::solids::Masses;
 use super::strike::strike;
 use super::surface::Surface;
@@ -31,15 +32,22 @@ const MAX_PASSES: usize = 12;
 /// room.
 const MAX_ROUNDS: usize = 20;
 
+/// Bodies on which impulses act: the inverse mass of each particle (1/kg), and the joints of rigid
+/// bodies, if there are any.
+#[derive(Clone, Copy)]
+pub(crate) struct Bodies<'a> {
+    pub inverse_masses: &'a [f64],
+    pub joints: Option<&'a dyn Joints>,
+}
+
 /// Applies the safeguard to the step of h (s) from the state y0 at time t (s) to y1. Changes y1
 /// where surfaces would pass through one another or friction acts, and records the impulses.
-/// Inverse masses are in 1/kg.
 ///
 /// # Errors
 /// Kinematic vertices leave no room.
 pub(crate) fn guard(
     layer: &ContactLayer,
-    inverse_masses: &[f64],
+    bodies: Bodies,
     (t, h): (f64, f64),
     y0: &[f64],
     y1: &mut [f64],
@@ -48,7 +56,7 @@ pub(crate) fn guard(
     impulses.clear();
     layer.scratch.lend(|buffers| {
         std::mem::swap(impulses, &mut buffers.motion.impulses);
-        let guarded = guard_with(layer, buffers, inverse_masses, (t, h), y0, y1);
+        let guarded = guard_with(layer, buffers, bodies, (t, h), y0, y1);
         std::mem::swap(impulses, &mut buffers.motion.impulses);
         guarded
     })
@@ -57,7 +65,7 @@ pub(crate) fn guard(
 fn guard_with(
     layer: &ContactLayer,
     buffers: &mut Buffers,
-    inverse_masses: &[f64],
+    bodies: Bodies,
     (t, h): (f64, f64),
     y0: &[f64],
     y1: &mut [f64],
@@ -96,7 +104,9 @@ fn guard_with(
         );
     }
     motion.inverse_masses.clear();
-    motion.inverse_masses.extend_from_slice(inverse_masses);
+    motion
+        .inverse_masses
+        .extend_from_slice(bodies.inverse_masses);
     motion.inverse_masses.resize(motion.x0.len(), 0.0);
     motion.read_solids(surface, [y0, y1]);
     motion.spins.clear();
@@ -109,7 +119,16 @@ fn guard_with(
     motion.cover(surface, candidates);
     let mut changed = apply_friction(surface, h, candidates, motion, &mut guarded);
     if surface.is_rigid_or_elastic() {
-        changed |= strike(surface, h, candidates, motion, &mut guarded);
+        let Motion {
+            flight,
+            v0,
+            v,
+            moves,
+            ..
+        } = motion;
+        flight.read(h, [v0, v, moves]);
+        let joined = bodies.joints.map(|joints| Joined { joints, y: y1 });
+        changed |= strike(surface, (h, joined), candidates, motion, &mut guarded);
     }
     let mut rounds = 0;
     while !push_apart(surface, h, candidates, motion, &mut guarded, &mut changed) {

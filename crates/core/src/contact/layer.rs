@@ -97,17 +97,17 @@ impl ContactLayer {
         };
         candidates.cover(&self.surface, &stretch);
         let find = |candidate: &Candidate| {
-            let x = candidate.of(places);
-            if self.surface.is_beside(candidate, &x) {
+            if self.surface.is_inner(candidate) {
                 return None;
             }
             let pair = Pair {
                 kind: candidate.kind,
                 law: self.surface.law(candidate.kind, &candidate.points),
-                x,
+                x: candidate.of(places),
                 v: candidate.of(speeds),
             };
-            find(candidate, &pair)
+            let result = find(candidate, &pair)?;
+            Some((self.surface.footing(candidate, &pair), result))
         };
         let still = Linear {
             x: places,
@@ -115,7 +115,8 @@ impl ContactLayer {
             rounding: self.surface.rounding(),
         };
         let reach = |pair: &Candidate| Some(self.surface.reach(pair.kind, &pair.points));
-        candidates.each(0.0, &still, reach, find, visit);
+        self.surface
+            .each_bare(candidates, &still, reach, find, visit);
     }
 
     /// Adds the forces (N) at time t (s) in the state (x, v) to f.
@@ -143,11 +144,11 @@ impl ContactLayer {
         });
     }
 
-    /// Returns the energy of repulsion (J) at time t (s), with particles at x (m).
-    pub(crate) fn repulsion_energy(&self, t: f64, x: &[f64]) -> f64 {
+    /// Returns the energy of repulsion (J) at time t (s) in the state (x, v).
+    pub(crate) fn repulsion_energy(&self, t: f64, x: &[f64], v: &[f64]) -> f64 {
         let mut energy = 0.0;
         let find = |_: &Candidate, pair: &Pair| Some(pair.energy());
-        self.visit(t, x, None, find, |of_pair| energy += of_pair);
+        self.visit(t, x, Some(v), find, |of_pair| energy += of_pair);
         energy
     }
 

@@ -8,12 +8,13 @@ use serde::{Deserialize, Serialize};
 
 use super::advance::{are_apart, time_and_planes};
 use super::candidates::{Candidates, Stretch};
+use super::flight::Flight;
 use super::impulses::Impulses;
 use super::listing::Candidate;
-use super::rebound::Course;
+use super::skin::Law;
 use super::solids::{Field, Solid};
 use super::surface::Surface;
-use crate::geometry::{PairKind, closest};
+use crate::geometry::{Closest, PairKind, closest, weighted};
 use crate::rigid::{ROTATION, Rotation};
 
 /// Number of planes between a pair that the cost of an evaluation includes.
@@ -79,6 +80,8 @@ pub(super) struct Motion {
     pub solids: Vec<Solid>,
     /// Angular velocity of each obstacle at the end (rad/s), if there are rigid bodies.
     pub spins: Vec<Vector3<f64>>,
+    /// Courses in the step, if bodies are rigid or elastic.
+    pub flight: Flight,
     /// Impulses of the safeguard.
     pub impulses: Impulses,
     ends: Vec<Vector3<f64>>,
@@ -130,15 +133,23 @@ impl Motion {
         }
     }
 
-    /// Returns the velocity of vertex i at a share of a step of h (s), by the cubic through both
-    /// ends.
-    pub fn velocity(&self, i: usize, share: f64, h: f64) -> Vector3<f64> {
-        Course {
-            x: [Vector3::zeros(), self.moves[i]],
-            v: [self.v0[i], self.v[i]],
-            h,
-        }
-        .velocity(share)
+    /// Returns the velocity of vertex i at a share of the step (m/s).
+    pub fn velocity(&self, i: usize, share: f64) -> Vector3<f64> {
+        self.flight.velocity(i, share, self.v[i])
+    }
+
+    /// Returns the positions of the points of a pair at a share of the step (m): on straight lines
+    /// or, for an elastic pair, on the courses that [`impact`](Self::impact) looks at.
+    pub fn places(&self, pair: &Candidate, law: &Law, share: f64) -> [Vector3<f64>; 4] {
+        pair.points.map(|i| {
+            let i = i as usize;
+            if law.skin.restitution > 0.0 {
+                let end = [self.x0[i] + self.moves[i], self.v[i]];
+                self.flight.position(i, share, end)
+            } else {
+                self.x0[i] + self.moves[i] * share
+            }
+        })
     }
 
     /// Returns the angular momentum (kg m2/s) at the end of the step of the parts that a pair
@@ -180,7 +191,8 @@ impl Motion {
         }
     }
 
-    /// Finds the share of the step at which a pair comes too near, if it does.
+    /// Finds the share of the step at which a pair comes too near, if it does. An elastic pair does
+    /// so on its course, so that its energy is right there.
     pub fn impact(&self, surface: &Surface, candidate: &Candidate) -> Option<f64> {
         let x = candidate.of(&self.x0);
         let moves = candidate.of(&self.moves);
@@ -189,7 +201,40 @@ impl Motion {
             return None;
         }
         let kept = Self::kept(surface, candidate, &x);
-        self.first_impact(candidate.kind, [&x, &moves], law.radius, kept)
+        let share = self.first_impact(candidate.kind, [&x, &moves], law.radius, kept)?;
+        if law.skin.restitution > 0.0 {
+            self.arrival(candidate, share, kept)
+        } else {
+            Some(share)
+        }
+    }
+
+    /// Finds the share of the step at which a pair that would touch at another share, if it moved
+    /// in straight lines, comes as near as `kept` (m) on its course, if it does.
+    fn arrival(&self, pair: &Candidate, share: f64, kept: f64) -> Option<f64> {
+        let (x0, moves) = (pair.of(&self.x0), pair.of(&self.moves));
+        let at = std::array::from_fn(|k| x0[k] + moves[k] * share);
+        let ends = std::array::from_fn(|k| x0[k] + moves[k]);
+        let Closest { weights, offset } = closest(pair.kind, &at);
+        let normal = offset.normalize();
+        let along = |vector: &dyn Fn(usize) -> Vector3<f64>| {
+            normal.dot(&weighted(
+                &weights,
+                &pair.points.map(|i| vector(i as usize)),
+            ))
+        };
+        let end = normal.dot(&weighted(&weights, &ends));
+        let rate = along(&|i| self.v[i]);
+        let since = pair.points.map(|i| self.flight.since[i as usize]);
+        let since = since.into_iter().fold(0.0, f64::max);
+        let found = self.flight.arrival(along, [end, rate, kept]);
+        let is_apart = end > kept && closest(pair.kind, &ends).offset.norm() > kept;
+        match found {
+            Some(found) if (since..=1.0).contains(&found) => Some(found),
+            _ if is_apart => None,
+            Some(found) if found < since => Some(since),
+            _ => Some(share.max(since)),
+        }
     }
 
     /// Finds the share of the step, after another one, at which a pair comes too near, if it does.

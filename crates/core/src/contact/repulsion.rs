@@ -127,11 +127,33 @@ impl Pair {
         if self.law.stopped.is_infinite() {
             return (factor, slope);
         }
+        if self.law.skin.restitution > 0.0 {
+            let (felt, fades) = self.felt(rate);
+            return (factor * felt, slope * felt + factor * fades);
+        }
         let speed = rate / (HALF_SPEED_RATIO * self.law.stopped);
         let squared = speed * speed;
         let felt = 1.0 / (1.0 + squared * squared);
         let fades = -4.0 * squared * speed * felt * felt / (HALF_SPEED_RATIO * self.law.stopped);
         (factor * felt, slope * felt + factor * fades)
+    }
+
+    /// Returns the share of the force that an elastic pair feels at a rate of the gap (m/s), and its
+    /// derivative with respect to the rate.
+    fn felt(&self, rate: f64) -> (f64, f64) {
+        let Law { skin, stopped, .. } = self.law;
+        let fastest = if rate < 0.0 {
+            stopped
+        } else {
+            skin.restitution * stopped
+        };
+        let ratio = rate / fastest;
+        let left = 1.0 - ratio.powi(4);
+        if left <= 0.0 {
+            return (0.0, 0.0);
+        }
+        let fades = -12.0 * left * left * ratio.powi(3) / fastest;
+        (left * left * left, fades)
     }
 
     /// Returns the largest share q of the force by which damping changes it, and the squared range
@@ -249,7 +271,12 @@ impl Pair {
     /// Returns the energy of repulsion (J).
     pub fn energy(&self) -> f64 {
         self.within().map_or(0.0, |within| {
-            self.potential(within.share) * self.crossing().0
+            let potential = self.potential(within.share) * self.crossing().0;
+            if self.law.skin.restitution == 0.0 {
+                return potential;
+            }
+            let rate = within.normal.dot(&weighted(&within.weights, &self.v));
+            potential * self.felt(rate).0
         })
     }
 

@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 
 use super::cut::Pinched;
-use super::guard::guard;
+use super::guard::{Bodies, guard};
 use super::impulses::Impulses;
 use super::layer::ContactLayer;
 use super::met::{Met, Statistics, across, velocity};
@@ -176,16 +176,16 @@ impl ContactPhase {
     ///
     /// # Errors
     /// Kinematic vertices leave no room.
-    pub fn guard(
+    pub(crate) fn guard(
         &mut self,
         layer: &ContactLayer,
-        inverse_masses: &[f64],
+        bodies: Bodies,
         (t, h): (f64, f64),
         y1: &mut [f64],
     ) -> Result<Statistics, Pinched> {
         let (impulses, length) = &mut self.impulses;
         *length = h;
-        let guarded = guard(layer, inverse_masses, (t, h), &self.y0, y1, impulses)?;
+        let guarded = guard(layer, bodies, (t, h), &self.y0, y1, impulses)?;
         self.last = Statistics {
             contacts: guarded.impulses,
             impulse: guarded.impulse,

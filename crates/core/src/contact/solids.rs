@@ -40,6 +40,12 @@ impl Field {
         self.turns[solid] + self.changes[solid].turned
     }
 
+    /// Changes the centre and the turn of a body, number k.
+    pub fn change(&mut self, k: usize, [along, turned]: [Vector3<f64>; 2]) {
+        self.changes[k].along += along;
+        self.changes[k].turned += turned;
+    }
+
     /// Adds a body with that turn.
     pub fn add_solid(&mut self, turn: Vector3<f64>) {
         self.turns.push(turn);
@@ -173,14 +179,21 @@ impl Solid {
         change.turned += self.inverse_inertia * arm.lever.cross(&impulse) * arm.sign;
     }
 
-    /// Returns the angular velocity (rad/s) and the inverse inertia (1/(kg m2)) at a share of the
-    /// step, `left` (s) before its end, if the angular velocity at the end is `spin`.
-    pub fn at(&self, spin: Vector3<f64>, share: f64, left: f64) -> (Vector3<f64>, Matrix3<f64>) {
+    /// Returns the angular velocity (rad/s) and the inverse inertia (1/(kg m2)) `left` (s) and the
+    /// share `share` of the step before its end, if the angular velocity at the end is `spin`, and
+    /// lags behind the course by `lag` (rad/s).
+    pub fn before(
+        &self,
+        [spin, lag]: [Vector3<f64>; 2],
+        share: f64,
+        left: f64,
+    ) -> (Vector3<f64>, Matrix3<f64>) {
         let back = UnitQuaternion::new_unchecked(turn(spin * -left));
         let back = back.to_rotation_matrix().into_inner();
         let inverse_inertia = back * self.inverse_inertia * back.transpose();
-        let momentum = self.ends[0].momentum.lerp(&(self.inertia * spin), share);
-        (inverse_inertia * momentum, inverse_inertia)
+        let gain = self.ends[1].momentum - self.ends[0].momentum;
+        let momentum = self.inertia * spin - gain * share;
+        (inverse_inertia * momentum + lag, inverse_inertia)
     }
 
     /// Changes the motion of this body, number k, by an impulse (N s) at the end of a lever (m),
@@ -193,9 +206,8 @@ impl Solid {
         span: f64,
         field: &mut Field,
     ) {
-        let change = &mut field.changes[k];
-        change.along += impulse * (span * self.inverse_mass);
-        change.turned += self.inverse_inertia * lever.cross(&impulse) * span;
+        let turned = self.inverse_inertia * lever.cross(&impulse) * span;
+        field.change(k, [self.along(impulse) * span, turned]);
     }
 
     /// Returns the angular momentum (kg m2/s) of the body about a point (m) at the end of the step,
@@ -207,6 +219,11 @@ impl Solid {
         about: Vector3<f64>,
     ) -> Vector3<f64> {
         (x - about).cross(&(v / self.inverse_mass)) + self.inertia * spin
+    }
+
+    /// Returns the change of the centre's velocity (m/s) by an impulse (N s).
+    pub fn along(&self, impulse: Vector3<f64>) -> Vector3<f64> {
+        impulse * self.inverse_mass
     }
 
     /// Returns the angular velocity (rad/s) that an angular momentum (kg m2/s) gives the body.

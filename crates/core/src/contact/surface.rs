@@ -38,9 +38,11 @@ pub struct Surface {
     /// Particles of a fluid, as points, in order.
     pub(super) drops: Items,
     /// Edges of rigid shapes between coplanar triangles, sorted.
-    flat: Vec<[u32; 2]>,
+    pub(super) flat: Vec<[u32; 2]>,
     /// Whether each particle has no triangles and no edges, and belongs to no rigid body.
-    singles: Vec<bool>,
+    pub(super) singles: Vec<bool>,
+    /// Whether any vertex is single, and may touch a rigid shape.
+    pub(super) has_points: bool,
     /// Vertices that represent floors.
     pub(super) floors: Vec<u32>,
     /// Whether bodies can touch themselves and one another.
@@ -137,6 +139,9 @@ impl Surface {
         }
         surface.flat.sort_unstable();
         surface.obstacles = Items::new(faces, sides, &[&surface.bodies]);
+        let is_hard = !(bodies.is_empty() && obstacles.is_empty());
+        surface.has_points =
+            is_hard && (0..surface.skins.len() as u32).any(|i| surface.is_single(i));
         surface.measure();
         surface
     }
@@ -227,18 +232,6 @@ impl Surface {
     pub(super) fn solid(&self, vertex: u32) -> Option<usize> {
         let solid = self.solids.get(vertex as usize).copied().unwrap_or(0);
         (solid > 0).then(|| solid as usize - 1)
-    }
-
-    /// Returns whether an edge of a rigid shape is between coplanar triangles.
-    pub(super) fn is_flat(&self, [a, b]: [u32; 2]) -> bool {
-        !self.flat.is_empty() && self.flat.binary_search(&[a.min(b), a.max(b)]).is_ok()
-    }
-
-    /// Returns whether a vertex is a particle without triangles and edges, or a point of a round
-    /// shape.
-    pub(super) fn is_single(&self, vertex: u32) -> bool {
-        let is_alone = || self.singles.get(vertex as usize).is_some_and(|is| *is);
-        self.radius(vertex) > 0.0 || is_alone()
     }
 
     /// Returns whether two primitives, given by their vertices, do not touch: on the same rigid

@@ -58,7 +58,7 @@ impl Force for ContactLayer {
 
     fn energy(&self, at: &At) -> Energy {
         Energy {
-            contact: self.repulsion_energy(at.t, at.x),
+            contact: self.repulsion_energy(at.t, at.x, at.v),
             ..Energy::default()
         }
     }

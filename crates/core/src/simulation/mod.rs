@@ -11,6 +11,7 @@ mod failure;
 mod grabbed;
 mod hand;
 mod interaction;
+mod jointed;
 mod locator;
 mod phases;
 mod pins;

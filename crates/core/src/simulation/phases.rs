@@ -3,6 +3,7 @@
 //! places.
 
 use super::depths::Depths;
+use super::jointed::JointsOf;
 use crate::columns::row;
 use crate::constraints::Constraint;
 use crate::contact::{
@@ -132,7 +133,8 @@ impl Phases {
         if let Some(layer) = network.contact_layer() {
             // If prescribed motions leave no room, the step itself has ended the run.
             let none = &mut Impulses::default();
-            let _ = guard(layer, inverse_masses, (t, h), y0, y, none);
+            let joints = JointsOf::new(network);
+            let _ = guard(layer, joints.bodies(), (t, h), y0, y, none);
         } else if !knows_obstacles {
             resolve(network.obstacles(), inverse_masses, &Step { t, h, y0 }, y);
         }
@@ -174,35 +176,39 @@ impl Phases {
         if network.contact_layer().is_some() || network.is_constrained() {
             network.hold(times.0 + times.1, y1);
         }
-        let mut before = network.is_constrained().then(|| y1.to_vec());
-        let met = self.meet(network, times, y1)?;
-        if let Some(before) = &mut before {
-            let first = largest_shift(network, [before, y1]);
-            let mut last = first;
-            for _ in 0..MAX_ROUNDS {
-                // Written so that a state that is not finite, which is reported later, ends it.
-                if !(last > SETTLED_SHARE * first) {
-                    break;
-                }
-                project(network, y1, true);
-                before.copy_from_slice(y1);
-                self.meet(network, times, y1)?;
-                last = largest_shift(network, [before, y1]);
+        let joints = JointsOf::new(network);
+        let unstruck = network.is_constrained().then(|| y1.to_vec());
+        let met = self.meet(&joints, times, y1)?;
+        let Some(unstruck) = unstruck else {
+            return Ok(met);
+        };
+        let first = largest_shift(network, [&unstruck, y1]);
+        let (mut last, mut before) = (first, y1.to_vec());
+        for _ in 0..MAX_ROUNDS {
+            // Written so that a state that is not finite, which is reported later, ends it.
+            if !(last > SETTLED_SHARE * first) {
+                break;
             }
+            project(network, y1, true);
+            before.copy_from_slice(y1);
+            self.meet(&joints, times, y1)?;
+            last = largest_shift(network, [&before, y1]);
         }
+        joints.balance(times, met.impulse, [self.y0(), &unstruck], y1);
         Ok(met)
     }
 
     /// Moves particles out of obstacles, or keeps surfaces from passing through one another.
     fn meet(
         &mut self,
-        network: &Network,
+        joints: &JointsOf,
         (t, h): (f64, f64),
         y1: &mut [f64],
     ) -> Result<Statistics, Cause> {
-        let inverse_masses = network.inverse_masses();
+        let network = joints.network();
         let Some(layer) = network.contact_layer() else {
             let obstacles = network.obstacles();
+            let inverse_masses = network.inverse_masses();
             let met = self.contact.resolve(obstacles, inverse_masses, (t, h), y1);
             network.hold(t + h, y1);
             return Ok(met);
@@ -211,7 +217,7 @@ impl Phases {
         if y1.iter().any(|y| !y.is_finite()) {
             return Ok(Statistics::default());
         }
-        let guarded = self.contact.guard(layer, inverse_masses, (t, h), y1);
+        let guarded = self.contact.guard(layer, joints.bodies(), (t, h), y1);
         let met = guarded.map_err(|Pinched { vertices }| Cause::Pinched { vertices })?;
         if !network.bodies().is_empty() {
             network.hold(t + h, y1);

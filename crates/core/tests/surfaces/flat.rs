@@ -168,7 +168,12 @@ impl Thing {
 
 /// Scene of a body on a ground, without gravity.
 fn scene(thing: Thing, ground: Ground, frame: Frame, at: [f64; 3], v: [f64; 3]) -> Scene {
-    let texts = [ground.text(frame), thing.text(frame, at, v)].concat();
+    scene_on(&ground.text(frame), thing, frame, at, v)
+}
+
+/// Scene of a body on a ground with this text, without gravity.
+fn scene_on(ground: &str, thing: Thing, frame: Frame, at: [f64; 3], v: [f64; 3]) -> Scene {
+    let texts = [ground, &thing.text(frame, at, v)].concat();
     let mut scene = build(&("self_collision = true\n".to_owned() + &texts));
     if let Model::Network(network) = &mut scene.model {
         let mut touch = network.touch().unwrap().clone();
@@ -290,4 +295,76 @@ fn the_order_of_rk4_is_kept_over_a_diagonal() {
         .log2()
         / 2.0;
     assert!((order - 4.0).abs() < 0.1, "{order}");
+}
+
+/// Grounds whose tops at y = 0 consist of two faces that adjoin at x = 0.
+const SEAMS: [&str; 4] = [
+    "[[box]]\ncenter = [-1, -0.5, 0]\nsize = [2, 1, 2]\nthickness = 0.02
+    [[box]]\ncenter = [1, -0.5, 0]\nsize = [2, 1, 2]\nthickness = 0.02\n",
+    "[[box]]\ncenter = [-1, -0.5, 0]\nsize = [2, 1, 2]\nthickness = 0.02
+    [[box]]\ncenter = [1, -1, 0.2]\nsize = [2, 2, 3]\nthickness = 0.02\n",
+    "[[box]]\ncenter = [-1, -0.5, 0]\nsize = [2, 1, 2]\nthickness = 0.02
+    [[box]]\ncenter = [1.0001, -0.5, 0]\nsize = [2, 1, 2]\nthickness = 0.02\n",
+    "floor = { height = 0, thickness = 0.02 }
+    [[box]]\ncenter = [1, -0.5, 0]\nsize = [2, 1, 2]\nthickness = 0.02\n",
+];
+
+/// Two flush faces repel a particle and a ball as a floor does, wherever it is: exactly on the seam, beside it,
+/// and above a gap of a tenth of a millimetre.
+#[test]
+fn a_seam_repels_as_a_floor() {
+    let force = |ground: &str, thing: Thing, at: [f64; 3]| {
+        let scene = scene_on(ground, thing, PLAIN, at, [0.0; 3]);
+        let count = scene.model.network().unwrap().particles();
+        let all = forces(&scene, count, PLAIN);
+        all.iter().sum::<Vector3<f64>>()
+    };
+    let floor = Ground::Floor.text(PLAIN);
+    for (number, ground) in SEAMS.iter().enumerate() {
+        for thing in Thing::ALL {
+            for y in [0.004, 0.01, 0.016] {
+                for x in [0.0, 1e-17, -1e-9, 2e-5, -1e-4, 3e-3, -0.02, 0.07] {
+                    for z in [0.0, 0.1, 0.5] {
+                        let at = [x, y, z];
+                        let expected = force(&floor, thing, at);
+                        let found = force(ground, thing, at);
+                        let error = (found - expected).norm() / expected.norm();
+                        // Within the gap, the edges on both sides repel.
+                        let is_within = number == 2 && (0.0..1e-4).contains(&x);
+                        assert!(
+                            is_within || error < 1e-7,
+                            "{thing:?} at {at:?} on {number}: {found}, {expected}"
+                        );
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// A ball glides straight over a seam of two boxes, and of a floor and a box.
+#[test]
+fn balls_notice_no_seam() {
+    let ball = |at: [f64; 3], v: f64| {
+        format!(
+            "gravity = [0, -9.81, 0]\n[[body]]\nparts = [{{ ball = 0.1 }}]\nmass = 1
+            at = {at:?}\nvelocity = [{v}, 0, 0]\n"
+        )
+    };
+    for (number, ground) in SEAMS.iter().enumerate() {
+        for (name, step) in [("rk4", 1e-3), ("verlet", 2e-3), ("implicit", 4e-3)] {
+            let text = ball([-0.25, 0.10592, 0.1], 1.0) + ground;
+            let mut run = Simulation::new(build(&text), method(name), Control::Step(step)).unwrap();
+            run.advance_to(0.2).unwrap();
+            let (mut least, mut most) = (f64::INFINITY, 0.0_f64);
+            for k in 1..=20 {
+                run.advance_to(0.2 + 0.005 * f64::from(k)).unwrap();
+                let y = run.position(0).y;
+                (least, most) = (least.min(y), most.max(y));
+            }
+            let x = run.position(0).x;
+            let what = format!("{name} on {number}: {x}, {least} to {most}");
+            assert!(most - least < 1e-4 && (x - 0.05).abs() < 1e-6, "{what}");
+        }
+    }
 }

@@ -281,3 +281,79 @@ fn impacts_conserve_momenta() {
     }
     assert!(impulses > 40, "{impulses}");
 }
+
+/// Elastic balls come back to where they were dropped, and others to the square of the restitution,
+/// bounce after bounce: wherever they meet a floor or a box, at the default steps.
+#[test]
+fn every_rebound_has_its_height() {
+    let grounds = [
+        "floor = { height = 0, restitution = 0.8 }",
+        "[[box]]\ncenter = [0.3, -0.5, 0.2]\nsize = [8, 1, 8]\nrestitution = 1",
+    ];
+    for (ground, share) in grounds.iter().zip([0.64_f64, 1.0]) {
+        for x in [0.0, 0.1, 3.0] {
+            let text = format!(
+                "gravity = [0, -{G}, 0]\n{ground}\n[[body]]\nparts = [{{ ball = 0.1 }}]
+                mass = 1\nat = [{x}, 1.1, 0]"
+            );
+            for name in ["rk4", "verlet", "symplectic", "implicit", "dopri5"] {
+                let m = method(name);
+                let mut run = Simulation::new(described(&text), m, m.default_control).unwrap();
+                let (mut t, mut height) = ((2.0 / G).sqrt(), 1.0);
+                for bounce in 1..=6 {
+                    height *= share;
+                    let up = (2.0 * height / G).sqrt();
+                    run.advance_to(t + up).unwrap();
+                    t += 2.0 * up;
+                    let found = run.position(0).y - 0.1;
+                    let what = format!("{name} at {x}, {share}, bounce {bounce}: {found}");
+                    assert!((found / height - 1.0).abs() < 0.01, "{what}");
+                }
+            }
+        }
+    }
+}
+
+/// Balls on hinges are a cradle: the last one takes all speed of the first, and no energy is won or
+/// lost.
+#[test]
+fn balls_on_hinges_are_a_cradle() {
+    let ball = |k: u32, angle: f64| {
+        let (hinge, k) = (f64::from(k) * 0.205, f64::from(k));
+        format!(
+            "[[body]]\nparts = [{{ ball = 0.1 }}]\nmass = 1\nrestitution = 1
+            at = [{}, {}, 0]\nrotation = [0, 0, {angle}]
+            [[joint]]\nbody = {k}\nhinge = {{ at = [{hinge}, 0, 0], axis = [0, 0, 1] }}\n",
+            hinge + angle.sin(),
+            -angle.cos(),
+        )
+    };
+    let text = [
+        format!("gravity = [0, -{G}, 0]\n"),
+        ball(0, -0.6),
+        ball(1, 0.0),
+        ball(2, 0.0),
+    ]
+    .concat();
+    for (name, until) in [
+        ("rk4", 8.0),
+        ("verlet", 4.0),
+        ("symplectic", 4.0),
+        ("dop853", 4.0),
+    ] {
+        let m = method(name);
+        let mut run = Simulation::new(described(&text), m, m.default_control).unwrap();
+        // Energy above that of hanging at rest.
+        let energy = |run: &Simulation| run.energy().unwrap().total() + 3.0 * G;
+        let begun = energy(&run);
+        run.advance_to(0.65).unwrap();
+        let speeds = [0, 1, 2].map(|k| moving(&run, k).v.norm());
+        assert!(
+            speeds[0].max(speeds[1]) < 0.02 && speeds[2] > 1.5,
+            "{name}: {speeds:?}"
+        );
+        run.advance_to(until).unwrap();
+        let gained = energy(&run) / begun - 1.0;
+        assert!(gained.abs() < 0.01, "{name}: {gained}");
+    }
+}

@@ -1,0 +1,121 @@
+//! Changes of velocities by impulses on bodies that joints hold.
+//!
+//! A joint passes an impulse on at once: the bodies that it joins get the least change of their
+//! velocities, weighted by the masses, with the impulse that the joints can follow. So a body on a
+//! hinge is struck with the mass that the hinge leaves it.
+
+use nalgebra::Vector3;
+
+use super::solids::{Field, Solid};
+use crate::rigid::{ROTATION, Rotation};
+
+/// Constraints that join rigid bodies.
+pub(crate) trait Joints {
+    /// Returns whether a joint holds the rigid body with that centre.
+    fn hold(&self, center: usize) -> bool;
+
+    /// Changes the velocities in the state y by the least amount, weighted by the masses, so that
+    /// they fit the joints.
+    fn fit(&self, y: &mut [f64]);
+
+    /// Is told of an impulse (N s) that they have passed on, and of its work (J).
+    fn note(&self, impulse: f64, work: f64);
+}
+
+/// Joints, with the state at the end of a step.
+#[derive(Clone, Copy)]
+pub(super) struct Joined<'a> {
+    pub joints: &'a dyn Joints,
+    pub y: &'a [f64],
+}
+
+/// Changes of velocities (m/s) and angular velocities (rad/s) of all vertices and bodies.
+pub(super) struct Changes {
+    pub points: Vec<Vector3<f64>>,
+    pub solids: Vec<[Vector3<f64>; 2]>,
+}
+
+/// Changes by an impulse of 1 N s in a direction.
+pub(super) struct Response {
+    direction: Vector3<f64>,
+    points: Vec<(usize, Vector3<f64>)>,
+    solids: Vec<(usize, [Vector3<f64>; 2])>,
+}
+
+impl Response {
+    /// Finds the response to an impulse of 1 N s in a direction on the first of two arms, and the
+    /// opposite on the second, of which each is the number of a body and a lever (m). The points
+    /// change their velocities by `pushed` (m/s).
+    pub fn new(
+        joined: Joined,
+        solids: &[Solid],
+        direction: Vector3<f64>,
+        arms: impl Iterator<Item = (usize, Vector3<f64>, f64)>,
+        pushed: impl Iterator<Item = (usize, Vector3<f64>)>,
+    ) -> Self {
+        let mut y = joined.y.to_vec();
+        let n = (y.len() - ROTATION * solids.len()) / 6;
+        y[3 * n..6 * n].fill(0.0);
+        let add = |y: &mut [f64], i: usize, change: Vector3<f64>| {
+            for axis in 0..3 {
+                y[(3 + axis) * n + i] += change[axis];
+            }
+        };
+        let numbers = |k: usize| 6 * n + ROTATION * k..6 * n + ROTATION * (k + 1);
+        let mut momenta = vec![Vector3::zeros(); solids.len()];
+        for (k, lever, sign) in arms {
+            let impulse = direction * sign;
+            add(&mut y, solids[k].center, solids[k].along(impulse));
+            momenta[k] += lever.cross(&impulse);
+        }
+        for (i, change) in pushed.filter(|(i, _)| *i < n) {
+            add(&mut y, i, change);
+        }
+        for (k, momentum) in momenta.into_iter().enumerate() {
+            let q = Rotation::read(&y[numbers(k)]).q;
+            Rotation { q, momentum }.write(&mut y[numbers(k)]);
+        }
+        joined.joints.fit(&mut y);
+        let speed = |i: usize| Vector3::from([3, 4, 5].map(|row| y[row * n + i]));
+        let on_bodies = |i: usize| {
+            let is_of = |solid: &Solid| solid.center == i || solid.points.contains(&i);
+            solids.iter().any(is_of)
+        };
+        let points = (0..n).filter(|i| speed(*i) != Vector3::zeros() && !on_bodies(*i));
+        let changed = (0..solids.len()).map(|k| {
+            let momentum = Rotation::read(&y[numbers(k)]).momentum;
+            (k, [speed(solids[k].center), solids[k].spun(momentum)])
+        });
+        Self {
+            direction,
+            points: points.map(|i| (i, speed(i))).collect(),
+            solids: changed
+                .filter(|(_, it)| *it != [Vector3::zeros(); 2])
+                .collect(),
+        }
+    }
+
+    /// Adds the changes by an impulse (N s), as far as it is in this direction.
+    pub fn push(&self, impulse: Vector3<f64>, changes: &mut Changes) {
+        let size = self.direction.dot(&impulse);
+        for (i, change) in &self.points {
+            changes.points[*i] += change * size;
+        }
+        for (k, [along, turned]) in &self.solids {
+            changes.solids[*k][0] += along * size;
+            changes.solids[*k][1] += turned * size;
+        }
+    }
+
+    /// Changes a field by an impulse (N s), as far as it is in this direction, times a span. The
+    /// points of the bodies must be settled afterwards.
+    pub fn apply(&self, impulse: Vector3<f64>, span: f64, field: &mut Field) {
+        let size = self.direction.dot(&impulse) * span;
+        for (i, change) in &self.points {
+            field[*i] += change * size;
+        }
+        for (k, change) in &self.solids {
+            field.change(*k, change.map(|change| change * size));
+        }
+    }
+}
