@@ -3,8 +3,10 @@
 #[path = "../common/mod.rs"]
 mod common;
 
+mod dying;
 mod frames;
 mod known_times;
+mod orders;
 mod outflows;
 mod rebounds;
 mod releases;
