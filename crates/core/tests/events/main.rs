@@ -15,3 +15,4 @@ mod ropes;
 mod tears;
 mod thin;
 mod touches;
+mod turntable;
