@@ -29,8 +29,8 @@ pub enum Refusal {
 }
 
 /// Advice if forces depend on the velocity.
-pub(crate) const USE_ANOTHER: &str = "with wind, air, damped springs, viscous fluids or \
-    constraints, use another explicit solver";
+pub(crate) const USE_ANOTHER: &str = "with wind, air, friction, damped springs, viscous fluids \
+    or constraints, use another explicit solver";
 
 impl fmt::Display for Refusal {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

@@ -9,7 +9,7 @@
 
 use nalgebra::Vector3;
 
-use super::obstacle::Obstacle;
+use super::obstacle::{Obstacle, velocity};
 use super::rebound::Course;
 use crate::geometry::nearest::Separation;
 
@@ -86,6 +86,42 @@ impl<'a> Approach<'a> {
         let seen = self.seen(share);
         let Separation { distance, normal } = self.obstacle.shape.separation(seen);
         (seen - normal * distance, normal)
+    }
+
+    /// Returns a share of the step up to which a particle that begins at the surface flies above it,
+    /// if it rises to a height, or falls from one, above the least that counts (m). That may depend
+    /// on the acceleration towards the surface by the share of the step (m).
+    pub fn flight(&self, least: impl Fn(f64) -> f64) -> Option<f64> {
+        let begun = self.separation(0.0);
+        let pose = self.obstacle.at(self.t);
+        let (normal, away) = (
+            pose.outwards(begun.normal),
+            self.course.x[0] - pose.place.position,
+        );
+        let rise = normal.dot(&(self.course.v[0] - velocity(&pose, away))) * self.course.h;
+        let fall = -normal.dot(&self.course.bend());
+        let least = least(fall);
+        let crest = if fall > rise.abs() {
+            rise / fall
+        } else {
+            rise.signum()
+        };
+        let height = begun.distance.max(0.0);
+        if height + 0.5 * rise * crest <= least {
+            return None;
+        }
+        if rise <= 0.0 {
+            return (height > 0.0).then_some(0.0);
+        }
+        // Where the bend grows, the particle may be back at the time of that crest.
+        let mut share = crest;
+        while share > f64::EPSILON && 0.5 * rise * share > least {
+            if self.separation(share).distance > least {
+                return Some(share);
+            }
+            share *= 0.5;
+        }
+        None
     }
 
     /// Returns a lower bound of the distance (m) between two shares of the step.
@@ -176,6 +212,13 @@ impl Course {
             speeds.into_iter().fold(0.0, f64::max),
             bends.into_iter().fold(0.0, f64::max),
         ]
+    }
+
+    /// Returns the second derivative of the position with respect to the share of the step at its
+    /// beginning (m).
+    fn bend(&self) -> Vector3<f64> {
+        let [a, b] = self.v.map(|v| v * self.h);
+        (self.x[1] - self.x[0]) * 6.0 - a * 4.0 - b * 2.0
     }
 
     /// Returns a distance (m) from the middle of the chord within which the whole course stays,

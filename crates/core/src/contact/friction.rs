@@ -12,6 +12,8 @@ use super::passes::{STUCK_TOLERANCE, hold, pass_until_still};
 use super::repulsion::Pair;
 use super::solids::{Field, Masses};
 use super::surface::Surface;
+use crate::error::Vertex;
+use crate::geometry::weighted;
 
 /// Share of the largest displacement that friction can undo below which a displacement counts as
 /// zero.
@@ -45,8 +47,15 @@ pub(super) fn apply_friction(
         let (force, weights, normal) = pair.force()?;
         let mut contact = ContactPair::new(surface, candidate, weights, normal, motion);
         contact.resist_turns(skin.rolling * force * h, surface, motion);
+        let spin = |i: u32| match surface.vertex(i) {
+            Vertex::Obstacle(k) => motion.spins[k],
+            _ => Vector3::zeros(),
+        };
+        let [first, .., last] = candidate.points;
+        let most = skin.friction * force * h;
         let footing = surface.footing(candidate, &pair);
-        (contact.inverse_mass > 0.0).then_some((footing, (contact, skin.friction * force * h)))
+        let spin = spin(first) + spin(last);
+        (contact.inverse_mass > 0.0).then_some((footing, (contact, most, spin)))
     };
     let mut pressed = Pressed::default();
     let ended = Linear {
@@ -55,13 +64,13 @@ pub(super) fn apply_friction(
         rounding: surface.rounding(),
     };
     let reach = |pair: &Candidate| Some(surface.reach(pair.kind, &pair.points));
-    surface.each_bare(candidates, &ended, reach, find, |(contact, most)| {
-        pressed.add(contact, most);
+    surface.each_bare(candidates, &ended, reach, find, |(contact, most, spin)| {
+        pressed.add(contact, most, spin);
     });
     if pressed.contacts.is_empty() {
         return false;
     }
-    solve(&pressed.contacts, h, motion, guarded);
+    solve(&pressed, h, motion, guarded);
     motion.cover(surface, candidates);
     true
 }
@@ -71,12 +80,14 @@ pub(super) fn apply_friction(
 #[derive(Default)]
 struct Pressed {
     contacts: Vec<(ContactPair, f64)>,
+    /// Angular velocity of the obstacle at each contact (rad/s); 0 where none turns.
+    spins: Vec<Vector3<f64>>,
     /// Numbers of the contacts of two bodies.
     between: BTreeMap<[usize; 2], Vec<usize>>,
 }
 
 impl Pressed {
-    fn add(&mut self, contact: ContactPair, most: f64) {
+    fn add(&mut self, contact: ContactPair, most: f64, spin: Vector3<f64>) {
         if let Some(arms) = contact.both_arms() {
             let known = self.between.entry(arms.map(|arm| arm.solid)).or_default();
             let is_same = |k: &&usize| self.contacts[**k].0.is_at(&contact);
@@ -89,12 +100,14 @@ impl Pressed {
             known.push(self.contacts.len());
         }
         self.contacts.push((contact, most));
+        self.spins.push(spin);
     }
 }
 
 /// Finds the friction of contacts, each with its largest impulse (N s): of velocities first.
 /// Displacements follow the velocities, and vanish where these do.
-fn solve(pressed: &[(ContactPair, f64)], h: f64, motion: &mut Motion, guarded: &mut Guarded) {
+fn solve(pressed: &Pressed, h: f64, motion: &mut Motion, guarded: &mut Guarded) {
+    let (pressed, spins) = (&pressed.contacts, &pressed.spins);
     let Motion {
         x0,
         moves,
@@ -142,7 +155,16 @@ fn solve(pressed: &[(ContactPair, f64)], h: f64, motion: &mut Motion, guarded: &
         let slip = contact.slip(v);
         slip.norm() <= STUCK_TOLERANCE * limit(contact, *most, slip)
     };
-    let stuck: Vec<_> = pressed.iter().filter(sticks).collect();
+    let all_spins = pressed.iter().zip(spins);
+    let stuck: Vec<_> = all_spins.clone().filter(|(it, _)| sticks(it)).collect();
+    for (it, spin) in all_spins.filter(|(_, spin)| **spin != Vector3::zeros()) {
+        let missed = if sticks(&it) {
+            spin.norm() * lead(&it.0, *spin, moves, h).norm() * h / 6.0
+        } else {
+            missed_by_slide(it, [&*v0, v]) * h
+        };
+        guarded.missed = guarded.missed.max(missed);
+    }
     let rests = |contact: &&ContactPair| {
         let turning = contact.turning(v, 1.0);
         turning.is_some_and(|(impulse, most)| impulse.norm() <= STUCK_TOLERANCE * most)
@@ -161,8 +183,8 @@ fn solve(pressed: &[(ContactPair, f64)], h: f64, motion: &mut Motion, guarded: &
             contact.spin(limited_to(impulse, h * most), masses, moves);
             still &= impulse.norm() <= STILL_TOLERANCE * h * most;
         }
-        for (contact, most) in &stuck {
-            let displaced = contact.slip(moves);
+        for ((contact, most), spin) in &stuck {
+            let displaced = contact.slip(moves) + lead(contact, **spin, moves, h);
             let most = h * limit(contact, *most, displaced);
             contact.apply(-limited_to(displaced, most), masses, moves);
             still &= displaced.norm() <= STILL_TOLERANCE * most;
@@ -176,4 +198,30 @@ fn solve(pressed: &[(ContactPair, f64)], h: f64, motion: &mut Motion, guarded: &
         }
     }
     guarded.impulse += all.iter().map(Vector3::norm).sum::<f64>();
+}
+
+/// Returns the displacement along the surface (m) that an obstacle, which turns at the rate `spin`
+/// (rad/s), gives its point at a contact in a step of h (s), beyond what it gives the contact
+/// itself, which moves over the obstacle: a ball that rolls is carried along by one point after the
+/// other.
+fn lead(contact: &ContactPair, spin: Vector3<f64>, moves: &Field, h: f64) -> Vector3<f64> {
+    if spin == Vector3::zeros() {
+        return spin;
+    }
+    let way = weighted(&contact.weights, &contact.points.map(|i| moves[i as usize]));
+    let lead = spin.cross(&way) * (0.5 * h);
+    lead - contact.normal * lead.dot(&contact.normal)
+}
+
+/// Returns the error of the change of velocity (m/s) of a contact that slides, by the turn of its
+/// slip between the velocities at both ends of the step: friction acts as at its end.
+fn missed_by_slide((contact, most): &(ContactPair, f64), fields: [&Field; 2]) -> f64 {
+    let [begun, ended] = fields.map(|field| contact.slip(field));
+    match begun.try_normalize(0.0).zip(ended.try_normalize(0.0)) {
+        Some((begun, along)) => {
+            let change = most * contact.mobility(ended);
+            0.25 * change * (along - begun).norm()
+        }
+        None => 0.0,
+    }
 }

@@ -7,7 +7,7 @@ use nalgebra::Vector3;
 use super::approach::Approach;
 use super::impulses::Impulses;
 use super::motion::Guarded;
-use super::obstacle::Obstacle;
+use super::obstacle::{Obstacle, velocity};
 use super::rebound::{Course, rebound_speed};
 use crate::columns::{row, set_row};
 use crate::geometry::Shape;
@@ -34,6 +34,17 @@ pub struct Statistics {
     /// End of a slide that friction stops within the step: of the one that would go farthest after
     /// its end without friction.
     pub stop: Stop,
+    /// Share of the step after which the first particle rebounded, if any did; `None` also where so
+    /// many rebounded that forces between them are not worth another step.
+    pub rebound: Option<f64>,
+}
+
+/// Record of the contacts in a step.
+pub(super) struct Noted<'a> {
+    pub statistics: &'a mut Statistics,
+    pub impulses: &'a mut Impulses,
+    /// Shares of the step after which particles rebounded.
+    pub rebounds: &'a mut Vec<f64>,
 }
 
 /// End of a slide within a step.
@@ -44,6 +55,21 @@ pub struct Stop {
     /// Distance to the end of the step from there, at half of the speed at its beginning (m); 0
     /// where nothing slides.
     pub way: f64,
+}
+
+impl Noted<'_> {
+    /// Notes the rebound of particle i, after a share of the step, by an impulse (N s). Without it,
+    /// the particle would have gone into the obstacle to that depth (m).
+    fn add_rebound(&mut self, i: usize, share: f64, depth: f64, impulse: Vector3<f64>) {
+        if depth > self.statistics.depth {
+            self.statistics.depth = depth;
+            self.statistics.touched = share;
+        }
+        self.statistics.contacts += 1;
+        self.statistics.impulse += impulse.norm();
+        self.impulses.add(i, impulse);
+        self.rebounds.push(share);
+    }
 }
 
 /// Obstacle during a step.
@@ -74,7 +100,7 @@ impl Met<'_> {
     pub fn resolve(
         &self,
         y1: &mut [f64],
-        (statistics, impulses): &mut (&mut Statistics, &mut Impulses),
+        noted: &mut Noted,
         surface: impl Fn(Vector3<f64>) -> Option<Nearest>,
     ) {
         let n = self.inverse_masses.len();
@@ -112,14 +138,8 @@ impl Met<'_> {
                     set_row(x, n, i, end);
                     set_row(v, n, i, row(v, n, i) + rebound.change);
                     let depth = nearest.normal.dot(&(nearest.point - d));
-                    if depth > statistics.depth {
-                        statistics.depth = depth;
-                        statistics.touched = 1.0 - rebound.left / self.span.1;
-                    }
                     let impulse = rebound.change / self.inverse_masses[i];
-                    statistics.contacts += 1;
-                    statistics.impulse += impulse.norm();
-                    impulses.add(i, impulse);
+                    noted.add_rebound(i, 1.0 - rebound.left / self.span.1, depth, impulse);
                     continue;
                 }
             }
@@ -153,9 +173,9 @@ impl Met<'_> {
                     set_row(x, n, i, held);
                 }
                 let moved_in = depth.min(approach);
-                if moved_in > statistics.depth {
-                    statistics.depth = moved_in;
-                    statistics.touched = 1.0 - moved_in / approach;
+                if moved_in > noted.statistics.depth {
+                    noted.statistics.depth = moved_in;
+                    noted.statistics.touched = 1.0 - moved_in / approach;
                 }
             }
             if self.friction > 0.0 {
@@ -164,8 +184,8 @@ impl Met<'_> {
                 let kept = self.kept(slip, -inwards);
                 if kept == 0.0 {
                     let stop = self.stop(i, slip, (nearest.normal, -inwards));
-                    if stop.way > statistics.stop.way {
-                        statistics.stop = stop;
+                    if stop.way > noted.statistics.stop.way {
+                        noted.statistics.stop = stop;
                     }
                 }
                 // A particle that sticks moves like the point at which it was left.
@@ -176,10 +196,10 @@ impl Met<'_> {
                 };
                 set_row(v, n, i, own + outwards + slip * kept);
             }
-            statistics.contacts += 1;
+            noted.statistics.contacts += 1;
             let change = row(v, n, i) - own - velocity;
-            statistics.impulse += change.norm() / self.inverse_masses[i];
-            impulses.add(i, change / self.inverse_masses[i]);
+            noted.statistics.impulse += change.norm() / self.inverse_masses[i];
+            noted.impulses.add(i, change / self.inverse_masses[i]);
         }
     }
 
@@ -206,7 +226,15 @@ impl Met<'_> {
         // A particle that touches at the beginning may sink in a little, as long as it does not
         // pass.
         let begun = approach.separation(0.0).distance;
-        let touches = begun <= TOUCHING_SHARE * course.reach();
+        let is_near = begun <= TOUCHING_SHARE * course.reach();
+        // Less than a rebound that lasts for the step.
+        let least = |fall: f64| 0.125 * fall.max(0.0);
+        let flight = if is_near {
+            approach.flight(least)
+        } else {
+            Some(0.0)
+        };
+        let touches = flight.is_none();
         let shape = &self.obstacle.shape;
         if touches && !shape.is_convex() {
             return None;
@@ -216,7 +244,7 @@ impl Met<'_> {
         } else {
             0.0
         };
-        let share = approach.first(0.0, depth)?;
+        let share = approach.first(flight.unwrap_or(0.0), depth)?;
         let (point, normal) = approach.touched(share);
         let pose = self.obstacle.at(t + share * h);
         Some(Touch {
@@ -343,13 +371,6 @@ impl Touch {
 struct Rebound {
     change: Vector3<f64>,
     left: f64,
-}
-
-/// Returns the velocity (m/s) of a point of an obstacle, relative to its place, in a pose.
-pub(super) fn velocity(pose: &Pose, point: Vector3<f64>) -> Vector3<f64> {
-    let along = pose.place.velocity;
-    let turned = pose.orientation;
-    turned.map_or(along, |turned| along + turned.spin.cross(&point))
 }
 
 /// Returns the component of a vector perpendicular to a unit normal.

@@ -63,6 +63,7 @@ pub use met::{Statistics, Stop};
 pub use motion::Guarded;
 pub use obstacle::Obstacle;
 pub(crate) use rebound::Course;
+pub(crate) use resolve::SIMULTANEOUS_SHARE;
 pub use resolve::{ContactPhase, Step, resolve};
 pub(crate) use response::Joints;
 pub use skin::Skin;

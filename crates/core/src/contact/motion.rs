@@ -35,6 +35,10 @@ pub struct Guarded {
     pub first: f64,
     /// Number of planes between pairs in the search for impacts, beyond the usual number.
     pub planes: usize,
+    /// Estimated error of the displacements by friction of obstacles that turn (m): friction acts
+    /// after the step, where the estimate of the method does not see it.
+    #[serde(skip)]
+    pub missed: f64,
 }
 
 impl Default for Guarded {
@@ -46,6 +50,7 @@ impl Default for Guarded {
             lost: 0.0,
             first: 1.0,
             planes: 0,
+            missed: 0.0,
         }
     }
 }
@@ -58,6 +63,7 @@ impl AddAssign for Guarded {
         self.lost += other.lost;
         self.first = self.first.min(other.first);
         self.planes += other.planes;
+        self.missed = self.missed.max(other.missed);
     }
 }
 

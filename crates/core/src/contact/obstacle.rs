@@ -75,3 +75,10 @@ impl Obstacle {
         at_least(0.0, "the thickness of an obstacle", self.thickness)
     }
 }
+
+/// Returns the velocity (m/s) of a point of an obstacle, relative to its place, in a pose.
+pub(super) fn velocity(pose: &Pose, point: Vector3<f64>) -> Vector3<f64> {
+    let along = pose.place.velocity;
+    let turned = pose.orientation;
+    turned.map_or(along, |turned| along + turned.spin.cross(&point))
+}

@@ -6,12 +6,18 @@ use super::cut::Pinched;
 use super::guard::{Bodies, guard};
 use super::impulses::Impulses;
 use super::layer::ContactLayer;
-use super::met::{Met, Statistics, across, velocity};
-use super::obstacle::Obstacle;
+use super::met::{Met, Noted, Statistics, across};
+use super::obstacle::{Obstacle, velocity};
 use super::rebound::rebound_speed;
 use crate::columns::{row, set_row};
 use crate::geometry::Shape;
 use crate::geometry::nearest::{of_box, of_capsule, of_floor, of_sphere};
+
+/// Share of a step within which rebounds count as simultaneous.
+pub(crate) const SIMULTANEOUS_SHARE: f64 = 1e-6;
+
+/// Largest number of times in a step at which particles rebound that are told apart.
+const MAX_REBOUNDS: usize = 4;
 
 /// Step that an integrator has taken.
 #[derive(Clone, Copy, Debug)]
@@ -35,6 +41,8 @@ pub struct ContactPhase {
     /// Particles that were struck at the end of a step before its other contacts are resolved, and
     /// the sum of the magnitudes of their impulses (N s).
     struck: (Vec<usize>, f64),
+    /// Shares of the last step after which particles rebounded.
+    rebounds: Vec<f64>,
 }
 
 impl ContactPhase {
@@ -46,6 +54,7 @@ impl ContactPhase {
             last: Statistics::default(),
             impulses: (Impulses::with_room_for(dim / 6), 0.0),
             struck: (Vec::with_capacity(dim / 6), 0.0),
+            rebounds: Vec::with_capacity(dim / 6),
         }
     }
 
@@ -108,21 +117,33 @@ impl ContactPhase {
             inverse: inverse_masses,
             struck,
         };
-        self.last = resolve_noting(obstacles, &masses, &step, y1, impulses);
-        self.last.impulse += std::mem::take(impulse);
+        let mut last = Statistics::default();
+        let noted = &mut Noted {
+            statistics: &mut last,
+            impulses,
+            rebounds: &mut self.rebounds,
+        };
+        resolve_noting(obstacles, &masses, &step, y1, noted);
+        last.impulse += std::mem::take(impulse);
         struck.clear();
+        self.rebounds.sort_unstable_by(f64::total_cmp);
+        self.rebounds
+            .dedup_by(|later, share| *later - *share <= SIMULTANEOUS_SHARE);
+        let few = self.rebounds.len() <= MAX_REBOUNDS;
+        last.rebound = self.rebounds.first().copied().filter(|_| few);
+        self.last = last;
         self.last
     }
 
     /// Applies impacts to particles that touch an obstacle and approach it at time t (s), at the
     /// end of a step of h (s), and moves them to its surface. Distances up to `none` (m) count as
-    /// zero, and particles that would rebound to less than `height` (m) do not rebound.
+    /// zero. `left_out` returns the height (m) up to which rebounds of a restitution do not begin.
     pub(crate) fn strike(
         &mut self,
         obstacles: &[Obstacle],
         inverse_masses: &[f64],
         (t, h): (f64, f64),
-        [none, height]: [f64; 2],
+        (none, left_out): (f64, &dyn Fn(f64) -> f64),
         y1: &mut [f64],
     ) {
         let n = inverse_masses.len();
@@ -149,7 +170,7 @@ impl ContactPhase {
                 let press = ((begun - row(v, n, i)).dot(&normal) / h).max(0.0);
                 // The time in which a rebound of that height comes back.
                 let shortest = if press > 0.0 {
-                    (8.0 * height / press).sqrt()
+                    (8.0 * left_out(obstacle.restitution) / press).sqrt()
                 } else {
                     0.0
                 };
@@ -209,7 +230,14 @@ pub fn resolve(
         inverse: inverse_masses,
         struck: &[],
     };
-    resolve_noting(obstacles, &masses, step, y1, &mut Impulses::default())
+    let mut statistics = Statistics::default();
+    let noted = &mut Noted {
+        statistics: &mut statistics,
+        impulses: &mut Impulses::default(),
+        rebounds: &mut vec![],
+    };
+    resolve_noting(obstacles, &masses, step, y1, noted);
+    statistics
 }
 
 /// Particles of a step.
@@ -220,17 +248,17 @@ struct Masses<'a> {
     struck: &'a [usize],
 }
 
-/// Does what [`resolve`] does, and records the impulses.
+/// Does what [`resolve`] does, and records the contacts.
 fn resolve_noting(
     obstacles: &[Obstacle],
     masses: &Masses,
     step: &Step,
     y1: &mut [f64],
-    impulses: &mut Impulses,
-) -> Statistics {
+    noted: &mut Noted,
+) {
     let n = masses.inverse.len();
-    impulses.clear();
-    let mut statistics = Statistics::default();
+    noted.impulses.clear();
+    noted.rebounds.clear();
     for obstacle in obstacles {
         let met = Met {
             x0: step.y0.get(..3 * n),
@@ -249,7 +277,6 @@ fn resolve_noting(
                 0..3
             },
         };
-        let noted = &mut (&mut statistics, &mut *impulses);
         match &obstacle.shape {
             &Shape::Sphere { radius } => {
                 met.resolve(y1, noted, |d| of_sphere(d, radius, Vector3::y));
@@ -264,5 +291,4 @@ fn resolve_noting(
             Shape::Floor => met.resolve(y1, noted, of_floor),
         }
     }
-    statistics
 }

@@ -52,6 +52,13 @@ impl Mechanics for Network {
         }
     }
 
+    /// Returns whether forces depend on positions and time alone, except viscous drag. The friction
+    /// of obstacles depends on the direction of a velocity.
+    fn is_positional(&self) -> bool {
+        let is_rough = self.obstacles().iter().any(|o| o.friction > 0.0);
+        !is_rough && !self.kick_reads_velocity()
+    }
+
     fn take_failure(&self) -> Option<Error> {
         let mut elements = self.elements().iter();
         elements.find_map(|element| element.force().take_failure())

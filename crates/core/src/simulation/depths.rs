@@ -1,5 +1,6 @@
 //! Depths of penetration into obstacles that steps distinguish.
 
+use super::bounds::Bounds;
 use crate::control::Control;
 use crate::scene::StepLimits;
 
@@ -11,7 +12,15 @@ const MAX_PENETRATION: f64 = 1e-3;
 /// Share of a length of the scene below which a distance counts as zero.
 pub(super) const NEGLIGIBLE_SHARE: f64 = 1e-9;
 
-/// Depths into an obstacle (m).
+/// Way in which a motion that counts as rest ends, over the tolerated error. If it were larger,
+/// users would see particles stop; if smaller, particles that friction has nearly stopped would
+/// creep on, in tiny steps.
+const STILL_SHARE: f64 = 1e-2;
+
+/// Height of a rebound that may be a rounding error, over the largest coordinates of the scene.
+const ROUNDING_SHARE: f64 = 1e-14;
+
+/// Depths into an obstacle, and heights above it (m).
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Depths {
     /// Distance from an obstacle that counts as zero.
@@ -21,11 +30,14 @@ pub(super) struct Depths {
     pub shallow: f64,
     /// Largest depth to which a step of an adaptive method may take a particle.
     pub deepest: f64,
+    /// Height of a rebound that may be a rounding error.
+    rounding: f64,
 }
 
 impl Depths {
-    /// Creates the depths for steps under a control, in a scene of that radius (m).
-    pub fn new(radius: f64, limits: StepLimits, control: Control) -> Self {
+    /// Creates the depths for steps under a control, in a scene with those bounds.
+    pub fn new(bounds: &Bounds, limits: StepLimits, control: Control) -> Self {
+        let Bounds { middle, radius } = *bounds;
         let relative = control.tolerance().unwrap_or(0.0);
         let absolute = limits.absolute.unwrap_or(relative * radius);
         let deepest = MAX_PENETRATION * radius;
@@ -33,6 +45,23 @@ impl Depths {
             none: NEGLIGIBLE_SHARE * radius,
             shallow: absolute.min(deepest),
             deepest,
+            rounding: ROUNDING_SHARE * (middle.norm() + radius),
         }
+    }
+
+    /// Returns the way (m) in which friction stops a slide that counts as rest.
+    pub fn still(&self) -> f64 {
+        STILL_SHARE * self.none.max(self.shallow)
+    }
+
+    /// Returns the height (m) up to which a rebound from an obstacle of that restitution is left
+    /// out, with all that follow it.
+    ///
+    /// A rebound at the speed u to the height H = u^2 / 2 p, under an acceleration p, is followed by
+    /// others at e u, e^2 u, ... All of them end after T = 2 u / (p (1 - e)), and until then nothing
+    /// moves farther than u T = 4 H / (1 - e) from where it would be without them.
+    pub fn left_out(&self, restitution: f64) -> f64 {
+        let height = 0.25 * (1.0 - restitution) * STILL_SHARE * self.shallow;
+        height.max(self.rounding)
     }
 }

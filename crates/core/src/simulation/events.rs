@@ -39,7 +39,7 @@ struct Pair {
     particle: usize,
     /// Number of the obstacle, or of the outflow after all obstacles.
     body: usize,
-    /// Whether it has touched the obstacle since the beginning of the step.
+    /// Whether it has touched the obstacle since the beginning of the step, and does not leave it.
     touches: bool,
 }
 
@@ -115,6 +115,12 @@ impl Events {
             let course = course(pieces, pair.particle, h, n);
             let obstacle = step.body(pair.body);
             let approach = Approach::new(obstacle, &course, t);
+            let mut from = 0.0;
+            if pair.touches && piece == 0 {
+                let flight = approach.flight(|_| step.depths.left_out(obstacle.restitution));
+                pair.touches = flight.is_none();
+                from = flight.unwrap_or(0.0);
+            }
             if pair.touches {
                 let deepest = step
                     .depths
@@ -129,7 +135,6 @@ impl Events {
                 }
                 continue;
             }
-            let mut from = 0.0;
             for _ in 0..MAX_GRAZES {
                 let Some(share) = approach.first(from, 0.0) else {
                     break;

@@ -77,10 +77,9 @@ impl Locator {
         let serves = !method.is_implicit() && !method.needs_mechanics() && !method.positions_only();
         let network = model.network();
         let network = network.filter(|network| serves && may_rest(network));
-        let heights = [depths.none, depths.none.max(depths.shallow)];
         self.rests.clear();
         if let Some(network) = network.filter(|_| self.serves(stepper)) {
-            let evaluated = self.rests.list(network, t, &mut state.y, heights);
+            let evaluated = self.rests.list(network, t, &mut state.y, depths);
             state.work += Work::of(evaluated);
         }
         // If other particles rest, the last evaluation of the step before is of another system.

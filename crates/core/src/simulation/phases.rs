@@ -85,13 +85,17 @@ impl Phases {
     }
 
     /// Applies impacts to the particles that touch an obstacle at the end of a step of h (s) that
-    /// ends at time t (s), with `times` = (t, h). A particle that would rebound to less than a
-    /// shallow depth stays on the obstacle.
+    /// ends at time t (s), with `times` = (t, h). Rebounds that the depths leave out do not begin.
     pub fn strike(&mut self, network: &Network, times: (f64, f64), depths: Depths, y: &mut [f64]) {
-        let heights = [depths.none, depths.shallow];
+        let left_out = |restitution: f64| depths.left_out(restitution);
         let (obstacles, inverse_masses) = (network.obstacles(), network.inverse_masses());
-        self.contact
-            .strike(obstacles, inverse_masses, times, heights, y);
+        self.contact.strike(
+            obstacles,
+            inverse_masses,
+            times,
+            (depths.none, &left_out),
+            y,
+        );
     }
 
     /// Settles y1, the end of a step of h (s) from time t (s).

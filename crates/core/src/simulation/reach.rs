@@ -100,7 +100,7 @@ impl Reach {
     }
 
     /// Returns these limits, or those of a step that ends at `target` (s), if that is not later.
-    fn or_before(self, t: f64, target: Option<f64>) -> Self {
+    pub fn or_before(self, t: f64, target: Option<f64>) -> Self {
         match target.filter(|target| *target <= self.until.unwrap_or(f64::MAX)) {
             None => self,
             Some(target) => Self {

@@ -12,6 +12,7 @@ use std::ops::Range;
 
 use nalgebra::Vector3;
 
+use super::depths::Depths;
 use super::events::Event;
 use super::searched::EventKind;
 use crate::columns::{row, set_row};
@@ -22,10 +23,6 @@ use crate::network::Network;
 use crate::scene::Model;
 use crate::system::ParticleSystem;
 
-/// Distance (m) in which friction or weight stops a motion that counts as rest, over the tolerated
-/// error. If it were larger, users would see particles stop; if smaller, particles that friction
-/// has nearly stopped would creep on, in tiny steps.
-const STILL_SHARE: f64 = 1e-2;
 /// Length of the interval around the end of a contact at which its search ends, as a share of the
 /// step.
 const MIN_INTERVAL: f64 = 1e-13;
@@ -149,15 +146,9 @@ impl Rests {
     }
 
     /// Adds the particles that press on a flat obstacle and do not leave it in the state y at time
-    /// t (s), from a height of at most `none` (m). Velocities are set to 0 if the particle would
-    /// stop within a small share of `still` (m). Returns the number of evaluations.
-    pub fn list(
-        &mut self,
-        network: &Network,
-        t: f64,
-        y: &mut [f64],
-        [none, still]: [f64; 2],
-    ) -> u64 {
+    /// t (s): all further rebounds of them are left out. Velocities are set to 0 where a slide counts
+    /// as stopped. Returns the number of evaluations.
+    pub fn list(&mut self, network: &Network, t: f64, y: &mut [f64], depths: Depths) -> u64 {
         let n = network.particles();
         for (k, obstacle) in network.obstacles().iter().enumerate() {
             if !is_flat(obstacle) {
@@ -165,7 +156,7 @@ impl Rests {
             }
             for particle in (0..n).filter(|i| !network.is_pinned(*i)) {
                 let (distance, normal) = height(obstacle, row(y, n, particle));
-                if distance.abs() <= none {
+                if distance.abs() <= depths.none {
                     self.now.push(Rest {
                         particle,
                         obstacle: k,
@@ -182,20 +173,22 @@ impl Rests {
         free.resize(network.dim(), 0.0);
         network.eval_f(t, y, free);
         let a = &free[3 * n..6 * n];
-        let v = &mut y[3 * n..6 * n];
+        let (x, v) = y.split_at_mut(3 * n);
+        let v = &mut v[..3 * n];
         self.now.retain_mut(|rest| {
             let (free, speed) = (row(a, n, rest.particle), row(v, n, rest.particle));
             let press = -free.dot(&rest.normal);
-            let most = network.obstacles()[rest.obstacle].friction * press;
+            let obstacle = &network.obstacles()[rest.obstacle];
+            let most = obstacle.friction * press;
             let leaving = speed.dot(&rest.normal);
-            let is_still =
-                |speed: f64, slowing: f64| speed * speed <= STILL_SHARE * still * slowing;
-            if press <= 0.0 || !is_still(leaving, press) {
+            let begun = height(obstacle, row(x, n, rest.particle)).0.max(0.0);
+            let highest = begun + 0.5 * leaving * leaving / press;
+            if press <= 0.0 || highest > depths.left_out(obstacle.restitution) {
                 return false;
             }
             let slide = speed - rest.normal * leaving;
             let across = free + rest.normal * press;
-            let slack = (STILL_SHARE * still * most).sqrt();
+            let slack = (depths.still() * most).sqrt();
             if slide.norm() > slack {
                 rest.slide = Slide::of(slide, slide.norm(), 0.0);
                 set_row(v, n, rest.particle, slide);

@@ -47,8 +47,12 @@ impl Searched<'_> {
 
     /// Returns whether a particle ends the step inside its obstacle, but within the tolerance and
     /// on the side with that normal: then it is moved to the surface at the end, without an event.
+    /// Where it may rebound, it has the impact at the touch.
     pub fn ends_shallow(&self, [particle, body]: [usize; 2], normal: &Vector3<f64>) -> bool {
         let obstacle = self.body(body);
+        if obstacle.restitution > 0.0 {
+            return false;
+        }
         let (pose, n) = (obstacle.at(self.t + self.h), self.network.particles());
         let x = course(&self.ends, particle, self.h, n).x[1];
         let end = obstacle

@@ -20,6 +20,7 @@ use super::searched::EventKind;
 use super::state::RunState;
 use super::stepper::Stepper;
 use super::watch::Watch;
+use crate::contact::SIMULTANEOUS_SHARE;
 use crate::control::Control;
 use crate::error::{Cause, Error};
 use crate::network::{Network, breaks_between, has_ropes, jump_near, outflows};
@@ -42,6 +43,10 @@ const MAX_REBOUNDING_PARTS: usize = 100;
 /// Largest number of parts of a fixed step: events within the last one are not located.
 const MAX_PARTS: usize = 1000;
 
+/// Largest number of parts of a fixed step of which each but the last ends at a rebound: in the rest
+/// of a step, forces do not see further rebounds.
+const MAX_PARTS_AT_REBOUNDS: usize = 8;
+
 /// Plan of a step.
 #[derive(Clone, Copy)]
 struct Plan {
@@ -51,12 +56,16 @@ struct Plan {
     depths: Depths,
     /// Whether it ends at the first event within it.
     locates: bool,
+    /// Whether it ends at the first rebound within it, of those found after the step.
+    divides: bool,
 }
 
 /// Reason why an attempt at a step failed.
 enum Setback {
     /// It was too long: that share of its length h (s) is tried next.
     Again { h: f64, share: f64 },
+    /// A particle rebounds within it: it is taken up to that time (s), just after the rebound.
+    Rebound { until: f64 },
     /// The run has blown up.
     BlowUp(Cause),
     /// Error that is no blow-up.
@@ -98,16 +107,18 @@ impl Pipeline {
         let network = model.network().zip(target);
         let breaks =
             network.is_some_and(|(it, target)| breaks_between(it, [begin, target], state.sliver()));
-        let in_parts = breaks || self.locator.splits(&self.stepper);
+        let divides = target.is_some() && may_rebound(model);
+        let in_parts = breaks || self.locator.splits(&self.stepper) || divides;
         for number in 1.. {
             let rebounds = number <= MAX_REBOUNDING_PARTS;
+            let divides = divides && number < MAX_PARTS_AT_REBOUNDS;
             if let Model::Network(network) = model {
                 network.list_strained();
             }
             self.tighten(model, state, begin, rebounds);
             self.choose_taut(model, state, begin);
             self.watch.begin_step(model, begin, &state.y);
-            let splits = number < MAX_PARTS;
+            let splits = [number < MAX_PARTS, divides];
             let span = (begin, target.filter(|_| in_parts));
             let taken = self.integrate_and_settle(model, state, span, splits)?;
             let (cause, part) = match taken {
@@ -140,18 +151,18 @@ impl Pipeline {
 
     /// Takes a step from time t (s), and settles its end; an adaptive method may have to take it
     /// again with a shorter length. If events are located, the step ends at the first one if it
-    /// `splits`. A fixed step in parts ends at `target` (s) at the latest. Returns the step, or the
-    /// cause of a blow-up.
+    /// `splits`; else, if it `divides`, at the first rebound. A fixed step in parts ends at `target`
+    /// (s) at the latest. Returns the step, or the cause of a blow-up.
     fn integrate_and_settle(
         &mut self,
         model: &Model,
         state: &mut RunState,
         (t, target): (f64, Option<f64>),
-        splits: bool,
+        [splits, divides]: [bool; 2],
     ) -> Result<Result<(Part, Settled), Cause>, Error> {
         let flying = self.limits_of_flight(model, &state.y);
         let (stepper, limits) = (&mut self.stepper, self.limits);
-        let depths = Depths::new(self.bounds.radius, limits, state.control);
+        let depths = Depths::new(&self.bounds, limits, state.control);
         let locates = self.locator.serves(stepper);
         let reach = match (locates, model.network().filter(|_| target.is_some())) {
             (true, _) => Reach::of_step(model, flying, stepper.is_adaptive(), t, target),
@@ -163,16 +174,22 @@ impl Pipeline {
             .network()
             .map_or(reach, |network| reach.before_jump(network, t, none));
         self.locator.list_rests(model, state, stepper, t, depths);
-        let plan = Plan {
+        let mut plan = Plan {
             t,
             reach,
             depths,
             locates: locates && splits,
+            divides: divides && !locates,
         };
         loop {
             match self.attempt(model, state, plan) {
                 Ok(taken) => return Ok(Ok(taken)),
                 Err(Setback::Again { h, share }) => self.take_again(state, h, share),
+                Err(Setback::Rebound { until }) => {
+                    state.y.copy_from_slice(self.phases.y0());
+                    plan.reach = plan.reach.or_before(t, Some(until));
+                    plan.divides = false;
+                }
                 Err(Setback::BlowUp(cause)) => return Ok(Err(cause)),
                 Err(Setback::Error(error)) => return Err(error),
             }
@@ -238,6 +255,12 @@ impl Pipeline {
         let settled = settled.map_err(Setback::BlowUp)?;
         let planes = PLANE_PRICE * settled.met.guarded.planes as f64 / model.work();
         state.work.algebra += SWEEP_PRICE * settled.strained.sweeps as f64 + planes;
+        if let Some(share) = settled.met.rebound.filter(|_| plan.divides) {
+            let until = t + (share + SIMULTANEOUS_SHARE) * h;
+            if t < until && until < part.end {
+                return Err(Setback::Rebound { until });
+            }
+        }
         if let Stepper::Adaptive(adaptive) = &mut self.stepper {
             if let Some(share) = share_of_retry(&settled, h, depths) {
                 return Err(Setback::Again { h, share });
@@ -359,4 +382,11 @@ impl Pipeline {
 fn last_moment(network: &Network, state: &RunState, t: f64) -> f64 {
     let jump = jump_near(network, t, state.sliver());
     jump.map_or(t, |jump| jump.min(t).next_down())
+}
+
+/// Returns whether particles of a model may rebound from obstacles.
+fn may_rebound(model: &Model) -> bool {
+    let network = model.network();
+    let network = network.filter(|network| network.contact_layer().is_none());
+    network.is_some_and(|network| network.obstacles().iter().any(|o| o.restitution > 0.0))
 }

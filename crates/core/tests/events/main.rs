@@ -3,9 +3,11 @@
 #[path = "../common/mod.rs"]
 mod common;
 
+mod dying;
 mod frames;
 mod jumps;
 mod known_times;
+mod orders;
 mod outflows;
 mod rebounds;
 mod releases;
@@ -14,3 +16,4 @@ mod ropes;
 mod tears;
 mod thin;
 mod touches;
+mod turntable;
