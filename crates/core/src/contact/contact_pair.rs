@@ -4,14 +4,12 @@ use nalgebra::{Matrix3, Vector3};
 
 use super::listing::Candidate;
 use super::motion::Motion;
+use super::rebound::{RESTORED_SHARE, change_in_impact};
 use super::skin::Law;
 use super::solids::{Arm, Field, Masses, SAME_TOLERANCE, Solid};
 use super::surface::Surface;
 use crate::error::Vertex;
 use crate::geometry::{PairKind, weighted};
-
-/// Fraction of the missing separation of rigid bodies that is restored in a step.
-pub(super) const RESTORED_SHARE: f64 = 0.1;
 
 /// Contact of a pair: the weights of its closest points, the normal from the second primitive to
 /// the first, and the sum of the weighted inverse masses (1/kg).
@@ -255,9 +253,8 @@ impl ContactPair {
             }
             return impulse;
         }
-        let slip = relative + self.normal * approach;
-        let held = limited_to(slip, friction * approach);
-        let impulse = (self.normal * approach - held) / self.inverse_mass;
+        let change = change_in_impact(relative, self.normal, 0.0, friction);
+        let impulse = change / self.inverse_mass;
         self.push(impulse, masses, field);
         impulse
     }
@@ -289,15 +286,5 @@ impl ContactPair {
             normal
         };
         direction * (-relative.dot(&normal) / normal.dot(&(rigid.mobility * direction)))
-    }
-}
-
-/// Limits a slip to the length `most`.
-pub(super) fn limited_to(slip: Vector3<f64>, most: f64) -> Vector3<f64> {
-    let length = slip.norm();
-    if length > most {
-        slip * (most / length)
-    } else {
-        slip
     }
 }

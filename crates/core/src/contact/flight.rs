@@ -110,9 +110,10 @@ mod tests {
     #[test]
     fn a_course_is_a_parabola_through_both_ends() {
         let (h, g) = (0.5, Vector3::new(0.0, -9.0, 1.0));
-        let field = |v: Vector3<f64>| Field {
-            points: vec![v],
-            ..Field::default()
+        let field = |v: Vector3<f64>| {
+            let mut field = Field::default();
+            field.points.push(v);
+            field
         };
         let v0 = Vector3::new(1.0, 2.0, 3.0);
         let (v, way) = (v0 + g * h, v0 * h);

@@ -5,10 +5,11 @@ use std::collections::BTreeMap;
 use nalgebra::Vector3;
 
 use super::candidates::{Candidates, Linear};
-use super::contact_pair::{ContactPair, limited_to};
+use super::contact_pair::ContactPair;
 use super::listing::Candidate;
 use super::motion::{Guarded, Motion};
 use super::passes::{STUCK_TOLERANCE, hold, pass_until_still};
+use super::rebound::limited_to;
 use super::repulsion::Pair;
 use super::solids::{Field, Masses};
 use super::surface::Surface;

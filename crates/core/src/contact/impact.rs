@@ -2,10 +2,9 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::contact_pair::{RESTORED_SHARE, limited_to};
 use super::listing::Candidate;
 use super::motion::Motion;
-use super::rebound::rebound_speed;
+use super::rebound::{RESTORED_SHARE, limited_to, rebound_speed};
 use super::response::{Changes, Joined, Joints, Response};
 use super::skin::Law;
 use super::solids::SAME_TOLERANCE;

@@ -8,7 +8,7 @@ use super::approach::Approach;
 use super::impulses::Impulses;
 use super::motion::Guarded;
 use super::obstacle::{Obstacle, velocity};
-use super::rebound::{Course, rebound_speed};
+use super::rebound::{Course, across, change_in_impact, rebound_speed};
 use crate::columns::{row, set_row};
 use crate::geometry::Shape;
 use crate::geometry::nearest::Nearest;
@@ -277,13 +277,9 @@ impl Met<'_> {
         let press = (begun - ended).dot(&normal) / h;
         let approach = -relative.dot(&normal);
         let speed = rebound_speed(restitution, approach, press, h);
-        (speed > 0.0).then(|| {
-            let along = approach + speed;
-            let slip = across(relative, normal);
-            Rebound {
-                change: normal * along - slip * (1.0 - self.kept(slip, along)),
-                left: (1.0 - share) * h,
-            }
+        (speed > 0.0).then(|| Rebound {
+            change: change_in_impact(relative, normal, speed, self.friction),
+            left: (1.0 - share) * h,
         })
     }
 
@@ -371,9 +367,4 @@ impl Touch {
 struct Rebound {
     change: Vector3<f64>,
     left: f64,
-}
-
-/// Returns the component of a vector perpendicular to a unit normal.
-pub(super) fn across(a: Vector3<f64>, normal: Vector3<f64>) -> Vector3<f64> {
-    a - normal * a.dot(&normal)
 }

@@ -62,7 +62,7 @@ pub use layer::ContactLayer;
 pub use met::{Statistics, Stop};
 pub use motion::Guarded;
 pub use obstacle::Obstacle;
-pub(crate) use rebound::Course;
+pub(crate) use rebound::{Course, rebound_speed, shortest_rebound};
 pub(crate) use resolve::SIMULTANEOUS_SHARE;
 pub use resolve::{ContactPhase, Step, resolve};
 pub(crate) use response::Joints;

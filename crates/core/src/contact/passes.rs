@@ -13,7 +13,8 @@
 use nalgebra::Vector3;
 use pulp::{Simd, WithSimd};
 
-use super::contact_pair::{ContactPair, limited_to};
+use super::contact_pair::ContactPair;
+use super::rebound::limited_to;
 use super::solids::{Field, Masses};
 use crate::vectors::Arch;
 

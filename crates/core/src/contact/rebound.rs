@@ -1,13 +1,55 @@
-//! Restitution: the speed after an impact, and the course of a particle up to it.
+//! Laws of an impact, for all that touches: restitution, Coulomb friction, and the separation that
+//! bodies get back; and the course of a particle up to it.
 
 use nalgebra::Vector3;
+
+/// Fraction of the missing separation of bodies that is restored in a step. Nothing else would
+/// restore what they lose in each step under pressure.
+pub(super) const RESTORED_SHARE: f64 = 0.1;
+
+/// Returns the change of a relative velocity (m/s) by an impact after which it has this speed (m/s)
+/// along the normal. Coulomb friction stops the slip, as far as the change along the normal allows.
+pub(super) fn change_in_impact(
+    relative: Vector3<f64>,
+    normal: Vector3<f64>,
+    speed: f64,
+    friction: f64,
+) -> Vector3<f64> {
+    let along = speed - relative.dot(&normal);
+    normal * along - limited_to(across(relative, normal), friction * along)
+}
+
+/// Returns the component of a vector perpendicular to a unit normal.
+pub(super) fn across(a: Vector3<f64>, normal: Vector3<f64>) -> Vector3<f64> {
+    a - normal * a.dot(&normal)
+}
+
+/// Limits a slip to the length `most`.
+pub(super) fn limited_to(slip: Vector3<f64>, most: f64) -> Vector3<f64> {
+    let length = slip.norm();
+    if length > most {
+        slip * (most / length)
+    } else {
+        slip
+    }
+}
+
+/// Returns the shortest time (s) in which a rebound comes back under an acceleration `press` (m/s2)
+/// towards the surface: `time`, or that from a height (m), below which rebounds are left out.
+pub(crate) fn shortest_rebound(press: f64, [height, time]: [f64; 2]) -> f64 {
+    if press > 0.0 {
+        (8.0 * height / press).sqrt().max(time)
+    } else {
+        time
+    }
+}
 
 /// Returns the speed (m/s) away from a surface after an impact at the speed `approach` (m/s).
 ///
 /// Under an acceleration `press` (m/s2) towards the surface, a particle that rebounds at the speed
 /// u comes back after 2 u / press. If that is sooner than `shortest` (s), the impact is inelastic:
 /// so a sequence of ever shorter rebounds ends, and a particle at rest is not thrown up.
-pub(super) fn rebound_speed(restitution: f64, approach: f64, press: f64, shortest: f64) -> f64 {
+pub(crate) fn rebound_speed(restitution: f64, approach: f64, press: f64, shortest: f64) -> f64 {
     let speed = restitution * approach.max(0.0);
     if 2.0 * speed > press * shortest {
         speed

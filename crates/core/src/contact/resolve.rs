@@ -6,9 +6,9 @@ use super::cut::Pinched;
 use super::guard::{Bodies, guard};
 use super::impulses::Impulses;
 use super::layer::ContactLayer;
-use super::met::{Met, Noted, Statistics, across};
+use super::met::{Met, Noted, Statistics};
 use super::obstacle::{Obstacle, velocity};
-use super::rebound::rebound_speed;
+use super::rebound::{change_in_impact, rebound_speed, shortest_rebound};
 use crate::columns::{row, set_row};
 use crate::geometry::Shape;
 use crate::geometry::nearest::{of_box, of_capsule, of_floor, of_sphere};
@@ -168,22 +168,9 @@ impl ContactPhase {
                     .get(3 * n..6 * n)
                     .map_or(row(v, n, i), |v0| row(v0, n, i));
                 let press = ((begun - row(v, n, i)).dot(&normal) / h).max(0.0);
-                // The time in which a rebound of that height comes back.
-                let shortest = if press > 0.0 {
-                    (8.0 * left_out(obstacle.restitution) / press).sqrt()
-                } else {
-                    0.0
-                };
-                let along =
-                    approach + rebound_speed(obstacle.restitution, approach, press, shortest);
-                let slip = across(relative, normal);
-                let most = obstacle.friction * along;
-                let taken = if slip.norm() > most {
-                    slip * (most / slip.norm())
-                } else {
-                    slip
-                };
-                let change = normal * along - taken;
+                let shortest = shortest_rebound(press, [left_out(obstacle.restitution), 0.0]);
+                let speed = rebound_speed(obstacle.restitution, approach, press, shortest);
+                let change = change_in_impact(relative, normal, speed, obstacle.friction);
                 set_row(x, n, i, pose.place.position + point);
                 set_row(v, n, i, row(v, n, i) + change);
                 let impulse = change / inverse_masses[i];

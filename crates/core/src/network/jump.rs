@@ -8,6 +8,7 @@ use super::parts::Network;
 use super::ropes::{halves, open_ends, turned};
 use crate::columns::{row, set_row};
 use crate::constraints::{self, Constraint, Moved, Struck, beyond};
+use crate::contact::{rebound_speed, shortest_rebound};
 use crate::rows::Terms;
 use crate::system::ParticleSystem;
 
@@ -97,15 +98,15 @@ pub(crate) fn tighten(network: &mut Network, t: f64, y: &mut [f64], least: Least
             network.eval_f(t, y, &mut rates);
         }
         let speeds = ropes.iter().map(|rope| {
-            let speed = rope.restitution * rope.rate;
-            let rebounds = may_rebound && speed > 0.0 && {
-                let press = parting(network, rope.number, y, &rates);
-                speed * speed > 2.0 * press * least.height && 2.0 * speed > press * least.time
+            let (number, restitution) = (rope.number, rope.restitution);
+            let speed = if may_rebound && restitution > 0.0 {
+                let press = parting(network, number, y, &rates);
+                let shortest = shortest_rebound(press, [least.height, least.time]);
+                rebound_speed(restitution, rope.rate, press, shortest)
+            } else {
+                0.0
             };
-            Struck {
-                number: rope.number,
-                speed: if rebounds { speed } else { 0.0 },
-            }
+            Struck { number, speed }
         });
         let struck: Vec<_> = speeds.collect();
         let before = network.halves(y).1.to_vec();

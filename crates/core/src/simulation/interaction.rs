@@ -108,22 +108,20 @@ impl Simulation {
         Some(phases.contact_forces(network, self.time(), &self.state.y))
     }
 
-    /// Ends the step at the time shown (s), and changes the network and the state there. Velocities
-    /// that do not fit the constraints afterwards are made to.
+    /// Ends the step at the time shown (s), changes the network and the state, and makes velocities
+    /// fit the constraints.
     fn disturb<T>(
         &mut self,
         change: impl FnOnce(&mut Network, &mut RunState, f64) -> T,
     ) -> Option<T> {
         let time = self.time();
         self.stop();
-        match &mut self.model {
-            Model::FirstOrder(_) | Model::Points(_) => None,
-            Model::Network(network) => {
-                let changed = change(network, &mut self.state, time);
-                self.driver.pipeline.fit(network, &mut self.state, time);
-                Some(changed)
-            }
-        }
+        let (Model::Network(network), state) = (&mut self.model, &mut self.state) else {
+            return None;
+        };
+        let changed = change(network, state, time);
+        self.driver.pipeline.fit(network, state, time);
+        Some(changed)
     }
 
     /// Ends the step at the time shown.
@@ -131,8 +129,7 @@ impl Simulation {
         self.driver.stop(&mut self.model, &mut self.state);
     }
 
-    /// Recreates the integrator after the system changed: it sizes its scratch and its cost model
-    /// by the system.
+    /// Recreates the integrator after the system changed: it sizes its scratch by the system.
     fn refit(&mut self) {
         let stepper = &mut self.driver.pipeline.stepper;
         stepper.refit(self.state.method, self.model.system());
@@ -153,9 +150,8 @@ impl Simulation {
     /// Returns whether the wind blows.
     #[must_use]
     pub fn windy(&self) -> bool {
-        self.model
-            .network()
-            .is_some_and(|network| network.wind().is_some())
+        let network = self.model.network();
+        network.is_some_and(|network| network.wind().is_some())
     }
 
     /// Switches the scene's wind on or off. A scene without wind stays as it is.

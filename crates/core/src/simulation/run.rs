@@ -52,8 +52,7 @@ pub struct Simulation {
 }
 
 impl Simulation {
-    /// Share of a step by which its end may miss a requested time: 1/60 s written as 0.01666667 is
-    /// accurate enough for sixty frames a second.
+    /// Share of a step by which its end may miss a requested time, such as 1/60 s as 0.01666667.
     pub const STEP_END_TOLERANCE: f64 = STEP_END_TOLERANCE;
 
     /// Creates a run at the beginning of a scene, in fixed steps or, by an adaptive method, to a
