@@ -199,7 +199,7 @@ impl Phases {
             }
         }
         if let Some(unstruck) = unstruck {
-            joints.balance((t + h, h), met.impulse, [self.y0(), &unstruck], y1);
+            joints.balance(t + h, met.impulse, &unstruck, y1);
         }
         Ok(met)
     }
