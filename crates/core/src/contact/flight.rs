@@ -47,6 +47,12 @@ impl Flight {
         self.since.resize(v.points.len(), 0.0);
     }
 
+    /// Forgets the bends of all courses, where velocities have changed by impulses and not evenly.
+    pub fn straighten(&mut self) {
+        self.points.fill(Bend::default());
+        self.turns.fill(Bend::default());
+    }
+
     /// Returns the velocity of a vertex (m/s) at a share of the step, if it is `end` (m/s) at its
     /// end.
     pub fn velocity(&self, i: usize, share: f64, end: Vector3<f64>) -> Vector3<f64> {

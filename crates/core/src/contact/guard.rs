@@ -32,12 +32,13 @@ const MAX_PASSES: usize = 12;
 /// room.
 const MAX_ROUNDS: usize = 20;
 
-/// Bodies on which impulses act: the inverse mass of each particle (1/kg), and the joints of rigid
-/// bodies, if there are any.
+/// Bodies on which impulses act: the inverse mass of each particle (1/kg), the joints of rigid
+/// bodies, if there are any, and whether the end of the step has impulses in it already.
 #[derive(Clone, Copy)]
 pub(crate) struct Bodies<'a> {
     pub inverse_masses: &'a [f64],
     pub joints: Option<&'a dyn Joints>,
+    pub are_struck: bool,
 }
 
 /// Applies the safeguard to the step of h (s) from the state y0 at time t (s) to y1. Changes y1
@@ -127,6 +128,9 @@ fn guard_with(
             ..
         } = motion;
         flight.read(h, [v0, v, moves]);
+        if bodies.are_struck {
+            flight.straighten();
+        }
         let joined = bodies.joints.map(|joints| Joined { joints, y: y1 });
         changed |= strike(surface, (h, joined), candidates, motion, &mut guarded);
     }

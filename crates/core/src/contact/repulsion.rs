@@ -14,8 +14,9 @@
 //!
 //! 1 + q for an approach and 1 - q for a separation, whose ratio is e2: a particle that enters with
 //! the speed u leaves with e u, however deep it gets, even if an impact with restitution e turns it
-//! back. F, F' and F'' are zero where the force begins, so that methods of order four keep their
-//! order. Rigid and elastic pairs that are much too fast for the force hardly feel it.
+//! back. A particle that the force cannot stop does not feel it, in either direction. F, F' and F''
+//! are zero where the force begins, so that methods of order four keep their order. Rigid pairs
+//! without restitution that are much too fast for the force hardly feel it.
 //!
 //! Closest points of parallel edges jump. Therefore the potential of two edges is multiplied by a
 //! function of their angle that is 1 except near parallel edges, and 0 for parallel ones (Li et
@@ -35,7 +36,7 @@ const FULL_CROSSING: f64 = 0.05;
 /// range of speeds: computed by quadrature, for one and for four points of a body.
 const TURNING_LOSS: f64 = 0.035;
 
-/// Speed of a rigid or elastic pair, over the speed that the repulsion stops, at which the
+/// Speed of a rigid pair without restitution, over the speed that the repulsion stops, at which the
 /// repulsion is halved: much faster pairs are left to impulses, which are exact.
 const HALF_SPEED_RATIO: f64 = 8.0;
 

@@ -138,7 +138,7 @@ impl Phases {
             // If prescribed motions leave no room, the step itself has ended the run.
             let none = &mut Impulses::default();
             let joints = JointsOf::new(network);
-            let _ = guard(layer, joints.bodies(), (t, h), y0, y, none);
+            let _ = guard(layer, joints.bodies(false), (t, h), y0, y, none);
         } else if !knows_obstacles {
             resolve(network.obstacles(), inverse_masses, &Step { t, h, y0 }, y);
         }
@@ -182,7 +182,7 @@ impl Phases {
         }
         let joints = JointsOf::new(network);
         let unstruck = network.is_constrained().then(|| y1.to_vec());
-        let met = self.meet(&joints, times, y1)?;
+        let met = self.meet((&joints, false), times, y1)?;
         let Some(unstruck) = unstruck else {
             return Ok(met);
         };
@@ -195,17 +195,18 @@ impl Phases {
             }
             project(network, y1, true);
             before.copy_from_slice(y1);
-            self.meet(&joints, times, y1)?;
+            self.meet((&joints, true), times, y1)?;
             last = largest_shift(network, [&before, y1]);
         }
-        joints.balance(times, met.impulse, [self.y0(), &unstruck], y1);
+        joints.balance(times.0 + times.1, met.impulse, &unstruck, y1);
         Ok(met)
     }
 
-    /// Moves particles out of obstacles, or keeps surfaces from passing through one another.
+    /// Moves particles out of obstacles, or keeps surfaces from passing through one another, in a
+    /// step that has impulses in it already or not.
     fn meet(
         &mut self,
-        joints: &JointsOf,
+        (joints, are_struck): (&JointsOf, bool),
         (t, h): (f64, f64),
         y1: &mut [f64],
     ) -> Result<Statistics, Cause> {
@@ -221,7 +222,9 @@ impl Phases {
         if y1.iter().any(|y| !y.is_finite()) {
             return Ok(Statistics::default());
         }
-        let guarded = self.contact.guard(layer, joints.bodies(), (t, h), y1);
+        let guarded = self
+            .contact
+            .guard(layer, joints.bodies(are_struck), (t, h), y1);
         let met = guarded.map_err(|Pinched { vertices }| Cause::Pinched { vertices })?;
         if !network.bodies().is_empty() {
             network.hold(t + h, y1);
