@@ -151,6 +151,13 @@ pub trait Mechanics {
         !reads_velocity && self.linearized().is_some()
     }
 
+    /// Returns whether friction, which depends on the direction of a velocity, acts on particles.
+    /// Methods with a tolerance whose stages have no velocities refuse it: it acts after their
+    /// steps, where no estimate of errors sees it. By default there is none.
+    fn is_rough(&self) -> bool {
+        false
+    }
+
     /// Does what [`ParticleSystem::jacobian`] does, for systems without the view of [`Linearized`].
     fn jacobian(&self, _t: f64, _y: &[f64], _jacobian: &mut [f64]) -> bool {
         false

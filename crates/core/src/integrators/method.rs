@@ -172,6 +172,9 @@ impl Method {
             View::Tangent | View::Springs if !lists_all_couplings => Some(Refusal::HidesCouplings),
             View::Springs if mechanics.compliant().is_none() => Some(Refusal::LacksSprings),
             View::Accelerations if !mechanics.is_positional() => Some(Refusal::ReadsVelocity),
+            View::Accelerations if self.is_adaptive() && mechanics.is_rough() => {
+                Some(Refusal::ReadsVelocity)
+            }
             View::Tangent | View::Damping if linearized.is_none() => refusal_by_size(system),
             View::Damping if holds_constraints => refusal_by_size(system),
             _ => None,

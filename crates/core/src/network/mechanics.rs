@@ -52,11 +52,8 @@ impl Mechanics for Network {
         }
     }
 
-    /// Returns whether forces depend on positions and time alone, except viscous drag. The friction
-    /// of obstacles depends on the direction of a velocity.
-    fn is_positional(&self) -> bool {
-        let is_rough = self.obstacles().iter().any(|o| o.friction > 0.0);
-        !is_rough && !self.kick_reads_velocity()
+    fn is_rough(&self) -> bool {
+        self.obstacles().iter().any(|o| o.friction > 0.0)
     }
 
     fn take_failure(&self) -> Option<Error> {

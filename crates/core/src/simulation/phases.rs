@@ -27,6 +27,8 @@ pub(super) struct Phases {
     pub contact: ContactPhase,
     /// Excess length of the longest limited spring at the beginning of the step, if it is needed.
     excess: f64,
+    /// States before contact.
+    scratch: [Vec<f64>; 2],
 }
 
 /// Result of the phases after a step.
@@ -45,6 +47,7 @@ impl Phases {
             limiter: StrainLimiter::new(dim),
             contact: ContactPhase::new(dim),
             excess: 0.0,
+            scratch: Default::default(),
         }
     }
 
@@ -177,28 +180,34 @@ impl Phases {
         times: (f64, f64),
         y1: &mut [f64],
     ) -> Result<Statistics, Cause> {
-        if network.contact_layer().is_some() || network.is_constrained() {
+        let joints = JointsOf::new(network);
+        let touches = network.contact_layer().is_some();
+        let takes_turns = network.is_constrained() && (touches || !network.obstacles().is_empty());
+        if touches || takes_turns {
             network.hold(times.0 + times.1, y1);
         }
-        let joints = JointsOf::new(network);
-        let unstruck = network.is_constrained().then(|| y1.to_vec());
+        if !takes_turns {
+            return self.meet((&joints, false), times, y1);
+        }
+        let [mut unstruck, mut before] = std::mem::take(&mut self.scratch);
+        unstruck.clear();
+        unstruck.extend_from_slice(y1);
         let met = self.meet((&joints, false), times, y1)?;
-        let Some(unstruck) = unstruck else {
-            return Ok(met);
-        };
         let first = largest_shift(network, [&unstruck, y1]);
-        let (mut last, mut before) = (first, y1.to_vec());
+        let mut last = first;
         for _ in 0..MAX_ROUNDS {
             // Written so that a state that is not finite, which is reported later, ends it.
             if !(last > SETTLED_SHARE * first) {
                 break;
             }
             project(network, y1, true);
-            before.copy_from_slice(y1);
+            before.clear();
+            before.extend_from_slice(y1);
             self.meet((&joints, true), times, y1)?;
             last = largest_shift(network, [&before, y1]);
         }
         joints.balance(times.0 + times.1, met.impulse, &unstruck, y1);
+        self.scratch = [unstruck, before];
         Ok(met)
     }
 
