@@ -75,8 +75,8 @@ pub(super) fn soaked(
 }
 
 /// Returns the sentence that a liquid can pass through walls of a body with this number of points,
-/// if some are too thin: the points of a wall stop it if there are two layers of them. A body of one
-/// convex part has no walls, but needs points.
+/// if some are too thin: the points of a wall stop it if there are two layers of them. A body of
+/// one convex part has no walls, but needs points.
 pub(super) fn leak(parts: &[Part], points: usize, fluid: &Fluid) -> Option<String> {
     let needed = LEAST_LAYERS * fluid.spacing;
     let is_convex = matches!(parts, [part] if !matches!(part.shape, Shape::Mesh(_)));

@@ -144,8 +144,7 @@ impl Frame {
         if self.turn != 0.0 && says(&["orientations"]) {
             return false;
         }
-        // The depth of a sheet of fluid is 1 m, the pressure of the air 101325 Pa, and surfaces keep
-        // apart against 100 m/s2.
+        // The pressure of the air is 101325 Pa, and surfaces keep apart against 100 m/s2.
         let touches = has("body") || says(&["self_collision", "thickness", "restitution"]);
         if self.length != 1.0 && (touches || says(&["fill"])) {
             return false;
