@@ -1,5 +1,6 @@
 //! Networks: particles with pins and constraints, and the forces that a scene asks for.
 
+mod air;
 mod attraction;
 mod bodies;
 mod breaking;

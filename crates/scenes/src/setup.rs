@@ -29,6 +29,8 @@ pub struct Presentation {
     /// Particles of the walls of each tank of fluid. Only the edges of the tank are drawn in their
     /// place.
     pub tanks: Vec<Range<usize>>,
+    /// Sentences about what may not be meant, such as a cup that leaks.
+    pub notes: Vec<String>,
     /// Number of the particle whose path is drawn.
     pub trail: Option<usize>,
 }

@@ -110,6 +110,9 @@ impl Request {
             let _ = threads.build_global();
         }
         let setup = self.source.build(options.grid)?;
+        for note in &setup.presentation.notes {
+            terminal::warn(&format!("note: {}: {note}", setup.scene.name));
+        }
         if let Some(network) = setup.scene.model.network() {
             let count = network.particles();
             let held = network.pins().count();

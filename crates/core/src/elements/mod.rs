@@ -35,6 +35,7 @@ pub use gas::{ATMOSPHERE, Gas, GasLaw};
 pub use gravity::Gravity;
 pub use own_force::OwnForce;
 pub use region::Region;
+pub(crate) use region::Stream;
 pub use sheet::Sheet;
 pub use solid::{Hyperelastic, Material, Solid};
 pub use springs::Springs;

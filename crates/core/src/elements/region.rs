@@ -65,7 +65,7 @@ impl Region {
 }
 
 /// Region at one time.
-pub(super) struct Stream {
+pub(crate) struct Stream {
     pose: Pose,
     /// Direction of the mean wind: a unit vector.
     axis: Vector3<f64>,
@@ -75,6 +75,22 @@ pub(super) struct Stream {
 }
 
 impl Stream {
+    /// Returns the smaller one of the radii across and along the wind (m).
+    pub fn width(&self) -> f64 {
+        self.across.max(self.across + self.along).sqrt().recip()
+    }
+
+    /// Returns the area (m2) of the largest section.
+    pub fn section(&self) -> f64 {
+        let length = self.across.min(self.across + self.along).sqrt().recip();
+        std::f64::consts::PI * length / self.across.sqrt()
+    }
+
+    /// Returns whether a ball with that middle and radius (m) may reach into the region.
+    pub fn reaches(&self, middle: Vector3<f64>, radius: f64) -> bool {
+        self.squared(middle).0.sqrt() <= 1.0 + radius / self.width()
+    }
+
     /// Returns the wind at x (m), if it blew with `whole` everywhere.
     pub fn wind(&self, x: [f64; 3], whole: Vector3<f64>) -> Vector3<f64> {
         let (left, _) = self.left(x);
@@ -95,10 +111,16 @@ impl Stream {
 
     /// Returns 1 - q at x (m), or 0 outside, and its gradient (1/m).
     fn left(&self, x: [f64; 3]) -> (f64, Vector3<f64>) {
-        let from_centre = Vector3::from(x) - self.pose.place.position;
+        let (q, half) = self.squared(x.into());
+        ((1.0 - q).max(0.0), half * -2.0)
+    }
+
+    /// Returns q at x (m) and half of its gradient (1/m).
+    fn squared(&self, x: Vector3<f64>) -> (f64, Vector3<f64>) {
+        let from_centre = x - self.pose.place.position;
         let ahead = from_centre.dot(&self.axis);
         let q = self.across * from_centre.norm_squared() + self.along * ahead * ahead;
-        let slope = (from_centre * self.across + self.axis * (self.along * ahead)) * -2.0;
-        ((1.0 - q).max(0.0), slope)
+        let half = from_centre * self.across + self.axis * (self.along * ahead);
+        (q, half)
     }
 }

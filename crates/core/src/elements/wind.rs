@@ -148,7 +148,7 @@ impl Wind {
     }
 
     /// Returns the region at time t (s), if there is one.
-    fn stream(&self, t: f64) -> Option<Stream> {
+    pub(crate) fn stream(&self, t: f64) -> Option<Stream> {
         self.region
             .map(|(region, ahead)| region.at(t + ahead, self.breeze))
     }
@@ -163,8 +163,13 @@ impl Wind {
     /// there.
     #[must_use]
     pub fn at(&self, t: f64, x: [f64; 3]) -> Vector3<f64> {
+        self.in_stream(self.stream(t).as_ref(), t, x)
+    }
+
+    /// Returns the same, with the region at that time.
+    pub(crate) fn in_stream(&self, stream: Option<&Stream>, t: f64, x: [f64; 3]) -> Vector3<f64> {
         let whole = self.everywhere(t, x);
-        self.stream(t).map_or(whole, |stream| stream.wind(x, whole))
+        stream.map_or(whole, |stream| stream.wind(x, whole))
     }
 
     /// Returns the same, if there were no region.

@@ -2,13 +2,15 @@
 //! body].
 
 use std::ops::Range;
+use std::sync::{Arc, OnceLock};
 
+use super::air::Pass;
 use super::elements::Elements;
 use super::particles::Particles;
 use crate::columns::row;
 use crate::elements::Airflow;
 use crate::error::Error;
-use crate::rigid::{Body, Driven, Motor, Moving, ROTATION, Rotation};
+use crate::rigid::{Body, Driven, Face, Motor, Moving, ROTATION, Rotation, faces};
 use crate::scratch::Scratch;
 
 /// Rigid bodies of a network.
@@ -16,6 +18,8 @@ use crate::scratch::Scratch;
 pub(super) struct Bodies {
     all: Vec<Body>,
     motors: Vec<Motor>,
+    /// Faces of each body, past which air streams.
+    faces: OnceLock<Arc<[Vec<Face>]>>,
     /// Number of particles.
     particles: usize,
     /// Positions (m), velocities (m/s) and forces (N) of an evaluation, n x 3 each, and torques
@@ -78,6 +82,7 @@ impl Bodies {
 
     pub fn add(&mut self, body: Body) {
         self.all.push(body);
+        self.faces = OnceLock::new();
     }
 
     pub fn all(&self) -> &[Body] {
@@ -125,18 +130,23 @@ impl Bodies {
     /// n x 3, and their torques (N m), three numbers for each body.
     pub fn blow(&self, airflow: &Airflow, t: f64, y: &[f64], f: &mut [f64], torques: &mut [f64]) {
         let n = self.particles;
+        let of = |body: &Body| faces(body.parts(), body.radius());
+        let faces = self.faces.get_or_init(|| self.all.iter().map(of).collect());
+        let stream = airflow.wind.stream(t);
         for (k, body, _, moving) in self.each(y) {
             let [place, velocity] = [y, &y[3 * n..]].map(|of| row(of, n, body.center()));
-            for face in body.faces() {
-                let arm = moving.rotation * face.middle;
-                let u =
-                    airflow.wind.at(t, (place + arm).into()) - velocity - moving.spin.cross(&arm);
-                let force = airflow.on_closed(u, moving.rotation * face.area);
-                let torque = arm.cross(&force);
-                for axis in 0..3 {
-                    f[axis * n + body.center()] += force[axis];
-                    torques[3 * k + axis] += torque[axis];
-                }
+            let pass = Pass {
+                airflow,
+                stream: stream.as_ref(),
+                t,
+                place,
+                velocity,
+                moving,
+            };
+            let [force, torque] = pass.over(&faces[k], body.radius());
+            for axis in 0..3 {
+                f[axis * n + body.center()] += force[axis];
+                torques[3 * k + axis] += torque[axis];
             }
         }
     }

@@ -1,11 +1,9 @@
 //! Rigid bodies: their mass properties, and the places of their points.
 
 use std::ops::Range;
-use std::sync::Arc;
 
 use nalgebra::{Matrix3, Quaternion, Vector3};
 
-use super::faces::{Face, faces};
 use super::part::Part;
 use super::rotation::Rotation;
 use crate::error::{Error, positive};
@@ -24,7 +22,6 @@ pub struct Body {
     inertia: Vector3<f64>,
     radius: f64,
     parts: Vec<Part>,
-    faces: Arc<[Face]>,
 }
 
 /// Body in motion: its rotation matrix and angular velocity (rad/s).
@@ -81,7 +78,6 @@ impl Body {
             anchors,
             inertia,
             radius,
-            faces: faces(&parts, radius).into(),
             parts,
         })
     }
@@ -134,11 +130,6 @@ impl Body {
     #[must_use]
     pub fn parts(&self) -> &[Part] {
         &self.parts
-    }
-
-    /// Returns the faces past which air streams.
-    pub(crate) fn faces(&self) -> &[Face] {
-        &self.faces
     }
 
     /// Returns the body in motion.

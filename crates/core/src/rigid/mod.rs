@@ -20,9 +20,11 @@ mod mass;
 mod motor;
 mod part;
 mod rotation;
+mod round;
 
 pub use body::Body;
 pub(crate) use body::Moving;
+pub(crate) use faces::{Face, faces};
 pub use mass::MassProperties;
 pub(crate) use motor::Driven;
 pub use motor::{Drive, Motor};

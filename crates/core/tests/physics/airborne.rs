@@ -144,3 +144,166 @@ fn a_jelly_has_the_drag_of_its_area_and_so_has_a_cloth() {
     let expected = Vector3::z() * (0.5 * density * drag * 0.75 * u * u);
     assert_relative_eq!(force, expected, max_relative = 1e-9);
 }
+
+/// Returns the rates of the momentum (N) and the angular momentum (N m) of the only body at the
+/// start.
+fn wrench(text: &str) -> [Vector3<f64>; 2] {
+    let mut run = run(text, 1e-6);
+    let momenta = |run: &Simulation| {
+        let network = run.model().network().unwrap();
+        let (n, v) = (run.particles(), run.velocities());
+        let speed = Vector3::from_fn(|axis, _| v[axis * n]);
+        let turning = network.rotation(0, run.state()).momentum;
+        [speed * network.masses()[0], turning]
+    };
+    let before = momenta(&run);
+    run.take_steps(1).unwrap();
+    let after = momenta(&run);
+    [0, 1].map(|k| (after[k] - before[k]) / run.time())
+}
+
+/// Checks that a vector is the exact one, to an error.
+#[track_caller]
+fn check(found: Vector3<f64>, exact: Vector3<f64>, error: f64) {
+    assert!((found - exact).norm() <= error, "{found} and not {exact}");
+}
+
+/// Text of a fan that blows along z at 5 m/s, at a place (m), with its radii across and along (m).
+fn fan(at: [f64; 3], [radius, length]: [f64; 2]) -> String {
+    let still = wind([0.0, 0.0, 5.0]).replace("lift = 0.7", "lift = 0");
+    still + &format!("region = {{ at = {at:?}, radius = {radius}, length = {length} }}\n")
+}
+
+/// Squared speed of the air of such a fan in a place (m2/s2).
+fn squared_speed(at: [f64; 3], [radius, length]: [f64; 2], place: [f64; 3]) -> f64 {
+    let [x, y, z] = [0, 1, 2].map(|axis| place[axis] - at[axis]);
+    let left = 1.0 - (x * x + y * y) / (radius * radius) - z * z / (length * length);
+    25.0 * left.max(0.0).powi(6)
+}
+
+/// A plate of 2 m x 1 m, whole and in two or three parts of different sizes.
+const PLATES: [&str; 3] = [
+    "{ box = [2, 1, 0.02] }",
+    "{ box = [0.7, 1, 0.02], at = [-0.65, 0, 0] }, { box = [1.3, 1, 0.02], at = [0.35, 0, 0] }",
+    "{ box = [0.2, 1, 0.02], at = [-0.9, 0, 0] }, { box = [1.8, 0.4, 0.02], at = [0.1, 0.3, 0] }, \
+     { box = [1.8, 0.6, 0.02], at = [0.1, -0.2, 0] }",
+];
+
+fn plate(parts: &str) -> String {
+    format!("[[body]]\nparts = [{parts}]\nmass = 4\n")
+}
+
+/// Force and torque of fans on a plate, against sums over a grid of a million points.
+#[test]
+fn fans_of_all_sizes_push_a_plate_where_they_blow() {
+    let [density, drag] = AIR;
+    for (x, y, radius) in [
+        (-0.5, 0.0, 0.05),
+        (-0.5, 0.0, 0.1),
+        (-0.53, 0.11, 0.2),
+        (-0.5, 0.0, 0.4),
+        (-0.45, 0.0, 0.4),
+        (-0.9, 0.45, 0.4),
+        (0.3, 0.2, 3.0),
+    ] {
+        let (at, radii) = ([x, y, 0.0], [radius, 3.0]);
+        let [mut force, mut torque] = [Vector3::zeros(); 2];
+        let (columns, rows) = (1414, 707);
+        for k in 0..columns * rows {
+            let share = |k: usize, count: usize| (k as f64 + 0.5) / count as f64 - 0.5;
+            let place = [
+                2.0 * share(k % columns, columns),
+                share(k / columns, rows),
+                0.0,
+            ];
+            let pressure = 0.5 * density * drag * squared_speed(at, radii, place);
+            let part = Vector3::z() * (pressure * 2.0 / (columns * rows) as f64);
+            force += part;
+            torque += Vector3::from(place).cross(&part);
+        }
+        for parts in PLATES {
+            let [pushed, turned] = wrench(&(fan(at, radii) + &plate(parts)));
+            check(pushed, force, 0.01 * force.norm());
+            check(turned, torque, 0.01 * torque.norm() + 0.003 * force.norm());
+        }
+    }
+}
+
+/// A fan in front of a ball, against a sum over a fine grid of its surface. The force is along the
+/// wind at each point, and half of it counts on each side.
+#[test]
+fn fans_push_a_ball_where_they_blow() {
+    let [density, drag] = AIR;
+    let ball = body("ball = 0.5", 2.0);
+    for (x, radius) in [(0.0, 0.1), (0.2, 0.15), (0.3, 0.3), (0.45, 0.2), (0.1, 2.0)] {
+        let (at, radii) = ([x, 0.1, 0.0], [radius, 4.0]);
+        let [mut force, mut torque] = [Vector3::zeros(); 2];
+        let (heights, angles) = (1000, 1000);
+        for k in 0..heights * angles {
+            let height = 2.0 * ((k / angles) as f64 + 0.5) / heights as f64 - 1.0;
+            let angle = std::f64::consts::TAU * (k % angles) as f64 / angles as f64;
+            let across = (1.0 - height * height).sqrt();
+            let normal = Vector3::new(across * angle.cos(), across * angle.sin(), height);
+            let place = 0.5 * normal;
+            let pressure = 0.25 * density * drag * squared_speed(at, radii, place.into());
+            let area = std::f64::consts::PI / (heights * angles) as f64;
+            let part = Vector3::z() * (pressure * area * height.abs());
+            force += part;
+            torque += place.cross(&part);
+        }
+        let [pushed, turned] = wrench(&(fan(at, radii) + &ball));
+        check(pushed, force, 0.015 * force.norm());
+        check(turned, torque, 0.015 * torque.norm() + 0.002 * force.norm());
+    }
+}
+
+/// A plate that turns in still air about a line in it has the torque rho C w^2 b a^4 / 64 about
+/// its middle, whatever its parts and whichever its long side.
+#[test]
+fn a_plate_that_spins_in_still_air_has_the_drag_of_each_of_its_points() {
+    let [density, drag] = AIR;
+    let still = wind([0.0; 3]).replace("lift = 0.7", "lift = 0");
+    let rate = 3.0;
+    for parts in PLATES {
+        for (spin, [a, b]) in [
+            ([0.0, rate, 0.0], [2.0, 1.0_f64]),
+            ([rate, 0.0, 0.0], [1.0, 2.0]),
+        ] {
+            let [force, torque] =
+                wrench(&(still.clone() + &plate(parts) + &format!("spin = {spin:?}\n")));
+            let exact = -density * drag * rate * b * a.powi(4) / 64.0;
+            let exact = Vector3::from(spin) * exact;
+            check(torque, exact, 0.01 * exact.norm());
+            check(force, Vector3::zeros(), 0.01 * exact.norm());
+        }
+    }
+}
+
+/// Drag acts on all of a body's mass alike: it damps its motion and its rotation at the rate c / m,
+/// whatever the body's shape. A free rotation about no principal axis keeps its direction of L.
+#[test]
+fn drag_damps_speed_and_spin_alike() {
+    let text = "drag = 0.6\n".to_owned()
+        + &body("box = [0.4, 0.3, 0.1]", 2.0)
+        + "velocity = [1, 2, 3]\nspin = [3, -2, 1]\n";
+    for (name, error) in [("rk4", 1e-9), ("verlet", 1e-9), ("tr-bdf2", 1e-6)] {
+        let method = method(name);
+        let mut run = Simulation::new(described(&text), method, method.control(1e-3)).unwrap();
+        let momenta = |run: &Simulation| {
+            let (n, v) = (run.particles(), run.velocities());
+            let turning = run
+                .model()
+                .network()
+                .unwrap()
+                .rotation(0, run.state())
+                .momentum;
+            [Vector3::from_fn(|axis, _| v[axis * n]), turning]
+        };
+        let before = momenta(&run);
+        run.advance_to(1.0).unwrap();
+        let left = (-0.3 * run.time()).exp();
+        for (after, before) in momenta(&run).into_iter().zip(before) {
+            check(after, before * left, error * before.norm());
+        }
+    }
+}

@@ -94,6 +94,8 @@ pub(super) struct Assembly {
     pub soaked: Vec<Range<usize>>,
     /// Particles of the walls of each tank.
     pub tanks: Vec<Range<usize>>,
+    /// Sentences about what may not be meant.
+    pub notes: Vec<String>,
 }
 
 impl Assembly {

@@ -97,22 +97,24 @@ impl Description {
         asked: Option<Grid>,
         mesh: &mut dyn FnMut(&str) -> Result<Mesh, String>,
     ) -> Result<Setup, Fault> {
-        let (mut model, mut state, surface, tanks, touch) = if let Some(circle) = &self.circle {
-            let start = Vector3::from(circle.start);
-            let model = Model::Points(Arc::new(Circling));
-            let start = start.as_slice().to_vec();
-            (model, start, Surface::default(), vec![], None)
-        } else {
-            let NetworkParts {
-                network,
-                state,
-                surface,
-                tanks,
-                touch,
-            } = network::build(self, &mut Budget::new(asked), mesh)?;
-            let model = Model::Network(Box::new(network));
-            (model, state, surface, tanks, touch)
-        };
+        let (mut model, mut state, surface, (tanks, notes), touch) =
+            if let Some(circle) = &self.circle {
+                let start = Vector3::from(circle.start);
+                let model = Model::Points(Arc::new(Circling));
+                let start = start.as_slice().to_vec();
+                (model, start, Surface::default(), (vec![], vec![]), None)
+            } else {
+                let NetworkParts {
+                    network,
+                    state,
+                    surface,
+                    tanks,
+                    notes,
+                    touch,
+                } = network::build(self, &mut Budget::new(asked), mesh)?;
+                let model = Model::Network(Box::new(network));
+                (model, state, surface, (tanks, notes), touch)
+            };
         if self.circle.is_some() && network::bodies(self) > 0 {
             return Err(Fault::new(
                 "circle",
@@ -144,6 +146,7 @@ impl Description {
             viewpoint: self.viewpoint(&scene)?,
             surface,
             tanks,
+            notes,
             trail: self.trail,
         };
         if let Some(reach) = self.reach {

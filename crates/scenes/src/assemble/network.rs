@@ -29,6 +29,8 @@ pub(super) struct NetworkParts {
     pub surface: Surface,
     /// Particles of the walls of each tank.
     pub tanks: Vec<Range<usize>>,
+    /// Sentences about what may not be meant.
+    pub notes: Vec<String>,
     /// Surfaces that can touch, if there are any.
     pub touch: Option<Arc<Touch>>,
 }
@@ -132,6 +134,7 @@ pub(super) fn build(
         state,
         surface: assembly.surface,
         tanks: assembly.tanks,
+        notes: assembly.notes,
         touch: has_surface.then(|| Arc::new(touch)),
     })
 }
@@ -210,6 +213,9 @@ fn assembled(
         let key = key_of("body", k, description.body.len());
         let loaded = LoadedBody::load(body, description.fluid.first(), budget, mesh);
         let loaded = loaded.map_err(|fault| fault.within(&key))?;
+        assembly
+            .notes
+            .extend(loaded.leak.iter().map(|leak| format!("{key}: {leak}")));
         assembly.add(&key, &loaded, budget)?;
     }
     for (k, body) in description.fluid.iter().enumerate() {

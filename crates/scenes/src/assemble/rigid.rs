@@ -9,7 +9,7 @@ use nalgebra::{Matrix3, Rotation3, UnitQuaternion};
 
 use super::assembly::{Assembly, Body, Counts};
 use super::skins::point_skin;
-use super::soaked::soaked;
+use super::soaked::{leak, soaked};
 use crate::budget::{Budget, FACES, TRIANGLES};
 use crate::check::{at, at_least, key_of, one_of, positive};
 use crate::description::{Fluid, PartSpec, Pin, RigidBody, Spot};
@@ -27,6 +27,8 @@ pub(super) struct LoadedBody<'a> {
     smallest: f64,
     /// Places that a fluid touches (m), relative to the origin.
     soaked: Vec<Vector3<f64>>,
+    /// Sentence that its walls leak, if they do.
+    pub leak: Option<String>,
 }
 
 impl<'a> LoadedBody<'a> {
@@ -46,6 +48,7 @@ impl<'a> LoadedBody<'a> {
             parts: vec![],
             smallest: f64::INFINITY,
             soaked: vec![],
+            leak: None,
         };
         for (k, spec) in body.parts.iter().enumerate() {
             let within = |fault: Fault| fault.within(&key_of("parts", k, body.parts.len()));
@@ -58,6 +61,7 @@ impl<'a> LoadedBody<'a> {
         }
         if let Some(fluid) = fluid {
             loaded.soaked = soaked(&loaded.parts, loaded.of_density(1.0)?.mass, fluid)?;
+            loaded.leak = leak(&loaded.parts, loaded.soaked.len(), fluid);
         }
         Ok(loaded)
     }

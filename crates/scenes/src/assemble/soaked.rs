@@ -1,6 +1,7 @@
 //! Points of rigid bodies that a fluid touches: particles of the fluid that the body carries.
 
 use a3_core::Vector3;
+use a3_core::contact::Shape;
 use a3_core::rigid::Part;
 
 use super::places::LAYERS;
@@ -12,6 +13,15 @@ use crate::fault::Fault;
 const MAX_POINTS: f64 = 500_000.0;
 /// Differences of distances that count as none, as a share of the spacing.
 const SAME: f64 = 1e-6;
+
+/// Least number of layers of points in a wall that stops a liquid. Cups with walls of 2 spacings
+/// and more keep all of it, wherever the lattice is; those with one layer lose some where it falls
+/// in.
+const LEAST_LAYERS: f64 = 2.0;
+/// Share of the surface of a body up to which its walls may be thin, as masts and tips are.
+const THIN_SHARE: f64 = 0.1;
+/// Number of depths at which the thickness of a wall is looked for.
+const DEPTHS: u32 = 40;
 
 /// Lists the points of a body of a volume (m3) that a fluid touches, relative to the body's origin
 /// (m): those of a lattice of the fluid's spacing around the middle of its parts, up to a few
@@ -62,6 +72,68 @@ pub(super) fn soaked(
     let deepest = outermost.min(0.0) - f64::from(LAYERS) * spacing;
     let shell = near.into_iter().filter(|(_, distance)| *distance > deepest);
     Ok(shell.map(|(place, _)| place).collect())
+}
+
+/// Returns the sentence that a liquid can pass through walls of a body with this number of points,
+/// if some are too thin: the points of a wall stop it if there are two layers of them. A body of
+/// one convex part has no walls, but needs points.
+pub(super) fn leak(parts: &[Part], points: usize, fluid: &Fluid) -> Option<String> {
+    let needed = LEAST_LAYERS * fluid.spacing;
+    let is_convex = matches!(parts, [part] if !matches!(part.shape, Shape::Mesh(_)));
+    if is_convex {
+        let why = "it is too thin for the liquid to feel it: it needs to be at least";
+        return (points == 0).then(|| format!("{why} {needed} m thick, {LEAST_LAYERS} spacings"));
+    }
+    let (mut area, mut of_thin, mut thinnest) = (0.0, 0.0, f64::INFINITY);
+    for [middle, normal] in parts.iter().flat_map(sides) {
+        // A sheet of liquid reaches across z.
+        let size = normal.norm();
+        if fluid.dimensions == 2 && normal.z.abs() > 0.5 * size {
+            continue;
+        }
+        area += size;
+        let is_outside = |depth: &f64| {
+            let place = middle - normal * (depth / size);
+            let mut all = parts.iter();
+            all.all(|part| part.shape.distance(place - part.at) > -SAME * fluid.spacing)
+        };
+        let depths = (1..=DEPTHS).map(|k| needed * (1.0 - SAME) * f64::from(k) / f64::from(DEPTHS));
+        if let Some(depth) = depths.into_iter().find(is_outside) {
+            of_thin += size;
+            thinnest = depth.min(thinnest);
+        }
+    }
+    (of_thin > THIN_SHARE * area).then(|| {
+        format!(
+            "the liquid can pass through walls that are only {thinnest:.2} m thick: what holds it is \
+             at least {needed} m thick, {LEAST_LAYERS} spacings of the fluid"
+        )
+    })
+}
+
+/// Lists the middles of the sides of a part, with the areas (m2) times the normals.
+fn sides(part: &Part) -> Vec<[Vector3<f64>; 2]> {
+    let simplices = part.shape.simplices();
+    if simplices.triangles.is_empty() {
+        // A ball or a capsule is as thick everywhere.
+        let radius = simplices.radius;
+        let places = simplices.points.iter().map(|point| part.at + point);
+        let across = places.flat_map(|place| {
+            let [side, other] = [Vector3::x(), Vector3::z()];
+            [side, -side, other, -other].map(|out| [place + out * radius, out * (radius * radius)])
+        });
+        return across.collect();
+    }
+    let side = |corners: &[u32; 3]| {
+        let [a, b, c] = corners.map(|i| part.at + simplices.points[i as usize]);
+        [(a + b + c) / 3.0, 0.5 * (b - a).cross(&(c - a))]
+    };
+    simplices
+        .triangles
+        .iter()
+        .map(side)
+        .filter(|[_, area]| area.norm() > 0.0)
+        .collect()
 }
 
 /// Returns the distance (m) from the surface below which about `count` of the places lie. Places at

@@ -319,3 +319,69 @@ fn a_flow_may_have_begun_before() {
         assert_eq!((0..n).filter(|i| !network.is_pinned(*i)).count(), 4 * 16);
     }
 }
+
+/// Cups whose walls are too thin to hold the liquid are named; plates that float, and what is thick
+/// enough, are not.
+#[test]
+fn cups_that_leak_are_named() {
+    let notes = |parts: &str, dimensions: u8| {
+        let size = [0.36, 0.36, if dimensions == 2 { 0.0 } else { 0.36 }];
+        let setup = set_up(&format!(
+            "[[body]]
+            parts = [{parts}]
+            density = 2000
+            at = [0, -1, 0]
+            [[fluid]]
+            dimensions = {dimensions}
+            size = {size:?}
+            spacing = 0.04
+            at = [0, 0.5, 0]
+            density = 1000
+            sound = 30"
+        ));
+        setup.unwrap().presentation.notes.clone()
+    };
+    let cup = |thickness: f64| {
+        let wall = |side: f64| {
+            format!(
+                "{{ box = [{thickness}, 0.6, 1], at = [{}, 0.3, 0] }}",
+                0.4 * side
+            )
+        };
+        format!(
+            "{{ box = [0.9, {thickness}, 1] }}, {}, {}",
+            wall(-1.0),
+            wall(1.0)
+        )
+    };
+    for dimensions in [2, 3] {
+        for thickness in [0.01, 0.02, 0.04, 0.06] {
+            let told = notes(&cup(thickness), dimensions);
+            let whole = "body: the liquid can pass through walls that are only ";
+            assert!(
+                told[0].starts_with(&format!("{whole}{thickness:.2} m thick")),
+                "{told:?}"
+            );
+            assert!(
+                told[0].contains("at least 0.08 m thick, 2 spacings"),
+                "{told:?}"
+            );
+        }
+        for holds in [
+            cup(0.08),
+            cup(0.1),
+            "{ box = [0.6, 0.05, 1] }".into(),
+            "{ ball = 0.06 }".into(),
+            // A hull with a mast.
+            "{ box = [0.6, 0.2, 1] }, { box = [0.02, 0.5, 0.02], at = [0, 0.3, 0] }".into(),
+        ] {
+            assert_eq!(notes(&holds, dimensions), Vec::<String>::new(), "{holds}");
+        }
+        // A film between the layers of the lattice, which no liquid feels.
+        let told = notes("{ box = [0.6, 0.005, 1] }", 2);
+        assert!(
+            told[0].starts_with("body: it is too thin for the liquid to feel it"),
+            "{told:?}"
+        );
+    }
+}

@@ -1,8 +1,12 @@
 //! Short runs of random scenes by all methods: none panics, none hangs, and none explodes without a
 //! warning.
 
+mod alike;
 mod chance;
+mod frames;
 mod grammar;
+mod invariance;
+mod kinds;
 mod numbered;
 mod ranges;
 mod run;
@@ -163,11 +167,13 @@ fn watch(trials: &[Mutex<Trial>], is_done: impl Fn() -> bool) {
     }
 }
 
+/// Returns a number that the environment sets, or the usual one.
+fn told(name: &str, usual: usize) -> usize {
+    std::env::var(name).map_or(usual, |number| number.parse().unwrap())
+}
+
 #[test]
 fn random_scenes_run_or_say_why_not() {
-    let told = |name: &str, usual: usize| {
-        std::env::var(name).map_or(usual, |number| number.parse().unwrap())
-    };
     let (scenes, first) = (told("A3_SCENES", SCENES), told("A3_FIRST", 0));
     let (next, done) = (AtomicUsize::new(first), AtomicUsize::new(0));
     let results = Mutex::new(Results::default());

@@ -1,0 +1,208 @@
+//! The same motion in another frame: to a hundred times what a change of the start by a rounding
+//! error grows to, and until that is a hundredth of the scene.
+
+use a3_core::{Control, Method, Simulation, Vector3};
+use a3_scenes::Setup;
+
+use crate::chance::Chance;
+use crate::frames::Frame;
+
+/// Change of the start that shows how errors grow, over the size of the scene.
+const CHANGE: f64 = 1e-12;
+
+/// Largest difference between two frames, over the effect of that change.
+const SLACK: f64 = 100.0;
+
+/// Difference over the size of the scene from which on nothing is compared.
+const HORIZON: f64 = 0.01;
+
+/// Largest number of steps of a run, and of steps times particles.
+const STEPS: [u64; 2] = [40, 3_000];
+
+/// Seeds of the changes of the start.
+const SEEDS: [u64; 2] = [1, 2];
+
+/// Number of times at which runs are compared.
+const LOOKS: u64 = 4;
+
+/// Places of all particles (m), with the time (s).
+type Look = (f64, Vec<Vector3<f64>>);
+
+/// Returns a run of the scene in default steps.
+fn start(setup: &Setup, method: &'static Method) -> Result<Simulation, String> {
+    let control = match method.default_control {
+        Control::Step(h) => Control::Step(h * setup.defaults.step_scale),
+        tolerance => tolerance,
+    };
+    Simulation::new(setup.scene.clone(), method, control).map_err(|why| why.to_string())
+}
+
+/// Returns the number of steps between looks.
+fn steps(setup: &Setup) -> u64 {
+    let most = STEPS[1] / setup.scene.model.particles().max(1) as u64;
+    (STEPS[0].min(most) / LOOKS).max(1)
+}
+
+fn look(run: &Simulation) -> Look {
+    let places = (0..run.particles()).map(|i| run.position(i));
+    (run.time(), places.collect())
+}
+
+/// Runs a scene, and looks at it now and then, as far as it gets.
+fn watch(setup: &Setup, method: &'static Method) -> Result<Vec<Look>, String> {
+    let mut run = start(setup, method)?;
+    let mut looks = vec![look(&run)];
+    for _ in 0..LOOKS {
+        if run.take_steps(steps(setup)).is_err() {
+            break;
+        }
+        looks.push(look(&run));
+    }
+    Ok(looks)
+}
+
+/// Changes the start by a rounding error.
+fn shaken(setup: &Setup, seed: u64) -> Setup {
+    let (mut other, mut chance) = (setup.clone(), Chance(seed));
+    let (size, n) = (setup.scene.extent().1, setup.scene.model.particles());
+    for (k, y) in other.scene.state.iter_mut().enumerate() {
+        let scale = if k < 6 * n { size } else { y.abs() };
+        *y += chance.within((-CHANGE, CHANGE, false)) * scale;
+    }
+    other
+}
+
+/// Returns the largest distance between particles of two looks, and the particle.
+fn apart(a: &[Vector3<f64>], b: &[Vector3<f64>]) -> (f64, usize) {
+    let all = a.iter().zip(b).map(|(a, b)| (a - b).norm()).enumerate();
+    all.fold(
+        (0.0, 0),
+        |most, (i, apart)| if apart > most.0 { (apart, i) } else { most },
+    )
+}
+
+/// Returns the number of the particle in the other frame for each one: the same where that begins
+/// in its place, else the nearest of the same mass.
+fn numbers(own: &Setup, other: &Setup, frame: &Frame) -> Result<Vec<usize>, String> {
+    let place = |setup: &Setup, i: usize| {
+        let n = setup.scene.model.particles();
+        Vector3::from_fn(|axis, _| setup.scene.state[axis * n + i])
+    };
+    let n = own.scene.model.particles();
+    if other.scene.model.particles() != n {
+        return Err(format!(
+            "{n} particles become {}",
+            other.scene.model.particles()
+        ));
+    }
+    let near = 1e-9 * (own.scene.extent().1 * frame.length + frame.shift.norm());
+    let goals: Vec<_> = (0..n).map(|i| frame.place(place(own, i), 0.0)).collect();
+    let places: Vec<_> = (0..n).map(|i| place(other, i)).collect();
+    if apart(&goals, &places).0 <= near {
+        return Ok((0..n).collect());
+    }
+    let mass = |setup: &Setup, i: usize| {
+        setup
+            .scene
+            .model
+            .network()
+            .map_or(1.0, |network| network.masses()[i])
+    };
+    let mut free = vec![true; n];
+    let mut find = |i: usize| {
+        let fits = |j: &usize| {
+            let alike = (mass(own, i) - mass(other, *j)).abs() <= 1e-9 * mass(own, i);
+            free[*j] && alike && (goals[i] - places[*j]).norm() <= near
+        };
+        let j = (0..n).find(fits)?;
+        free[j] = false;
+        Some(j)
+    };
+    let found = (0..n)
+        .map(|i| find(i).ok_or(i))
+        .collect::<Result<Vec<_>, _>>();
+    found.map_err(|i| format!("no particle begins where {i} does, at {}", goals[i]))
+}
+
+/// A scene and its run by a method, with the growth of errors.
+pub struct Known<'a> {
+    setup: &'a Setup,
+    method: &'static Method,
+    looks: Vec<Look>,
+    /// Effects of a rounding error at the start (m).
+    growth: Vec<f64>,
+}
+
+impl<'a> Known<'a> {
+    /// Runs a scene, unless the method does not serve it.
+    pub fn new(setup: &'a Setup, method: &'static Method) -> Option<Self> {
+        let looks = watch(setup, method).ok()?;
+        let mut growth = vec![CHANGE * setup.scene.extent().1; looks.len()];
+        for seed in SEEDS {
+            let shaken = watch(&shaken(setup, seed), method).unwrap_or_default();
+            let mut most = 0.0f64;
+            for (k, growth) in growth.iter_mut().enumerate() {
+                let effect = shaken
+                    .get(k)
+                    .map_or(f64::INFINITY, |(_, places)| apart(&looks[k].1, places).0);
+                most = most.max(effect);
+                *growth = growth.max(most);
+            }
+        }
+        Some(Self {
+            setup,
+            method,
+            looks,
+            growth,
+        })
+    }
+
+    /// Compares the run with one in another frame.
+    pub fn compare(&self, frame: &Frame, other: &Setup) -> Result<(), String> {
+        let numbers = numbers(self.setup, other, frame)?;
+        let looks = watch(other, self.method)?;
+        let size = self.setup.scene.extent().1;
+        let far = 1.0 + frame.shift.norm() / size;
+        for (k, ((t, places), growth)) in self.looks.iter().zip(&self.growth).enumerate() {
+            let allowed = SLACK * far * growth;
+            if allowed.is_nan() || allowed > HORIZON * size {
+                return Ok(());
+            }
+            let Some((time, found)) = looks.get(k) else {
+                return Err(format!("it fails before {t} s"));
+            };
+            if (time - t).abs() > 1e-9 * t.abs() {
+                return Err(format!("{time} s and not {t} s"));
+            }
+            let goals: Vec<_> = places.iter().map(|place| frame.place(*place, *t)).collect();
+            let found: Vec<_> = numbers.iter().map(|j| found[*j]).collect();
+            let (most, i) = apart(&goals, &found);
+            let most = most / frame.length;
+            if most.is_nan() || most > allowed {
+                return Err(format!(
+                    "particle {i} is {most:e} m off at {t} s, {:e} of the size; a rounding error of \
+                     1e-12 grows to {growth:e} m",
+                    most / size
+                ));
+            }
+        }
+        Ok(())
+    }
+
+    /// Compares the run with one that goes through a checkpoint in the middle.
+    pub fn cut(&self) -> Result<(), String> {
+        let (mut whole, count) = (start(self.setup, self.method)?, steps(self.setup));
+        if whole.take_steps(count).is_err() {
+            return Ok(());
+        }
+        let checkpoint = whole.checkpoint();
+        let mut rest = start(self.setup, self.method)?;
+        rest.restore(&checkpoint).map_err(|why| why.to_string())?;
+        let ends = [&mut whole, &mut rest].map(|run| run.take_steps(count).is_ok());
+        let bits = |run: &Simulation| run.state().iter().map(|y| y.to_bits()).collect::<Vec<_>>();
+        if ends[0] != ends[1] || bits(&whole) != bits(&rest) {
+            return Err("a run that goes on from a checkpoint has other bits".into());
+        }
+        Ok(())
+    }
+}

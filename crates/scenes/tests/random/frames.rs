@@ -1,0 +1,369 @@
+//! The same scene in another frame: shifted, turned about the vertical, mirrored, in other units,
+//! or moving.
+
+use std::f64::consts::PI;
+
+use a3_core::rotation;
+use nalgebra::{Matrix3, Rotation3, UnitQuaternion, Vector3};
+use serde_json::{Map, Value, json};
+
+use crate::grammar::BODIES;
+use crate::kinds::{Kind, kind};
+
+/// Keys that hold obstacles, or fix something in the world.
+const FIXED: [&str; 11] = [
+    "floor",
+    "box",
+    "capsule",
+    "sphere",
+    "obstacle",
+    "wind",
+    "drag",
+    "drag_per_mass",
+    "swing",
+    "constraint",
+    "pin",
+];
+
+/// Another frame: a place p becomes `length` (R M p) + `shift`, with the turn R about the vertical,
+/// and the mirror M along x or none.
+#[derive(Clone, Copy, Debug)]
+pub struct Frame {
+    pub name: &'static str,
+    turn: f64,
+    is_mirrored: bool,
+    /// The old unit of length in the new one.
+    pub length: f64,
+    pub shift: Vector3<f64>,
+    /// Velocity that all gets (m/s).
+    velocity: Vector3<f64>,
+    /// Whether all lists are in the opposite order.
+    is_reversed: bool,
+}
+
+impl Frame {
+    /// The frame of the description, in which what is given by default is written down.
+    pub const SAME: Self = Self {
+        name: "",
+        turn: 0.0,
+        is_mirrored: false,
+        length: 1.0,
+        shift: Vector3::new(0.0, 0.0, 0.0),
+        velocity: Vector3::new(0.0, 0.0, 0.0),
+        is_reversed: false,
+    };
+
+    /// Lists the frames in which a scene has to move alike.
+    pub fn all() -> Vec<Self> {
+        let shift = |x, y, z| Vector3::new(x, y, z);
+        vec![
+            Self {
+                name: "shifted",
+                shift: shift(5.0, 0.0, 3.0),
+                ..Self::SAME
+            },
+            Self {
+                name: "shifted far",
+                shift: shift(64.0, 0.0, -32.0),
+                ..Self::SAME
+            },
+            Self {
+                name: "turned",
+                turn: 0.7,
+                ..Self::SAME
+            },
+            Self {
+                name: "turned by half",
+                turn: PI,
+                ..Self::SAME
+            },
+            Self {
+                name: "mirrored",
+                is_mirrored: true,
+                ..Self::SAME
+            },
+            Self {
+                name: "in mm",
+                length: 1000.0,
+                ..Self::SAME
+            },
+            Self {
+                name: "moving",
+                velocity: shift(2.0, -1.0, 0.5),
+                ..Self::SAME
+            },
+            Self {
+                name: "reversed",
+                is_reversed: true,
+                ..Self::SAME
+            },
+        ]
+    }
+
+    /// Returns the turn.
+    fn turning(&self) -> Matrix3<f64> {
+        if self.turn == PI {
+            return Matrix3::from_diagonal(&Vector3::new(-1.0, 1.0, -1.0));
+        }
+        rotation(Vector3::y() * self.turn)
+    }
+
+    /// Returns the mirror.
+    fn mirror(&self) -> Matrix3<f64> {
+        let side = if self.is_mirrored { -1.0 } else { 1.0 };
+        Matrix3::from_diagonal(&Vector3::new(side, 1.0, 1.0))
+    }
+
+    /// Returns where a place (m) is at time t (s).
+    pub fn place(&self, place: Vector3<f64>, t: f64) -> Vector3<f64> {
+        self.turning() * self.mirror() * place * self.length + self.shift + self.velocity * t
+    }
+
+    /// Whether the scene can be described in this frame.
+    pub fn suits(&self, scene: &Value) -> bool {
+        let has = |key: &str| !scene[key].is_null();
+        let text = scene.to_string();
+        let says = |words: &[&str]| {
+            words
+                .iter()
+                .any(|word| text.contains(&format!("\"{word}\"")))
+        };
+        // Boxes of a fluid are along the axes.
+        let is_half = self.turn == 0.0 || self.turn == PI;
+        if has("circle") || !is_half && has("fluid") {
+            return false;
+        }
+        // The cells of a lattice are numbered from the left, and folds begin to one side.
+        let lattices = ["jelly", "solid", "mesh", "fluid", "obstacle"]
+            .iter()
+            .any(|key| has(key));
+        let is_handed = lattices || says(&["folds", "file", "orientations"]);
+        if self.is_mirrored && (is_handed || self.turn != 0.0) {
+            return false;
+        }
+        if self.turn != 0.0 && says(&["orientations"]) {
+            return false;
+        }
+        // The pressure of the air is 101325 Pa, and surfaces keep apart against 100 m/s2.
+        let touches = has("body") || says(&["self_collision", "thickness", "restitution"]);
+        if self.length != 1.0 && (touches || says(&["fill"])) {
+            return false;
+        }
+        if self.is_reversed {
+            // Numbers of particles that are in several bodies.
+            let numbered = ["springs", "constraint", "pin", "torn", "state"];
+            return !numbered.iter().any(|key| has(key));
+        }
+        if self.velocity == Vector3::zeros() {
+            return true;
+        }
+        let joints = scene["joint"].as_array();
+        let is_joined =
+            joints.is_some_and(|all| all.iter().any(|joint| joint.get("body").is_some()));
+        let is_pinned = says(&["pin", "tank", "inflow", "outflow"]);
+        if has("state") && scene["state"]["positions"].is_null() {
+            return false;
+        }
+        !is_joined && !is_pinned && !FIXED.iter().any(|key| has(key))
+    }
+
+    /// Returns the scene in this frame. Gusts are left out of both.
+    pub fn of(&self, scene: &Value) -> Value {
+        let mut scene = scene.clone();
+        let flat = scene["fluid"][0]["dimensions"] == json!(2);
+        self.complete(&mut scene);
+        self.table("", scene.as_object_mut().unwrap(), flat);
+        if self.is_reversed {
+            reverse(&mut scene);
+        }
+        scene
+    }
+
+    /// Adds what is the same in each frame only if it is written down: turns of bodies, directions,
+    /// places and velocities.
+    fn complete(&self, scene: &mut Value) {
+        let all = scene.as_object_mut().unwrap().iter_mut();
+        for (key, value) in all {
+            let mut tables: Vec<&mut Value> = match value {
+                Value::Array(tables) => tables.iter_mut().collect(),
+                table => vec![table],
+            };
+            let name = key.as_str();
+            for table in tables.iter_mut().filter_map(|table| table.as_object_mut()) {
+                let has_file = table.contains_key("file");
+                let mut default = |key: &str, value: Value| {
+                    table.entry(key).or_insert(value);
+                };
+                if has_file {
+                    default("scale", json!(1.0));
+                }
+                let zero = json!([0.0, 0.0, 0.0]);
+                if ["jelly", "mesh", "solid", "body", "box", "obstacle"].contains(&name) {
+                    default("rotation", zero.clone());
+                }
+                if ["mesh", "body", "obstacle"].contains(&name) {
+                    default("at", zero.clone());
+                }
+                if name == "cloth" {
+                    default("right", json!([1.0, 0.0, 0.0]));
+                    default("down", json!([0.0, -1.0, 0.0]));
+                }
+                if name == "wind" {
+                    table.insert("steady".into(), json!(true));
+                    if self.length != 1.0 && table.contains_key("velocity") {
+                        table.entry("density").or_insert(json!(1.2));
+                    }
+                    continue;
+                }
+                if self.velocity == Vector3::zeros() {
+                    continue;
+                }
+                let at_rest = |table: &Map<String, Value>, key: &str| {
+                    let rows = table[key].as_array().unwrap();
+                    Value::from(vec![zero.clone(); rows.len()])
+                };
+                if name == "particles" || name == "state" && table.contains_key("positions") {
+                    let still = at_rest(table, "positions");
+                    let velocities = table.entry("velocities").or_insert(still);
+                    velocities
+                        .as_array_mut()
+                        .unwrap()
+                        .iter_mut()
+                        .for_each(|v| self.accelerate(v));
+                } else if name == "state" {
+                    let velocities = table.get_mut("velocities").and_then(Value::as_array_mut);
+                    velocities
+                        .into_iter()
+                        .flatten()
+                        .for_each(|v| self.accelerate(v));
+                } else if BODIES.contains(&name) {
+                    self.accelerate(table.entry("velocity").or_insert(zero.clone()));
+                }
+            }
+        }
+    }
+
+    /// Adds the velocity of the frame.
+    fn accelerate(&self, velocity: &mut Value) {
+        for (v, more) in velocity
+            .as_array_mut()
+            .unwrap()
+            .iter_mut()
+            .zip(&self.velocity)
+        {
+            *v = json!(v.as_f64().unwrap() + more);
+        }
+    }
+
+    fn table(&self, name: &str, table: &mut Map<String, Value>, flat: bool) {
+        for (key, value) in table {
+            let kind = match (name, key.as_str()) {
+                ("fluid", "density") if flat => Kind::Number(-2),
+                ("", key) if key != "floor" && value.is_object() => Kind::Number(0),
+                (name, key) => kind(name, key),
+            };
+            self.value(key, value, kind, flat);
+        }
+    }
+
+    /// Changes a value of this kind, or all in a table under this key.
+    fn value(&self, key: &str, value: &mut Value, kind: Kind, flat: bool) {
+        if let Value::Object(table) = value {
+            return self.table(key, table, flat);
+        }
+        if let Value::Array(all) = value {
+            let is_vector = all.len() == 3 && all.iter().all(Value::is_number);
+            if kind == Kind::Springs {
+                for row in all {
+                    row[3] = json!(row[3].as_f64().unwrap() * self.length);
+                }
+            } else if is_vector && !matches!(kind, Kind::Number(_)) {
+                let old = Vector3::from_fn(|k, _| all[k].as_f64().unwrap());
+                *value = json!(<[f64; 3]>::from(self.vector(old, kind)));
+            } else {
+                all.iter_mut()
+                    .for_each(|one| self.value(key, one, kind, flat));
+            }
+            return;
+        }
+        let Some(number) = value.as_f64() else { return };
+        *value = match kind {
+            Kind::Number(power) if power != 0 => json!(number * self.length.powi(power)),
+            Kind::Height => json!(number * self.length + self.shift.y),
+            _ => return,
+        };
+    }
+
+    fn vector(&self, old: Vector3<f64>, kind: Kind) -> Vector3<f64> {
+        let (turn, mirror) = (self.turning(), self.mirror());
+        let side = mirror.determinant();
+        match kind {
+            Kind::Place => self.place(old, 0.0),
+            Kind::Vector(power) => turn * mirror * old * self.length.powi(power),
+            Kind::Axis(power) => turn * mirror * old * (side * self.length.powi(power)),
+            Kind::Inside => mirror * old * self.length,
+            Kind::RotationInside => mirror * old * side,
+            Kind::Rotation if self.turn == 0.0 => mirror * old * side,
+            Kind::Rotation => vector_of(turn * rotation(old)),
+            Kind::Height | Kind::Springs | Kind::Number(_) => old,
+        }
+    }
+}
+
+/// Returns the rotation vector of a rotation matrix.
+fn vector_of(matrix: Matrix3<f64>) -> Vector3<f64> {
+    UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(matrix)).scaled_axis()
+}
+
+/// Puts bodies, single particles, springs, joints and obstacles in the opposite order.
+fn reverse(scene: &mut Value) {
+    let count = |list: &Value| list.as_array().map_or(0, Vec::len);
+    let (bodies, particles) = (
+        count(&scene["body"]),
+        count(&scene["particles"]["positions"]),
+    );
+    let turn = |number: &mut Value, count: usize| {
+        if let Some(k) = number.as_u64() {
+            *number = json!((count as u64).wrapping_sub(1 + k));
+        }
+    };
+    let table = scene.as_object_mut().unwrap();
+    table.remove("trail");
+    for (key, value) in table.iter_mut() {
+        let is_alone = key == "particles";
+        let mut tables: Vec<&mut Value> = match value {
+            Value::Array(all) if all.iter().all(Value::is_object) => {
+                all.reverse();
+                all.iter_mut().collect()
+            }
+            Value::Object(_) if is_alone => vec![value],
+            _ => continue,
+        };
+        for table in tables.iter_mut().filter_map(|table| table.as_object_mut()) {
+            for (key, value) in table.iter_mut() {
+                let all = value.as_array_mut();
+                match (key.as_str(), all) {
+                    ("pin", Some(pins)) => pins.iter_mut().for_each(|pin| {
+                        if let Some(body) = pin.get_mut("body") {
+                            turn(body, bodies);
+                        }
+                        let numbers = pin.get_mut("particles").and_then(Value::as_array_mut);
+                        let numbers = numbers.into_iter().flatten().filter(|_| is_alone);
+                        numbers.for_each(|number| turn(number, particles));
+                    }),
+                    ("bodies", Some(pair)) => pair.iter_mut().for_each(|k| turn(k, bodies)),
+                    ("positions" | "velocities" | "masses", Some(rows)) => rows.reverse(),
+                    ("springs", Some(rows)) => {
+                        rows.reverse();
+                        for row in rows {
+                            turn(&mut row[0], particles);
+                            turn(&mut row[1], particles);
+                        }
+                    }
+                    ("body", None) => turn(value, bodies),
+                    _ => {}
+                }
+            }
+        }
+    }
+}

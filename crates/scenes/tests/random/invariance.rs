@@ -1,0 +1,203 @@
+//! Invariances of all built-in scenes, those of the documentation, and random ones.
+
+use std::path::Path;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::thread;
+
+use a3_core::integrators;
+use a3_scenes::{Description, Mesh, SCENES, Setup};
+use serde_json::Value;
+
+use crate::alike::Known;
+use crate::chance::Chance;
+use crate::frames::Frame;
+use crate::grammar::Grammar;
+use crate::{MOST_PARTICLES, numbered, told};
+
+/// Methods by which scenes run: explicit, splitting, and implicit.
+const METHODS: [&str; 3] = ["rk4", "verlet", "implicit"];
+
+/// Default number of random scenes. `A3_SCENES` sets another, and `A3_FIRST` the first; all scenes
+/// then run in each frame by all methods, and otherwise by one.
+const RANDOM: usize = 30;
+
+/// Scenes and frames that are left out, with the reason.
+const LEFT_OUT: &[(&str, &[&str], &str)] = &[
+    (
+        "dominoes",
+        &["shifted", "shifted far", "mirrored", "turned by half"],
+        "impacts on a floor act at the mean of both sides' points",
+    ),
+    (
+        "doll",
+        &["shifted", "shifted far"],
+        "impacts on a floor act at the mean of both sides' points",
+    ),
+    (
+        "stack",
+        &["turned by half", "mirrored", "reversed"],
+        "impacts of many bodies depend on their order",
+    ),
+    (
+        "tangled",
+        &["reversed"],
+        "surfaces come apart in the order of the bodies",
+    ),
+    (
+        "turning",
+        &["turned by half"],
+        "impacts depend on the order of the sides of a box",
+    ),
+    (
+        "linkage",
+        &["turned"],
+        "implicit Euler takes a closed chain of hinges elsewhere",
+    ),
+    (
+        "windmill",
+        &["mirrored"],
+        "the sides of a box are cut along one of their diagonals",
+    ),
+];
+
+const DOCS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/scenes");
+
+/// Scene with its name.
+type Named = (String, Value);
+
+fn build(scene: &Value) -> Result<Setup, String> {
+    let text = toml::to_string(scene).map_err(|why| why.to_string())?;
+    let mut mesh = |name: &str| {
+        let file = Path::new(DOCS).join(name);
+        if file.exists() {
+            return Mesh::from_obj(&std::fs::read(file).unwrap());
+        }
+        crate::mesh(name)
+    };
+    let built = Description::parse(&text).and_then(|d| d.build(None, &mut mesh));
+    built.map_err(|why| why.to_string())
+}
+
+/// Lists the built-in scenes and those of the documentation.
+fn known() -> Vec<Named> {
+    let read = |name: &str, text: &str| (name.to_owned(), toml::from_str(text).unwrap());
+    let mut all: Vec<Named> = SCENES
+        .iter()
+        .map(|scene| read(scene.name, scene.text))
+        .collect();
+    let mut files: Vec<_> = std::fs::read_dir(DOCS)
+        .unwrap()
+        .map(|file| file.unwrap().path())
+        .collect();
+    files.sort();
+    for file in files
+        .iter()
+        .filter(|file| file.extension().is_some_and(|e| e == "toml"))
+    {
+        let text = std::fs::read_to_string(file).unwrap();
+        all.push(read(file.file_stem().unwrap().to_str().unwrap(), &text));
+    }
+    all
+}
+
+/// Creates random scene k, if it makes sense and is small.
+fn random(k: usize, grammar: &Grammar) -> Option<Named> {
+    let mut chance = Chance(k as u64);
+    let (mut scene, _) = grammar.table("", &mut chance);
+    let setup = build(&scene).ok()?;
+    if setup.scene.model.particles() > MOST_PARTICLES {
+        return None;
+    }
+    numbered::add(grammar, &mut scene, &setup, &mut chance);
+    Some((format!("random {k}"), scene))
+}
+
+/// Returns whether a scene is left out in a frame.
+fn is_left_out(name: &str, frame: &Frame) -> bool {
+    let mut all = LEFT_OUT.iter();
+    all.any(|(scene, frames, _)| *scene == name && frames.contains(&frame.name))
+}
+
+/// Lists what is wrong with the invariances of scene k.
+fn faults(k: usize, (name, scene): &Named) -> Vec<String> {
+    let Ok(own) = build(&Frame::SAME.of(scene)) else {
+        return vec![];
+    };
+    let suits = |frame: &Frame| frame.suits(scene) && !is_left_out(name, frame);
+    let frames = Frame::all().into_iter().filter(suits);
+    let frames: Vec<_> = frames
+        .map(|frame| (build(&frame.of(scene)), frame))
+        .collect();
+    let mut faults = vec![];
+    for (built, frame) in &frames {
+        if let Err(why) = built {
+            faults.push(format!("{name}, {}: it is refused: {why}", frame.name));
+        }
+    }
+    let is_whole = std::env::var("A3_SCENES").is_ok();
+    for (number, method) in METHODS.iter().enumerate() {
+        let method = integrators::find(method).unwrap();
+        let Some(known) = Known::new(&own, method) else {
+            continue;
+        };
+        for (place, (built, frame)) in frames.iter().enumerate() {
+            let is_due = is_whole || (k + place) % METHODS.len() == number;
+            let Some(other) = built.as_ref().ok().filter(|_| is_due) else {
+                continue;
+            };
+            if let Err(why) = known.compare(frame, other) {
+                faults.push(format!("{name}, {}, {}: {why}", frame.name, method.name));
+            }
+        }
+        if let Err(why) = known.cut() {
+            faults.push(format!("{name}, {}: {why}", method.name));
+        }
+    }
+    faults
+}
+
+/// Finds the faults of all scenes on all processors, and prints them.
+fn check(count: usize, scene: impl Fn(usize) -> Option<Named> + Sync) {
+    let (next, found) = (AtomicUsize::new(0), Mutex::new(vec![]));
+    thread::scope(|scope| {
+        for _ in 0..thread::available_parallelism().map_or(1, usize::from) {
+            scope.spawn(|| {
+                loop {
+                    let k = next.fetch_add(1, Ordering::Relaxed);
+                    if k >= count {
+                        break;
+                    }
+                    let Some(scene) = scene(k) else { continue };
+                    let all = faults(k, &scene);
+                    if !all.is_empty() {
+                        let text = toml::to_string(&scene.1).unwrap();
+                        println!("{}\n{text}", all.join("\n"));
+                    }
+                    found.lock().unwrap().extend(all);
+                }
+            });
+        }
+    });
+    let mut found = found.into_inner().unwrap();
+    found.sort();
+    assert!(
+        found.is_empty(),
+        "{} faults:\n{}",
+        found.len(),
+        found.join("\n")
+    );
+}
+
+#[test]
+fn known_scenes_move_alike_in_all_frames() {
+    let all = known();
+    check(all.len(), |k| Some(all[k].clone()));
+}
+
+#[test]
+fn random_scenes_move_alike_in_all_frames() {
+    let (count, first) = (told("A3_SCENES", RANDOM), told("A3_FIRST", 0));
+    let grammar = Grammar::new();
+    check(count, |k| random(first + k, &grammar));
+}
