@@ -137,13 +137,14 @@ impl ContactPhase {
 
     /// Applies impacts to particles that touch an obstacle and approach it at time t (s), at the
     /// end of a step of h (s), and moves them to its surface. Distances up to `none` (m) count as
-    /// zero. `left_out` returns the height (m) up to which rebounds of a restitution do not begin.
+    /// zero. `left_out` returns the height (m) up to which rebounds of a restitution at a
+    /// place (m) do not begin.
     pub(crate) fn strike(
         &mut self,
         obstacles: &[Obstacle],
         inverse_masses: &[f64],
         (t, h): (f64, f64),
-        (none, left_out): (f64, &dyn Fn(f64) -> f64),
+        (none, left_out): (f64, &dyn Fn(f64, Vector3<f64>) -> f64),
         y1: &mut [f64],
     ) {
         let n = inverse_masses.len();
@@ -170,7 +171,7 @@ impl ContactPhase {
                 let press = ((begun - row(v, n, i)).dot(&normal) / h).max(0.0);
                 // The time in which a rebound of that height comes back.
                 let shortest = if press > 0.0 {
-                    (8.0 * left_out(obstacle.restitution) / press).sqrt()
+                    (8.0 * left_out(obstacle.restitution, row(x, n, i)) / press).sqrt()
                 } else {
                     0.0
                 };
