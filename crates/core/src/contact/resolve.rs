@@ -137,13 +137,14 @@ impl ContactPhase {
 
     /// Applies impacts to particles that touch an obstacle and approach it at time t (s), at the
     /// end of a step of h (s), and moves them to its surface. Distances up to `none` (m) count as
-    /// zero. `left_out` returns the height (m) up to which rebounds of a restitution do not begin.
+    /// zero. `left_out` returns the height (m) up to which rebounds of a restitution at a
+    /// place (m) do not begin.
     pub(crate) fn strike(
         &mut self,
         obstacles: &[Obstacle],
         inverse_masses: &[f64],
         (t, h): (f64, f64),
-        (none, left_out): (f64, &dyn Fn(f64) -> f64),
+        (none, left_out): (f64, &dyn Fn(f64, Vector3<f64>) -> f64),
         y1: &mut [f64],
     ) {
         let n = inverse_masses.len();
@@ -168,7 +169,8 @@ impl ContactPhase {
                     .get(3 * n..6 * n)
                     .map_or(row(v, n, i), |v0| row(v0, n, i));
                 let press = ((begun - row(v, n, i)).dot(&normal) / h).max(0.0);
-                let shortest = shortest_rebound(press, [left_out(obstacle.restitution), 0.0]);
+                let height = left_out(obstacle.restitution, row(x, n, i));
+                let shortest = shortest_rebound(press, [height, 0.0]);
                 let speed = rebound_speed(obstacle.restitution, approach, press, shortest);
                 let change = change_in_impact(relative, normal, speed, obstacle.friction);
                 set_row(x, n, i, pose.place.position + point);

@@ -65,7 +65,7 @@ impl Pipeline {
 
     /// Returns the conditions for rebounds of ropes.
     fn least(&self, state: &RunState, rebounds: bool) -> Least {
-        let depths = Depths::new(&self.bounds, self.limits, state.control);
+        let depths = Depths::new(self.bounds.radius, self.limits, state.control);
         Least {
             none: depths.none,
             height: depths.none.max(depths.shallow),
@@ -119,7 +119,7 @@ impl Pipeline {
             return;
         };
         let before: Vec<_> = taut(network).collect();
-        let none = Depths::new(&self.bounds, self.limits, state.control).none;
+        let none = Depths::new(self.bounds.radius, self.limits, state.control).none;
         state.work += Work::of(settle(network, t, &state.y, none));
         if !taut(network).eq(before) {
             self.stepper.forget();
@@ -149,7 +149,7 @@ impl Pipeline {
     /// Lets particles leave the fluid that are in its outflows at time t (s), where the run has
     /// arrived, and accounts for their energy.
     fn drain(&mut self, model: &mut Model, state: &mut RunState, t: f64) {
-        let none = Depths::new(&self.bounds, self.limits, state.control).none;
+        let none = Depths::new(self.bounds.radius, self.limits, state.control).none;
         if let Model::Network(network) = model
             && entered(network, &state.y, none).next().is_some()
         {

@@ -1,6 +1,7 @@
 //! Depths of penetration into obstacles that steps distinguish.
 
-use super::bounds::Bounds;
+use nalgebra::Vector3;
+
 use crate::control::Control;
 use crate::scene::StepLimits;
 
@@ -17,7 +18,8 @@ pub(super) const NEGLIGIBLE_SHARE: f64 = 1e-9;
 /// creep on, in tiny steps.
 const STILL_SHARE: f64 = 1e-2;
 
-/// Height of a rebound that may be a rounding error, over the largest coordinates of the scene.
+/// Height of a rebound that may be a rounding error, over the distance from the origin and the
+/// radius of the scene.
 const ROUNDING_SHARE: f64 = 1e-14;
 
 /// Depths into an obstacle, and heights above it (m).
@@ -30,14 +32,13 @@ pub(super) struct Depths {
     pub shallow: f64,
     /// Largest depth to which a step of an adaptive method may take a particle.
     pub deepest: f64,
-    /// Height of a rebound that may be a rounding error.
-    rounding: f64,
+    /// Radius of the scene.
+    radius: f64,
 }
 
 impl Depths {
-    /// Creates the depths for steps under a control, in a scene with those bounds.
-    pub fn new(bounds: &Bounds, limits: StepLimits, control: Control) -> Self {
-        let Bounds { middle, radius } = *bounds;
+    /// Creates the depths for steps under a control, in a scene of that radius (m).
+    pub fn new(radius: f64, limits: StepLimits, control: Control) -> Self {
         let relative = control.tolerance().unwrap_or(0.0);
         let absolute = limits.absolute.unwrap_or(relative * radius);
         let deepest = MAX_PENETRATION * radius;
@@ -45,7 +46,7 @@ impl Depths {
             none: NEGLIGIBLE_SHARE * radius,
             shallow: absolute.min(deepest),
             deepest,
-            rounding: ROUNDING_SHARE * (middle.norm() + radius),
+            radius,
         }
     }
 
@@ -54,14 +55,14 @@ impl Depths {
         STILL_SHARE * self.none.max(self.shallow)
     }
 
-    /// Returns the height (m) up to which a rebound from an obstacle of that restitution is left
-    /// out, with all that follow it.
+    /// Returns the height (m) up to which a rebound from an obstacle of that restitution, at a place
+    /// (m), is left out, with all that follow it.
     ///
     /// A rebound at the speed u to the height H = u^2 / 2 p, under an acceleration p, is followed by
     /// others at e u, e^2 u, ... All of them end after T = 2 u / (p (1 - e)), and until then nothing
     /// moves farther than u T = 4 H / (1 - e) from where it would be without them.
-    pub fn left_out(&self, restitution: f64) -> f64 {
+    pub fn left_out(&self, restitution: f64, place: Vector3<f64>) -> f64 {
         let height = 0.25 * (1.0 - restitution) * STILL_SHARE * self.shallow;
-        height.max(self.rounding)
+        height.max(ROUNDING_SHARE * (place.norm() + self.radius))
     }
 }

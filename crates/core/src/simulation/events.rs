@@ -117,7 +117,8 @@ impl Events {
             let approach = Approach::new(obstacle, &course, t);
             let mut from = 0.0;
             if pair.touches && piece == 0 {
-                let flight = approach.flight(|_| step.depths.left_out(obstacle.restitution));
+                let flight =
+                    approach.flight(|_| step.depths.left_out(obstacle.restitution, course.x[0]));
                 pair.touches = flight.is_none();
                 from = flight.unwrap_or(0.0);
             }

@@ -90,7 +90,7 @@ impl Phases {
     /// Applies impacts to the particles that touch an obstacle at the end of a step of h (s) that
     /// ends at time t (s), with `times` = (t, h). Rebounds that the depths leave out do not begin.
     pub fn strike(&mut self, network: &Network, times: (f64, f64), depths: Depths, y: &mut [f64]) {
-        let left_out = |restitution: f64| depths.left_out(restitution);
+        let left_out = |restitution, place| depths.left_out(restitution, place);
         let (obstacles, inverse_masses) = (network.obstacles(), network.inverse_masses());
         self.contact.strike(
             obstacles,

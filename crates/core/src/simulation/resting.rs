@@ -181,9 +181,10 @@ impl Rests {
             let obstacle = &network.obstacles()[rest.obstacle];
             let most = obstacle.friction * press;
             let leaving = speed.dot(&rest.normal);
-            let begun = height(obstacle, row(x, n, rest.particle)).0.max(0.0);
+            let place = row(x, n, rest.particle);
+            let begun = height(obstacle, place).0.max(0.0);
             let highest = begun + 0.5 * leaving * leaving / press;
-            if press <= 0.0 || highest > depths.left_out(obstacle.restitution) {
+            if press <= 0.0 || highest > depths.left_out(obstacle.restitution, place) {
                 return false;
             }
             let slide = speed - rest.normal * leaving;

@@ -162,7 +162,7 @@ impl Pipeline {
     ) -> Result<Result<(Part, Settled), Cause>, Error> {
         let flying = self.limits_of_flight(model, &state.y);
         let (stepper, limits) = (&mut self.stepper, self.limits);
-        let depths = Depths::new(&self.bounds, limits, state.control);
+        let depths = Depths::new(self.bounds.radius, limits, state.control);
         let locates = self.locator.serves(stepper);
         let reach = match (locates, model.network().filter(|_| target.is_some())) {
             (true, _) => Reach::of_step(model, flying, stepper.is_adaptive(), t, target),
