@@ -7,6 +7,7 @@ use crate::control::Control;
 use crate::error::Error;
 use crate::failure::succeeded;
 use crate::integrators::{Method, find};
+use crate::network::Network;
 use crate::random::SplitMix;
 use crate::scene::Scene;
 use crate::simulation::Simulation;
@@ -23,6 +24,9 @@ const MIN_STEPS: f64 = 600.0;
 /// everything else, and steps that are too long for it separate any two runs at once.
 const MIN_RESOLVED_STEPS: f64 = 100.0;
 const MAX_HALVINGS: u32 = 6;
+/// Growth of the Lyapunov time, when the step is halved, from which on it is the step that separates
+/// two runs.
+const MIN_CALMING: f64 = 1.5;
 /// Largest displacement of a coordinate between the two runs at the start, over the scene's radius.
 const SEPARATION: f64 = 1e-8;
 /// Number of comparisons of both runs between one round time and the next.
@@ -53,7 +57,8 @@ pub struct Horizon {
 /// (s), which may be infinite. `None` if `go_on` returned false.
 ///
 /// Both runs take the same fixed steps, so that their distance is that of the motion and not of two
-/// sequences of steps. The steps are shorter where a hundred of them separate the runs.
+/// sequences of steps. The steps are shorter where a hundred of them separate the runs, and where
+/// shorter steps in contact separate them less.
 ///
 /// # Errors
 /// The scene cannot be run.
@@ -71,17 +76,23 @@ pub fn horizon(scene: &Scene, until: f64, go_on: GoOn) -> Result<Option<Horizon>
     let limit = largest_step(method, &modes)?.map_or(f64::INFINITY, |limit| limit.step);
     let mut step = (MAX_STEP_SHARE * limit).min(longest / MIN_STEPS);
     let longest = longest.min(until);
+    let touches = scene.model.network().is_some_and(Network::can_touch);
     let mut found = TwoRuns::start(scene, method, step, longest, go_on)?;
     for _ in 0..MAX_HALVINGS {
-        let is_resolved = |runs: &TwoRuns| {
-            runs.parted_at
-                .is_none_or(|time| time > MIN_RESOLVED_STEPS * step)
-        };
-        if found.as_ref().is_none_or(is_resolved) {
+        let Some(runs) = &found else { break };
+        let is_early = |time| time <= MIN_RESOLVED_STEPS * step;
+        // A little growth may be of steps that are nearly too long for contact.
+        let is_mild = touches && runs.parted_at.is_none() && runs.horizon.lyapunov.is_finite();
+        if !runs.parted_at.is_some_and(is_early) && !is_mild {
             break;
         }
+        let before = runs.horizon.lyapunov;
         step *= 0.5;
         found = TwoRuns::start(scene, method, step, longest, go_on)?;
+        let lyapunov = found.as_ref().map(|runs| runs.horizon.lyapunov);
+        if is_mild && lyapunov.is_some_and(|now| now < MIN_CALMING * before) {
+            break;
+        }
     }
     Ok(found.map(|runs| runs.horizon))
 }

@@ -230,7 +230,7 @@ impl Met<'_> {
         // Less than a rebound that lasts for the step.
         let least = |fall: f64| 0.125 * fall.max(0.0);
         let flight = if is_near {
-            approach.flight(least)
+            approach.flight(least).filter(|share| *share > 0.0)
         } else {
             Some(0.0)
         };
