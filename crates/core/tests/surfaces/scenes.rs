@@ -183,7 +183,12 @@ fn nothing_crosses_in_any_documented_scene_by_any_method() {
             };
             let serves = |scene: &&Scene| method.check(scene.model.system()).is_ok();
             let scene = scenes.iter().find(serves);
-            let scene = scene.unwrap_or_else(|| panic!("{} does not run {name}", method.name));
+            let Some(scene) = scene else {
+                // With a tolerance and without velocities, they refuse friction.
+                let refuses = method.positions_only() && method.is_adaptive();
+                assert!(refuses, "{} does not run {name}", method.name);
+                continue;
+            };
             let values = values(name, method);
             runs.extend(values.map(|value| (name, scene.clone(), method, value, until)));
         }
