@@ -25,16 +25,6 @@ const RANDOM: usize = 30;
 /// Scenes and frames that are left out, with the reason.
 const LEFT_OUT: &[(&str, &[&str], &str)] = &[
     (
-        "dominoes",
-        &["shifted", "shifted far", "mirrored", "turned by half"],
-        "impacts on a floor act at the mean of both sides' points",
-    ),
-    (
-        "doll",
-        &["shifted", "shifted far"],
-        "impacts on a floor act at the mean of both sides' points",
-    ),
-    (
         "stack",
         &["turned by half", "mirrored", "reversed"],
         "impacts of many bodies depend on their order",
