@@ -151,7 +151,7 @@ impl Surface {
             PairKind::VertexFloor => [around(1.0, 0.0), around(-0.5, 0.8), around(-0.5, -0.8)],
             _ => corners,
         };
-        (distance > 0.0).then(|| Footing {
+        (distance > 0.0).then_some(Footing {
             point,
             depth: reach - distance,
             foot,

@@ -35,7 +35,7 @@ impl Pass<'_> {
         let Some(stream) = self.stream else {
             for face in faces {
                 face.nodes(radius, &mut |at, area| {
-                    self.add([at, area], [1.0, 0.0], &mut sum)
+                    self.add([at, area], [1.0, 0.0], &mut sum);
                 });
             }
             return sum;
@@ -48,7 +48,7 @@ impl Pass<'_> {
         for face in faces {
             // Still air everywhere, and in the region what the wind changes.
             face.nodes(radius, &mut |at, area| {
-                self.add([at, area], [0.0, 1.0], &mut sum)
+                self.add([at, area], [0.0, 1.0], &mut sum);
             });
             face.pieces(longest, &is_near, &mut |piece| {
                 piece.nodes(longest.min(radius), &mut |at, area| {

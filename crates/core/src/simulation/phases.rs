@@ -196,8 +196,8 @@ impl Phases {
         let first = largest_shift(network, [&unstruck, y1]);
         let mut last = first;
         for _ in 0..MAX_ROUNDS {
-            // Written so that a state that is not finite, which is reported later, ends it.
-            if !(last > SETTLED_SHARE * first) {
+            // A state that is not finite is reported later.
+            if last.is_nan() || last <= SETTLED_SHARE * first {
                 break;
             }
             project(network, y1, true);
