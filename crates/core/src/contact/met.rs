@@ -230,7 +230,8 @@ impl Met<'_> {
         // Less than a rebound that lasts for the step.
         let least = |fall: f64| 0.125 * fall.max(0.0);
         let flight = if is_near {
-            approach.flight(least).filter(|share| *share > 0.0)
+            let flight = approach.flight(least);
+            flight.filter(|share| *share > 0.0 || self.obstacle.shape.is_convex())
         } else {
             Some(0.0)
         };

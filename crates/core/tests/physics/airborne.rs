@@ -240,13 +240,13 @@ fn fans_push_a_ball_where_they_blow() {
         let [mut force, mut torque] = [Vector3::zeros(); 2];
         let (heights, angles) = (1000, 1000);
         for k in 0..heights * angles {
-            let height = 2.0 * ((k / angles) as f64 + 0.5) / heights as f64 - 1.0;
-            let angle = std::f64::consts::TAU * (k % angles) as f64 / angles as f64;
+            let height = 2.0 * (f64::from(k / angles) + 0.5) / f64::from(heights) - 1.0;
+            let angle = std::f64::consts::TAU * f64::from(k % angles) / f64::from(angles);
             let across = (1.0 - height * height).sqrt();
             let normal = Vector3::new(across * angle.cos(), across * angle.sin(), height);
             let place = 0.5 * normal;
             let pressure = 0.25 * density * drag * squared_speed(at, radii, place.into());
-            let area = std::f64::consts::PI / (heights * angles) as f64;
+            let area = std::f64::consts::PI / f64::from(heights * angles);
             let part = Vector3::z() * (pressure * area * height.abs());
             force += part;
             torque += place.cross(&part);

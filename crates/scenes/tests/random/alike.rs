@@ -32,7 +32,7 @@ type Look = (f64, Vec<Vector3<f64>>);
 fn start(setup: &Setup, method: &'static Method) -> Result<Simulation, String> {
     let control = match method.default_control {
         Control::Step(h) => Control::Step(h * setup.defaults.step_scale),
-        tolerance => tolerance,
+        Control::Tolerance(tolerance) => Control::Tolerance(tolerance),
     };
     Simulation::new(setup.scene.clone(), method, control).map_err(|why| why.to_string())
 }

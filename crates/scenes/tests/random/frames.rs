@@ -281,8 +281,9 @@ impl Frame {
                 let old = Vector3::from_fn(|k, _| all[k].as_f64().unwrap());
                 *value = json!(<[f64; 3]>::from(self.vector(old, kind)));
             } else {
-                all.iter_mut()
-                    .for_each(|one| self.value(key, one, kind, flat));
+                for one in all.iter_mut() {
+                    self.value(key, one, kind, flat);
+                }
             }
             return;
         }
