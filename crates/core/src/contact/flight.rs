@@ -121,7 +121,7 @@ mod tests {
             field.points.push(v);
             field
         };
-        let v0 = Vector3::new(1.0, 2.0, 3.0);
+        let v0 = Vector3::new(1.0, -2.0, 3.0);
         let (v, way) = (v0 + g * h, v0 * h);
         let mut flight = Flight::default();
         flight.read(h, [&field(v0), &field(v), &field(way)]);
