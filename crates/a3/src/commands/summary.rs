@@ -27,8 +27,8 @@ struct Summary {
     energy_gained: Option<f64>,
     /// Energy gained or, below 0, lost (percent); none where forces do not conserve energy.
     energy_change_percent: Option<f64>,
-    /// Largest change (m/s) of a velocity at the start, so that it fits the constraints; none if all
-    /// did.
+    /// Largest change (m/s) of a velocity at the start, so that it fits the constraints; none if
+    /// all did.
     start_changed_by: Option<f64>,
     /// The constraint with the largest error; none if all were met.
     constraint: Option<Violation>,

@@ -24,8 +24,8 @@ const MIN_STEPS: f64 = 600.0;
 /// everything else, and steps that are too long for it separate any two runs at once.
 const MIN_RESOLVED_STEPS: f64 = 100.0;
 const MAX_HALVINGS: u32 = 6;
-/// Growth of the Lyapunov time, when the step is halved, from which on it is the step that separates
-/// two runs.
+/// Growth of the Lyapunov time, when the step is halved, from which on it is the step that
+/// separates two runs.
 const MIN_CALMING: f64 = 1.5;
 /// Largest displacement of a coordinate between the two runs at the start, over the scene's radius.
 const SEPARATION: f64 = 1e-8;

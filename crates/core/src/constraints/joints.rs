@@ -91,8 +91,8 @@ pub(crate) fn project(
 
 /// Visits the least changes, weighted by the masses, of all that the constraints move, in the
 /// world: a step of Newton's method towards a state that meets them. `weight` returns the inverse
-/// mass (1/kg) of a particle on no body or of the centre of one. With `ends_hold`, ropes and ends of
-/// joints hold where they are passed.
+/// mass (1/kg) of a particle on no body or of the centre of one. With `ends_hold`, ropes and ends
+/// of joints hold where they are passed.
 pub(crate) fn nearest(
     constraints: &Constraints,
     weight: impl Fn(usize) -> f64,

@@ -11,8 +11,8 @@
 //!
 //! A rope that would have to push gets no impulse (Moreau, *Unilateral contact and dry friction in
 //! finite freedom dynamics*, 1988). The end of a joint, C <= 0, is like a rope. Pins have the
-//! velocities of their paths, before and after: the impulse on one does the work of its product with
-//! the mean of both.
+//! velocities of their paths, before and after: the impulse on one does the work of its product
+//! with the mean of both.
 
 use nalgebra::Vector3;
 
@@ -39,10 +39,10 @@ pub(crate) struct Pushed {
     pub change: Vector3<f64>,
 }
 
-/// Visits the effects of the least impulses after which velocities fit the constraints that hold
+/// Returns the effects of the least impulses after which velocities fit the constraints that hold
 /// in the state (x, v), and of the ropes that tighten. A rope that tightens holds afterwards if its
-/// ends do not approach. `weight` returns the inverse mass (1/kg) of a particle on no body or of the
-/// centre of one.
+/// ends do not approach. `weight` returns the inverse mass (1/kg) of a particle on no body or of
+/// the centre of one.
 pub(crate) fn jump(
     constraints: &mut Constraints,
     struck: &[Struck],

@@ -1,8 +1,8 @@
 //! Ropes: |xi - xj| <= L. While a rope is taut, it has a row like that of a rod, whose multiplier
-//! is at most 0; a slack rope has none. A rope tightens by an impact (see [`jump`](super::jump)), and
-//! slackens where its multiplier would become positive: then it would have to push. The end of a
-//! joint, C <= 0, is like a rope: it holds while it would push back, and the joint reaches it by an
-//! impact.
+//! is at most 0; a slack rope has none. A rope tightens by an impact (see [`jump`](super::jump)),
+//! and slackens where its multiplier would become positive: then it would have to push. The end of
+//! a joint, C <= 0, is like a rope: it holds while it would push back, and the joint reaches it by
+//! an impact.
 
 use nalgebra::{Matrix3, Vector3};
 

@@ -88,9 +88,9 @@ impl<'a> Approach<'a> {
         (seen - normal * distance, normal)
     }
 
-    /// Returns a share of the step up to which a particle that begins at the surface flies above it,
-    /// if it rises to a height, or falls from one, above the least that counts (m). That may depend
-    /// on the acceleration towards the surface by the share of the step (m).
+    /// Returns a share of the step up to which a particle that begins at the surface flies above
+    /// it, if it rises to a height, or falls from one, above the least that counts (m). That may
+    /// depend on the acceleration towards the surface by the share of the step (m).
     pub fn flight(&self, least: impl Fn(f64) -> f64) -> Option<f64> {
         let begun = self.separation(0.0);
         let pose = self.obstacle.at(self.t);

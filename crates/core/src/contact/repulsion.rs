@@ -139,8 +139,8 @@ impl Pair {
         (factor * felt, slope * felt + factor * fades)
     }
 
-    /// Returns the share of the force that an elastic pair feels at a rate of the gap (m/s), and its
-    /// derivative with respect to the rate.
+    /// Returns the share of the force that an elastic pair feels at a rate of the gap (m/s), and
+    /// its derivative with respect to the rate.
     fn felt(&self, rate: f64) -> (f64, f64) {
         let Law { skin, stopped, .. } = self.law;
         let fastest = if rate < 0.0 {

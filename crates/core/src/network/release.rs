@@ -23,8 +23,8 @@ pub(crate) fn next_release(network: &Network) -> f64 {
     network.particles.next_release()
 }
 
-/// Returns the first time after t (s) at which the velocity of a pin that constraints hold may jump;
-/// infinite if there is none.
+/// Returns the first time after t (s) at which the velocity of a pin that constraints hold may
+/// jump; infinite if there is none.
 fn next_jump(network: &Network, t: f64) -> f64 {
     if !network.is_constrained() {
         return f64::INFINITY;

@@ -34,8 +34,8 @@ impl Pipeline {
         });
     }
 
-    /// Makes velocities fit, and accounts for the work, where the velocity of a pin that constraints
-    /// hold jumps at time t (s), or so near that no step ends between.
+    /// Makes velocities fit, and accounts for the work, where the velocity of a pin that
+    /// constraints hold jumps at time t (s), or so near that no step ends between.
     fn follow_pins(&mut self, model: &mut Model, state: &mut RunState, t: f64) {
         if let Model::Network(network) = model
             && let Some(time) = jump_near(network, t, state.sliver())
@@ -74,8 +74,8 @@ impl Pipeline {
         }
     }
 
-    /// Changes velocities in the state y at time t (s), and accounts for the work and for the energy
-    /// that ropes lose when they tighten.
+    /// Changes velocities in the state y at time t (s), and accounts for the work and for the
+    /// energy that ropes lose when they tighten.
     fn jump(
         &mut self,
         network: &mut Network,

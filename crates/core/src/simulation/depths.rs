@@ -55,12 +55,12 @@ impl Depths {
         STILL_SHARE * self.none.max(self.shallow)
     }
 
-    /// Returns the height (m) up to which a rebound from an obstacle of that restitution, at a place
-    /// (m), is left out, with all that follow it.
+    /// Returns the height (m) up to which a rebound from an obstacle of that restitution, at a
+    /// place (m), is left out, with all that follow it.
     ///
-    /// A rebound at the speed u to the height H = u^2 / 2 p, under an acceleration p, is followed by
-    /// others at e u, e^2 u, ... All of them end after T = 2 u / (p (1 - e)), and until then nothing
-    /// moves farther than u T = 4 H / (1 - e) from where it would be without them.
+    /// A rebound at the speed u to the height H = u^2 / 2 p, under an acceleration p, is followed
+    /// by others at e u, e^2 u, ... All of them end after T = 2 u / (p (1 - e)), and until then
+    /// nothing moves farther than u T = 4 H / (1 - e) from where it would be without them.
     pub fn left_out(&self, restitution: f64, place: Vector3<f64>) -> f64 {
         let height = 0.25 * (1.0 - restitution) * STILL_SHARE * self.shallow;
         height.max(ROUNDING_SHARE * (place.norm() + self.radius))

@@ -203,8 +203,8 @@ impl Driver {
     }
 
     /// Shows the state at a time (s) within the step: interpolated, then corrected for contact and
-    /// pins as at the end of a step. If pins let go or jump in a fixed step, it is taken again up to
-    /// there: no polynomial follows the motion past such a time.
+    /// pins as at the end of a step. If pins let go or jump in a fixed step, it is taken again up
+    /// to there: no polynomial follows the motion past such a time.
     fn show(&mut self, model: &mut Model, state: &mut RunState, time: f64) {
         let Some([begin, end]) = self.within.times() else {
             return;

@@ -146,8 +146,8 @@ impl Rests {
     }
 
     /// Adds the particles that press on a flat obstacle and do not leave it in the state y at time
-    /// t (s): all further rebounds of them are left out. Velocities are set to 0 where a slide counts
-    /// as stopped. Returns the number of evaluations.
+    /// t (s): all further rebounds of them are left out. Velocities are set to 0 where a slide
+    /// counts as stopped. Returns the number of evaluations.
     pub fn list(&mut self, network: &Network, t: f64, y: &mut [f64], depths: Depths) -> u64 {
         let n = network.particles();
         for (k, obstacle) in network.obstacles().iter().enumerate() {

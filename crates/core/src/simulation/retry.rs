@@ -26,7 +26,8 @@ const MIN_IMPULSE_STEP: f64 = 1e-4;
 
 /// Returns the share of a step of h (s) with which an adaptive method takes it again, if it has to:
 /// up to just after a particle touched an obstacle, a slide ended, a spring became too long,
-/// friction on a turning obstacle was too inaccurate, or surfaces would have met. A slide that went too far by less than the tolerance is accepted.
+/// friction on a turning obstacle was too inaccurate, or surfaces would have met. A slide that went
+/// too far by less than the tolerance is accepted.
 pub(super) fn share_of_retry(settled: &Settled, h: f64, depths: Depths) -> Option<f64> {
     let Settled { met, grown, .. } = settled;
     if h <= MIN_RETRY_STEP {

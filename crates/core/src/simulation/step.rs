@@ -43,8 +43,8 @@ const MAX_REBOUNDING_PARTS: usize = 100;
 /// Largest number of parts of a fixed step: events within the last one are not located.
 const MAX_PARTS: usize = 1000;
 
-/// Largest number of parts of a fixed step of which each but the last ends at a rebound: in the rest
-/// of a step, forces do not see further rebounds.
+/// Largest number of parts of a fixed step of which each but the last ends at a rebound: in the
+/// rest of a step, forces do not see further rebounds.
 const MAX_PARTS_AT_REBOUNDS: usize = 8;
 
 /// Plan of a step.
@@ -151,8 +151,8 @@ impl Pipeline {
 
     /// Takes a step from time t (s), and settles its end; an adaptive method may have to take it
     /// again with a shorter length. If events are located, the step ends at the first one if it
-    /// `splits`; else, if it `divides`, at the first rebound. A fixed step in parts ends at `target`
-    /// (s) at the latest. Returns the step, or the cause of a blow-up.
+    /// `splits`; else, if it `divides`, at the first rebound. A fixed step in parts ends at
+    /// `target` (s) at the latest. Returns the step, or the cause of a blow-up.
     fn integrate_and_settle(
         &mut self,
         model: &Model,

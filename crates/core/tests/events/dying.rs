@@ -1,5 +1,6 @@
 //! Rebounds that die out, and friction in them, against states of a model that shares no code with
-//! these runs: a Runge-Kutta method of order 8 in steps of 2 ms, which end at each event, in Python.
+//! these runs: a Runge-Kutta method of order 8 in steps of 2 ms, which end at each event, in
+//! Python.
 
 use crate::common::{described, method};
 use a3_core::accuracy::{Frames, Metric, Reference, choose_among};

@@ -309,8 +309,8 @@ const SEAMS: [&str; 4] = [
     [[box]]\ncenter = [1, -0.5, 0]\nsize = [2, 1, 2]\nthickness = 0.02\n",
 ];
 
-/// Two flush faces repel a particle and a ball as a floor does, wherever it is: exactly on the seam, beside it,
-/// and above a gap of a tenth of a millimetre.
+/// Two flush faces repel a particle and a ball as a floor does, wherever it is: exactly on the
+/// seam, beside it, and above a gap of a tenth of a millimetre.
 #[test]
 fn a_seam_repels_as_a_floor() {
     let force = |ground: &str, thing: Thing, at: [f64; 3]| {
