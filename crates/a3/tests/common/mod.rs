@@ -65,13 +65,16 @@ pub fn simulate(folder: &Path, words: &[&str]) -> Value {
     serde_json::from_slice(&output.stdout).unwrap()
 }
 
-/// Returns the only line on stderr, of a program that exited with `code` and wrote nothing else.
+/// Returns the only line on stderr, except for notes on the scene, of a program that exited with
+/// `code` and wrote nothing else.
 pub fn complaint(output: &Output, code: i32) -> String {
     let stderr = text(&output.stderr);
     assert_eq!(output.status.code(), Some(code), "{stderr}");
-    assert_eq!(stderr.lines().count(), 1, "one line, not\n{stderr}");
+    let lines = stderr.lines().filter(|line| !line.starts_with("note: "));
+    let lines: Vec<_> = lines.collect();
+    assert_eq!(lines.len(), 1, "one line, not\n{stderr}");
     assert!(output.stdout.is_empty());
-    stderr.trim_end().to_owned()
+    lines[0].trim_end().to_owned()
 }
 
 /// Prints that a test is skipped, or fails if the variable `required` is set.
