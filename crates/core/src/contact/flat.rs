@@ -1,14 +1,14 @@
 //! Flat faces and seams of rigid shapes: several primitives repel a particle or a round body like
 //! the one surface that they form.
 //!
-//! A point near a face is within reach of several of its triangles, of its edges, and of whatever
-//! adjoins it: other faces, other shapes. Where the point touches one of them, the plane through
-//! the closest point, perpendicular to the line from there, is between the point and all that lies
-//! behind it. So a primitive of a rigid shape does not repel a point if the point touches another
-//! one at least as deeply, and no corner of the first rises above this plane. What repels the point
-//! then does not depend on triangles, seams and parts, and the force is continuous from one
-//! primitive to the next. The first one in canonical order repels a point that is as near to
-//! several.
+//! A point near a face is within reach of several triangles and edges of that face, and of faces
+//! that adjoin it, also of other shapes. The tangent plane of a primitive is the plane through its
+//! point that is closest to the touching point, perpendicular to the line between both. A primitive
+//! of a rigid shape does not repel a point if the point touches another primitive at least as
+//! deeply, and no corner of the first primitive rises above the tangent plane of the other one.
+//! What repels the point then does not depend on triangles, seams and parts, and the force is
+//! continuous from one primitive to the next. The first one in canonical order repels a point that
+//! is as near to several.
 //!
 //! Corners and edges of cloth, boxes and meshes interact with all triangles: the surfaces below
 //! support them at many points.

@@ -44,8 +44,8 @@ pub(super) struct Response {
 
 impl Response {
     /// Finds the response to an impulse of 1 N s in a direction on the first of two arms, and the
-    /// opposite on the second, of which each is the number of a body and a lever (m). The points
-    /// change their velocities by `pushed` (m/s).
+    /// opposite on the second. An arm is given by the number of its body and by its lever (m). The
+    /// points change their velocities by `pushed` (m/s).
     pub fn new(
         joined: Joined,
         solids: &[Solid],

@@ -6,9 +6,9 @@ use super::part::Part;
 use super::round::{Round, round};
 use crate::geometry::Shape;
 
-/// Coordinates of a node in a triangle, of which two are the same, and shares of the area: the
-/// quadrature of six points that is exact for polynomials of degree 4 (Strang and Fix, *An Analysis
-/// of the Finite Element Method*, 1973).
+/// Barycentric coordinate that a node has at two corners of a triangle, and the node's share of the
+/// area, for both kinds of nodes: the quadrature of six points that is exact for polynomials of
+/// degree 4 (Strang and Fix, *An Analysis of the Finite Element Method*, 1973).
 const IN_TRIANGLE: [(f64, f64); 2] = [
     (0.445_948_490_915_965, 0.223_381_589_678_011),
     (0.091_576_213_509_771, 0.109_951_743_655_322),

@@ -43,8 +43,8 @@ const MAX_REBOUNDING_PARTS: usize = 100;
 /// Largest number of parts of a fixed step: events within the last one are not located.
 const MAX_PARTS: usize = 1000;
 
-/// Largest number of parts of a fixed step of which each but the last ends at a rebound: in the
-/// rest of a step, forces do not see further rebounds.
+/// Largest number of parts into which rebounds divide a fixed step. In the last part, forces do not
+/// see further rebounds.
 const MAX_PARTS_AT_REBOUNDS: usize = 8;
 
 /// Plan of a step.

@@ -258,7 +258,7 @@ fn fans_push_a_ball_where_they_blow() {
 }
 
 /// A plate that turns in still air about a line in it has the torque rho C w^2 b a^4 / 64 about
-/// its middle, whatever its parts and whichever its long side.
+/// its middle. The number of its parts and the direction of its long side make no difference.
 #[test]
 fn a_plate_that_spins_in_still_air_has_the_drag_of_each_of_its_points() {
     let [density, drag] = AIR;
@@ -279,8 +279,9 @@ fn a_plate_that_spins_in_still_air_has_the_drag_of_each_of_its_points() {
     }
 }
 
-/// Drag acts on all of a body's mass alike: it damps its motion and its rotation at the rate c / m,
-/// whatever the body's shape. A free rotation about no principal axis keeps its direction of L.
+/// Drag acts on all of a body's mass alike: it damps its motion and its rotation at the rate c / m
+/// for every shape. The angular momentum of a free rotation keeps its direction, also where the
+/// body turns about no principal axis.
 #[test]
 fn drag_damps_speed_and_spin_alike() {
     let text = "drag = 0.6\n".to_owned()

@@ -320,8 +320,8 @@ fn a_flow_may_have_begun_before() {
     }
 }
 
-/// Cups whose walls are too thin to hold the liquid are named; plates that float, and what is thick
-/// enough, are not.
+/// Cups with walls too thin to hold the liquid are named. Plates that float, and cups with walls
+/// that are thick enough, are not.
 #[test]
 fn cups_that_leak_are_named() {
     let notes = |parts: &str, dimensions: u8| {

@@ -42,7 +42,7 @@ pub struct Frame {
 }
 
 impl Frame {
-    /// The frame of the description, in which what is given by default is written down.
+    /// The frame of the description itself, with default values written down as keys.
     pub const SAME: Self = Self {
         name: "",
         turn: 0.0,
