@@ -46,13 +46,13 @@ impl Default for Reach {
 impl Reach {
     /// Returns the limits of a step of a model from time t (s) by a method that locates events.
     /// Prescribed motions begin and end at known times. An adaptive step has further limits; a
-    /// fixed step ends at `target` (s) at the latest.
+    /// fixed step ends at `target` (s), or earlier by more than `none` (s).
     pub fn of_step(
         model: &Model,
         limits: StepLimits,
         is_adaptive: bool,
         t: f64,
-        target: Option<f64>,
+        (target, none): (Option<f64>, f64),
     ) -> Self {
         let mut reach = Self::default();
         if let Some(network) = model.network() {
@@ -68,7 +68,7 @@ impl Reach {
         if is_adaptive {
             reach.limit(limits.max_step.unwrap_or(f64::INFINITY));
         }
-        reach.or_before(t, target)
+        reach.or_before(t, target, none)
     }
 
     /// Returns the same limits if they end where the velocity of a pin jumps that constraints hold,
@@ -96,17 +96,29 @@ impl Reach {
         } else {
             Self::default()
         };
-        reach.or_before(t, target)
+        reach.or_before(t, target, none)
     }
 
-    /// Returns these limits, or those of a step that ends at `target` (s), if that is not later.
-    pub fn or_before(self, t: f64, target: Option<f64>) -> Self {
-        match target.filter(|target| *target <= self.until.unwrap_or(f64::MAX)) {
-            None => self,
-            Some(target) => Self {
+    /// Returns these limits, or those of a step that ends at `target` (s), if that is not later, or
+    /// later by at most `none` (s): no part of a step is as short as a rounding error.
+    pub fn or_before(self, t: f64, target: Option<f64>, none: f64) -> Self {
+        let (Some(target), until) = (target, self.until.unwrap_or(f64::MAX)) else {
+            return self;
+        };
+        if target <= until {
+            return Self {
                 longest: target - t,
                 until: Some(target),
-            },
+            };
+        }
+        let until = if target <= until + none {
+            target
+        } else {
+            until
+        };
+        Self {
+            until: Some(until),
+            ..self
         }
     }
 

@@ -165,7 +165,10 @@ impl Pipeline {
         let depths = Depths::new(self.bounds.radius, limits, state.control);
         let locates = self.locator.serves(stepper);
         let reach = match (locates, model.network().filter(|_| target.is_some())) {
-            (true, _) => Reach::of_step(model, flying, stepper.is_adaptive(), t, target),
+            (true, _) => {
+                let end = (target, state.sliver());
+                Reach::of_step(model, flying, stepper.is_adaptive(), t, end)
+            }
             (false, Some(network)) => Reach::of_part(network, t, state.sliver(), target),
             (false, None) => Reach::default(),
         };
@@ -187,7 +190,7 @@ impl Pipeline {
                 Err(Setback::Again { h, share }) => self.take_again(state, h, share),
                 Err(Setback::Rebound { until }) => {
                     state.y.copy_from_slice(self.phases.y0());
-                    plan.reach = plan.reach.or_before(t, Some(until));
+                    plan.reach = plan.reach.or_before(t, Some(until), 0.0);
                     plan.divides = false;
                 }
                 Err(Setback::BlowUp(cause)) => return Ok(Err(cause)),
