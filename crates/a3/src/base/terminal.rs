@@ -1,7 +1,9 @@
 //! Standard output and standard error: text for people, in which nothing from a file or a name
 //! moves the cursor or changes colours, and data for programs.
 
+use std::collections::BTreeSet;
 use std::io::{self, IsTerminal, Write};
+use std::sync::{Mutex, PoisonError};
 
 use crate::base::failure::Failure;
 
@@ -49,6 +51,16 @@ pub fn check_write(written: io::Result<()>) -> Result<(), Failure> {
 pub fn warn(message: &str) {
     let line = one_line(message) + "\n";
     let _ = io::stderr().lock().write_all(line.as_bytes());
+}
+
+/// Writes a note about a scene to standard error, unless this process has done so: commands build a
+/// scene several times.
+pub fn note(message: &str) {
+    static TOLD: Mutex<BTreeSet<String>> = Mutex::new(BTreeSet::new());
+    let mut told = TOLD.lock().unwrap_or_else(PoisonError::into_inner);
+    if told.insert(message.to_owned()) {
+        warn(&format!("note: {message}"));
+    }
 }
 
 /// Returns a message as one line of limited length, in which every character is visible.

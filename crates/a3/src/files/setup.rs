@@ -111,21 +111,21 @@ impl Request {
         }
         let setup = self.source.build(options.grid)?;
         for note in &setup.presentation.notes {
-            terminal::warn(&format!("note: {}: {note}", setup.scene.name));
+            terminal::note(&format!("{}: {note}", setup.scene.name));
         }
         if let Some(network) = setup.scene.model.network() {
             let count = network.particles();
             let held = network.pins().count();
             if count > 1 && held == count && network.all_pins().all(|pin| pin.until.is_none()) {
-                terminal::warn(&format!(
-                    "note: all {count} particles of the scene {} are pinned",
+                terminal::note(&format!(
+                    "all {count} particles of the scene {} are pinned",
                     setup.scene.name
                 ));
             }
         }
         if setup.scene.fitted > 0.0 {
-            terminal::warn(&format!(
-                "note: the velocities at the start do not fit the constraints: impulses changed them by up to {} m/s",
+            terminal::note(&format!(
+                "the velocities at the start do not fit the constraints: impulses changed them by up to {} m/s",
                 Rounded(setup.scene.fitted)
             ));
         }

@@ -324,3 +324,25 @@ fn a_scene_that_is_pinned_all_over_says_so() {
         "note: all 4 particles of the scene level are pinned\n"
     );
 }
+
+/// A bead whose velocity has a part across its wire loses that part, and a command that builds the
+/// scene several times says so once.
+#[test]
+fn a_start_that_does_not_fit_is_told_once() {
+    let folder = tempfile::tempdir().unwrap();
+    let wire = "[particles]\npositions = [[1, 0, 0]]\nmass = 1\nvelocities = [[0.6, 1, 0]]\n\
+                [[constraint]]\nparticle = 0\n\
+                circle = { center = [0, 0, 0], normal = [0, 0, 1], radius = 1 }\n";
+    fs::write(folder.path().join("wire.toml"), wire).unwrap();
+    let words = ["simplify", "--error", "1e-2", "--until", "0.2", "--scene"];
+    let output = a3(folder.path(), &[&words[..], &["wire.toml"]].concat());
+    let said = text(&output.stderr);
+    assert!(output.status.success(), "{said}");
+    let note = "note: the velocities at the start do not fit the constraints: impulses changed \
+                them by up to 0.6 m/s";
+    assert_eq!(
+        said.lines().filter(|line| *line == note).count(),
+        1,
+        "{said}"
+    );
+}

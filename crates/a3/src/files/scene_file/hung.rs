@@ -53,7 +53,7 @@ pub fn scene(path: &Path) -> Result<String, String> {
     let hanging = hang(&mesh);
     if hanging.held < hanging.parts {
         let Hanging { held, parts, .. } = hanging;
-        terminal::warn(&format!("note: {name}: {held} of {parts} parts are pinned"));
+        terminal::note(&format!("{name}: {held} of {parts} parts are pinned"));
     }
     // A string in JSON is one in TOML too.
     let file = serde_json::Value::from(&*name);
