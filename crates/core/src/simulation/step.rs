@@ -164,18 +164,16 @@ impl Pipeline {
         let (stepper, limits) = (&mut self.stepper, self.limits);
         let depths = Depths::new(self.bounds.radius, limits, state.control);
         let locates = self.locator.serves(stepper);
-        let reach = match (locates, model.network().filter(|_| target.is_some())) {
-            (true, _) => {
-                let end = (target, state.sliver());
-                Reach::of_step(model, flying, stepper.is_adaptive(), t, end)
-            }
-            (false, Some(network)) => Reach::of_part(network, t, state.sliver(), target),
+        let network = model.network();
+        // Where pins let go of springs alone, a part as short as a rounding error does no harm.
+        let is_constrained = network.is_some_and(Network::is_constrained);
+        let none = if is_constrained { state.sliver() } else { 0.0 };
+        let reach = match (locates, network.filter(|_| target.is_some())) {
+            (true, _) => Reach::of_step(model, flying, stepper.is_adaptive(), t, (target, none)),
+            (false, Some(network)) => Reach::of_part(network, t, none, target),
             (false, None) => Reach::default(),
         };
-        let none = state.sliver();
-        let reach = model
-            .network()
-            .map_or(reach, |network| reach.before_jump(network, t, none));
+        let reach = network.map_or(reach, |network| reach.before_jump(network, t, none));
         self.locator.list_rests(model, state, stepper, t, depths);
         let mut plan = Plan {
             t,
