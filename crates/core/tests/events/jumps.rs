@@ -67,7 +67,7 @@ fn a_bead_begins_along_its_wire() {
     }
 }
 
-/// As if the rope were a little longer.
+/// The ends rebound as those of a rope that is a little longer and tightens later.
 #[test]
 fn a_rope_that_begins_taut_rebounds() {
     let text = "[particles]\npositions = [[0, 0, 0], [1, 0, 0]]\nmass = 1\n\
@@ -77,8 +77,8 @@ fn a_rope_that_begins_taut_rebounds() {
     expect(text, 0.5, &places, 1e-12);
 }
 
-/// A pin lifts a rod from 0.1 s to 0.6 s at 1 m/s. Then the weight flies on to its highest point,
-/// unless the rod is a rope that holds it.
+/// A pin lifts a rod from 0.1 s to 0.6 s at 1 m/s. The rod pulls a weight along, and stops it with
+/// the pin.
 #[test]
 fn a_pin_that_starts_pulls_at_once() {
     let text = "[particles]\npositions = [[0, 0, 0], [0, -1, 0]]\nmass = 1\n\
@@ -151,8 +151,8 @@ fn a_body_that_is_led_tows_another_one() {
     }
 }
 
-/// A weight on a floor, pulled by a rod, stays behind the pin by the length of the rod, and slides
-/// at its speed: friction acts on what the rod holds.
+/// A pin pulls a weight over a rough floor by a rod: the weight follows at the pin's speed, and the
+/// rod keeps its length in spite of friction.
 #[test]
 fn a_rod_pulls_a_weight_over_a_rough_floor() {
     let text = "gravity = [0, -9.81, 0]\nfloor = { height = 0, friction = 0.5 }\n[particles]\n\
