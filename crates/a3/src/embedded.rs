@@ -222,7 +222,7 @@ pub fn advance(
 }
 
 /// Returns the message of the program about a run that failed on its way to a time (s): with a step
-/// that would have held, if the step was the cause. It is sought with up to 1e8 evaluations.
+/// that would have held, if the step was the cause. It is sought for some seconds.
 #[must_use]
 pub fn message(run: &Simulation, error: &a3_core::Error, until: f64) -> String {
     verdict::lost(run, error, "", until).to_string()

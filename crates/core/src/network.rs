@@ -35,11 +35,11 @@ pub(crate) use attraction::{attract, let_go, mass_behind};
 pub use crossings::untangle;
 pub use element::Element;
 pub(crate) use energies::{add_wind, energy_of_errors, has_motors, is_conservative};
-pub(crate) use holding::{contradiction, is_nearly_singular};
+pub(crate) use holding::is_nearly_singular;
 pub(crate) use jump::{Jump, Least, fit, tighten};
 pub(crate) use outflow::{drained, entered, go_back, outflows, set_drained};
 pub use parts::Network;
-pub(crate) use project::{has_joints, project, project_velocities};
+pub(crate) use project::{contradiction, has_joints, project, project_velocities};
 pub(crate) use release::{
     breaks_between, forget_released, jump_near, next_break, next_known_time, next_release, pass_to,
     quarter_period, release_of,

@@ -1,52 +1,123 @@
-//! Search for a stable step, after a run with a longer one blew up.
+//! Search for a step or a tolerance that holds, after a run with another one blew up.
+
+#[cfg(not(target_arch = "wasm32"))]
+use std::cell::Cell;
+use std::iter::successors;
+use std::ops::RangeInclusive;
+use std::time::Duration;
 
 use a3_core::stability::{Mode, largest_step, spectrum};
-use a3_core::{Control, Simulation};
+use a3_core::{BlowUp, Cause, Control, Rounded, Simulation};
 
 use crate::base::bounds::{LARGEST_STEP, SMALLEST_STEP};
+use crate::base::processor;
 
 /// Least simulated time (s) for which a step has to hold before the window recommends it.
-const MIN_HOLD_TIME: f64 = 10.0;
-/// Largest [work](a3_core::Model::work) of the trial runs while a window waits (evaluations of
-/// single springs). It is the same on every machine, so that the recommended step is the same too.
-const MAX_WORK: f64 = 8e6;
-/// Largest work of the trial runs at the end of a command, in the same unit.
-#[cfg(not(target_arch = "wasm32"))]
-const MAX_COMMAND_WORK: f64 = 1e8;
+pub const MIN_HOLD_TIME: f64 = 10.0;
 
-/// Trial runs of a scene with shorter steps.
+/// Processor time of the trials while a window waits.
+const WINDOW_BUDGET: Duration = Duration::from_millis(300);
+
+/// Processor time of the trials at the end of a command.
+#[cfg(not(target_arch = "wasm32"))]
+const COMMAND_BUDGET: Duration = Duration::from_secs(3);
+
+/// Number of steps of a trial between two looks at the time.
+const STEPS_PER_LOOK: u64 = 4;
+
+/// Ratio of two tolerances that are tried one after the other.
+const TOLERANCE_RATIO: f64 = 10.0;
+
+/// Smallest and largest tolerance that is tried.
+const TOLERANCES: RangeInclusive<f64> = 1e-12..=0.1;
+
+/// Result of a search for a step, or a tolerance, that holds.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Sought {
+    /// This one holds.
+    Holds(Control),
+    /// This one held up to a time (s), when the search ended.
+    HeldUntil(Control, f64),
+    /// All were tried, down or up to this one, and failed.
+    Failed(Control),
+    /// None was tried.
+    Untried,
+}
+
+impl Sought {
+    /// Returns a clause about the result of a search until a time (s), without a full stop.
+    pub fn clause(&self, until: f64) -> String {
+        match *self {
+            Self::Holds(control) => format!("{} would have held", named(control)),
+            Self::HeldUntil(control, time) => format!(
+                "{} held {} s of {} s, as far as it was tried",
+                named(control),
+                Rounded(time),
+                Rounded(until)
+            ),
+            Self::Failed(control @ Control::Step(_)) => {
+                format!("no shorter step holds, down to {}", named(control))
+            }
+            Self::Failed(control) => format!("no tolerance holds, up to {}", named(control)),
+            Self::Untried => "no other one was tried".into(),
+        }
+    }
+}
+
+/// Returns the words for a step or a tolerance.
+fn named(control: Control) -> String {
+    match control {
+        Control::Step(step) => format!("a step of {step} s"),
+        Control::Tolerance(tolerance) => format!("a tolerance of {tolerance:e}"),
+    }
+}
+
+/// Result of a trial.
+enum Tried {
+    Holds,
+    Fails,
+    /// The search ended at that simulated time (s).
+    Unended(f64),
+}
+
+/// Trial runs of a scene with other steps or tolerances.
 struct Trials<'a> {
     run: &'a Simulation,
     /// Simulated time for which a step has to hold (s).
     until: f64,
-    /// Work that is left (evaluations).
-    left: f64,
-    /// Returns whether trials may continue; it is told the work done since its last call.
-    may_continue: &'a dyn Fn(f64) -> bool,
+    /// Processor time of the program at which the search ends.
+    end: Duration,
+    /// Returns whether trials may continue.
+    may_continue: &'a dyn Fn() -> bool,
 }
 
-/// Returns the longest step (s) of the trials that holds until the time `until` (s) on the scene of
-/// a run with fixed steps. `None` if there is none, or for a run to a tolerance.
+/// Seeks a step that holds until the time `until` (s) on the scene of a run with fixed steps: the
+/// longest of the trials that is shorter than its own. For a run to a tolerance that blew up, it
+/// seeks a smaller tolerance or, if the run found no step to meet it, a larger one.
 #[cfg(not(target_arch = "wasm32"))]
-pub fn step_that_holds(run: &Simulation, until: f64) -> Option<f64> {
-    let scene = run.scene();
-    let modes = spectrum(scene.model.system(), 0.0, &scene.state);
+pub fn seek(run: &Simulation, until: f64) -> Sought {
     crate::base::interrupt::listen();
-    let left = MAX_COMMAND_WORK / run.model().work();
-    let bar = crate::base::progress::Bar::new(left);
+    let begun = processor::time();
+    let bar = crate::base::progress::Bar::new(COMMAND_BUDGET.as_secs_f64());
     bar.say("looking for a step that holds ".into());
+    let told = Cell::new(0.0);
     let trials = Trials {
         run,
         until,
-        left,
-        may_continue: &|work| {
-            bar.advance(work);
+        end: begun + COMMAND_BUDGET,
+        may_continue: &|| {
+            let taken = processor::time().saturating_sub(begun).as_secs_f64();
+            bar.advance(taken - told.replace(taken));
             crate::base::interrupt::go_on()
         },
     };
-    let holds = trials.longest(&modes);
+    let modes = match run.control() {
+        Control::Step(_) => spectrum(run.model().system(), 0.0, &run.scene().state),
+        Control::Tolerance(_) => vec![],
+    };
+    let sought = trials.seek(&modes);
     bar.clear();
-    holds
+    sought
 }
 
 /// Returns a shorter step (s) for a run whose own fixed step does not hold on its scene; `None` if
@@ -60,12 +131,12 @@ pub fn shorter_step(run: &Simulation) -> Option<f64> {
     let past = limit.is_some_and(|limit| step > limit.step);
     let network = run.model().network();
     let slow = network.is_some_and(|n| n.contact_layer().is_some() || !n.bodies().is_empty());
-    let mut trials = Trials::of_window(run, MIN_HOLD_TIME);
-    let fails = past || !slow && trials.hold(step) == Some(false);
-    let shorter = if slow {
-        limit.map(|limit| rounded(0.9 * limit.step))
-    } else {
-        would_hold(run, MIN_HOLD_TIME, &modes)
+    let trials = Trials::of_window(run, MIN_HOLD_TIME);
+    let fails = past || !slow && matches!(trials.hold(run.control()), Tried::Fails);
+    let shorter = match slow {
+        true => limit.map(|limit| rounded(0.9 * limit.step)),
+        false if fails => would_hold(run, MIN_HOLD_TIME, &modes).step(),
+        false => None,
     };
     shorter.filter(|shorter| fails && (SMALLEST_STEP..step).contains(shorter))
 }
@@ -79,13 +150,22 @@ pub fn step_within_limit(run: &Simulation) -> Option<f64> {
     (step > limit.step).then(|| shorter_step(run)).flatten()
 }
 
-/// Returns the longest step (s) of the trials that is shorter than the run's own and holds until
-/// the time `until` (s), at least for ten seconds. Trials start just below the stability limit of
-/// these modes, those at the start of the scene, so that the result depends neither on the state in
-/// which the run diverged nor, except for being shorter, on its step. `None` if there is none, or
-/// for a run to a tolerance.
-pub fn would_hold(run: &Simulation, until: f64, modes: &[Mode]) -> Option<f64> {
-    Trials::of_window(run, until.max(MIN_HOLD_TIME)).longest(modes)
+/// Seeks a step, as [`seek`] does, that holds until the time `until` (s), at least for ten seconds.
+/// Trials start just below the stability limit of these modes, those at the start of the scene, so
+/// that the result depends neither on the state in which the run diverged nor, except for being
+/// shorter, on its step.
+pub fn would_hold(run: &Simulation, until: f64, modes: &[Mode]) -> Sought {
+    Trials::of_window(run, until.max(MIN_HOLD_TIME)).seek(modes)
+}
+
+impl Sought {
+    /// Returns the step (s) that holds, if one was found.
+    fn step(self) -> Option<f64> {
+        match self {
+            Self::Holds(control) => control.step(),
+            _ => None,
+        }
+    }
 }
 
 impl<'a> Trials<'a> {
@@ -94,50 +174,76 @@ impl<'a> Trials<'a> {
         Self {
             run,
             until,
-            left: MAX_WORK / run.model().work(),
-            may_continue: &|_| true,
+            end: processor::time() + WINDOW_BUDGET,
+            may_continue: &|| true,
         }
     }
 
-    /// Finds the longest step (s) of the trials that holds, below the limit of these modes and
-    /// below the run's own.
-    fn longest(mut self, modes: &[Mode]) -> Option<f64> {
-        let own = self.run.control().step()?;
+    /// Seeks a step, in a scene of these modes, or a tolerance, in place of the run's own.
+    fn seek(&self, modes: &[Mode]) -> Sought {
+        let own = match self.run.control() {
+            Control::Step(own) => own,
+            Control::Tolerance(own) => {
+                let missed = |lost: BlowUp| matches!(lost.cause, Cause::StepTooSmall { .. });
+                let is_larger = self.run.blow_up().is_some_and(missed);
+                let ratio = [TOLERANCE_RATIO.recip(), TOLERANCE_RATIO][usize::from(is_larger)];
+                let all = successors(Some(own * ratio), |last| Some(last * ratio));
+                let all = all.take_while(|it| TOLERANCES.contains(it));
+                // Printing and reading removes the rounding error.
+                let read = |it: f64| format!("{it:.3e}").parse().unwrap_or(it);
+                return self.first(all.map(|it| Control::Tolerance(read(it))));
+            }
+        };
         // Never fails for a method in METHODS.
         let limit = largest_step(self.run.method(), modes).ok().flatten();
         let most = limit.map_or(own, |limit| limit.step).min(LARGEST_STEP);
-        let mut step = rounded(0.9 * most);
-        while step >= SMALLEST_STEP {
-            if step < own && self.hold(step)? {
-                return Some(step);
-            }
-            step = rounded(0.6 * step);
-        }
-        None
+        let all = successors(Some(rounded(0.9 * most)), |last| Some(rounded(0.6 * last)));
+        let all = all.take_while(|step| *step >= SMALLEST_STEP);
+        self.first(all.filter(|step| *step < own).map(Control::Step))
     }
 
-    /// Returns whether a run from the start of the scene with steps of h (s) does not diverge,
-    /// gains no energy and meets its constraints. `None` if that takes too much work.
-    fn hold(&mut self, h: f64) -> Option<bool> {
-        let (run, control) = (self.run, Control::Step(h));
-        let mut again = Simulation::new(run.scene().clone(), run.method(), control).ok()?;
+    /// Seeks the first that holds.
+    fn first(&self, all: impl Iterator<Item = Control>) -> Sought {
+        let mut sought = Sought::Untried;
+        for control in all {
+            sought = match self.hold(control) {
+                Tried::Holds => return Sought::Holds(control),
+                Tried::Fails => Sought::Failed(control),
+                Tried::Unended(time) if time > 0.0 => return Sought::HeldUntil(control, time),
+                Tried::Unended(_) => return sought,
+            };
+        }
+        sought
+    }
+
+    /// Finds out whether a run from the start of the scene does not diverge, gains no energy and
+    /// meets its constraints.
+    fn hold(&self, control: Control) -> Tried {
+        let run = self.run;
+        let again = Simulation::new(run.scene().clone(), run.method(), control);
+        let Ok(mut again) = again else {
+            return Tried::Fails;
+        };
         again.set_wind(run.windy());
         again.set_swinging(run.swinging());
         // Fails if surfaces cross at the start, where contact cannot begin.
-        again.set_touching(run.touching()).ok()?;
+        if again.set_touching(run.touching()).is_err() {
+            return Tried::Fails;
+        }
         while again.time() < self.until {
-            let before = again.work().total();
-            if again.take_steps(4).is_err() {
-                return Some(false);
+            if again.take_steps(STEPS_PER_LOOK).is_err() {
+                return Tried::Fails;
             }
-            let work = again.work().total() - before;
-            self.left -= work;
-            if self.left <= 0.0 || !(self.may_continue)(work) {
-                return None;
+            if processor::time() > self.end || !(self.may_continue)() {
+                return Tried::Unended(again.time().min(self.until));
             }
         }
         let broken = again.worst_constraint().is_some_and(|c| c.is_visible());
-        Some(again.conclude().is_ok() && again.gained().is_none() && !broken)
+        if again.conclude().is_ok() && again.gained().is_none() && !broken {
+            Tried::Holds
+        } else {
+            Tried::Fails
+        }
     }
 }
 

@@ -1,5 +1,5 @@
 //! Foundations of the program: failures and their exit codes, the terminal, signals, progress of
-//! long runs, and the ranges of steps and tolerances.
+//! long runs, processor time, and the ranges of steps and tolerances.
 
 pub mod bounds;
 #[cfg(target_arch = "wasm32")]
@@ -12,6 +12,7 @@ pub mod input_error;
 #[cfg(not(target_arch = "wasm32"))]
 pub mod interrupt;
 pub mod monitor;
+pub mod processor;
 pub mod progress;
 pub mod report;
 pub mod rounding;

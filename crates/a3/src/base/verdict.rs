@@ -4,7 +4,7 @@
 use a3_core::{Cause, Control, Error, Rounded, Scene, Simulation, Unmet, Vector3};
 
 use crate::base::failure::Failure;
-use crate::base::holding::step_that_holds;
+use crate::base::holding::seek;
 use crate::base::terminal;
 
 /// Returns the failure of a run that was to last until the time `until` (s). `kept` is a clause
@@ -18,8 +18,8 @@ pub fn lost(run: &Simulation, error: &Error, kept: &str, until: f64) -> Failure 
     Failure::run(format!("{error}{kept}{}", advice(run, error, until)))
 }
 
-/// Returns a clause with the longest step that would have held until the time `until` (s), if the
-/// step was the cause.
+/// Returns a clause about a step, or a tolerance, that would have held until the time `until` (s),
+/// if the step was the cause.
 fn advice(run: &Simulation, error: &Error, until: f64) -> String {
     let Error::BlowUp(lost) = error else {
         return String::new();
@@ -28,16 +28,11 @@ fn advice(run: &Simulation, error: &Error, until: f64) -> String {
         return format!("; {inside}");
     }
     match (lost.cause, lost.control) {
-        (Cause::StepTooSmall { .. }, _) => "; a larger tolerance may do".into(),
         (Cause::ReadsVelocity | Cause::Pinched { .. } | Cause::Contradiction(_), _)
         | (Cause::NotFinite { .. } | Cause::NumberNotFinite { .. }, Control::Tolerance(_)) => {
             String::new()
         }
-        (_, Control::Tolerance(_)) => "; a smaller tolerance may hold".into(),
-        (_, Control::Step(_)) => match step_that_holds(run, until) {
-            Some(holds) => format!("; a step of {holds} s would have held"),
-            None => "; no shorter step was found that holds".into(),
-        },
+        _ => format!("; {}", seek(run, until).clause(until)),
     }
 }
 
@@ -74,9 +69,9 @@ pub fn warn(run: &Simulation) {
     if let Some(gain) = run.gained() {
         let advice = inside(run.scene()).unwrap_or_else(|| format!("{what} should be {better}"));
         terminal::warn(&format!(
-            "warning: the run gained {} J that nothing put in, {} times the energy of the scene: {advice}",
+            "warning: the run gained {} J that nothing put in, {} the energy that moves: {advice}",
             Rounded(gain.energy),
-            Rounded(gain.share)
+            share(gain.share)
         ));
     }
     if let Some(unmet) = run.worst_constraint().filter(Unmet::is_visible) {
@@ -89,5 +84,14 @@ pub fn warn(run: &Simulation) {
         terminal::warn(
             "warning: constraints contradict one another or pins, except at a single place: no force holds particles exactly there, as in a chain that is stretched straight between two pins",
         );
+    }
+}
+
+/// Returns the words for a share: a percentage, or a number of times.
+fn share(share: f64) -> String {
+    if share < 1.0 {
+        format!("{:.0} % of", 100.0 * share)
+    } else {
+        format!("{} times", Rounded(share))
     }
 }

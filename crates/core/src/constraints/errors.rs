@@ -1,29 +1,11 @@
-//! Errors of constraints, and whether constraints can be met at all.
+//! Errors of constraints.
 
 use nalgebra::{Matrix3, Vector3};
 
 use super::constraint::{Constraint, Equation};
 use super::joint::Stop;
-use super::row::Row;
 use super::set::{Constraints, Moved, vector};
-use super::solve::System;
 use crate::error::{ConstraintName, Unmet};
-use crate::random::SplitMix;
-
-/// Largest number of Newton steps towards positions that meet all constraints.
-const MAX_ITERATIONS: usize = 100;
-
-/// Error, as a share, up to which a constraint counts as met by such positions.
-const MET_SHARE: f64 = 1e-9;
-/// Error, as a share, above which a constraint cannot be met if no step reduces it.
-const UNMET_SHARE: f64 = 1e-6;
-
-/// Largest displacement of Newton's method in one step, over the shortest length of a constraint.
-const MAX_DISPLACEMENT: f64 = 0.3;
-
-/// Random displacement, over that length, of particles at a point where Newton's method makes no
-/// progress, as on a straight line.
-const JITTER: f64 = 1e-2;
 
 impl Constraint {
     /// Returns its name.
@@ -115,89 +97,10 @@ impl Constraints {
         worst
     }
 
-    /// Returns a constraint that no positions near x (m) can meet, if there is one; particles
-    /// without inverse mass are fixed. Always `None` if constraints hold rigid bodies.
-    pub fn contradiction(
-        &self,
-        inverse_masses: &[f64],
-        x: &mut [f64],
-        radius: f64,
-    ) -> Option<Unmet> {
-        if !self.rotations.is_empty() {
-            return None;
-        }
-        let left = self.approach(inverse_masses, x, radius)?;
-        let mut random = SplitMix(1);
-        let shortest = self.shortest(radius);
-        for (k, x) in x.iter_mut().enumerate() {
-            if inverse_masses[k % inverse_masses.len()] > 0.0 {
-                *x += JITTER * shortest * random.between(-1.0, 1.0);
-            }
-        }
-        self.approach(inverse_masses, x, radius).map(|_| left)
-    }
-
-    /// Returns the shortest length of a constraint (m).
-    fn shortest(&self, radius: f64) -> f64 {
+    /// Returns the shortest length of a constraint (m), in a scene of that radius (m).
+    pub fn shortest(&self, radius: f64) -> f64 {
         let lengths = self.all.iter().map(|c| c.length().unwrap_or(radius));
         lengths.fold(f64::INFINITY, f64::min)
-    }
-
-    /// Moves x towards positions that meet all constraints, by Newton's method with the smallest
-    /// displacement, weighted by the masses. Returns the worst constraint if that fails.
-    fn approach(&self, inverse_masses: &[f64], x: &mut [f64], radius: f64) -> Option<Unmet> {
-        let most = MAX_DISPLACEMENT * self.shortest(radius);
-        let none = |_| unreachable!("constraints hold no bodies");
-        let mut system = System::default();
-        for _ in 0..MAX_ITERATIONS {
-            let worst = self.worst(x, none, radius)?;
-            if worst.share <= MET_SHARE || worst.share.is_nan() {
-                return None;
-            }
-            self.displace(inverse_masses, x, &mut system);
-            let (moves, n) = (&system.vectors, inverse_masses.len());
-            let longest = moves.iter().map(Vector3::norm).fold(0.0, f64::max);
-            let scale = (most / longest).min(1.0);
-            for (moved, step) in self.moved.iter().zip(moves) {
-                if let Moved::Particle(i) = *moved {
-                    for axis in 0..3 {
-                        x[axis * n + i] += scale * step[axis];
-                    }
-                }
-            }
-        }
-        self.worst(x, none, radius)
-            .filter(|worst| worst.share > UNMET_SHARE)
-    }
-
-    /// Writes the displacements (m) of a step of Newton's method at x to the vectors of the
-    /// system.
-    fn displace(&self, inverse_masses: &[f64], x: &[f64], system: &mut System) {
-        system.clear();
-        for moved in &self.moved {
-            let weight = match *moved {
-                Moved::Particle(i) => inverse_masses[i],
-                Moved::Nothing | Moved::Body(_) => 0.0,
-            };
-            system.weights.push(Vector3::repeat(weight));
-            system.vectors.push(Vector3::zeros());
-        }
-        system.rows.clear();
-        for (number, constraint) in self.all.iter().enumerate() {
-            let [first, second] = self.ends[number];
-            let relative = self.relative(number, x);
-            constraint.equations(relative, Vector3::zeros(), |equation| {
-                let mut row = Row::default();
-                if constraint.error(&equation) > 0.0 || !constraint.is_one_sided() {
-                    row.add(first.place, equation.gradient);
-                    row.add(second.place, -equation.gradient);
-                    row.set_target(-equation.value, &system.weights);
-                }
-                system.rows.push(row);
-            });
-        }
-        system.solve(|| self.pattern());
-        system.spread();
     }
 
     /// Returns the position of the first particle of a constraint, relative to the second one if it

@@ -7,29 +7,6 @@ use super::parts::Network;
 use crate::constraints::Turning;
 use crate::error::Unmet;
 
-/// Time ahead in which a contradiction is looked for, over the time in which errors decay.
-const LOOK_AHEAD: f64 = 0.1;
-
-/// Returns a constraint that cannot be met near x (m) at time t (s), or soon after, because it
-/// contradicts others or the pins. `None` for networks with rigid bodies, for which it is not
-/// known.
-pub(crate) fn contradiction(network: &Network, t: f64, x: &[f64], radius: f64) -> Option<Unmet> {
-    let n = network.particles();
-    let constraints = &network.constraints;
-    let soon = LOOK_AHEAD / constraints.baumgarte_frequency();
-    [t, t + soon].into_iter().find_map(|t| {
-        let mut x = x.to_vec();
-        for (i, path) in network.pins() {
-            let place = path.at(t).position;
-            for axis in 0..3 {
-                x[axis * n + i] = place[axis];
-            }
-        }
-        let masses = network.particles.inverse_masses();
-        constraints.contradiction(masses, &mut x, radius)
-    })
-}
-
 /// Returns the largest error |C| (m) of the constraints in the state y.
 pub(super) fn error(network: &Network, y: &[f64]) -> Option<f64> {
     let x = &y[..3 * network.particles()];

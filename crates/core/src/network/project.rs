@@ -1,4 +1,5 @@
-//! The nearest state in which the joints of rigid bodies, and all other constraints, are met.
+//! The nearest state in which the joints of rigid bodies, and all other constraints, are met, and
+//! whether there is one.
 
 use nalgebra::Vector3;
 
@@ -6,14 +7,36 @@ use super::loads::{Loads, turning};
 use super::parts::Network;
 use crate::columns::{row, set_row};
 use crate::constraints::{Constraint, Moved, Projected, nearest};
-use crate::rigid::turn;
+use crate::error::Unmet;
+use crate::random::SplitMix;
+use crate::rigid::{self, turn};
 use crate::rows::Terms;
+use crate::system::ParticleSystem;
 
 /// Largest number of Newton steps of a projection.
 const MAX_ITERATIONS: usize = 20;
 
 /// Largest step, over the positions or over 1 rad, that counts as rounding.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
+
+/// Largest number of steps of a search for such a state from farther away.
+const MAX_STEPS: usize = 100;
+
+/// Error, as a share, up to which a constraint counts as met in it.
+const MET_SHARE: f64 = 1e-9;
+
+/// Error, as a share, above which a constraint cannot be met if no step reduces it.
+const UNMET_SHARE: f64 = 1e-6;
+
+/// Largest displacement in a step of that search, over the shortest length of a constraint.
+const MAX_DISPLACEMENT: f64 = 0.3;
+
+/// Random displacement, over that length, where the search makes no progress, as on a straight
+/// line; also a random turn of bodies (rad).
+const JITTER: f64 = 1e-2;
+
+/// Time ahead in which a contradiction is looked for, over the time in which errors decay.
+const LOOK_AHEAD: f64 = 0.1;
 
 /// Returns whether there are joints.
 pub(crate) fn has_joints(network: &Network) -> bool {
@@ -24,7 +47,7 @@ pub(crate) fn has_joints(network: &Network) -> bool {
 /// Changes the velocities in the state y by the least amount, weighted by the masses, so that all
 /// constraints stay met.
 pub(crate) fn project_velocities(network: &Network, y: &mut [f64]) {
-    push(network, y, (Projected::Velocities, false));
+    push(network, y, (Projected::Velocities, false), f64::INFINITY);
 }
 
 /// Moves the state y by the least distance, weighted by the masses, to where all constraints are
@@ -37,18 +60,78 @@ pub(crate) fn project(network: &Network, y: &mut [f64], ends_hold: bool) {
         .iter()
         .fold(0.0, |most: f64, x| most.max(x.abs()));
     for _ in 0..MAX_ITERATIONS {
-        let [moved, turned] = push(network, y, (Projected::Places, ends_hold));
+        let [moved, turned] = push(network, y, (Projected::Places, ends_hold), f64::INFINITY);
         // Written so that NaN ends the iteration.
         if !(moved > ROUNDING * size || turned > ROUNDING) {
             break;
         }
     }
-    push(network, y, (Projected::Velocities, ends_hold));
+    push(
+        network,
+        y,
+        (Projected::Velocities, ends_hold),
+        f64::INFINITY,
+    );
 }
 
-/// Changes places or velocities by one step. Returns the largest changes of positions or velocities
-/// (m, m/s), and of orientations or angular velocities (rad, rad/s).
-fn push(network: &Network, y: &mut [f64], (what, ends_hold): (Projected, bool)) -> [f64; 2] {
+/// Returns a constraint that cannot be met near the state y at time t (s), or soon after, because
+/// it contradicts others or the pins, in a scene of that radius (m).
+pub(crate) fn contradiction(network: &Network, t: f64, y: &[f64], radius: f64) -> Option<Unmet> {
+    if !network.is_constrained() {
+        return None;
+    }
+    let soon = LOOK_AHEAD / network.constraints.baumgarte_frequency();
+    [t, t + soon].into_iter().find_map(|t| {
+        let mut y = y.to_vec();
+        network.hold(t, &mut y);
+        let left = approach(network, &mut y, radius)?;
+        shake(
+            network,
+            JITTER * network.constraints.shortest(radius),
+            &mut y,
+        );
+        approach(network, &mut y, radius).map(|_| left)
+    })
+}
+
+/// Moves the state y towards places that meet all constraints. Returns the worst constraint if
+/// there are none.
+fn approach(network: &Network, y: &mut [f64], radius: f64) -> Option<Unmet> {
+    let most = MAX_DISPLACEMENT * network.constraints.shortest(radius);
+    for _ in 0..MAX_STEPS {
+        let worst = network.worst_constraint(y, radius)?;
+        if worst.share <= MET_SHARE || worst.share.is_nan() {
+            return None;
+        }
+        push(network, y, (Projected::Places, true), most);
+    }
+    let worst = network.worst_constraint(y, radius);
+    worst.filter(|worst| worst.share > UNMET_SHARE)
+}
+
+/// Moves particles at random by up to `most` (m), and turns bodies.
+fn shake(network: &Network, most: f64, y: &mut [f64]) {
+    let (n, mut random) = (network.particles(), SplitMix(1));
+    let mut by = |most: f64| Vector3::from_fn(|_, _| most * random.between(-1.0, 1.0));
+    for i in (0..n).filter(|i| network.particles.inverse_masses()[*i] > 0.0) {
+        let moved = row(y, n, i) + by(most);
+        set_row(&mut y[..3 * n], n, i, moved);
+    }
+    for k in 0..network.bodies().len() {
+        turn_body(network, k, by(JITTER), Projected::Places, y);
+    }
+    network.bodies.settle(y);
+}
+
+/// Changes places or velocities by one step, in which nothing moves by more than `most` (m, m/s).
+/// Returns the largest changes of positions or velocities (m, m/s), and of orientations or angular
+/// velocities (rad, rad/s).
+fn push(
+    network: &Network,
+    y: &mut [f64],
+    (what, ends_hold): (Projected, bool),
+    most: f64,
+) -> [f64; 2] {
     let n = network.particles();
     let none = (vec![0.0; 3 * n], vec![0.0; 3 * network.bodies().len()]);
     let before = y.to_vec();
@@ -60,29 +143,36 @@ fn push(network: &Network, y: &mut [f64], (what, ends_hold): (Projected, bool)) 
     };
     let weight = |i: usize| network.particles.inverse_masses()[i];
     let turning = |k: usize| turning(network, k, &before, Terms::KickForces, loads).0;
-    let mut largest = [0.0_f64; 2];
-    let constraints = &network.constraints;
+    let (mut largest, mut changes) = ([0.0_f64; 2], vec![]);
+    let kind = (what, ends_hold);
     nearest(
-        constraints,
+        &network.constraints,
         weight,
         turning,
         state,
-        (what, ends_hold),
+        kind,
         &mut |moved, change| {
             let kind = usize::from(matches!(moved, Moved::Body(_)));
             largest[kind] = largest[kind].max(change.norm());
-            match moved {
-                Moved::Nothing => {}
-                Moved::Particle(i) => {
-                    let first = if what == Projected::Places { 0 } else { 3 * n };
-                    let out = &mut y[first..first + 3 * n];
-                    let changed = row(out, n, i) + change;
-                    set_row(out, n, i, changed);
-                }
-                Moved::Body(k) => turn_body(network, k, change, what, y),
-            }
+            changes.push((moved, change));
         },
     );
+    let radii = network.bodies().iter().map(rigid::Body::radius);
+    let longest = largest[0].max(largest[1] * radii.fold(0.0, f64::max));
+    let scale = (most / longest).min(1.0);
+    for (moved, change) in changes {
+        let change = change * scale;
+        match moved {
+            Moved::Nothing => {}
+            Moved::Particle(i) => {
+                let first = if what == Projected::Places { 0 } else { 3 * n };
+                let out = &mut y[first..first + 3 * n];
+                let changed = row(out, n, i) + change;
+                set_row(out, n, i, changed);
+            }
+            Moved::Body(k) => turn_body(network, k, change, what, y),
+        }
+    }
     network.bodies.settle(y);
     largest
 }

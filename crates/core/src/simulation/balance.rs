@@ -14,23 +14,56 @@ use crate::network::{Network, is_nearly_singular};
 /// Shortest time between two checks of the energy (s).
 const INTERVAL: f64 = 0.1;
 
-/// Gain, over the energy of the scene, from which on users are warned that the run gains energy.
-const NOTABLE_GAIN: f64 = 0.5;
+/// Gain, over the energy that moves, from which on users are warned that the run gains energy.
+const NOTABLE_GAIN: f64 = 0.1;
 
-/// Gain, over the energy of the scene, at which a run counts as blown up.
-const MAX_GAIN: f64 = 100.0;
+/// Gain, over the energy that moves, at which a run counts as blown up.
+const MAX_GAIN: f64 = 10.0;
 
 /// Speed below which motion counts as rounding noise, in radii of the scene per second (1/s).
 const ROUNDING_SPEED: f64 = 1e-9;
+
+/// Change of a coordinate, over itself, that shows how large rounding errors of the energy are: 8
+/// units in the last place.
+const NUDGE: f64 = 8.0 * f64::EPSILON;
+
+/// Number of states that differ from the first by such changes.
+const NUDGES: u32 = 4;
+
+/// Energy of rounding errors in a run over that in a single state.
+const ROUNDING: f64 = 1000.0;
 
 /// Energy that nothing put into a run.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Gain {
     /// The energy (J).
     pub energy: f64,
-    /// The energy over that of the scene: the energy of its motion at the beginning, its weight
-    /// times its size, and the work done on it and by it.
+    /// The energy over the energy that moves: the largest exchange so far between kinetic, elastic
+    /// and gravitational energy and work.
     pub share: f64,
+}
+
+/// Range of values so far.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+struct Range {
+    least: f64,
+    most: f64,
+}
+
+impl Range {
+    fn at(value: f64) -> Self {
+        let [least, most] = [value; 2];
+        Self { least, most }
+    }
+
+    fn add(&mut self, value: f64) {
+        self.least = self.least.min(value);
+        self.most = self.most.max(value);
+    }
+
+    fn width(&self) -> f64 {
+        self.most - self.least
+    }
 }
 
 /// Balance of energy of a run (J).
@@ -40,23 +73,20 @@ pub struct Balance {
     time: f64,
     /// Energy at the beginning, with what hands and tears have changed since.
     begin: f64,
-    /// Energy of the scene: kinetic and elastic at the beginning, its weight times its radius, and
-    /// that of motion at the rounding speed; at least that of the errors that its tolerance allows.
-    own: f64,
-    /// Kinetic and elastic energy at the beginning.
-    moving: f64,
-    /// Largest loss of gravitational energy so far, and the gravitational energy at the beginning.
-    fall: f64,
-    gravitational: f64,
+    /// Energy that rounding errors, and the errors that a tolerance allows, may add.
+    floor: f64,
+    /// Kinetic energy at checks, from 0 on; elastic energy, and that of repulsion; gravitational
+    /// energy.
+    kinetic: Range,
+    elastic: Range,
+    gravitational: Range,
     /// Work done on the run, less the work that it did.
     work: f64,
     /// Sum of the amounts of all work, done on the run and by it.
     turnover: f64,
-    /// Gain at the last check, and its share.
+    /// Gain at the last check, and the largest one.
     gain: f64,
-    share: f64,
-    /// Largest gain.
-    most: Option<Gain>,
+    most: f64,
     /// Number of the constraint with the largest error so far, and that error, as a share.
     worst: Option<(usize, f64)>,
     /// Whether constraints were nearly singular at a check.
@@ -70,39 +100,40 @@ impl Balance {
     pub(super) fn new(network: &Network, (t, y): (f64, &[f64]), radius: f64) -> Self {
         let energy = energy_of(network, t, y);
         let mass = network.masses().iter().sum::<f64>();
-        let weight = network.gravity().map_or(0.0, |g| g.norm()) * mass;
-        let rounding = 0.5 * mass * (ROUNDING_SPEED * radius).powi(2);
-        // Rounding may leave a fluid at rest with a slightly negative energy.
-        let moving = (energy.kinetic + energy.elastic + energy.contact).max(0.0);
-        Self {
+        let slow = 0.5 * mass * (ROUNDING_SPEED * radius).powi(2);
+        let mut balance = Self {
             time: t,
             begin: energy.total(),
-            own: moving + weight * radius + rounding,
-            moving,
-            gravitational: energy.gravitational,
+            floor: slow + ROUNDING * rounding(network, t, y),
+            elastic: Range::at(energy.elastic + energy.contact),
+            gravitational: Range::at(energy.gravitational),
             ..Self::default()
-        }
+        };
+        balance.kinetic.add(energy.kinetic);
+        balance
     }
 
     /// Forgets all gains and constraint errors so far.
     pub(super) fn start_over(&mut self) {
-        (self.most, self.gain, self.share) = (None, 0.0, 0.0);
+        (self.most, self.gain) = (0.0, 0.0);
         (self.worst, self.singular) = (None, false);
     }
 
-    /// Returns the energy of the scene, which gains are compared with (J): its own, what gravity
-    /// has added to its motion, and the work done on it and by it.
+    /// Returns the energy that moves (J): the largest exchange so far between kinetic, elastic and
+    /// gravitational energy and work, less the energy that came from nowhere.
     fn scale(&self) -> f64 {
+        let ranges = [self.kinetic, self.elastic, self.gravitational];
+        let exchanged = ranges.iter().map(Range::width).fold(0.0, f64::max);
         let put_in = 0.5 * (self.turnover + self.work).max(0.0);
-        let had = self.own + self.fall + put_in;
+        let had = (exchanged - self.most).max(put_in).max(self.floor);
         // A run can lose no more energy than it had: losses beyond that are of energy that it
         // gained from nowhere, and do not widen the scale.
-        had + (self.turnover - put_in).max(0.0).min(had)
+        had.max((self.turnover - put_in).min(2.0 * had))
     }
 
     /// Returns whether the gain was small at the last check.
     pub(super) fn is_sound(&self) -> bool {
-        self.share < NOTABLE_GAIN
+        self.gain < NOTABLE_GAIN * self.scale()
     }
 
     /// Returns whether another check is due at time t (s).
@@ -122,10 +153,9 @@ impl Balance {
     }
 
     /// Changes the reference energy by the change (J) that a tear or a release caused: that is no
-    /// gain, and what it adds is of the scene from then on.
+    /// gain.
     pub(super) fn allow(&mut self, change: f64) {
         self.begin += change;
-        self.own += change.max(0.0);
         self.open = true;
     }
 
@@ -135,10 +165,10 @@ impl Balance {
         self.begin = energy - self.work - self.gain;
     }
 
-    /// Raises the energy of the scene to at least that (J) of the errors that a run is allowed to
-    /// make.
+    /// Raises the energy up to which gains are no faults to that (J) of the errors that a run is
+    /// allowed to make.
     pub(super) fn tolerate(&mut self, errors: f64) {
-        self.own = self.own.max(errors);
+        self.floor = self.floor.max(errors);
     }
 
     /// Notes that hands or contact may have changed the energy.
@@ -173,18 +203,15 @@ impl Balance {
         f: &mut Vec<f64>,
     ) -> Option<Cause> {
         let energy = energy_of(network, t, y);
-        self.fall = self.fall.max(self.gravitational - energy.gravitational);
+        self.kinetic.add(energy.kinetic);
+        self.elastic.add(energy.elastic + energy.contact);
+        self.gravitational.add(energy.gravitational);
         self.gain = energy.total() - self.begin - self.work;
-        (self.time, self.share) = (t, self.gain / self.scale());
-        if self.gain > 0.0 && self.most.is_none_or(|most| self.share > most.share) {
-            self.most = Some(Gain {
-                energy: self.gain,
-                share: self.share,
-            });
-        }
+        self.most = self.most.max(self.gain);
+        self.time = t;
         let (x, v) = network.halves(y);
         self.singular |= is_nearly_singular(network, t, x, v, f);
-        (self.share > MAX_GAIN).then(|| {
+        (self.gain > MAX_GAIN * self.scale()).then(|| {
             let (particle, speed) = fastest_particle(v);
             Cause::Gained {
                 energy: self.gain,
@@ -196,16 +223,18 @@ impl Balance {
 
     /// Returns the largest gain, if it is large enough for a warning.
     pub(super) fn notable_gain(&self) -> Option<Gain> {
-        self.most.filter(|gain| gain.share > NOTABLE_GAIN)
+        let gain = Gain {
+            energy: self.most,
+            share: self.most / self.scale(),
+        };
+        (gain.share > NOTABLE_GAIN).then_some(gain)
     }
 
-    /// Returns the energy gained or lost, over the energy of the motion; `None` if nothing moves,
-    /// or if hands, contact or tears may have changed it.
+    /// Returns the energy gained or lost, over the energy that moves; `None` if nothing moves, or
+    /// if hands, contact or tears may have changed it.
     pub(super) fn change(&self) -> Option<f64> {
-        let motion = self.moving + self.fall;
-        let moves = motion > ROUNDING_SPEED * self.own;
-        let energy = self.gain + self.work;
-        (moves && !self.open).then_some(energy / motion)
+        let (scale, energy) = (self.scale(), self.gain + self.work);
+        (scale > self.floor && !self.open).then_some(energy / scale)
     }
 
     /// Returns the constraint with the largest error so far, and that error.
@@ -223,4 +252,26 @@ impl Balance {
     pub(super) fn was_singular(&self) -> bool {
         self.singular
     }
+}
+
+/// Returns the rounding error (J) of the energy of y at time t (s): its largest change if all
+/// coordinates change in their last places.
+fn rounding(network: &Network, t: f64, y: &[f64]) -> f64 {
+    let energy = |y: &[f64]| network.energy_of(t, y).total();
+    let (n, same) = (3 * network.particles(), energy(y));
+    let changes = (0..NUDGES).map(|number| {
+        // Signs that look random, and differ for each number.
+        let sign =
+            |k: usize| f64::from((k as u32 + 1).wrapping_mul(0x9e37_79b9) >> (31 - number) & 1);
+        let nudged = y.iter().enumerate().map(|(k, y)| {
+            let change = if k < n {
+                NUDGE * (2.0 * sign(k) - 1.0)
+            } else {
+                0.0
+            };
+            y * (1.0 + change)
+        });
+        (energy(&nudged.collect::<Vec<_>>()) - same).abs()
+    });
+    changes.fold(0.0, f64::max)
 }

@@ -44,7 +44,7 @@ impl Bounds {
     /// time t (s).
     pub fn contradiction(&self, model: &Model, y: &[f64], t: f64) -> Option<Unmet> {
         let network = model.network()?;
-        contradiction(network, t, network.halves(y).0, self.radius)
+        contradiction(network, t, y, self.radius)
     }
 
     /// Finds the first particle that is farther than this many radii from the middle, or the first

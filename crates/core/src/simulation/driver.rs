@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::balance::Balance;
 use super::failure::Failure;
+use super::power::End;
 use super::reach::STEP_END_TOLERANCE;
 use super::state::RunState;
 use super::step::Pipeline;
@@ -98,15 +99,17 @@ impl Driver {
     pub fn conclude(&self, model: &Model, state: &RunState) -> Result<(), Failure> {
         let (watch, end) = (&self.pipeline.watch, self.last_end(state));
         match watch.balance_at(model, state.balance, end).1 {
-            Some(cause) => Err(Failure::BlowUp { cause, time: end.0 }),
+            Some(cause) => Err(Failure::BlowUp { cause, time: end.t }),
             None => Ok(()),
         }
     }
 
-    /// Returns the time (s) and state at the end of the last step.
-    fn last_end<'a>(&'a self, state: &'a RunState) -> (f64, &'a [f64]) {
+    /// Returns the end of the last step.
+    fn last_end<'a>(&'a self, state: &'a RunState) -> End<'a> {
         let within = self.within.end();
-        within.unwrap_or_else(|| (state.time(), &state.y))
+        let (t, y) = within.unwrap_or_else(|| (state.time(), &state.y));
+        let order = state.method.order;
+        End { order, t, y }
     }
 
     /// Takes `count` steps. If the time shown is within a step, that step is finished first, and

@@ -77,12 +77,29 @@ impl Power {
         self.is_fresh = false;
     }
 
-    /// Returns the work (J) since the end of the last step, up to this end of a step.
-    pub fn work(&mut self, network: &Network, end: End) -> f64 {
+    /// Returns the work (J) since the last evaluation, up to this end of a step: at least once in
+    /// an interval, and whenever it is needed `now`.
+    pub fn work(&mut self, network: &Network, end: End, now: bool) -> f64 {
+        let few = network.particles() <= MAX_PARTICLES_PER_STEP;
+        let is_due = |t: f64| now || few || end.t - t >= INTERVAL;
         let pins = self.pins.as_mut().map(|pins| pins.work(network, end));
-        let wind = self.wind.as_mut().map(|wind| wind.work(network, end));
-        let all = self.all.as_mut().map(|all| all.work(network, end));
+        let wind = self.wind.as_mut().filter(|wind| is_due(wind.t));
+        let wind = wind.map(|wind| wind.work(network, end));
+        let all = self.all.as_mut().filter(|all| is_due(all.t));
+        let all = all.map(|all| all.work(network, end));
         [pins, wind, all].into_iter().flatten().sum()
+    }
+
+    /// Returns the work (J) that is not evaluated yet at this end of a step, without noting it.
+    pub fn rest(&self, network: &Network, end: End) -> f64 {
+        if !self.is_fresh {
+            return 0.0;
+        }
+        let wind = self.wind.as_ref().filter(|wind| wind.t < end.t);
+        let wind = wind.map(|wind| wind.clone().work(network, end));
+        let all = self.all.as_ref().filter(|all| all.t < end.t);
+        let all = all.map(|all| all.clone().work(network, end));
+        [wind, all].into_iter().flatten().sum()
     }
 }
 
@@ -252,10 +269,6 @@ impl WindWork {
     }
 
     fn work(&mut self, network: &Network, End { t, y, .. }: End) -> f64 {
-        let few = network.particles() <= MAX_PARTICLES_PER_STEP;
-        if !few && t - self.t < INTERVAL {
-            return 0.0;
-        }
         let (x, v) = network.halves(y);
         let (free, n) = (network.inverse_masses(), network.particles());
         self.scratch.fill(0.0);
@@ -299,9 +312,6 @@ impl TotalWork {
     fn work(&mut self, network: &Network, end: End) -> f64 {
         let h = end.t - self.t;
         let few = network.particles() <= MAX_PARTICLES_PER_STEP;
-        if !few && h < INTERVAL {
-            return 0.0;
-        }
         let before = self.power;
         let after = self.power_at(network, end.t, end.y);
         let mut mean = 0.5 * (before + after);

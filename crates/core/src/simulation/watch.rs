@@ -7,6 +7,7 @@ use crate::contact::{Obstacle, Statistics};
 use crate::error::Cause;
 use crate::network::energy_of_errors;
 use crate::scene::{Model, StepLimits};
+use crate::system::ParticleSystem;
 
 /// Error of a constraint over its length at which a run counts as blown up.
 const MAX_CONSTRAINT_ERROR: f64 = 0.1;
@@ -81,10 +82,14 @@ impl Watch {
     /// Checks a run at time t (s), before something changes it, within or at the end of a step that
     /// ends at `end` (s).
     pub fn disturb(&mut self, model: &Model, state: &mut RunState, t: f64, end: f64) {
+        let (y, order) = (&state.y[..], state.method.order);
+        let network = model.network().filter(|_| !self.disturbed);
+        let rest = network.map(|network| self.power.rest(network, End { order, t, y }));
         self.power.forget();
-        let Some(network) = model.network().filter(|_| !self.disturbed) else {
+        let Some(network) = network else {
             return;
         };
+        state.balance.add(rest.unwrap_or_default());
         self.disturbed = true;
         let (begin, work) = self.last;
         if t < end && begin < end {
@@ -137,8 +142,12 @@ impl Watch {
         {
             return None;
         }
-        balance.add(self.power.clone().work(network, end));
-        balance.check(network, (end.t, end.y), &mut vec![])
+        // The points of bodies are at their places only now.
+        let mut y = end.y.to_vec();
+        network.hold(end.t, &mut y);
+        let work = self.power.clone().work(network, End { y: &y, ..end }, true);
+        balance.add(work);
+        balance.check(network, (end.t, &y), &mut vec![])
     }
 
     /// Records the end of a step, with its contacts, and what `Bounds` has found. Returns the cause
@@ -160,7 +169,8 @@ impl Watch {
             return lost;
         }
         let End { t, y, .. } = end;
-        let mut work = self.power.work(network, end);
+        let is_due = balance.is_due(t) || away;
+        let mut work = self.power.work(network, end, is_due);
         let impulse = met.impulse.max(met.guarded.impulse);
         if impulse > 0.0 {
             // Upper bound of the work of obstacles.
@@ -175,7 +185,7 @@ impl Watch {
         if let Some(unmet) = &worst {
             balance.note(unmet);
         }
-        let gained = if balance.is_due(t) || away {
+        let gained = if is_due {
             balance.check(network, (t, y), &mut self.scratch)
         } else {
             None
@@ -193,11 +203,14 @@ impl Watch {
         &self,
         model: &Model,
         mut balance: Balance,
-        (t, y): (f64, &[f64]),
+        end: End,
     ) -> (Balance, Option<Cause>) {
         // Changes by hands since the last check are no gain.
         let network = model.network().filter(|_| !self.disturbed);
-        let lost = network.and_then(|network| balance.check(network, (t, y), &mut vec![]));
+        let lost = network.and_then(|network| {
+            balance.add(self.power.rest(network, end));
+            balance.check(network, (end.t, end.y), &mut vec![])
+        });
         (balance, lost)
     }
 }

@@ -3,6 +3,7 @@
 
 mod alike;
 mod chance;
+mod energy;
 mod frames;
 mod grammar;
 mod invariance;

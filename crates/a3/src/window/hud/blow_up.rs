@@ -5,6 +5,7 @@ use egui::Ui;
 
 use super::style::{ALARM, text};
 use super::words::{digits, seconds};
+use crate::base::holding::MIN_HOLD_TIME;
 use crate::window::session::Pane;
 
 /// Writes when the run blew up, which limit the step exceeded, and which step would have been
@@ -14,40 +15,37 @@ pub fn explain(ui: &mut Ui, pane: &Pane, blow_up: &BlowUp) {
     let method = blow_up.method;
     let same = method == pane.simulation.method().title;
     let limit = pane.limit.limit().map(|limit| limit.step);
-    ui.label(text(match (blow_up.control, pane.limit.would_hold()) {
+    let sought = pane.limit.sought().filter(|_| same);
+    let until = blow_up.time.max(MIN_HOLD_TIME);
+    let sought = sought.map_or(String::new(), |sought| sentence(&sought.clause(until)));
+    ui.label(text(match blow_up.control {
         _ if blow_up.cause == Cause::ReadsVelocity => {
             format!("{method} cannot integrate forces that depend on velocity.")
         }
         _ if no_step_is_stable(blow_up) => "A shorter step does not help.".into(),
-        (Control::Tolerance(tolerance), _)
-            if matches!(blow_up.cause, Cause::StepTooSmall { .. }) =>
-        {
-            format!(
-                "{method} found no step that meets a tolerance of {tolerance:e}. Try a larger one."
-            )
+        Control::Tolerance(tolerance) if matches!(blow_up.cause, Cause::StepTooSmall { .. }) => {
+            format!("{method} found no step that meets a tolerance of {tolerance:e}.{sought}")
         }
-        (Control::Tolerance(tolerance), _) => {
-            format!("A tolerance of {tolerance:e} was too large for {method}.")
+        Control::Tolerance(tolerance) => {
+            format!("A tolerance of {tolerance:e} was too large for {method}.{sought}")
         }
-        (Control::Step(step), Some(would_hold)) if same => {
+        Control::Step(step) => {
             let past = limit
-                .filter(|limit| step > *limit)
+                .filter(|limit| same && step > *limit)
                 .map(|limit| format!(": past its limit here of {} ms", digits(1e3 * limit)));
             let past = past.unwrap_or_default();
-            format!(
-                "A step of {} s was too long for {method}{past}. {} s would have held.",
-                seconds(step),
-                seconds(would_hold)
-            )
-        }
-        (Control::Step(step), None) if same => format!(
-            "A step of {} s was too long for {method}, and no shorter one was found to hold.",
-            seconds(step)
-        ),
-        (Control::Step(step), _) => {
-            format!("A step of {} s was too long for {method}.", seconds(step))
+            let step = seconds(step);
+            format!("A step of {step} s was too long for {method}{past}.{sought}")
         }
     }));
+}
+
+/// Returns a clause as a sentence that follows another.
+fn sentence(clause: &str) -> String {
+    let mut letters = clause.chars();
+    let first = letters.next().map(|letter| letter.to_ascii_uppercase());
+    let all: String = first.into_iter().chain(letters).collect();
+    format!(" {all}.")
 }
 
 /// Returns whether pins or moving obstacles left no room between surfaces.

@@ -5,7 +5,7 @@ use web_time::{Duration, Instant};
 use a3_core::stability::{Growth, LargestMode, Limit, Mode, largest_step, spectrum};
 use a3_core::{Mechanics, Method, Simulation};
 
-use crate::base::holding::would_hold;
+use crate::base::holding::{Sought, would_hold};
 
 /// Shortest time between two estimates.
 const MIN_INTERVAL: Duration = Duration::from_millis(250);
@@ -25,9 +25,7 @@ pub struct LimitWatch {
     modes: Vec<Mode>,
     limit: Option<Limit>,
     next: Option<Instant>,
-    would_hold: Option<f64>,
-    /// Whether a stable step was searched for after the blow-up.
-    searched: bool,
+    sought: Option<Sought>,
 }
 
 impl LimitWatch {
@@ -36,9 +34,10 @@ impl LimitWatch {
         self.limit
     }
 
-    /// Returns a step (s) with which the diverged run would have been stable, if one was found.
-    pub fn would_hold(&self) -> Option<f64> {
-        self.would_hold
+    /// Returns the result of the search for a step or a tolerance with which the diverged run would
+    /// have held.
+    pub fn sought(&self) -> Option<Sought> {
+        self.sought
     }
 
     /// Returns the time (s) in which the motion of the mode that sets the limit grows tenfold in
@@ -55,7 +54,7 @@ impl LimitWatch {
         let begun = Instant::now();
         let blow_up = run.blow_up();
         let wait = if blow_up.is_some() {
-            self.searched
+            self.sought.is_some()
         } else {
             self.next.is_some_and(|next| begun < next)
         };
@@ -69,8 +68,7 @@ impl LimitWatch {
             let modes = spectrum(scene.model.system(), 0.0, &scene.state);
             self.modes.clone_from(&modes);
             self.set_method(run.method());
-            self.would_hold = would_hold(run, blow_up.time, &modes);
-            self.searched = true;
+            self.sought = Some(would_hold(run, blow_up.time, &modes));
             return;
         }
         self.modes = self.modes_of(run);
@@ -114,7 +112,7 @@ impl LimitWatch {
     pub fn set_method(&mut self, method: &Method) {
         // Fails for a damped mode if the method cannot integrate damped springs.
         self.limit = largest_step(method, &self.modes).ok().flatten();
-        (self.would_hold, self.searched) = (None, false);
+        self.sought = None;
     }
 }
 
@@ -133,12 +131,11 @@ mod tests {
             assert!(run.advance_to(10.0).is_err());
             let mut watch = LimitWatch::default();
             watch.update(&run);
-            watch.would_hold().unwrap()
+            watch.sought().unwrap()
         });
         // The suggested step does not depend on the step that was too long.
-        let step = named[0];
-        assert_eq!(named, [step; 3]);
-        assert_eq!(step, 0.003);
+        let step = 0.003;
+        assert_eq!(named, [Sought::Holds(Control::Step(step)); 3]);
         let mut run = Simulation::new(scene, euler, Control::Step(step)).unwrap();
         run.advance_to(10.0).unwrap();
     }
