@@ -22,6 +22,10 @@ const SHORT: &str = "gravity = [0, -9.81, 0]\n[[chain]]\nparticles = 6\nfrom = [
 const HUNG: &str = "[[body]]\nparts = [{ ball = 0.1 }]\nmass = 1\n\
     [[constraint]]\nparticle = 1\npoint = [0, 0.5, 0]\n";
 
+const AGAINST: &str = "[[body]]\nparts = [{ box = [0.2, 0.2, 0.2] }]\nmass = 1\n\
+    pin = [{ particles = [0], shift = { by = [1, 0, 0], end = 1 } }]\n\
+    [[joint]]\nbody = 0\nball = [0, 0, 0]\n";
+
 /// Returns the arguments of a run of this scene, after `a3 simulate`.
 fn words<'a>(folder: &Path, scene: &str, more: &'a str) -> Vec<&'a str> {
     fs::write(folder.join("scene.toml"), scene).unwrap();
@@ -68,8 +72,10 @@ fn lost_rods_and_lost_energy_are_told() {
 
 #[test]
 fn contradictions_are_named_without_advice() {
-    for run in ["r 0.001", "v 0.005", "a 1e-6"] {
-        let line = failed(TAUT, &format!("{run} --until 3"), 1);
+    let runs = ["r 0.001", "v 0.005", "a 1e-6"];
+    let both = [TAUT, AGAINST].into_iter();
+    for (scene, run) in both.flat_map(|scene| runs.map(|run| (scene, run))) {
+        let line = failed(scene, &format!("{run} --until 3"), 1);
         assert!(
             line.contains("contradicts other constraints or pins"),
             "{line}"
@@ -118,4 +124,54 @@ fn advice_held_for_as_long() {
         line.contains("; no shorter step holds, down to a step of 0.00000"),
         "{line}"
     );
+}
+
+/// Chain of light links on ball joints with a heavy ball at its end.
+fn heavy_end() -> String {
+    let link = |k: usize| {
+        let x = 0.1 + 0.2 * k as f64;
+        format!(
+            "[[body]]\nparts = [{{ box = [0.18, 0.02, 0.02] }}]\nmass = 0.1\nat = [{x}, 0, 0]\n"
+        )
+    };
+    let joint = |k: usize| {
+        let x = 0.2 * k as f64;
+        let bodies = if k == 0 {
+            "body = 0".into()
+        } else {
+            format!("bodies = [{}, {k}]", k - 1)
+        };
+        format!("[[joint]]\n{bodies}\nball = [{x}, 0, 0]\n")
+    };
+    let ball = "[[body]]\nparts = [{ ball = 0.2 }]\nmass = 1000\nat = [2.2, 0, 0]\n";
+    let links: String = (0..10).map(link).collect();
+    let joints: String = (0..11).map(joint).collect();
+    format!("gravity = [0, -9.81, 0]\n{links}{ball}{joints}")
+}
+
+#[test]
+fn advice_says_how_far_it_was_tried() {
+    // Two seconds of this take longer than the search.
+    let line = failed(&heavy_end(), "n 0.005 --until 5", 1);
+    let (_, advice) = line.split_once("; a step of ").unwrap();
+    let (_, advice) = advice.split_once(" s held ").unwrap();
+    let (held, _) = advice
+        .split_once(" s of 5 s, as far as it was tried")
+        .unwrap();
+    assert!(held.parse::<f64>().unwrap() < 5.0, "{line}");
+    // The joints can be met, however a step has torn them.
+    let line = failed(&heavy_end(), "i 0.02 --until 5", 1);
+    assert!(
+        !line.contains("contradicts") && line.contains("; a step of "),
+        "{line}"
+    );
+}
+
+#[test]
+fn a_tolerance_that_holds_is_named() {
+    let line = failed(BEAD, "a 0.05 --until 5", 1);
+    let (_, advice) = line.split_once("; a tolerance of ").unwrap();
+    let (tolerance, _) = advice.split_once(" would have held").unwrap();
+    let (said, _) = told(BEAD, &format!("a {tolerance} --until 5"));
+    assert_eq!(said, "");
 }

@@ -47,7 +47,7 @@ pub(crate) fn has_joints(network: &Network) -> bool {
 /// Changes the velocities in the state y by the least amount, weighted by the masses, so that all
 /// constraints stay met.
 pub(crate) fn project_velocities(network: &Network, y: &mut [f64]) {
-    push(network, y, (Projected::Velocities, false), f64::INFINITY);
+    push(network, y, (Projected::Velocities, false), Metric::Masses);
 }
 
 /// Moves the state y by the least distance, weighted by the masses, to where all constraints are
@@ -60,7 +60,7 @@ pub(crate) fn project(network: &Network, y: &mut [f64], ends_hold: bool) {
         .iter()
         .fold(0.0, |most: f64, x| most.max(x.abs()));
     for _ in 0..MAX_ITERATIONS {
-        let [moved, turned] = push(network, y, (Projected::Places, ends_hold), f64::INFINITY);
+        let [moved, turned] = push(network, y, (Projected::Places, ends_hold), Metric::Masses);
         // Written so that NaN ends the iteration.
         if !(moved > ROUNDING * size || turned > ROUNDING) {
             break;
@@ -70,7 +70,7 @@ pub(crate) fn project(network: &Network, y: &mut [f64], ends_hold: bool) {
         network,
         y,
         (Projected::Velocities, ends_hold),
-        f64::INFINITY,
+        Metric::Masses,
     );
 }
 
@@ -103,7 +103,7 @@ fn approach(network: &Network, y: &mut [f64], radius: f64) -> Option<Unmet> {
         if worst.share <= MET_SHARE || worst.share.is_nan() {
             return None;
         }
-        push(network, y, (Projected::Places, true), most);
+        push(network, y, (Projected::Places, true), Metric::Alike(most));
     }
     let worst = network.worst_constraint(y, radius);
     worst.filter(|worst| worst.share > UNMET_SHARE)
@@ -123,14 +123,22 @@ fn shake(network: &Network, most: f64, y: &mut [f64]) {
     network.bodies.settle(y);
 }
 
-/// Changes places or velocities by one step, in which nothing moves by more than `most` (m, m/s).
-/// Returns the largest changes of positions or velocities (m, m/s), and of orientations or angular
-/// velocities (rad, rad/s).
+/// Measure of the changes of a step, which are the least.
+#[derive(Clone, Copy)]
+enum Metric {
+    /// They are weighted by the masses.
+    Masses,
+    /// All that moves has the same mass, and moves by no more than that distance (m).
+    Alike(f64),
+}
+
+/// Changes places or velocities by one step. Returns the largest changes of positions or velocities
+/// (m, m/s), and of orientations or angular velocities (rad, rad/s).
 fn push(
     network: &Network,
     y: &mut [f64],
     (what, ends_hold): (Projected, bool),
-    most: f64,
+    metric: Metric,
 ) -> [f64; 2] {
     let n = network.particles();
     let none = (vec![0.0; 3 * n], vec![0.0; 3 * network.bodies().len()]);
@@ -141,8 +149,21 @@ fn push(
         f: &none.0,
         torques: &none.1,
     };
-    let weight = |i: usize| network.particles.inverse_masses()[i];
-    let turning = |k: usize| turning(network, k, &before, Terms::KickForces, loads).0;
+    let (masses, inverse_masses) = (network.masses(), network.particles.inverse_masses());
+    let scale = |mass: f64| match metric {
+        Metric::Masses => 1.0,
+        Metric::Alike(_) => mass,
+    };
+    let most = match metric {
+        Metric::Masses => f64::INFINITY,
+        Metric::Alike(most) => most,
+    };
+    let weight = |i: usize| inverse_masses[i] * scale(masses[i]);
+    let turning = |k: usize| {
+        let mut turning = turning(network, k, &before, Terms::KickForces, loads).0;
+        turning.inverse_inertia *= scale(masses[network.bodies()[k].center()]);
+        turning
+    };
     let (mut largest, mut changes) = ([0.0_f64; 2], vec![]);
     let kind = (what, ends_hold);
     nearest(
@@ -159,9 +180,9 @@ fn push(
     );
     let radii = network.bodies().iter().map(rigid::Body::radius);
     let longest = largest[0].max(largest[1] * radii.fold(0.0, f64::max));
-    let scale = (most / longest).min(1.0);
+    let shortened = (most / longest).min(1.0);
     for (moved, change) in changes {
-        let change = change * scale;
+        let change = change * shortened;
         match moved {
             Moved::Nothing => {}
             Moved::Particle(i) => {

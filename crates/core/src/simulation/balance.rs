@@ -21,7 +21,7 @@ const NOTABLE_GAIN: f64 = 0.1;
 const MAX_GAIN: f64 = 10.0;
 
 /// Speed below which motion counts as rounding noise, in radii of the scene per second (1/s).
-const ROUNDING_SPEED: f64 = 1e-9;
+const ROUNDING_SPEED: f64 = 1e-6;
 
 /// Change of a coordinate, over itself, that shows how large rounding errors of the energy are: 8
 /// units in the last place.
@@ -133,7 +133,7 @@ impl Balance {
 
     /// Returns whether the gain was small at the last check.
     pub(super) fn is_sound(&self) -> bool {
-        self.gain < NOTABLE_GAIN * self.scale()
+        self.gain <= NOTABLE_GAIN * self.scale()
     }
 
     /// Returns whether another check is due at time t (s).
@@ -166,7 +166,7 @@ impl Balance {
     }
 
     /// Raises the energy up to which gains are no faults to that (J) of the errors that a run is
-    /// allowed to make.
+    /// allowed to make, or of the motion in its first step.
     pub(super) fn tolerate(&mut self, errors: f64) {
         self.floor = self.floor.max(errors);
     }

@@ -289,11 +289,12 @@ impl WindWork {
 /// Work of everything together.
 #[derive(Clone, Debug)]
 struct TotalWork {
-    /// Time (s) and power (W) at the last evaluation, and the state there.
+    /// Time (s) and power (W) at the last evaluation, the state there, and its rates of change.
     t: f64,
     power: f64,
     y: Vec<f64>,
-    /// States, and f.
+    f: Vec<f64>,
+    /// States, and rates of change.
     scratch: [Vec<f64>; 3],
 }
 
@@ -303,9 +304,11 @@ impl TotalWork {
             t,
             power: 0.0,
             y: y.to_vec(),
+            f: vec![],
             scratch: [(); 3].map(|()| vec![0.0; y.len()]),
         };
         all.power = all.power_at(network, t, y);
+        all.f.clone_from(&all.scratch[1]);
         all
     }
 
@@ -314,20 +317,25 @@ impl TotalWork {
         let few = network.particles() <= MAX_PARTICLES_PER_STEP;
         let before = self.power;
         let after = self.power_at(network, end.t, end.y);
+        let f0 = std::mem::take(&mut self.f);
+        let f1 = self.scratch[1].clone();
         let mut mean = 0.5 * (before + after);
         if !few {
             // The motion between two evaluations is unknown: its work must not count as a gain of
             // the method.
             mean = 0.5 * (before.max(0.0) + after.max(0.0));
-        } else if end.order > LOW_ORDER && network.bodies().is_empty() {
+        } else if end.order > LOW_ORDER {
             let mut middle = std::mem::take(&mut self.scratch[2]);
             let t = self.t + 0.5 * h;
-            write_middle(&self.y, end.y, h, &mut middle);
+            middle.clear();
+            middle.extend(
+                (0..f1.len()).map(|k| 0.5 * (self.y[k] + end.y[k]) + 0.125 * h * (f0[k] - f1[k])),
+            );
             network.hold(t, &mut middle);
             mean = (2.0 * mean + 4.0 * self.power_at(network, t, &middle)) / 6.0;
             self.scratch[2] = middle;
         }
-        (self.t, self.power) = (end.t, after);
+        (self.t, self.power, self.f) = (end.t, after, f1);
         self.y.copy_from_slice(end.y);
         mean * h
     }

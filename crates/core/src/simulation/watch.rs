@@ -4,10 +4,11 @@ use super::balance::Balance;
 use super::power::{End, Power, energy_of, fastest};
 use super::state::RunState;
 use crate::contact::{Obstacle, Statistics};
+use crate::control::Control;
 use crate::error::Cause;
-use crate::network::energy_of_errors;
+use crate::network::{Network, energy_of_errors};
 use crate::scene::{Model, StepLimits};
-use crate::system::ParticleSystem;
+use crate::system::{Mechanics, ParticleSystem};
 
 /// Error of a constraint over its length at which a run counts as blown up.
 const MAX_CONSTRAINT_ERROR: f64 = 0.1;
@@ -63,14 +64,22 @@ impl Watch {
         self.tolerate(model, state);
     }
 
-    /// Counts the energy of errors within the tolerance as the scene's own: at rest, an adaptive
-    /// method takes steps so long that it only just meets its tolerance.
+    /// Counts the energy of errors within the tolerance as no gain: at rest, an adaptive method
+    /// takes steps so long that it only just meets its tolerance. A method of order 1 may gain all
+    /// energy of the motion in its first step.
     fn tolerate(&self, model: &Model, state: &mut RunState) {
-        if let (Some(relative), Some(network)) = (state.control.tolerance(), model.network()) {
-            let error = self.limits.absolute.unwrap_or(relative * self.radius);
-            let errors = energy_of_errors(network, state.time(), &state.y, error);
-            state.balance.tolerate(errors);
-        }
+        let Some(network) = model.network() else {
+            return;
+        };
+        let (t, y) = (state.time(), &state.y[..]);
+        let errors = match state.control {
+            Control::Step(h) => kick(network, (t, h), y),
+            Control::Tolerance(relative) => {
+                let error = self.limits.absolute.unwrap_or(relative * self.radius);
+                energy_of_errors(network, t, y, error)
+            }
+        };
+        state.balance.tolerate(errors);
     }
 
     /// Starts to watch the run from another state.
@@ -213,4 +222,15 @@ impl Watch {
         });
         (balance, lost)
     }
+}
+
+/// Returns the kinetic energy (J) that the forces at y at time t (s) give in a step of h (s) to
+/// what is at rest.
+fn kick(network: &Network, (t, h): (f64, f64), y: &[f64]) -> f64 {
+    let (n, mut rates) = (network.particles(), vec![0.0; y.len()]);
+    network.eval_f(t, y, &mut rates);
+    let squared = |k: usize| rates[3 * n + k].powi(2) * network.masses()[k % n];
+    let pulled = (0..3 * n).filter(|k| network.inverse_masses()[k % n] > 0.0);
+    let energy = 0.5 * h * h * pulled.map(squared).sum::<f64>();
+    if energy.is_finite() { energy } else { 0.0 }
 }
