@@ -185,8 +185,8 @@ fn what_does_not_fit_is_refused_by_name() {
 fn a_run_goes_on_by_the_solver_of_its_checkpoint() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
-    let own = "solver = \"pefrl\"\ngravity = [0, -9.81, 0]\ndrag = 0.1\n[[chain]]\nparticles = 3\n\
-         from = [0, 0, 0]\nto = [1, 0, 0]\nmass = 1\nstiffness = 50\npin = [{ particles = [0] }]\n";
+    let own = "solver = \"dprkn86\"\ngravity = [0, -9.81, 0]\ndrag = 0.1\n[[chain]]\nparticles = 3\n\
+         from = [0, 0, 0]\nto = [1, 0, 0]\nmass = 1\nstiffness = 50\ndamping = 0.5\npin = [{ particles = [0] }]\n";
     fs::write(folder.join("own.toml"), own).unwrap();
     let scene = ["--scene", "own.toml", "-o", "x.json"];
     let keep = ["--until", "0.2", "--checkpoint", "c.checkpoint"];
@@ -216,7 +216,7 @@ fn evaluations_are_those_of_a_run_in_one_go() {
         summary["evaluations"].as_u64().unwrap()
     };
     let whole = evaluations(&["--until", "1"]);
-    evaluations(&["--until", "0.05", "--checkpoint", "c.checkpoint"]);
+    evaluations(&["--until", "0.123", "--checkpoint", "c.checkpoint"]);
     let resumed = evaluations(&["--until", "1", "--resume", "c.checkpoint"]);
     assert_eq!(resumed, whole);
 }

@@ -102,15 +102,15 @@ pub fn search(judged: &Judged, at_start: bool) -> Option<Match> {
     let plans: [(&[Way], &[Start], &[Pace], bool); 6] = [
         (&correct, scene, &whole, false),
         (&correct, scene, &between, false),
+        (&schemes, scene, &all, true),
         (&slips, scene, &whole, false),
         (&correct, &starts, &whole, false),
         (&slips, scene, &between, false),
-        (&schemes, scene, &all, true),
     ];
     for (ways, starts, paces, is_single) in plans {
         search.is_single = is_single;
         if is_single && !judged.rows.are_single() {
-            break;
+            continue;
         }
         let found = search.agreements(ways, starts, paces)?;
         if let Some((first, others)) = found.split_first() {
