@@ -17,6 +17,7 @@ mod program;
 mod run;
 mod simplify;
 mod tables;
+mod turns;
 
 /// The compiled part of `a3_simulator`.
 #[pyo3::pymodule]

@@ -269,7 +269,7 @@ pub fn stability(
 }
 
 /// A run of a comparison: method, setting, states one after the other, energies (J), work, and the
-/// message of a blow-up.
+/// message of a blow-up with its time (s).
 type Compared<'py> = (
     &'static str,
     f64,
@@ -277,6 +277,7 @@ type Compared<'py> = (
     Bound<'py, PyArray1<f64>>,
     f64,
     Option<String>,
+    Option<f64>,
 );
 
 /// Times (s), the runs, the number of particles, and the length of the state.
@@ -312,6 +313,7 @@ pub fn compare<'py>(
             PyArray1::from_slice(py, &run.energies),
             run.work,
             run.blow_up.map(|blow_up| blow_up.to_string()),
+            run.blow_up.map(|blow_up| blow_up.time),
         )
     });
     let times = PyArray1::from_slice(py, &compared.times);

@@ -1,6 +1,6 @@
 //! Runs of scenes.
 
-use std::sync::{Arc, Mutex, MutexGuard};
+use std::sync::Arc;
 
 use a3::embedded::{self, Look};
 use a3_core::{Checkpoint, Error, Network, Simulation, SpringKind, StepLimits, Vector3};
@@ -16,6 +16,7 @@ use super::function::Raised;
 use super::open::{Given, Opened, setting};
 use super::own_method::raised_by;
 use super::tables::method;
+use super::turns::{Turn, Turns};
 
 /// Data of all springs: ends, kinds, stiffness (N/m), rest length (m), damping (N s/m).
 type Springs<'py> = (
@@ -29,7 +30,7 @@ type Springs<'py> = (
 /// The run of a scene by a method.
 #[pyclass(frozen, subclass, module = "a3_simulator._a3")]
 pub struct Run {
-    simulation: Mutex<Simulation>,
+    simulation: Turns<Simulation>,
     presentation: Arc<Presentation>,
     /// Length of a run of the scene (s), if it has one of its own.
     duration: Option<f64>,
@@ -40,13 +41,12 @@ pub struct Run {
 }
 
 impl Run {
-    /// Returns the simulation, unless it is being advanced.
-    fn simulation(&self, py: Python<'_>) -> PyResult<MutexGuard<'_, Simulation>> {
-        self.simulation.try_lock().map_err(|_| {
+    /// Returns the simulation, as soon as no other thread uses it.
+    fn simulation(&self, py: Python<'_>) -> PyResult<Turn<'_, Simulation>> {
+        self.simulation.wait(py)?.ok_or_else(|| {
             wrong(
                 py,
-                "this run is being advanced, by another thread or by the caller of this function: wait until it has \
-                 advanced",
+                "this run is being advanced by the caller of this function: wait until it has advanced",
             )
         })
     }
@@ -111,7 +111,7 @@ impl Run {
             return Err(raised);
         }
         Ok(Self {
-            simulation: Mutex::new(run.map_err(|failure| of_failure(py, &failure))?),
+            simulation: Turns::new(run.map_err(|failure| of_failure(py, &failure))?),
             presentation: opened.setup.presentation.clone(),
             duration: opened.setup.defaults.duration,
             calls: opened.calls || method.is_own(),

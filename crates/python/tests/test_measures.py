@@ -140,6 +140,7 @@ def test_runs_are_compared():
 def test_a_comparison_tells_of_a_blow_up():
     compared = a3.compare("cloth", [("euler", 0.5), "rk4"], until=5.0, frames=10, progress=False)
     assert "blew up" in compared.runs[0].blow_up and compared.runs[1].blow_up is None
+    assert 0 < compared.runs[0].blew_up_at and compared.runs[1].blew_up_at is None
     assert len(compared.runs[0].states) < len(compared.runs[1].states) == 11
 
 
@@ -289,9 +290,9 @@ def test_a_picture_of_a_scene(tmp_path):
         pictures[0].save("cloth.jpg")
 
 
-def chain(method, step, count):
+def chain(method, step, count, scene="chain"):
     """Returns the states of a chain: times (s), positions (m) and velocities (m/s)."""
-    run = a3.Simulation("chain", method, step=step)
+    run = a3.Simulation(scene, method, step=step)
     states = [(0.0, run.positions, run.velocities)]
     for k in range(1, count + 1):
         run.step()
@@ -307,6 +308,27 @@ def test_results_are_judged_by_their_method(method):
     assert judgement.error == judgement.errors.max() and judgement.times[-1] == pytest.approx(1.0)
     assert judgement.mistake is None and "rror" in str(judgement)
     assert pickle.loads(pickle.dumps(judgement)).error == judgement.error
+
+
+def test_a_judgement_has_the_facts_of_its_text():
+    light = a3.scene("chain")
+    light["gravity"] = [0, -9.7, 0]
+    t, x, v = chain("symplectic", 0.01, 100, light)
+    judgement = a3.judge("chain", (t, x, v), progress=False)
+    assert judgement.method == "symplectic" and judgement.constant == "gravity"
+    assert judgement.factor == pytest.approx(9.7 / 9.8, rel=1e-6)
+    assert judgement.mistake in judgement.text and "9.7 m/s² in place of 9.8 m/s²" in judgement.mistake
+    assert judgement.question in judgement.text
+    t, x, v = chain("euler", 0.01, 100)
+    late = a3.judge("chain", (t[:-1], x[1:], v[1:]), progress=False)
+    assert late.method == "euler" and late.mistake == "a step later in each row"
+    assert late.mistake in late.text and late.question in late.text and late.start in late.text
+    single = np.float32(x).astype(float)
+    for facts in (judgement, late, a3.judge("chain", (t, single), progress=False)):
+        assert facts.single_precision == ("in single precision" in facts.text)
+        assert (facts.method is None) == ("agrees with no solver" in facts.text)
+        assert (facts.nearest is not None) == ("nearest" in facts.text)
+        assert (facts.mistake is not None) == ("but with" in facts.text or "but a step" in facts.text)
 
 
 def test_results_in_a_file_are_judged(tmp_path):

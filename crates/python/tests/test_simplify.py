@@ -28,6 +28,9 @@ def found():
 def test_the_effects_are_those_of_runs(found):
     assert found["floor"].change == 0.0
     assert found["floor"].verdict == "leave it out"
+    for effect in found.models:
+        assert effect.in_lean == (effect.verdict in ("leave it out", "take it"))
+        assert effect.in_lean or effect.model not in found.lean.parts
 
     def positions(text):
         run = a3.Simulation(text, "dopri5", tolerance=1e-8)

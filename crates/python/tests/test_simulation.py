@@ -199,13 +199,48 @@ def test_runs_advance_in_several_threads():
         assert np.array_equal(run.state, alone.state)
 
 
-def test_a_run_is_not_advanced_by_two_threads_at_once():
+def test_threads_take_turns_at_a_run():
+    run = a3.Simulation("cloth", "rk4", step=0.0005, grid=(40, 40))
+    thread = threading.Thread(target=run.step, args=(1000,))
+    thread.start()
+    time.sleep(0.05)
+    read = run.positions
+    assert run.steps >= 1000
+    run.step()
+    thread.join()
+    assert run.steps == 1001
+    alone = a3.Simulation("cloth", "rk4", step=0.0005, grid=(40, 40))
+    alone.step(1000)
+    assert np.array_equal(read, alone.positions)
+
+
+def test_reading_is_not_starved_by_steps_of_another_thread():
+    run, done = a3.Simulation("cloth", "rk4", step=0.0005), threading.Event()
+
+    def advance():
+        while not done.is_set():
+            run.step(20)
+
+    thread = threading.Thread(target=advance)
+    thread.start()
+    seen = [run.steps for _ in range(20)]
+    done.set()
+    thread.join()
+    assert seen == sorted(seen) and len(set(seen)) > 10
+
+
+@pytest.mark.skipif(os.name == "nt", reason="signals of POSIX")
+def test_ctrl_c_ends_a_wait_for_another_thread():
     run = a3.Simulation("cloth", "rk4", step=0.0005, grid=(40, 40))
     thread = threading.Thread(target=run.step, args=(3000,))
     thread.start()
     time.sleep(0.05)
-    with pytest.raises(a3.InputError, match="this run is being advanced"):
-        run.step()
+    timer = threading.Timer(0.3, os.kill, (os.getpid(), signal.SIGINT))
+    timer.start()
+    begun = time.perf_counter()
+    with pytest.raises(KeyboardInterrupt):
+        run.positions
+    assert time.perf_counter() - begun < 2
     thread.join()
     assert run.steps == 3000
 

@@ -20,3 +20,4 @@ pub mod rounding;
 pub mod terminal;
 #[cfg(not(target_arch = "wasm32"))]
 pub mod verdict;
+pub mod visible;

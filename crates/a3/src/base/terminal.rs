@@ -5,6 +5,7 @@ use std::collections::BTreeSet;
 use std::io::{self, IsTerminal, Write};
 use std::sync::{Mutex, PoisonError};
 
+use super::visible::is_shown;
 use crate::base::failure::Failure;
 
 /// Largest number of characters of a message.
@@ -95,9 +96,9 @@ fn printable(text: &str) -> String {
     let mut shown = String::with_capacity(text.len());
     for c in text.chars() {
         match c {
-            '\n' | '\t' | ' '..='~' => shown.push(c),
-            // After a letter, accents that combine with it are shown as they are.
-            _ => shown.extend(format!("a{c}").escape_debug().skip(1)),
+            '\n' | '\t' => shown.push(c),
+            _ if is_shown(c) => shown.push(c),
+            _ => shown.extend(c.escape_debug()),
         }
     }
     shown

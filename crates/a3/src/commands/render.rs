@@ -21,7 +21,7 @@ pub fn run(options: &Render) -> Result<(), Failure> {
         presentation,
         until,
         ..
-    } = Run::new(&options.run)?;
+    } = Run::new(&options.run, None)?;
     begin::check_particle(&simulation, options.springs_of)?;
     begin::check_drawing(&simulation, options.manner, false)?;
     output::check(path, ENDINGS)?;

@@ -20,9 +20,13 @@ use crate::files::{export, output};
 pub fn run(options: &Simulate) -> Result<(), Failure> {
     let begun = Instant::now();
     export::check_ending(&options.output)?;
-    let mut run = Run::new(&options.run)?;
+    let kept = options.resume.as_deref();
+    let kept = kept.map(|path| Kept::read(path).map(|kept| (path, kept)));
+    let kept = kept.transpose()?;
+    let solver = kept.as_ref().map(|(_, kept)| kept.checkpoint.run.method);
+    let mut run = Run::new(&options.run, solver)?;
     check_summary(options)?;
-    let extremes = begin(options, &mut run)?;
+    let extremes = begin(options, kept, &mut run)?;
     let (frames, mut export) = export::begin(options, &run)?;
     warn_of_first_frame(options, &frames);
     let every = Duration::from_secs_f64(options.every);
@@ -61,13 +65,17 @@ fn check_summary(options: &Simulate) -> Result<(), Failure> {
 
 /// Brings the run to its checkpoint, if it resumes one. Returns the extremes until then, if any
 /// are wanted.
-fn begin(options: &Simulate, run: &mut Run) -> Result<Option<Extremes>, Failure> {
+fn begin(
+    options: &Simulate,
+    kept: Option<(&Path, Kept)>,
+    run: &mut Run,
+) -> Result<Option<Extremes>, Failure> {
     let wanted = options.summary.is_some() || options.checkpoint.is_some();
     let fresh = wanted.then(Extremes::default);
-    let Some(path) = &options.resume else {
+    let Some((path, kept)) = kept else {
         return Ok(fresh);
     };
-    let kept = resume(path, options, run)?;
+    resume((path, &kept), options, run)?;
     Ok(fresh.map(|fresh| kept.extremes.unwrap_or(fresh)))
 }
 
@@ -190,8 +198,11 @@ impl Observer<'_> {
 
 /// Resumes a run from a checkpoint. A solver, a step or a disturbance on the command line has to be
 /// that of the checkpoint.
-fn resume(path: &Path, options: &Simulate, begun: &mut Run) -> Result<Kept, Failure> {
-    let kept = Kept::read(path)?;
+fn resume(
+    (path, kept): (&Path, &Kept),
+    options: &Simulate,
+    begun: &mut Run,
+) -> Result<(), Failure> {
     let (source, run) = (&begun.request.source, &mut begun.simulation);
     let (solver, control) = (run.method(), run.control());
     let asked = &options.run;
@@ -235,7 +246,7 @@ fn resume(path: &Path, options: &Simulate, begun: &mut Run) -> Result<Kept, Fail
             "this run is at t = {now} s already, past --until {end}"
         ));
     }
-    Ok(kept)
+    Ok(())
 }
 
 /// Checks for crossings of surfaces, if --check is given.

@@ -4,11 +4,12 @@ use std::path::{Path, PathBuf};
 
 use crate::base::browser::{download, files, log};
 use crate::base::failure::Failure;
+use crate::base::visible::part_of_name;
 
 /// Gives `bytes` to the browser as a download, and stores them as a file of the page under the
 /// first free name a3-SCENE-k. Returns that name.
 pub fn write_new(_: &Path, scene: &str, extension: &str, bytes: &[u8]) -> Result<PathBuf, Failure> {
-    let scene = scene.replace(|c: char| c.is_control() || "/\\".contains(c), "-");
+    let scene = part_of_name(scene);
     let name = |k: usize| PathBuf::from(format!("a3-{scene}-{k}.{extension}"));
     let path = (1..=usize::MAX)
         .map(name)

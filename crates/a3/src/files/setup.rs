@@ -28,8 +28,9 @@ pub struct Run {
 }
 
 impl Run {
-    /// Reads the scene and prepares its run.
-    pub fn new(options: &RunOptions) -> Result<Self, Failure> {
+    /// Reads the scene and prepares its run: by the solver that the options name, or else by
+    /// `own`, or else by that of the scene.
+    pub fn new(options: &RunOptions, own: Option<&'static Method>) -> Result<Self, Failure> {
         let request = Request::read(&options.what)?;
         if let Some(solver) = options.solver.filter(|solver| !solver.is_adaptive()) {
             let given = [
@@ -43,12 +44,12 @@ impl Run {
                 )));
             }
         }
-        let own = request.source.description.duration;
-        let until = options.until.or(own).ok_or_else(|| {
+        let duration = request.source.description.duration;
+        let until = options.until.or(duration).ok_or_else(|| {
             Failure::usage("the scene has no duration of its own: give --until T in seconds, such as --until 10")
         })?;
         let mut setup = request.build()?;
-        let solver = request.source.solver_or(options.solver);
+        let solver = request.source.solver_or(options.solver.or(own));
         setup.scene.limits = options.limits.given().or(setup.scene.limits);
         let simulation = request.simulate(&setup, solver, options.step)?;
         Ok(Self {

@@ -6,6 +6,7 @@ use clap::Parser;
 use crate::base::failure::Failure;
 use crate::cli::{Cli, Command, Compare, Drawing, Look, What, WindowOptions};
 use crate::draw::show::{self, Quantity};
+use crate::files::checkpoint::Kept;
 use crate::files::lessons::{self, Step};
 use crate::files::scene_file::Source;
 use crate::files::setup::Request;
@@ -26,7 +27,9 @@ fn window_on(mut request: Request, options: &WindowOptions) -> Result<Session, F
             "--watch needs a scene file, as in `--scene flag.toml --watch`",
         ));
     }
-    let solver = source.solver_or(options.solver);
+    let kept = options.resume.as_deref().map(Kept::read).transpose()?;
+    let resumed = kept.map(|kept| kept.checkpoint.run.method);
+    let solver = source.solver_or(options.solver.or(resumed));
     let mut setup = request.build()?;
     let touches = request.source.description.self_collision || request.options.self_collision;
     let crossed = touches && begins_crossed(&setup.scene);

@@ -179,3 +179,44 @@ fn what_does_not_fit_is_refused_by_name() {
     assert!(line.contains("would be overwritten"), "{line}");
     refused(&own, "no checkpoint of a3");
 }
+
+/// The solver of a scene that cannot run it is not needed to resume by another.
+#[test]
+fn a_run_goes_on_by_the_solver_of_its_checkpoint() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let own = "solver = \"dprkn86\"\ngravity = [0, -9.81, 0]\ndrag = 0.1\n[[chain]]\nparticles = 3\n\
+         from = [0, 0, 0]\nto = [1, 0, 0]\nmass = 1\nstiffness = 50\ndamping = 0.5\npin = [{ particles = [0] }]\n";
+    fs::write(folder.join("own.toml"), own).unwrap();
+    let scene = ["--scene", "own.toml", "-o", "x.json"];
+    let keep = ["--until", "0.2", "--checkpoint", "c.checkpoint"];
+    let words = [&["simulate", "r", "0.01"][..], &scene, &keep].concat();
+    assert!(a3(folder, &words).status.success());
+    let plain = [&["simulate", "--until", "1"][..], &scene].concat();
+    let line = complaint(&a3(folder, &plain), 2);
+    assert!(line.contains("the solvers that can run it"), "{line}");
+    let output = a3(
+        folder,
+        &[&plain[..], &["--resume", "c.checkpoint"]].concat(),
+    );
+    assert!(output.status.success(), "{}", text(&output.stderr));
+}
+
+/// A run that is resumed has taken as many evaluations as one that was not interrupted.
+#[test]
+fn evaluations_are_those_of_a_run_in_one_go() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let evaluations = |words: &[&str]| {
+        let words = [&["simulate", "x", "1e-6", "-o", "x.json"], words].concat();
+        let output = a3(folder, &[&words[..], &["--summary", "s.json"]].concat());
+        assert!(output.status.success(), "{}", text(&output.stderr));
+        let summary = fs::read_to_string(folder.join("s.json")).unwrap();
+        let summary: Value = serde_json::from_str(&summary).unwrap();
+        summary["evaluations"].as_u64().unwrap()
+    };
+    let whole = evaluations(&["--until", "1"]);
+    evaluations(&["--until", "0.123", "--checkpoint", "c.checkpoint"]);
+    let resumed = evaluations(&["--until", "1", "--resume", "c.checkpoint"]);
+    assert_eq!(resumed, whole);
+}

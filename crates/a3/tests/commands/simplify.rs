@@ -134,6 +134,31 @@ fn useless_parts_are_found_and_effects_are_those_of_runs_by_hand() {
     assert!(error < 2e-3, "{error} {table}");
 }
 
+/// Savings are the same from one command to the next, though the machine does other work, too.
+#[test]
+fn savings_are_steady() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    write(folder, "useless.toml", USELESS);
+    let times = |file: &str| -> Vec<(String, f64)> {
+        let words = "simplify --scene useless.toml --error 2e-3 --until 1 --data";
+        said(folder, &words.split(' ').chain([file]).collect::<Vec<_>>());
+        let mut rows = csv::Reader::from_path(folder.join(file)).unwrap();
+        let keys = rows.headers().unwrap().clone();
+        let at = |key: &str| keys.iter().position(|found| found == key).unwrap();
+        let (model, time) = (at("model"), at("time"));
+        let rows = rows.records().map(Result::unwrap);
+        rows.map(|row| (row[model].to_owned(), row[time].parse().unwrap()))
+            .collect()
+    };
+    let (first, second) = (times("a.csv"), times("b.csv"));
+    assert!(first.len() > 10);
+    for ((model, a), (other, b)) in first.iter().zip(&second) {
+        assert_eq!(model, other);
+        assert!((a / b - 1.0).abs() < 0.1, "{model}: {a} and {b}");
+    }
+}
+
 /// A cloth that hangs by its own weight. Row j of n rows hangs on springs that bear what is below:
 /// with mass M and n springs of stiffness k beside one another, it is lower by the sum of
 /// (n - i) M g / (n n k) for i up to j. A continuous cloth is lower by M g / k (s - s2 / 2).

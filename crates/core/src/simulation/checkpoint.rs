@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::driver::{Driver, Progress};
+use super::pins::strayed;
 use super::state::RunState;
 use super::touching::{let_touch, touches_itself};
 use crate::contact::Shape;
@@ -11,7 +12,12 @@ use crate::error::Error;
 use crate::network::{Network, drained, go_back, pass_to, set_drained, set_taut, taut};
 use crate::path::Path;
 use crate::pin::Pin;
+use crate::rigid::{Body, ROTATION, Rotation};
 use crate::scene::{Model, Scene};
+
+/// Largest distance of a particle from the origin in a run, over the radius of its scene; also the
+/// largest speed, over that radius in a second.
+const MAX_SHARE: f64 = 1e12;
 
 /// A run at one time: all data, except its scene, from which it continues bit for bit.
 ///
@@ -137,8 +143,37 @@ impl Checkpoint {
                 let_touch(network, scene, self.touching)?;
             }
             self.bind(network, whole)?;
+            self.check_motion(network, scene.extent().1)?;
         }
         Ok(model)
+    }
+
+    /// Checks that a run of a network of that radius (m) can be in this state: nothing is too far
+    /// away or too fast, and pins hold their particles.
+    fn check_motion(&self, network: &Network, radius: f64) -> Result<(), Error> {
+        let (n, y) = (network.particles(), &self.run.y);
+        let wrong = |what: &str, i: usize| {
+            Error::Invalid(format!(
+                "no run can have {what} {i} as this checkpoint has it"
+            ))
+        };
+        let (motion, rotations) = y.split_at(6 * n);
+        let is_far = |number: &f64| number.abs() > MAX_SHARE * radius;
+        if let Some(k) = motion.iter().position(is_far) {
+            return Err(wrong("particle", k % n));
+        }
+        if let Some(i) = strayed(network, y, self.time(), radius).first() {
+            return Err(wrong("the pinned particle", *i));
+        }
+        let rotations = rotations.chunks_exact(ROTATION).map(Rotation::read);
+        let mut bodies = network.bodies().iter().zip(rotations);
+        let is_wrong = |(body, Rotation { q, momentum }): (&Body, Rotation)| {
+            body.speed() * momentum.norm() > MAX_SHARE * radius || q.norm() == 0.0
+        };
+        match bodies.position(is_wrong) {
+            Some(k) => Err(wrong("body", k)),
+            None => Ok(()),
+        }
     }
 
     /// Applies this checkpoint's pins, obstacles, wind, tears and outflow to a fresh copy of the

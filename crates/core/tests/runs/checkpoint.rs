@@ -211,6 +211,11 @@ fn checkpoints_that_do_not_fit_are_refused_and_change_nothing() {
     };
     refuse(&|c| c.run.y.push(0.0));
     refuse(&|c| c.run.y[0] = f64::NAN);
+    refuse(&|c| c.run.y[40] = 1e200);
+    refuse(&|c| {
+        let pinned = c.pins[0].particle;
+        c.pins[0].path = Path::Still(Vector3::new(9.0, 0.0, pinned as f64));
+    });
     refuse(&|c| c.run.since = f64::INFINITY);
     refuse(&|c| c.run.control = Control::Tolerance(-1.0));
     refuse(&|c| c.run.method = method("rk4"));
@@ -238,4 +243,15 @@ fn checkpoints_that_do_not_fit_are_refused_and_change_nothing() {
     let text = serde_json::to_string(&before).unwrap();
     let error = serde_json::from_str::<Checkpoint>(&text.replace("dopri5", "magic"));
     assert!(error.unwrap_err().to_string().contains("no method magic"));
+}
+
+/// A body that spins faster than any can is refused.
+#[test]
+fn a_body_with_an_impossible_spin_is_refused() {
+    let mut run = simulation("boxes", "verlet", 0.001);
+    run.take_steps(2).unwrap();
+    let mut forged = run.checkpoint();
+    *forged.run.y.last_mut().unwrap() = 1e100;
+    let why = run.restore(&forged).unwrap_err().to_string();
+    assert!(why.contains("body"), "{why}");
 }

@@ -78,7 +78,7 @@ def compare(
     monitor: Monitor,
     until: float,
     frames: int,
-) -> Tuple[Floats, List[Tuple[str, float, Floats, Floats, float, Optional[str]]], int, int]: ...
+) -> Tuple[Floats, List[Tuple[str, float, Floats, Floats, float, Optional[str], Optional[float]]], int, int]: ...
 
 def judge(
     given: Given,

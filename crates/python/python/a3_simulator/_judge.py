@@ -31,8 +31,14 @@ class Judgement:
         particle: the particle that is farthest from its place then.
         times, errors: times (s) and errors (m), (times,).
         floor: error of the reference itself (m).
-        method: name of the method of a3 that the results agree with, or `None`.
-        mistake: the mistake in words, if the results agree with a method that has one, or are near one.
+        method: the method that the results agree with: its name in a3, or its title if a3 has none of it; or `None`.
+        mistake: how it differs from the method, in the words of the text, such as "half the gravity" or "a step later
+            in each row"; of a suspect if the results agree with no method, or `None`.
+        question: the question to the author of the program, or `None`.
+        constant, factor: the constant that is another, and its value over that of the scene, or `None`.
+        single_precision: whether the results agree with the method in single precision.
+        nearest: the nearest method, if the results agree with none but are near one, or `None`.
+        start: how the first state differs from the start of the scene, in words, or `None`.
         step: step of the program (s), if it is known.
         within: whether the error is within that which was asked for; `None` if none was.
         data: all that was found, as `a3 judge --summary` writes it.
@@ -48,15 +54,25 @@ class Judgement:
         self.floor: float = data["floor"]
         self.step: Optional[float] = data["step"]
         self.within: Optional[bool] = data["within"]
-        agreed, suspect = data["method"] or {}, data["suspect"] or {}
-        self.method: Optional[str] = agreed.get("solver")
-        self.mistake: Optional[str] = agreed.get("mistake") or suspect.get("mistake")
+        self.start: Optional[str] = data["start"]
+        self.method, self.nearest = _name(data["method"]), _name(data["nearest"])
+        found = data["method"] or data["suspect"] or {}
+        self.mistake: Optional[str] = found.get("mistake")
+        self.question: Optional[str] = found.get("question")
+        self.constant: Optional[str] = found.get("constant")
+        self.factor: Optional[float] = found.get("factor")
+        self.single_precision: bool = found.get("single_precision", False)
 
     def __str__(self) -> str:
         return self.text
 
     def __repr__(self) -> str:
         return f"<Judgement: error {self.error:.1e} m, {self.method or 'no known method'}>"
+
+
+def _name(way: Optional[Dict[str, Any]]) -> Optional[str]:
+    """Returns the name of a method in a3, or else its title."""
+    return None if way is None else way["solver"] or way["title"]
 
 
 def judge(

@@ -265,6 +265,8 @@ class ComparedRun:
     work: float
     #: Message of the blow-up, if there was one.
     blow_up: Optional[str]
+    #: Its time (s).
+    blew_up_at: Optional[float]
     _particles: int = 0
 
     @property
@@ -430,8 +432,8 @@ def compare(
         lambda monitor: _a3.compare(scene_given, asked, monitor, until, frames), progress
     )
     of_runs = [
-        ComparedRun(method, setting, states.reshape(-1, length), energies, cost, blow_up, particles)
-        for method, setting, states, energies, cost, blow_up in compared
+        ComparedRun(method, setting, states.reshape(-1, length), energies, cost, blow_up, time, particles)
+        for method, setting, states, energies, cost, blow_up, time in compared
     ]
     return Comparison(times, of_runs, particles)
 

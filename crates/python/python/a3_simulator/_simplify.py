@@ -27,6 +27,8 @@ class ModelEffect:
     time: Optional[float]
     #: Work over that of the whole scene, in evaluations of each.
     work: Optional[float]
+    #: Whether the lean scene has this change.
+    in_lean: bool
     #: Verdict, or the reason why it was not measured.
     verdict: str
 

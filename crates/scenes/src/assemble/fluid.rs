@@ -11,7 +11,7 @@ use super::inflow::Column;
 use super::outflow::{MAX_OUTFLOWS, SLACK, spaces};
 use super::places::{LAYERS, Places};
 use super::skins::point_skin;
-use crate::check::{at, at_least, positive};
+use crate::check::{at, at_least, key_of, positive};
 use crate::description::{Fluid, FluidShape, Pin, Spot};
 use crate::fault::Fault;
 
@@ -264,13 +264,24 @@ pub(super) fn add(
     if let Some(([i, j], distance)) = fluid.nearest_pair(x)
         && distance < MIN_DISTANCE * law.spacing
     {
-        let why = format!(
-            "particles {i} and {j} would begin {} m apart; at least {} m is needed, so that they do \
-             not fly apart",
+        let apart = format!(
+            "{} m apart; at least {} m is needed, so that they do not fly apart",
             Rounded(distance),
             Rounded(MIN_DISTANCE * law.spacing)
         );
-        return Err(Fault::new("fluid", why));
+        let body = |i: u32| network.body_of(i as usize);
+        return Err(match body(i).or(body(j)) {
+            Some(k) => {
+                let key = key_of("body", k, network.bodies().len());
+                let why = "a point of it and a particle of the liquid would begin";
+                let room = "move the body, or the liquid that begins in its place";
+                Fault::new(key, format!("{why} {apart}: {room}"))
+            }
+            None => {
+                let why = format!("particles {i} and {j} would begin {apart}");
+                Fault::new("fluid", why)
+            }
+        });
     }
     at("fluid", network.add(fluid))
 }

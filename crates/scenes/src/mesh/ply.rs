@@ -7,6 +7,10 @@ use crate::text::{Lines, words};
 
 /// Line that ends the header.
 const END: &[u8] = b"end_header";
+/// Largest size of the header (bytes).
+const MAX_HEAD: usize = 1 << 20;
+/// Most words of a line of the header that mean anything.
+const MAX_WORDS: usize = 6;
 
 /// Encoding of the numbers.
 #[derive(Clone, Copy, PartialEq)]
@@ -67,11 +71,15 @@ pub(super) fn read(bytes: &[u8]) -> Result<Mesh, String> {
 /// Reads the header: the encoding of the numbers, the elements, and the bytes after the header.
 fn head(bytes: &[u8]) -> Result<(Form, Vec<Element>, &[u8]), String> {
     let no_ply = "it is no PLY file: one begins with the lines `ply` and `format`";
-    let end = bytes.windows(END.len()).position(|window| window == END);
+    let first = &bytes[..bytes.len().min(MAX_HEAD)];
+    let end = first.windows(END.len()).position(|window| window == END);
     if !bytes.starts_with(b"ply") {
         return Err(no_ply.into());
     }
-    let end = end.ok_or("its head does not end: the line `end_header` is missing")?;
+    let end = end.ok_or_else(|| {
+        let most = MAX_HEAD >> 20;
+        format!("its head does not end: the line `end_header` is missing in the first {most} MiB")
+    })?;
     let after = &bytes[end + END.len()..];
     // One end of a line only: the next byte may belong to a number.
     let body = after.strip_prefix(b"\r\n").or(after.strip_prefix(b"\n"));
@@ -79,6 +87,7 @@ fn head(bytes: &[u8]) -> Result<(Form, Vec<Element>, &[u8]), String> {
     let (mut form, mut elements): (_, Vec<Element>) = (None, vec![]);
     for (line, statement) in Lines::new(&bytes[..end]) {
         let words: Vec<_> = words(statement)
+            .take(MAX_WORDS)
             .map(|word| String::from_utf8_lossy(word).into_owned())
             .collect();
         let words: Vec<_> = words.iter().map(String::as_str).collect();

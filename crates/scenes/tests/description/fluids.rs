@@ -127,6 +127,11 @@ tank = { size = [4, 2.5, 0], at = [2, 1.25, 0] }
             "line 1: fluid: particles 0 and 128 would begin 0.05",
         ),
         (
+            "tank = { size = [4, 2.5, 0], at = [2, 1.25, 0] }",
+            "[[body]]\nparts = [{ box = [0.5, 0.5, 1] }]\ndensity = 500\nat = [0.5, 1, 0]",
+            "line 8: body: a point of it and a particle of the liquid would begin",
+        ),
+        (
             "tank = { size = [4, 2.5, 0], at = [2, 1.25, 0] }\n",
             &other_law,
             "line 9: fluid.1: all fluids of a scene are one liquid",

@@ -136,6 +136,13 @@ fn lines_of_ply_may_have_more() {
     );
     let endless = Mesh::from_ply(text.replace("end_header", "").as_bytes()).unwrap_err();
     assert!(endless.contains("`end_header` is missing"), "{endless}");
+    // A long line costs no memory for its words, and ends the search for the end of the head.
+    let long = text.replace(
+        "end_header",
+        &format!("comment{}\nend_header", " a".repeat(1 << 20)),
+    );
+    let endless = Mesh::from_ply(long.as_bytes()).unwrap_err();
+    assert!(endless.contains("in the first 1 MiB"), "{endless}");
 }
 
 /// Files of other kinds are refused with their kind.

@@ -75,8 +75,8 @@ impl Bar {
     }
 
     /// Shows a text before the bar.
-    pub fn say(&self, what: String) {
-        self.0.set_message(what);
+    pub fn say(&self, what: &str) {
+        self.0.set_message(terminal::visible(what));
     }
 
     /// Removes the bar.
@@ -92,7 +92,7 @@ impl Monitor for Bar {
     }
 
     fn stage(&self, what: &str) {
-        self.say(format!("{what:<10} "));
+        self.say(&format!("{what:<10} "));
     }
 
     fn expect(&self, work: f64) {

@@ -27,7 +27,9 @@ pub fn march(
             break;
         }
         if control.step().is_none() {
-            simulation.advance_to(simulation.time() + FRAME)?;
+            // The same times whenever the run begins: states within a step cost evaluations.
+            let frame = (simulation.time() / FRAME + Simulation::STEP_END_TOLERANCE).floor();
+            simulation.advance_to((frame + 1.0) * FRAME)?;
         } else {
             simulation.take_steps(whole as u64)?;
         }

@@ -113,7 +113,7 @@ fn look_ahead(
     files: &[(String, States)],
     bar: &Bar,
 ) -> Result<Horizon, Failure> {
-    bar.say("looking ahead  ".into());
+    bar.say("looking ahead  ");
     let ends = files.iter().filter_map(|(_, states)| states.times.last());
     let last = ends.fold(0.0, |last: f64, end| last.max(*end));
     horizon_of(scene, last, options.until, bar)
@@ -139,7 +139,7 @@ fn judge_all(
     let mut truth = Truth::new(scene, horizon, bar);
     let mut judged = vec![];
     for (name, states) in files {
-        bar.say(format!("{name}  "));
+        bar.say(&format!("{name}  "));
         match judge(&course, &mut truth, states) {
             Ok(Some(judgement)) => judged.push((name.clone(), judgement)),
             Ok(None) => return Err(stopped()),

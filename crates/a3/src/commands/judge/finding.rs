@@ -3,7 +3,7 @@
 use super::judgement::Judgement;
 use super::quantity::{amount, seconds};
 use super::search::{Agreement, MIN_APART};
-use super::trial::Start;
+use super::trial::{Start, Trial};
 
 /// Largest number of methods or mistakes that are named beside the one that a file agrees with.
 const MAX_OTHERS: usize = 3;
@@ -42,6 +42,13 @@ fn found(judgement: &Judgement, agreement: &Agreement) -> Vec<(&'static str, Str
         until.unwrap_or_default()
     );
     let mut lines = vec![("method", text)];
+    if agreement.trial.pace.points > 1 {
+        let points = agreement.trial.pace.points;
+        let text = format!(
+            "1 of {points} is at the end of a step: others lie between steps, and are not compared"
+        );
+        lines.push(("rows", text));
+    }
     lines.extend(others(agreement, &judgement.found.also));
     let mut questions: Vec<_> = vec![];
     for asked in [agreement]
@@ -53,11 +60,8 @@ fn found(judgement: &Judgement, agreement: &Agreement) -> Vec<(&'static str, Str
             questions.push(asked);
         }
     }
-    lines.extend(
-        questions
-            .into_iter()
-            .map(|question| ("question", question.into())),
-    );
+    let questions = questions.into_iter();
+    lines.extend(questions.map(|question| ("question", question)));
     if let Some([apart, speed]) = compared.velocities
         && agreement.until.is_none()
         && apart > MIN_APART * speed
@@ -77,14 +81,12 @@ fn others(agreement: &Agreement, also: &[Agreement]) -> Option<(&'static str, St
     let mut names: Vec<_> = vec![];
     for other in also.iter().map(|other| other.trial) {
         let name = match (own.way.mistake(), other.way.mistake()) {
-            (Some(mistake), Some(other)) if mistake == other => continue,
+            (Some(mistake), Some(other)) if mistake.words() == other.words() => continue,
             (Some(_), Some(other)) => format!("with {}", other.words()),
             _ if other.way.title() != own.way.title() => other.way.title().to_owned(),
-            _ => format!("the same{}", since(other.start)),
+            _ => format!("the same{}", slips(&other)),
         };
-        if !names.contains(&name)
-            && (other.way.title(), other.start) != (own.way.title(), own.start)
-        {
+        if !names.contains(&name) && way_of(&other) != way_of(&own) {
             names.push(name);
         }
     }
@@ -107,7 +109,12 @@ fn not_found(judgement: &Judgement) -> Vec<(&'static str, String)> {
     } else {
         format!("steps from {} to {}", seconds(longest), seconds(shortest))
     };
-    let mut lines = vec![("method", format!("agrees with no solver at {steps}"))];
+    let known = if judgement.has_known_step {
+        ""
+    } else {
+        ": if its step is another, add --step"
+    };
+    let mut lines = vec![("method", format!("agrees with no solver at {steps}{known}"))];
     let mut near = |key, near: &Agreement, only| {
         let away = amount(near.compared.distance);
         lines.push((
@@ -120,7 +127,7 @@ fn not_found(judgement: &Judgement) -> Vec<(&'static str, String)> {
     }
     if let Some(suspect) = &found.suspect {
         near("suspect", suspect, "only ");
-        lines.extend(question(suspect).map(|question| ("question", question.into())));
+        lines.extend(question(suspect).map(|question| ("question", question)));
     }
     lines
 }
@@ -140,15 +147,34 @@ fn way(agreement: &Agreement) -> String {
     } else {
         ""
     };
-    let mut text = format!("{article}{title} at {}", seconds(agreement.step));
-    if let Some(mistake) = trial.way.mistake() {
-        text.extend([", but with ", mistake.words(), ","]);
-    }
-    let since = since(trial.start);
-    if !since.is_empty() {
-        text.extend([since, ","]);
-    }
-    text
+    let precision = if agreement.is_single {
+        " in single precision"
+    } else {
+        ""
+    };
+    let slips = slips(&trial);
+    let end = if slips.is_empty() { "" } else { "," };
+    let step = seconds(agreement.step);
+    format!("{article}{title} at {step}{precision}{slips}{end}")
+}
+
+/// Returns what is not as in the method: a slip or a mistake, and where the comparison begins.
+fn slips(trial: &Trial) -> String {
+    let slip = trial.way.slip().map(|slip| format!(", but with {slip}"));
+    slip.unwrap_or_default() + since(trial.start)
+}
+
+/// Returns the slips of an agreement in words, if it has some.
+pub fn mistake(agreement: &Agreement) -> Option<String> {
+    let slips = slips(&agreement.trial);
+    let words = slips.trim_start_matches(", ").trim_start_matches("but ");
+    let words = words.trim_start_matches("with ");
+    (!words.is_empty()).then(|| words.into())
+}
+
+/// Returns the method and where the comparison begins.
+fn way_of(trial: &Trial) -> (&'static str, String) {
+    (trial.way.title(), slips(trial))
 }
 
 /// Returns where the agreement begins.
@@ -163,17 +189,16 @@ fn since(start: Start) -> &'static str {
 }
 
 /// Returns the question to the author of a program that agrees so.
-fn question(agreement: &Agreement) -> Option<&'static str> {
+pub fn question(agreement: &Agreement) -> Option<String> {
+    let of_start = match agreement.trial.start {
+        Start::Scene | Start::Row(0) => None,
+        Start::Row(_) => Some("is a force, a position or a velocity of the first step an old one?"),
+        Start::Ahead => Some("is the first row written after the first step?"),
+        Start::Behind => Some("is the start written twice?"),
+    };
     agreement
         .trial
         .way
         .question()
-        .or(match agreement.trial.start {
-            Start::Scene | Start::Row(0) => None,
-            Start::Row(_) => {
-                Some("is a force, a position or a velocity of the first step an old one?")
-            }
-            Start::Ahead => Some("is the first row written after the first step?"),
-            Start::Behind => Some("is the start written twice?"),
-        })
+        .or(of_start.map(String::from))
 }

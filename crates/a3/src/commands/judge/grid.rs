@@ -8,6 +8,11 @@ const TOLERANCE: f64 = 1e-9;
 const MAX_PARTS: u32 = 10;
 /// Largest error of a time over the step.
 const MAX_SHARE: f64 = 0.02;
+/// Largest number of grid points between two at which a step ends.
+pub const MAX_EVERY: u64 = 25;
+/// Least number of rows at the ends of steps if others lie between them, or of rows in single
+/// precision.
+pub const MIN_AT_STEPS: usize = 4;
 /// Largest multiple of the step.
 const MAX_MULTIPLE: f64 = 1e9;
 
@@ -77,6 +82,22 @@ impl Grid {
         Some(Self { step, numbers })
     }
 
+    /// Returns the least number of grid points that a whole number of steps (s) lasts, and that
+    /// number.
+    pub fn meeting(&self, step: f64) -> Option<[u64; 2]> {
+        (1..=MAX_EVERY).find_map(|every| {
+            let parts = every as f64 * self.step / step;
+            let is_whole = (parts - parts.round()).abs() <= TOLERANCE * parts;
+            (is_whole && parts > 0.5).then(|| [every, parts.round() as u64])
+        })
+    }
+
+    /// Returns whether enough times are multiples of a number of grid points.
+    pub fn meets(&self, points: u64) -> bool {
+        let meet = self.numbers.iter().filter(|n| **n % points == 0);
+        points == 1 || meet.count() >= MIN_AT_STEPS
+    }
+
     /// Times of the grid points (s).
     pub fn times(&self) -> impl Iterator<Item = f64> {
         self.numbers.iter().map(|n| *n as f64 * self.step)
@@ -97,6 +118,11 @@ fn simplest(least: f64, most: f64) -> f64 {
     let part = 1.0 / (1.0 / middle).round();
     let all = decimals(1..=3).chain([part]).chain(decimals(4..=15));
     all.into_iter().find(fits).unwrap_or(middle)
+}
+
+/// Returns the greatest common divisor.
+pub fn gcd(a: u64, b: u64) -> u64 {
+    if b == 0 { a } else { gcd(b, a % b) }
 }
 
 #[cfg(test)]
@@ -129,5 +155,8 @@ mod tests {
         assert_eq!(Grid::of(&[0.25], 0.0).unwrap().numbers, [1]);
         assert!(Grid::of_step(&sixtieth, 0.0, 0.01).is_none());
         assert_eq!(Grid::of_step(&[0.3], 0.0, 0.1).unwrap().numbers, [3]);
+        let frames = Grid::of(&sixtieth, 0.0).unwrap();
+        assert_eq!(frames.meeting(0.01), Some([3, 5]));
+        assert_eq!(frames.meeting(0.01 + 1e-6), None);
     }
 }

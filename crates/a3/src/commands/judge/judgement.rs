@@ -62,6 +62,8 @@ pub struct Judgement {
     pub step: Option<f64>,
     /// Whether the times are multiples of a step, so that methods were compared.
     pub was_searched: bool,
+    /// Whether the step of the program was given.
+    pub has_known_step: bool,
     /// Method that the file agrees with.
     pub found: Match,
     /// Computing time of the run (s).
@@ -127,6 +129,7 @@ pub fn judge(
         step: course.step,
         size: size(scene),
         radius: scene.extent().1,
+        noise: None,
     };
     let at_start = matches!(judgement.start, None | Some(Difference::Later(_)));
     let Some(found) = search(&judged, at_start) else {
@@ -136,6 +139,7 @@ pub fn judge(
     let agreed = found.found.map(|agreement| agreement.step);
     judgement.step = agreed.or(course.step).or(grid.map(|grid| grid.step));
     judgement.was_searched = grid.is_some() || course.step.is_some();
+    judgement.has_known_step = course.step.is_some();
     judgement.found = found;
     Ok(Some(judgement))
 }
@@ -200,6 +204,7 @@ fn measured(scene: &Scene, states: &States, rows: &Rows, reference: &Reference) 
         momentum: network.map(|_| momentum),
         step: None,
         was_searched: false,
+        has_known_step: false,
         found: Match::default(),
         seconds: states.seconds,
         not_finite_at: states.not_finite_at,

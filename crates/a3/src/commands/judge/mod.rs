@@ -2,10 +2,13 @@
 //! order, the method that they agree with, and the usual mistakes.
 
 mod command;
+mod constant;
 mod finding;
+mod fit;
 mod grid;
 mod judgement;
 mod mistake;
+mod pace;
 mod picture;
 mod plain;
 mod quantity;

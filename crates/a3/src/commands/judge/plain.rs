@@ -4,6 +4,7 @@
 use a3_core::{Scene, SpringKind};
 use a3_scenes::List;
 
+use super::constant::{Change, Constant};
 use super::mistake::Mistake;
 
 /// Vector of a particle.
@@ -74,6 +75,40 @@ impl Plain {
         self.drag > 0.0
     }
 
+    /// Returns all values of a constant.
+    fn values(&self, constant: Constant) -> Box<dyn Iterator<Item = f64> + '_> {
+        let springs = self.springs.iter();
+        let length = |v: &Triple| dot(*v, *v).sqrt();
+        match constant {
+            Constant::Gravity => Box::new([length(&self.gravity)].into_iter()),
+            Constant::Stiffness => Box::new(springs.map(|spring| spring.stiffness)),
+            Constant::RestLength => Box::new(springs.map(|spring| spring.rest_length)),
+            Constant::Damping => Box::new(springs.map(|spring| spring.damping)),
+            Constant::Drag => Box::new([self.drag].into_iter()),
+            Constant::Mass => Box::new(self.mass.iter().copied()),
+            Constant::Start => Box::new(self.start[1].iter().map(length)),
+            Constant::Springs | Constant::Velocities => Box::new([].into_iter()),
+        }
+    }
+
+    /// Returns the changes of constants that change anything in this network, with the values of
+    /// the scene.
+    pub fn changes(&self) -> Vec<Mistake> {
+        let of = |constant| {
+            let mut values = self.values(constant);
+            let first = values.next();
+            let is_one = constant != Constant::Start && values.all(|value| Some(value) == first);
+            let own = first.filter(|_| is_one);
+            Mistake::Constant(Change {
+                constant,
+                factor: 1.0,
+                own,
+            })
+        };
+        let all = Constant::ALL.into_iter().map(of);
+        all.filter(|change| self.can_have(*change)).collect()
+    }
+
     /// Returns whether a mistake changes anything in this network.
     pub fn can_have(&self, mistake: Mistake) -> bool {
         let pulls = self.gravity.iter().any(|g| *g != 0.0);
@@ -85,19 +120,16 @@ impl Plain {
             self.springs.iter().any(|spring| spring.rest_length > 0.0),
         );
         match mistake {
-            Mistake::HalfGravity
-            | Mistake::DoubleGravity
-            | Mistake::NoGravity
-            | Mistake::GravityUpwards => pulls,
+            Mistake::Constant(change) => match change.constant {
+                Constant::Springs => damps,
+                Constant::Mass => elastic || self.drag > 0.0,
+                Constant::Velocities => true,
+                constant => self.values(constant).any(|value| value != 0.0),
+            },
             Mistake::GravityAsForce => pulls && !has_unit_masses,
-            Mistake::RestLengthZero | Mistake::StretchAsRatio => stretches,
-            Mistake::NotNormalised
-            | Mistake::SpringsPush
-            | Mistake::SpringsTwice
-            | Mistake::FirstEndOnly
-            | Mistake::SecondEndOnly => elastic,
-            Mistake::NoSpringDamping | Mistake::DampingAcross => damps,
-            Mistake::NoDrag => self.drag > 0.0,
+            Mistake::StretchAsRatio => stretches,
+            Mistake::NotNormalised | Mistake::FirstEndOnly | Mistake::SecondEndOnly => elastic,
+            Mistake::DampingAcross => damps,
             Mistake::DragPerMass => self.drag > 0.0 && !has_unit_masses,
             Mistake::UnitMasses => !has_unit_masses,
             Mistake::ForcesKept => elastic || pulls,
@@ -114,17 +146,37 @@ pub struct Forces<'a> {
     mistake: Option<Mistake>,
     /// Drag is left out, for schemes that take it otherwise.
     pub without_drag: bool,
+    /// The program computes in single precision.
+    pub is_single: bool,
     /// Forces of earlier evaluations, which [`Mistake::ForcesKept`] never clears (N).
     kept: Vec<Triple>,
 }
 
 impl<'a> Forces<'a> {
-    pub fn new(plain: &'a Plain, mistake: Option<Mistake>) -> Self {
+    pub fn new(plain: &'a Plain, mistake: Option<Mistake>, is_single: bool) -> Self {
         Self {
             plain,
             mistake,
             without_drag: false,
+            is_single,
             kept: vec![[0.0; 3]; plain.particles()],
+        }
+    }
+
+    /// Returns the value of a constant over that in the scene.
+    pub fn factor(&self, constant: Constant) -> f64 {
+        match self.mistake {
+            Some(Mistake::Constant(change)) if change.constant == constant => change.factor,
+            _ => 1.0,
+        }
+    }
+
+    /// Rounds a number as the program does.
+    pub fn rounded(&self, number: f64) -> f64 {
+        if self.is_single {
+            f64::from(number as f32)
+        } else {
+            number
         }
     }
 
@@ -133,9 +185,13 @@ impl<'a> Forces<'a> {
         self.plain.pinned[i] && self.mistake != Some(Mistake::PinsMove)
     }
 
+    fn mass(&self, i: usize) -> f64 {
+        self.rounded(self.factor(Constant::Mass) * self.plain.mass[i])
+    }
+
     /// Returns the rate at which drag slows a particle down (1/s).
     pub fn drag_rate(&self, i: usize) -> f64 {
-        self.plain.drag / self.plain.mass[i]
+        self.factor(Constant::Drag) * self.plain.drag / self.mass(i)
     }
 
     /// Accelerations (m/s2) of all particles, 0 for those that are held.
@@ -147,13 +203,13 @@ impl<'a> Forces<'a> {
         self.add_forces(x, v, &mut forces);
         let mass = |i: usize| match self.mistake {
             Some(Mistake::UnitMasses) => 1.0,
-            _ => self.plain.mass[i],
+            _ => self.mass(i),
         };
         let of = |(i, force): (usize, &Triple)| {
             if self.holds(i) {
                 [0.0; 3]
             } else {
-                force.map(|f| f / mass(i))
+                force.map(|f| self.rounded(f / mass(i)))
             }
         };
         let all = forces.iter().enumerate().map(of).collect();
@@ -164,6 +220,10 @@ impl<'a> Forces<'a> {
     /// Adds the forces (N) of springs, gravity and drag.
     fn add_forces(&self, x: &[Triple], v: &[Triple], forces: &mut [Triple]) {
         let is = |mistake: Mistake| self.mistake == Some(mistake);
+        let springs = self.factor(Constant::Springs);
+        let stiffness = springs * self.factor(Constant::Stiffness);
+        let damping = springs * self.factor(Constant::Damping);
+        let rest_length = self.factor(Constant::RestLength);
         for spring in &self.plain.springs {
             let [i, j] = spring.ends;
             if is(Mistake::NoShearSprings) && spring.kind == SpringKind::Shear
@@ -172,41 +232,30 @@ impl<'a> Forces<'a> {
                 continue;
             }
             let apart: Triple = std::array::from_fn(|a| x[i][a] - x[j][a]);
-            let length = dot(apart, apart).sqrt();
+            let length = self.rounded(dot(apart, apart).sqrt());
             if length == 0.0 {
                 continue;
             }
             let along = apart.map(|d| d / length);
-            let rest = if is(Mistake::RestLengthZero) {
-                0.0
-            } else {
-                spring.rest_length
-            };
-            let mut pull = spring.stiffness * (length - rest);
+            let rest = self.rounded(rest_length * spring.rest_length);
+            let mut pull = self.rounded(stiffness * spring.stiffness) * (length - rest);
             if is(Mistake::StretchAsRatio) && rest > 0.0 {
                 pull /= rest;
             }
             if is(Mistake::NotNormalised) {
                 pull *= length;
             }
-            if is(Mistake::SpringsTwice) {
-                pull *= 2.0;
-            }
-            if is(Mistake::SpringsPush) {
-                pull = -pull;
-            }
             let mut force = along.map(|u| pull * u);
             let faster: Triple = std::array::from_fn(|a| v[i][a] - v[j][a]);
-            if !is(Mistake::NoSpringDamping) {
-                let rate = dot(faster, along);
-                for a in 0..3 {
-                    force[a] += spring.damping
-                        * if is(Mistake::DampingAcross) {
-                            faster[a]
-                        } else {
-                            rate * along[a]
-                        };
-                }
+            let rate = dot(faster, along);
+            for a in 0..3 {
+                force[a] += damping
+                    * spring.damping
+                    * if is(Mistake::DampingAcross) {
+                        faster[a]
+                    } else {
+                        rate * along[a]
+                    };
             }
             for a in 0..3 {
                 if !is(Mistake::SecondEndOnly) {
@@ -217,28 +266,23 @@ impl<'a> Forces<'a> {
                 }
             }
         }
-        let share = match self.mistake {
-            Some(Mistake::HalfGravity) => 0.5,
-            Some(Mistake::DoubleGravity) => 2.0,
-            Some(Mistake::NoGravity) => 0.0,
-            Some(Mistake::GravityUpwards) => -1.0,
-            _ => 1.0,
-        };
+        let gravity = self.factor(Constant::Gravity);
         for (i, force) in forces.iter_mut().enumerate() {
-            let mass = self.plain.mass[i];
+            let mass = self.mass(i);
             let weight = if is(Mistake::GravityAsForce) {
                 1.0
             } else {
                 mass
             };
-            let mut drag = self.plain.drag;
-            if is(Mistake::NoDrag) || self.without_drag {
+            let mut drag = self.factor(Constant::Drag) * self.plain.drag;
+            if self.without_drag {
                 drag = 0.0;
             } else if is(Mistake::DragPerMass) {
                 drag *= mass;
             }
             for a in 0..3 {
-                force[a] += share * weight * self.plain.gravity[a] - drag * v[i][a];
+                let fall = self.rounded(gravity * self.plain.gravity[a]);
+                force[a] += weight * fall - drag * v[i][a];
             }
         }
     }

@@ -40,10 +40,12 @@ impl<'a> Rows<'a> {
             ));
         }
         let rounding = states.digits[0].rounding(until);
-        let grid = match step {
-            Some(step) => Grid::of_step(times, rounding, step),
-            None => Grid::of(times, rounding),
+        let known = step.and_then(|step| Grid::of_step(times, rounding, step));
+        let meets = |grid: &Grid| {
+            let meeting = |step| grid.meeting(step);
+            step.is_none_or(|step| meeting(step).is_some_and(|[points, _]| grid.meets(points)))
         };
+        let grid = known.or_else(|| Grid::of(times, rounding).filter(meets));
         let numbers = count * states.positions[0].len();
         let every = numbers.div_ceil(MAX_NUMBERS);
         let kept: Vec<_> = (0..count)
@@ -80,6 +82,15 @@ impl<'a> Rows<'a> {
     pub fn velocities(&self, k: usize) -> Option<&'a [f64]> {
         let rows = self.states.velocities.as_ref()?;
         Some(&rows[self.kept[k]])
+    }
+
+    /// Returns whether all positions are numbers in single precision, to the digits of the file.
+    pub fn are_single(&self) -> bool {
+        (0..self.len()).all(|k| {
+            let rounding = 1.01 * self.rounding(k);
+            let mut all = self.positions(k).iter();
+            all.all(|x| (x - f64::from(*x as f32)).abs() <= rounding)
+        })
     }
 
     /// Returns the largest error of the positions of row k (m) by the digits of the file.

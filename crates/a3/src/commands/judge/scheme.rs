@@ -1,5 +1,6 @@
 //! Schemes of a step that courses ask for, and those that a slip makes of them.
 
+use super::constant::Constant;
 use super::plain::{Forces, Plain};
 
 /// Vector of a particle.
@@ -81,6 +82,20 @@ impl Scheme {
         }
     }
 
+    /// Returns a slip that the title does not tell, in a few words, which follow "with".
+    pub fn slip(self) -> Option<&'static str> {
+        Some(match self {
+            Self::VerletOldVelocity => "forces at the end of a step at its old velocity",
+            Self::TrapezoidOldVelocity | Self::MidpointOldVelocity => {
+                "the second evaluation at the old velocity"
+            }
+            Self::Rk4FirstTwice => "k3 computed from k1",
+            Self::Rk4HalfLast => "k4 half a step ahead",
+            Self::Rk4EqualWeights => "equal weights",
+            _ => return None,
+        })
+    }
+
     /// Returns the question to the author, if the scheme is seldom meant.
     pub fn question(self) -> Option<&'static str> {
         Some(match self {
@@ -150,13 +165,26 @@ impl<'a> PlainRun<'a> {
     /// Creates a run from a state of positions (m) and velocities (m/s).
     pub fn new(mut forces: Forces<'a>, scheme: Scheme, h: f64, [x, v]: [Vec<Triple>; 2]) -> Self {
         forces.without_drag = scheme == Scheme::ImplicitDrag;
-        Self {
+        let start = forces.factor(Constant::Start);
+        let v = v.into_iter().map(|v| v.map(|v| start * v)).collect();
+        let mut run = Self {
+            h: forces.rounded(h),
             forces,
             scheme,
-            h,
             is_new: true,
             x,
             v,
+        };
+        run.round();
+        run
+    }
+
+    /// Rounds the state as the program does.
+    fn round(&mut self) {
+        if self.forces.is_single {
+            for number in [&mut self.x, &mut self.v].into_iter().flatten().flatten() {
+                *number = self.forces.rounded(*number);
+            }
         }
     }
 
@@ -173,8 +201,15 @@ impl<'a> PlainRun<'a> {
     /// Takes a step.
     pub fn step(&mut self) {
         let (h, forces) = (self.h, &mut self.forces);
+        let slower = forces.factor(Constant::Velocities);
+        let slowed = |v: Vec<Triple>| -> Vec<Triple> {
+            if slower == 1.0 {
+                return v;
+            }
+            v.into_iter().map(|v| v.map(|v| slower * v)).collect()
+        };
         let (x0, v0) = (std::mem::take(&mut self.x), std::mem::take(&mut self.v));
-        [self.x, self.v] = match self.scheme {
+        let [x1, v1] = match self.scheme {
             Scheme::Euler => {
                 let a = forces.accelerations(&x0, &v0);
                 [moved(&x0, h, &v0), moved(&v0, h, &a)]
@@ -182,8 +217,8 @@ impl<'a> PlainRun<'a> {
             Scheme::Symplectic | Scheme::Stormer => {
                 let a = forces.accelerations(&x0, &v0);
                 let starts = self.scheme == Scheme::Stormer && self.is_new;
-                let v1 = moved(&v0, if starts { 0.5 * h } else { h }, &a);
-                [moved(&x0, h, &v1), v1]
+                let v1 = slowed(moved(&v0, if starts { 0.5 * h } else { h }, &a));
+                return self.take([moved(&x0, h, &v1), v1]);
             }
             Scheme::ImplicitDrag => {
                 let a = forces.accelerations(&x0, &v0);
@@ -261,7 +296,14 @@ impl<'a> PlainRun<'a> {
             Scheme::SweepVelocityFirst => sweep(forces, h, x0, v0, false),
             Scheme::SweepPositionFirst => sweep(forces, h, x0, v0, true),
         };
+        self.take([x1, slowed(v1)]);
+    }
+
+    /// Takes the state at the end of a step.
+    fn take(&mut self, state: [Vec<Triple>; 2]) {
+        [self.x, self.v] = state;
         self.is_new = false;
+        self.round();
     }
 }
 

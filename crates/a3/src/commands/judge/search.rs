@@ -3,21 +3,20 @@
 
 use a3_core::integrators::METHODS;
 
+use super::grid::MIN_AT_STEPS;
 use super::mistake::Mistake;
+use super::pace::{Pace, paces};
 use super::scheme::Scheme;
 use super::trial::{Compared, Judged, Start, Trial, Way};
 
-/// Numbers of steps between two grid points that are tried.
-const PARTS: [u64; 34] = [
-    1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 12, 15, 16, 18, 20, 24, 25, 30, 32, 40, 48, 50, 60, 64, 75, 80,
-    96, 100, 120, 125, 128, 200, 250, 500,
-];
+/// Least ratio of the distance moved to that at which rows agree in single precision.
+const MIN_CLEAR: f64 = 100.0;
+/// Largest distance of rows, over the motion, for which single precision is tried.
+const NEAR_SINGLE: f64 = 1e-3;
 /// Number of steps that are tried after one that agrees.
 const MORE_PARTS: usize = 4;
 /// Ratio of the distances of two methods from the rows, from which on the nearer one stands out.
 const CLEARLY: f64 = 10.0;
-/// Numbers of steps that are tried at any cost, and for the nearest method.
-const FEW_PARTS: [u64; 5] = [1, 2, 4, 5, 10];
 /// Largest work of all trials of a kind, in springs and particles that are visited.
 const MAX_WORK: f64 = 5e7;
 /// Least number of rows that agree before others differ, and least ratio of the distance moved
@@ -30,6 +29,8 @@ pub const MIN_APART: f64 = 1e-3;
 /// Ratio of the distance of a way with a mistake to that of the nearest method, below which it is
 /// named.
 const MUCH_NEARER: f64 = 0.1;
+/// Ratio of the distance of a way to that of the motion, below which it is near.
+const NEAR: f64 = 0.1;
 
 /// Agreement of a file with a way to compute its steps.
 #[derive(Clone, Copy, Debug)]
@@ -40,6 +41,8 @@ pub struct Agreement {
     pub compared: Compared,
     /// Last time (s) at which it agrees, if it does not until the end.
     pub until: Option<f64>,
+    /// Whether it agrees with the program in single precision.
+    pub is_single: bool,
 }
 
 /// Result of the search.
@@ -60,45 +63,56 @@ pub struct Match {
 /// Search in progress.
 struct Search<'a> {
     judged: &'a Judged<'a>,
-    /// Step between grid points (s).
-    spacing: f64,
     /// Longest agreement up to some row.
     part: Option<Agreement>,
     /// Agreements of positions alone, in a file whose velocities are others.
     positions: Vec<Agreement>,
-    /// Largest number of steps between grid points that was tried.
-    finest: u64,
+    /// Longest and shortest step that was tried (s).
+    steps: [f64; 2],
+    /// Whether the program is taken to compute in single precision.
+    is_single: bool,
+    /// The last scheme that was tried in single precision, and what it is judged by.
+    single: Option<(Scheme, Pace, Judged<'a>)>,
 }
 
 /// Finds the method that the rows agree with. `None` if the monitor stopped it. `at_start`
 /// tells whether the first row is the start of the scene.
 pub fn search(judged: &Judged, at_start: bool) -> Option<Match> {
-    let grid = judged.rows.grid.as_ref().map(|grid| grid.step);
-    let Some(spacing) = grid.or(judged.step) else {
+    let Some([whole, between]) = paces(judged.rows.grid.as_ref(), judged.step) else {
         return Some(Match::default());
     };
     let mut search = Search {
         judged,
-        spacing,
         part: None,
         positions: vec![],
-        finest: 1,
+        steps: [0.0, f64::INFINITY],
+        is_single: false,
+        single: None,
     };
-    let parts: &[u64] = if judged.step.is_some() { &[1] } else { &PARTS };
-    let correct = search.correct();
-    let slips = search.slips();
+    let (correct, slips) = (search.correct(), search.slips());
+    let is_scheme = |way: &Way| matches!(way, Way::Scheme(..));
+    let schemes: Vec<_> = correct.iter().copied().filter(is_scheme).collect();
+    let scene = &[Start::Scene][..];
     let starts = [
         Start::Ahead,
         Start::Behind,
         Start::Row(usize::from(at_start)),
     ];
-    let plans: [(&[Way], &[Start]); 3] = [
-        (&correct, &[Start::Scene]),
-        (&slips, &[Start::Scene]),
-        (&correct, &starts),
+    let all = [&whole[..], &between].concat();
+    let plans: [(&[Way], &[Start], &[Pace], bool); 6] = [
+        (&correct, scene, &whole, false),
+        (&correct, scene, &between, false),
+        (&schemes, scene, &all, true),
+        (&slips, scene, &whole, false),
+        (&correct, &starts, &whole, false),
+        (&slips, scene, &between, false),
     ];
-    for (ways, starts) in plans {
-        let found = search.agreements(ways, starts, parts)?;
+    for (ways, starts, paces, is_single) in plans {
+        search.is_single = is_single;
+        if is_single && !judged.rows.are_single() {
+            continue;
+        }
+        let found = search.agreements(ways, starts, paces)?;
         if let Some((first, others)) = found.split_first() {
             return Some(Match {
                 found: Some(*first),
@@ -118,14 +132,13 @@ pub fn search(judged: &Judged, at_start: bool) -> Option<Match> {
             ..search.blank()
         });
     }
-    let few: Vec<_> = FEW_PARTS
-        .into_iter()
-        .filter(|p| parts.contains(p))
-        .collect();
+    let is_few = |pace: &Pace| whole.len() == 1 || pace.is_one_of_few();
+    let few: Vec<_> = whole.iter().copied().filter(is_few).collect();
     let nearest = search.nearest(&correct, &few, f64::INFINITY)?;
-    let bound = nearest.map_or(f64::INFINITY, |nearest| nearest.compared.distance);
-    let nearest = nearest.filter(|nearest| nearest.compared.distance < judged.motion);
-    let suspect = search.nearest(&slips, &few[..1], MUCH_NEARER * bound)?;
+    let far = NEAR * judged.motion;
+    let bound = nearest.map_or(far, |nearest| MUCH_NEARER * nearest.compared.distance);
+    let nearest = nearest.filter(|nearest| nearest.compared.distance < far);
+    let suspect = search.nearest(&slips, &few[..1.min(few.len())], bound.min(far))?;
     Some(Match {
         nearest,
         suspect,
@@ -136,7 +149,7 @@ pub fn search(judged: &Judged, at_start: bool) -> Option<Match> {
 impl Search<'_> {
     fn blank(&self) -> Match {
         Match {
-            steps: [self.spacing, self.spacing / self.finest as f64],
+            steps: self.steps,
             ..Match::default()
         }
     }
@@ -160,10 +173,9 @@ impl Search<'_> {
         let Some(plain) = self.judged.plain else {
             return vec![];
         };
-        let mistakes = Mistake::ALL
-            .into_iter()
-            .filter(|mistake| plain.can_have(*mistake));
-        let mistakes: Vec<_> = mistakes.collect();
+        let mistakes = Mistake::ALL.into_iter();
+        let mistakes = mistakes.filter(|mistake| plain.can_have(*mistake));
+        let mistakes: Vec<_> = mistakes.chain(plain.changes()).collect();
         let wrong = self.schemes(|scheme| scheme.question().is_some());
         let right = self.schemes(|scheme| scheme.question().is_none());
         let with = right.flat_map(|scheme| {
@@ -191,26 +203,25 @@ impl Search<'_> {
         &mut self,
         ways: &[Way],
         starts: &[Start],
-        parts: &[u64],
+        paces: &[Pace],
     ) -> Option<Vec<Agreement>> {
         let (mut work, mut best, mut more) = (0.0, vec![], MORE_PARTS);
-        for &parts in parts {
+        for &pace in paces {
             let is_found = !best.is_empty() || self.part.is_some();
             if is_found && more == 0 {
                 break;
             }
             more -= usize::from(is_found);
-            if work > MAX_WORK && !FEW_PARTS.contains(&parts) {
+            if work > MAX_WORK && !pace.is_one_of_few() {
                 continue;
             }
-            self.finest = self.finest.max(parts);
             let mut found = vec![];
             for &start in starts {
                 for &way in ways {
                     if !self.judged.monitor.go_on() {
                         return None;
                     }
-                    let trial = Trial { way, parts, start };
+                    let trial = Trial { way, pace, start };
                     found.extend(self.agreement(trial, &mut work));
                 }
             }
@@ -235,27 +246,64 @@ impl Search<'_> {
         CLEARLY * least(ways) + self.judged.rounding(0) < least(others)
     }
 
-    /// Returns the agreement of a trial with all rows. One with many of them is remembered.
+    /// Returns the agreement of a trial with all rows, in the precision of the search.
     fn agreement(&mut self, trial: Trial, work: &mut f64) -> Option<Agreement> {
-        let bound = |k: usize, moved: f64| self.judged.tolerance(k, moved);
-        let compared = self.judged.compare(trial, &bound, work)?;
-        let rows = self.judged.rows;
-        let mut agreement = Agreement {
-            trial,
-            step: self.judged.step_of(trial)?,
-            compared,
-            until: None,
+        let Way::Scheme(scheme, _) = trial.way else {
+            return self.agreement_by(self.judged, trial, work);
         };
-        let moved = compared.moved.max(self.judged.motion);
-        let clear = moved
-            / self
-                .judged
-                .tolerance(compared.rows.saturating_sub(1), compared.moved);
+        if !self.is_single {
+            return self.agreement_by(self.judged, trial, work);
+        }
+        let last = self.single.take();
+        let last = last.filter(|(of, pace, _)| (*of, *pace) == (scheme, trial.pace));
+        let (_, _, single) = match last {
+            Some(last) => last,
+            None => {
+                // A method that is far away is so in single precision, too.
+                let near = |_: usize, _: f64| NEAR_SINGLE * self.judged.motion;
+                let compared = self.judged.compare(trial, &near, work)?;
+                if compared.at_steps < MIN_AT_STEPS {
+                    return None;
+                }
+                let noise = self.judged.noise(scheme, trial.pace, work);
+                let mut single = self.judged.clone();
+                single.noise = Some(noise?);
+                (scheme, trial.pace, single)
+            }
+        };
+        let found = self.agreement_by(&single, trial, work);
+        self.single = Some((scheme, trial.pace, single));
+        found
+    }
+
+    /// Returns the agreement of a trial with all rows that are compared. One with many of them is
+    /// remembered.
+    fn agreement_by(&mut self, judged: &Judged, trial: Trial, work: &mut f64) -> Option<Agreement> {
+        let bound = |k: usize, moved: f64| judged.tolerance(k, moved);
+        let step = judged.step_of(trial)?;
+        self.steps = [self.steps[0].max(step), self.steps[1].min(step)];
+        let trial = judged.fit(trial, &bound, work)?;
+        let compared = judged.compare(trial, &bound, work)?;
+        let (rows, last) = (judged.rows, judged.last());
+        let ends = (compared.rows < rows.len()).then(|| rows.times[compared.rows.max(1) - 1]);
+        let agreement = Agreement {
+            trial,
+            step,
+            compared,
+            until: ends,
+            is_single: self.is_single,
+        };
+        let moved = compared.moved.max(judged.motion);
+        let clear = moved / judged.tolerance(compared.rows.saturating_sub(1), compared.moved);
         let since = match trial.start {
             Start::Row(row) => row + 1,
             _ => 0,
         };
-        if compared.rows == rows.len() {
+        let needs_more = self.is_single || trial.pace.points > 1;
+        if needs_more && compared.at_steps < MIN_AT_STEPS || self.is_single && clear < MIN_CLEAR {
+            return None;
+        }
+        if compared.rows == last {
             // A single step from a row of the file tells nothing, nor does a file of few digits in
             // which nothing moves.
             if clear <= 1.0 || matches!(trial.start, Start::Row(row) if compared.rows <= row + 2) {
@@ -272,7 +320,6 @@ impl Search<'_> {
         }
         let longest = self.part.map_or(0, |part| part.compared.rows);
         if compared.rows > longest.max(since + MIN_PART.0) && clear > MIN_PART.1 {
-            agreement.until = Some(rows.times[compared.rows - 1]);
             self.part = Some(agreement);
         }
         None
@@ -281,9 +328,9 @@ impl Search<'_> {
     /// Returns the way whose largest distance from the rows is the least, if it is below `bound`
     /// (m). `None` if the monitor stopped it.
     #[expect(clippy::option_option, reason = "stopped, or none below the bound")]
-    fn nearest(&mut self, ways: &[Way], parts: &[u64], bound: f64) -> Option<Option<Agreement>> {
+    fn nearest(&self, ways: &[Way], paces: &[Pace], bound: f64) -> Option<Option<Agreement>> {
         let (mut nearest, mut least, mut work) = (None, bound, 0.0);
-        for &parts in parts {
+        for &pace in paces {
             if work > MAX_WORK {
                 break;
             }
@@ -291,10 +338,10 @@ impl Search<'_> {
                 if !self.judged.monitor.go_on() {
                     return None;
                 }
-                let trial = Trial {
-                    way,
-                    parts,
-                    start: Start::Scene,
+                let start = Start::Scene;
+                let trial = Trial { way, pace, start };
+                let Some(trial) = self.judged.fit(trial, &|_, _| least, &mut work) else {
+                    continue;
                 };
                 let compared = self.judged.compare(trial, &|_, _| least, &mut work);
                 let whole = compared.filter(|compared| compared.rows == self.judged.rows.len());
@@ -302,9 +349,10 @@ impl Search<'_> {
                     least = compared.distance;
                     nearest = Some(Agreement {
                         trial,
-                        step: self.spacing / parts as f64,
+                        step: self.judged.step_of(trial)?,
                         compared,
                         until: None,
+                        is_single: false,
                     });
                 }
             }

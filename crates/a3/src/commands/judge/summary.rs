@@ -2,7 +2,9 @@
 
 use serde::Serialize;
 
+use super::finding::{mistake, question};
 use super::judgement::{Drift, Judgement};
+use super::mistake::Mistake;
 use super::search::Agreement;
 use super::words::{difference, is_within};
 
@@ -54,12 +56,20 @@ struct Agreed {
     /// Name of the solver of a3.
     solver: Option<&'static str>,
     step: f64,
+    /// Number of grid points of the rows of which one is at the end of a step.
+    points: u64,
+    /// Whether it agrees with the program in single precision.
+    single_precision: bool,
     /// Largest distance (m).
     distance: f64,
     /// Last time of the agreement (s), if it is not the end.
     until: Option<f64>,
-    mistake: Option<&'static str>,
-    question: Option<&'static str>,
+    /// Slip or mistake.
+    mistake: Option<String>,
+    /// Constant that is another, and its value over that of the scene.
+    constant: Option<&'static str>,
+    factor: Option<f64>,
+    question: Option<String>,
     /// Where the comparison begins.
     start: String,
 }
@@ -67,14 +77,22 @@ struct Agreed {
 impl Agreed {
     fn of(agreement: &Agreement) -> Self {
         let way = agreement.trial.way;
+        let change = match way.mistake() {
+            Some(Mistake::Constant(change)) => Some(change),
+            _ => None,
+        };
         Self {
             title: way.title(),
             solver: way.solver(),
             step: agreement.step,
+            points: agreement.trial.pace.points,
+            single_precision: agreement.is_single,
             distance: agreement.compared.distance,
             until: agreement.until,
-            mistake: way.mistake().map(super::mistake::Mistake::words),
-            question: way.question(),
+            mistake: mistake(agreement),
+            constant: change.map(|change| change.constant.name().0),
+            factor: change.map(|change| change.factor),
+            question: question(agreement),
             start: format!("{:?}", agreement.trial.start).to_lowercase(),
         }
     }

@@ -3,6 +3,7 @@
 use a3_core::{Control, Method, Scene, Simulation};
 
 use super::mistake::Mistake;
+use super::pace::Pace;
 use super::plain::{Forces, Plain};
 use super::rows::{Rows, columns, distance};
 use super::scheme::{PlainRun, Scheme};
@@ -14,6 +15,13 @@ const AGREEMENT: f64 = 1e-9;
 const ROUNDING: f64 = 1e-13;
 /// Largest distance of rows that agree, over the error of a coordinate by its digits.
 const DIGITS: f64 = 2.0;
+/// Largest distance of rows that agree in single precision, over the distance by which that
+/// precision changes a run.
+const SINGLE: f64 = 10.0;
+/// Largest such distance over that which the scene moves.
+const MAX_NOISE: f64 = 1e-3;
+/// Work of the beginning of a run by a solver, over an evaluation.
+const BEGINNING: f64 = 20.0;
 /// Largest work of a trial, in springs and particles that are visited.
 const MAX_WORK: f64 = 5e8;
 /// Work of a step of an implicit method, over an evaluation.
@@ -45,7 +53,7 @@ impl Way {
         }
     }
 
-    /// Returns the mistake that it makes.
+    /// Returns the mistake in the forces that it makes.
     pub fn mistake(self) -> Option<Mistake> {
         match self {
             Self::Scheme(_, mistake) => mistake,
@@ -53,10 +61,19 @@ impl Way {
         }
     }
 
-    /// Returns the question to the author of a program that computes steps so.
-    pub fn question(self) -> Option<&'static str> {
+    /// Returns the slip or the mistake that it makes, in words that follow "with".
+    pub fn slip(self) -> Option<String> {
         match self {
-            Self::Scheme(scheme, None) => scheme.question(),
+            Self::Scheme(_, Some(mistake)) => Some(mistake.words()),
+            Self::Scheme(scheme, None) => scheme.slip().map(String::from),
+            Self::Method(_) => None,
+        }
+    }
+
+    /// Returns the question to the author of a program that computes steps so.
+    pub fn question(self) -> Option<String> {
+        match self {
+            Self::Scheme(scheme, None) => scheme.question().map(String::from),
             Self::Scheme(_, Some(mistake)) => Some(mistake.question()),
             Self::Method(_) => None,
         }
@@ -76,12 +93,12 @@ pub enum Start {
     Behind,
 }
 
-/// Trial of a method or a scheme with equal steps, a whole number of them between grid points.
+/// Trial of a method or a scheme with equal steps, of which a whole number ends at grid points.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Trial {
     pub way: Way,
-    /// Number of steps between two grid points.
-    pub parts: u64,
+    /// Steps and grid points.
+    pub pace: Pace,
     pub start: Start,
 }
 
@@ -90,6 +107,8 @@ pub struct Trial {
 pub struct Compared {
     /// Number of rows up to the first that differs by more than its bound.
     pub rows: usize,
+    /// Number of these rows that are at the end of a step.
+    pub at_steps: usize,
     /// Largest distance of these rows (m).
     pub distance: f64,
     /// Largest distance moved until then (m).
@@ -100,6 +119,7 @@ pub struct Compared {
 }
 
 /// Scene and rows against which trials run.
+#[derive(Clone)]
 pub struct Judged<'a> {
     /// Companion of the work, which may stop it.
     pub monitor: &'a dyn Monitor,
@@ -115,6 +135,9 @@ pub struct Judged<'a> {
     pub size: f64,
     /// Radius of the scene (m).
     pub radius: f64,
+    /// Distance by which single precision changes a run until each row (m), if the program is
+    /// taken to have it. Rows are compared as far as that tells anything.
+    pub noise: Option<Vec<f64>>,
 }
 
 /// Returns the number of particles and springs of a scene.
@@ -157,7 +180,53 @@ impl Run<'_> {
 impl Judged<'_> {
     /// Returns the largest distance of row k (m) that agrees, after a distance moved (m).
     pub fn tolerance(&self, k: usize, moved: f64) -> f64 {
-        AGREEMENT * moved + self.rounding(k)
+        let noise = self
+            .noise
+            .as_ref()
+            .map_or(0.0, |noise| noise.get(k).copied().unwrap_or(f64::INFINITY));
+        AGREEMENT * moved + self.rounding(k) + SINGLE * noise
+    }
+
+    /// Returns the number of rows that are compared.
+    pub fn last(&self) -> usize {
+        self.noise.as_ref().map_or(self.rows.len(), Vec::len)
+    }
+
+    /// Returns the positions at which a trial begins (m), column-major.
+    pub fn start(&self, trial: Trial) -> &[f64] {
+        match trial.start {
+            Start::Row(row) if row < self.rows.len() => self.rows.positions(row),
+            _ => &self.scene.state[..3 * self.scene.model.particles()],
+        }
+    }
+
+    /// Returns the distance by which single precision changes a run by a scheme until each row
+    /// (m), as far as it is much smaller than the motion.
+    pub fn noise(&self, scheme: Scheme, pace: Pace, work: &mut f64) -> Option<Vec<f64>> {
+        let trial = Trial {
+            way: Way::Scheme(scheme, None),
+            pace,
+            start: Start::Scene,
+        };
+        let mut double = vec![None; self.rows.len()];
+        self.follow(trial, false, self.rows.len(), work, &mut |k, [x, _]| {
+            double[k] = Some(x.clone());
+            true
+        })?;
+        let (mut noise, mut most) = (vec![], 0.0);
+        let passed = self.follow(trial, true, self.rows.len(), work, &mut |k, [x, _]| {
+            let Some(other) = &double[k] else {
+                return false;
+            };
+            noise.resize(k, most);
+            most = f64::max(most, distance(x, other));
+            noise.push(most);
+            SINGLE * most < MAX_NOISE * self.motion
+        })?;
+        if passed == self.rows.len() {
+            noise.resize(passed, most);
+        }
+        Some(noise)
     }
 
     /// Returns the distance of row k by rounding alone (m).
@@ -177,31 +246,34 @@ impl Judged<'_> {
             }
     }
 
-    /// Compares a trial with the rows until a row differs by more than `bound`, a function of its
-    /// number and of the distance moved (m). `None` if the trial is not possible. `work` receives
-    /// its price.
-    pub fn compare(
+    /// Runs a trial, in single precision if so, and shows each row before `end` that is at the end
+    /// of a step to `look`: its number, the positions (m) and the velocities (m/s). Ends where
+    /// that returns `false`, or the run blows up. Returns the number of rows until then; `None` if
+    /// the trial is not possible. `work` receives its price.
+    pub fn follow(
         &self,
         trial: Trial,
-        bound: &dyn Fn(usize, f64) -> f64,
+        is_single: bool,
+        end: usize,
         work: &mut f64,
-    ) -> Option<Compared> {
+        look: &mut dyn FnMut(usize, &[Vec<f64>; 2]) -> bool,
+    ) -> Option<usize> {
         let steps = self.rows.until() / self.step_of(trial)?;
         if steps * self.price(trial.way) > MAX_WORK {
             return None;
         }
-        let (mut run, first, mut taken) = self.begin(trial)?;
-        let [start, _] = run.motion();
-        let mut compared = Compared {
-            rows: first,
-            distance: 0.0,
-            moved: 0.0,
-            velocities: self.rows.velocities(0).map(|_| [0.0; 2]),
-        };
-        for k in first..self.rows.len() {
+        let (mut run, first, mut taken) = self.begin(trial, is_single)?;
+        if matches!(trial.way, Way::Method(_)) {
+            *work += BEGINNING * self.size;
+        }
+        for k in first..end {
             let is_there = match (&self.rows.grid, &mut run) {
                 (Some(grid), run) => {
-                    let steps = match (grid.numbers[k] * trial.parts, trial.start) {
+                    let ahead = grid.numbers[k] * trial.pace.steps;
+                    if ahead % trial.pace.points > 0 {
+                        continue;
+                    }
+                    let steps = match (ahead / trial.pace.points, trial.start) {
                         (steps, Start::Ahead) => steps + 1,
                         (steps, Start::Behind) => steps.saturating_sub(1),
                         (steps, _) => steps,
@@ -214,47 +286,72 @@ impl Judged<'_> {
                 (None, Run::Method(run)) => run.advance_to(self.rows.times[k]).is_ok(),
                 (None, Run::Plain(_)) => return None,
             };
-            if !is_there || !self.monitor.go_on() {
-                break;
+            if !is_there || !self.monitor.go_on() || !look(k, &run.motion()) {
+                return Some(k);
             }
-            let [x, v] = run.motion();
-            let apart = distance(&x, self.rows.positions(k));
-            let moved = compared.moved.max(distance(&x, &start));
+        }
+        Some(end)
+    }
+
+    /// Compares a trial with the rows until a row differs by more than `bound`, a function of its
+    /// number and of the distance moved (m). `None` if the trial is not possible. `work` receives
+    /// its price.
+    pub fn compare(
+        &self,
+        trial: Trial,
+        bound: &dyn Fn(usize, f64) -> f64,
+        work: &mut f64,
+    ) -> Option<Compared> {
+        let start = self.start(trial);
+        let mut compared = Compared {
+            rows: 0,
+            at_steps: 0,
+            distance: 0.0,
+            moved: 0.0,
+            velocities: self.rows.velocities(0).map(|_| [0.0; 2]),
+        };
+        let rows = self.follow(trial, false, self.last(), work, &mut |k, [x, v]| {
+            let apart = distance(x, self.rows.positions(k));
+            let moved = compared.moved.max(distance(x, start));
             // A distance that is no number agrees with nothing.
             if apart.is_nan() || apart > bound(k, moved) {
-                break;
+                return false;
             }
-            compared.rows = k + 1;
+            compared.at_steps += 1;
             compared.moved = moved;
             compared.distance = compared.distance.max(apart);
             if let (Some([apart, speed]), Some(own)) =
                 (&mut compared.velocities, self.rows.velocities(k))
             {
-                *apart = apart.max(distance(&v, own));
-                *speed = speed.max(distance(&v, &vec![0.0; v.len()]));
+                *apart = apart.max(distance(v, own));
+                *speed = speed.max(distance(v, &vec![0.0; v.len()]));
             }
-        }
-        Some(compared)
+            true
+        });
+        Some(Compared {
+            rows: rows?,
+            ..compared
+        })
     }
 
     /// Returns the step of a trial (s): a part of that between grid points or, without a grid, the
     /// known one.
     pub fn step_of(&self, trial: Trial) -> Option<f64> {
         match &self.rows.grid {
-            Some(grid) => Some(grid.step / trial.parts as f64),
+            Some(grid) => Some(trial.pace.points as f64 * grid.step / trial.pace.steps as f64),
             None => self.step,
         }
     }
 
     /// Returns the run of a trial, the first row that it shows, and the number of steps from the
     /// start of the grid to its beginning.
-    fn begin(&self, trial: Trial) -> Option<(Run<'_>, usize, u64)> {
+    fn begin(&self, trial: Trial, is_single: bool) -> Option<(Run<'_>, usize, u64)> {
         let n = self.scene.model.particles();
         let step = self.step_of(trial)?;
         let (row, taken) = match trial.start {
-            Start::Row(row) if row < self.rows.len() => {
+            Start::Row(row) if row < self.rows.len() && trial.pace.points == 1 => {
                 let grid = self.rows.grid.as_ref()?;
-                (Some(row), grid.numbers[row] * trial.parts)
+                (Some(row), grid.numbers[row] * trial.pace.steps)
             }
             Start::Row(_) => return None,
             _ => (None, 0),
@@ -281,7 +378,7 @@ impl Judged<'_> {
                 let plain = self.plain?;
                 let rows = |x: &[f64]| (0..n).map(|i| [x[i], x[n + i], x[2 * n + i]]).collect();
                 let start = given.map_or_else(|| plain.start.clone(), |given| given.map(rows));
-                let forces = Forces::new(plain, mistake);
+                let forces = Forces::new(plain, mistake, is_single);
                 Run::Plain(Box::new(PlainRun::new(forces, scheme, step, start)))
             }
         };

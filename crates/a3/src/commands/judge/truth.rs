@@ -4,6 +4,7 @@ use a3_core::Scene;
 use a3_core::accuracy::{Frames, Horizon, Reference, Scope};
 use a3_core::stability::{Mode, spectrum};
 
+use super::grid::gcd;
 use super::rows::Rows;
 use crate::base::failure::Failure;
 use crate::base::monitor::Monitor;
@@ -109,8 +110,4 @@ pub fn frame_at(reference: &Reference, t: f64) -> Option<f64> {
     let k = (t / frames.spacing()).round() as u64;
     let time = (k <= frames.count).then(|| frames.time(k))?;
     ((t - time).abs() <= TOLERANCE * t).then_some(time)
-}
-
-fn gcd(a: u64, b: u64) -> u64 {
-    if b == 0 { a } else { gcd(b, a % b) }
 }

@@ -46,11 +46,6 @@ impl Track {
             work: 0.0,
         }
     }
-
-    /// Replaces the computing time.
-    pub fn timed(self, time: Duration) -> Self {
-        Self { time, ..self }
-    }
 }
 
 /// Motion of a model.

@@ -2,7 +2,6 @@
 //! for the rest of the error. All of it is measured in one run.
 
 use std::cmp::Reverse;
-use std::time::Duration;
 
 use a3_core::accuracy::{Candidate, Trial, choose_by};
 use a3_core::integrators::METHODS;
@@ -10,6 +9,7 @@ use a3_core::{Control, Error, Method};
 use a3_scenes::{Description, Part, regridded, without};
 
 use super::models::{Model, Models};
+use super::turns::in_turns;
 use crate::base::failure::Failure;
 use crate::commands::chart::single::time;
 use crate::commands::motion::Motion;
@@ -35,9 +35,6 @@ pub struct Solved {
     pub work: f64,
 }
 
-/// Number of times that both scenes are timed again, in turns.
-const TURNS: u32 = 5;
-
 /// Scene without some of its parts, perhaps on a coarser grid.
 pub struct LeanModel {
     pub description: Description,
@@ -57,6 +54,14 @@ impl LeanModel {
             parts: vec![],
             factor: 1.0,
             error: 0.0,
+        }
+    }
+
+    /// Returns whether it has the change of a model.
+    pub fn has(&self, model: &Model) -> bool {
+        match &model.part {
+            Some(part) => self.parts.contains(part),
+            None => model.factor < 1.0 && self.factor == model.factor,
         }
     }
 
@@ -105,7 +110,7 @@ pub fn assemble(models: &Models, all: &[Model], error: f64) -> Result<Option<Lea
         } else {
             match models.follow(&description, places.as_deref())? {
                 None => return Ok(None),
-                Some(Ok(track)) => models.effect(&track).change,
+                Some(Ok(track)) => models.change(&track),
                 Some(Err(_)) => f64::INFINITY,
             }
         };
@@ -156,7 +161,7 @@ pub fn solve(
                 outcome: f64::INFINITY,
             },
             Motion::Known(track) => {
-                let error = models.effect(&track).change;
+                let error = models.change(&track);
                 Trial {
                     error,
                     work: track.work,
@@ -188,8 +193,7 @@ pub fn solve(
     }))
 }
 
-/// Times the runs of both scenes again in turns, so that other work of the machine slows both
-/// alike, and keeps the shortest time of each. Stops if the monitor does.
+/// Times the runs of both scenes again in turns. Stops if the monitor does.
 pub fn time_in_turns(
     models: &Models,
     model: &LeanModel,
@@ -197,16 +201,10 @@ pub fn time_in_turns(
     whole: &mut Solved,
 ) -> Result<(), Failure> {
     let (scene, frames) = (models.build(&model.description)?, models.compared.frames);
-    let go_on = &|| models.monitor.go_on();
-    for _ in 0..TURNS {
-        for (scene, solved) in [(&scene, &mut *lean), (&models.scene, &mut *whole)] {
-            let before = Duration::from_secs_f64(solved.time * frames.until);
-            let (method, control) = (solved.method, solved.control);
-            let Some(best) = time(go_on, scene, method, control, &frames, Some(before))? else {
-                return Ok(());
-            };
-            solved.time = best.as_secs_f64() / frames.until;
-        }
+    let runs = [(&scene, &*lean), (&models.scene, &*whole)];
+    let runs = runs.map(|(scene, solved)| (scene, solved.method, solved.control));
+    if let Some(times) = in_turns(runs, &frames, &|| models.monitor.go_on())? {
+        [lean.time, whole.time] = times.map(|time| time.as_secs_f64() / frames.until);
     }
     Ok(())
 }

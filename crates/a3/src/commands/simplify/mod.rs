@@ -8,6 +8,7 @@ mod command;
 mod lean;
 mod models;
 mod table;
+mod turns;
 mod value;
 
 pub use command::run;

@@ -6,9 +6,9 @@ use a3_core::integrators::find;
 use a3_core::{Control, Method, Scene};
 use a3_scenes::{Description, Part, Regridded, parts, regridded, without};
 
+use super::turns::in_turns;
 use crate::base::failure::Failure;
 use crate::base::monitor::Monitor;
-use crate::commands::chart::single::time;
 use crate::commands::motion::{Compared, Known, Motion, Places, Track, grid};
 use crate::files::rows::Rows;
 use crate::files::setup::Request;
@@ -131,22 +131,13 @@ impl<'a> Models<'a> {
                 uncertainty / MAX_UNCERTAINTY
             )));
         }
-        let control = Control::Tolerance(tolerance);
-        let found = time(
-            go_on,
-            &scene,
-            method,
-            control,
-            &compared.frames,
-            Some(whole.time),
-        )?;
-        Ok(found.map(|time| Self {
+        Ok(Some(Self {
             request,
             monitor,
             scene,
             compared,
-            whole: whole.timed(time),
-            accurate: (method, control),
+            whole,
+            accurate: (method, Control::Tolerance(tolerance)),
             uncertainty,
         }))
     }
@@ -209,7 +200,17 @@ impl<'a> Models<'a> {
         let Some(found) = self.follow(&model.description, model.places.as_deref())? else {
             return Ok(false);
         };
-        model.effect = found.map(|track| self.effect(&track));
+        model.effect = match found {
+            Ok(track) => {
+                let scene = self.build(&model.description)?;
+                let Some(time) = self.time(&scene)? else {
+                    return Ok(false);
+                };
+                let (change, work) = (self.change(&track), track.work / self.whole.work);
+                Ok(Effect { change, time, work })
+            }
+            Err(why) => Err(why),
+        };
         if let Ok(Effect { change, time, work }) = model.effect {
             known.add(Known {
                 change,
@@ -222,13 +223,18 @@ impl<'a> Models<'a> {
         Ok(true)
     }
 
-    /// Returns the effect of a model whose motion is known.
-    pub fn effect(&self, track: &Track) -> Effect {
-        Effect {
-            change: self.compared.distance(&self.whole, track),
-            time: track.time.as_secs_f64() / self.whole.time.as_secs_f64(),
-            work: track.work / self.whole.work,
-        }
+    /// Returns the change of the quantity in a model whose motion is known.
+    pub fn change(&self, track: &Track) -> f64 {
+        self.compared.distance(&self.whole, track)
+    }
+
+    /// Times a model and the whole scene in turns. Returns the time of the model over that of the
+    /// whole scene; `None` if the monitor stopped it.
+    fn time(&self, scene: &Scene) -> Result<Option<f64>, Failure> {
+        let (method, control) = self.accurate;
+        let runs = [scene, &self.scene].map(|scene| (scene, method, control));
+        let times = in_turns(runs, &self.compared.frames, &|| self.monitor.go_on())?;
+        Ok(times.map(|[model, whole]| model.as_secs_f64() / whole.as_secs_f64()))
     }
 
     /// Integrates a model. Returns its motion, or the reason why it cannot be integrated; `None` if
@@ -246,12 +252,7 @@ impl<'a> Models<'a> {
         Ok(match found.map_err(Failure::run)? {
             None => None,
             Some(Motion::Failed) => Some(Err("it blows up".into())),
-            Some(Motion::Known(track)) => {
-                let (method, control) = self.accurate;
-                let frames = &self.compared.frames;
-                let time = time(go_on, &scene, method, control, frames, Some(track.time))?;
-                time.map(|time| Ok(track.timed(time)))
-            }
+            Some(Motion::Known(track)) => Some(Ok(track)),
         })
     }
 

@@ -108,10 +108,7 @@ pub fn verdict<'a>(model: &'a Model, error: f64, lean: Option<&LeanModel>) -> &'
         Ok(effect) => effect.change / error,
         Err(why) => return why,
     };
-    let is_out = lean.is_some_and(|lean| match &model.part {
-        Some(part) => lean.parts.contains(part),
-        None => model.factor < 1.0 && lean.factor == model.factor,
-    });
+    let is_out = lean.is_some_and(|lean| lean.has(model));
     match (&model.part, share <= 1.0) {
         (Some(_), _) if is_out => "leave it out",
         (Some(_), false) => "needed",

@@ -13,6 +13,7 @@ use super::table;
 use crate::base::failure::Failure;
 use crate::base::monitor::Monitor;
 use crate::base::report::Report;
+use crate::base::visible::in_a_line;
 use crate::cli::values::{ERRORS, HORIZONS};
 use crate::cli::{ErrorScope, Quantity};
 use crate::commands::chart::{check_motion, look_ahead, scope};
@@ -68,6 +69,8 @@ pub struct ModelEffect {
     pub time: Option<f64>,
     /// Work over that of the whole scene, in evaluations of each.
     pub work: Option<f64>,
+    /// Whether the leanest scene has this change.
+    pub in_lean: bool,
     /// Verdict, or the reason why it was not measured, in words.
     pub verdict: String,
 }
@@ -205,6 +208,7 @@ pub fn measure(
             change: effect.map(|effect| effect.change),
             time: effect.map(|effect| effect.time),
             work: effect.map(|effect| effect.work),
+            in_lean: lean.is_some_and(|lean| lean.has(model)),
             verdict: table::verdict(model, error, lean).into(),
         }
     };
@@ -334,7 +338,7 @@ fn lean_scene(models: &Models, answer: &Answer) -> Result<LeanScene, Failure> {
         .get_or_insert(models.compared.frames.until);
     let head = format!(
         "# The scene {} without parts that change its motion by less than {:.1e} {}, by a3 {}.\n\n",
-        models.scene.name.replace(char::is_control, " "),
+        in_a_line(&models.scene.name),
         solved.error,
         models.compared.unit(),
         env!("CARGO_PKG_VERSION")

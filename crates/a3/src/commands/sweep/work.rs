@@ -28,7 +28,7 @@ pub fn run(sweep: &Sweep, plan: &Plan, share: &[usize], folder: &Folder) -> Resu
     }
     let left = AtomicUsize::new(missing.len());
     let bar = Bar::new(missing.len() as f64);
-    bar.say("runs  ".into());
+    bar.say("runs  ");
     let groups: Vec<&[&Run]> = missing.chunk_by(|a, b| a.variant == b.variant).collect();
     let done = groups.into_par_iter().try_for_each(|runs| {
         let variant = &plan.variants[runs[0].variant];

@@ -15,15 +15,11 @@ use crate::draw::surfaces::{tessellation, whole_triangles};
 pub struct Geometry {
     /// Corners of the triangles of the surface, counter-clockwise as seen from outside.
     pub triangles: Vec<[u32; 3]>,
-    /// Number of particles with a surface, which come first.
-    pub covered: usize,
     /// The ends of springs of particles without a surface.
     pub lines: Vec<[u32; 2]>,
     /// The particles without a surface, except those of rigid bodies and of a tank's walls.
     pub points: Vec<u32>,
-    /// Number of particles, after which the points of rigid bodies come.
-    pub particles: usize,
-    /// Number of all vertices.
+    /// Number of all vertices: particles, and after them the points of rigid bodies.
     pub vertices: usize,
 }
 
@@ -51,7 +47,6 @@ impl Geometry {
         let is_rigid = |i: usize| network.is_some_and(|n| n.body_of(i).is_some());
         let rigid = network.map_or_else(Vec::new, |n| tessellation::triangles(n, particles as u32));
         Self {
-            particles,
             vertices: vertices(simulation),
             lines: springs
                 .filter(|spring| spring.i.max(spring.j) >= covered)
@@ -62,15 +57,7 @@ impl Geometry {
                 .map(|i| i as u32)
                 .collect(),
             triangles: whole_triangles(simulation).chain(rigid).collect(),
-            covered,
         }
-    }
-
-    /// Returns whether a vertex has a normal in a file: if it is a particle with a surface, or a
-    /// point of a rigid body.
-    pub fn has_normal(&self, vertex: u32) -> bool {
-        let vertex = vertex as usize;
-        vertex < self.covered || vertex >= self.particles
     }
 
     /// Returns the vertices that other programs keep when they read a file: those that triangles or

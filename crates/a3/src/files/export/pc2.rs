@@ -79,7 +79,8 @@ impl Export for Pc2 {
     fn add(&mut self, simulation: &Simulation) -> Result<(), Failure> {
         if std::mem::take(&mut self.first) {
             let (geometry, kept) = (&self.geometry, &self.kept);
-            let written = obj::write_vertices(&mut self.mesh, geometry, kept, simulation);
+            let (mesh, has_normals) = (&mut self.mesh, !geometry.triangles.is_empty());
+            let written = obj::write_vertices(mesh, geometry, kept, simulation, has_normals);
             written.map_err(|e| self.mesh.failure(&e))?;
         }
         let written = positions(simulation).and_then(|all| {

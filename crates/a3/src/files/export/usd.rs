@@ -19,6 +19,7 @@ use super::format::Export;
 use super::geometry::{Geometry, positions, vertices};
 use crate::base::failure::Failure;
 use crate::base::rounding::{DIGITS, short};
+use crate::base::visible::in_a_line;
 use crate::draw::surfaces::Liquid;
 use crate::files::frames::FrameTimes;
 use crate::files::output::{Draft, Scratch};
@@ -206,7 +207,7 @@ impl Usd {
         let draft = &mut self.draft;
         let (first, last) = (self.frames.first, self.next.saturating_sub(1));
         let rate = short(self.frames.rate, DIGITS);
-        let scene = self.scene.replace(char::is_control, " ");
+        let scene = in_a_line(&self.scene);
         let scene = scene.replace('\\', "\\\\").replace('"', "\\\"");
         write!(
             draft,

@@ -21,7 +21,7 @@ pub fn shoot(
 ) -> Result<(), Failure> {
     interrupt::listen();
     let bar = Bar::new(frames.count as f64);
-    bar.say(format!("up to t = {} s ", frames.from));
+    bar.say(&format!("up to t = {} s ", frames.from));
     let mut shot = 0;
     let mut end = Ok(true);
     for time in frames.times() {
@@ -40,7 +40,7 @@ pub fn shoot(
         }
         film.add(&painter.draw(show, simulation)?)?;
         shot += 1;
-        bar.say(format!("frame {shot} of {} ", frames.count));
+        bar.say(&format!("frame {shot} of {} ", frames.count));
         bar.advance(1.0);
     }
     bar.clear();

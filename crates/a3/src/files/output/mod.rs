@@ -12,6 +12,8 @@ use std::path::{Path, PathBuf};
 
 use crate::base::failure::Failure;
 
+pub use crate::base::visible::part_of_name;
+
 pub use apart::{files_read, is_read, refuse_read};
 pub use draft::{Draft, Scratch};
 pub use lock::lock;
@@ -97,12 +99,6 @@ pub fn write_new(
     Err(Failure::run(format!(
         "there are {MAX_NAMES} files a3-{scene}-*.{extension} already"
     )))
-}
-
-/// Returns the name of a scene as a part of the name of a file: without path separators and
-/// invisible characters.
-pub fn part_of_name(scene: &str) -> String {
-    scene.replace(|c: char| c.is_control() || "/\\".contains(c), "-")
 }
 
 /// Writes `bytes` to `path`.

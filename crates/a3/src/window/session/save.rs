@@ -9,6 +9,7 @@ use a3_scenes::{Camera, Description, snapshot};
 use super::state::Session;
 use crate::base::failure::Failure;
 use crate::base::rounding::{DIGITS, short};
+use crate::base::visible::in_a_line;
 use crate::files::output;
 
 /// Largest number of particles of a scene file that can be read again.
@@ -48,7 +49,7 @@ fn scene_text(session: &Session, run: &Simulation) -> Result<String, a3_core::Er
     let state = description.state.take();
     let mut text = format!(
         "# The scene {} as it was at t = {} s, written by a3 {}. Its clock begins at 0 again.\n\n{}",
-        run.scene().name.replace(char::is_control, " "),
+        in_a_line(&run.scene().name),
         short(run.time(), DIGITS),
         env!("CARGO_PKG_VERSION"),
         description.to_toml()?,

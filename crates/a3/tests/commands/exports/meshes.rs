@@ -244,3 +244,20 @@ fn times_are_short() {
         );
     }
 }
+
+/// Readers such as meshio expect a normal for each vertex, or none.
+#[test]
+fn normals_are_as_many_as_vertices() {
+    let folder = tempfile::tempdir().unwrap();
+    for (scene, has_normals) in [
+        ("cloth", true),
+        ("chain", false),
+        ("boxes", true),
+        ("drop", true),
+    ] {
+        write(folder.path(), scene, "x.obj", &[]);
+        let obj = fs::read_to_string(folder.path().join("x.obj")).unwrap();
+        let (vertices, normals) = (lines(&obj, "v").count(), lines(&obj, "vn").count());
+        assert_eq!(normals, if has_normals { vertices } else { 0 }, "{scene}");
+    }
+}

@@ -6,6 +6,8 @@ use std::path::Path;
 
 use serde_json::Value;
 
+use crate::charts::said;
+
 pub type Triple = [f64; 3];
 
 /// Masses and springs from `a3 scenes --list`, as a course's program has them.
@@ -67,6 +69,41 @@ impl Course {
         all
     }
 
+    /// States of a run of symplectic Euler's method in single precision.
+    pub fn run_single(&self, h: f32, count: usize) -> Vec<[Vec<Triple>; 2]> {
+        let single = |all: &[Triple]| all.iter().map(|v| v.map(|v| v as f32)).collect::<Vec<_>>();
+        let double = |all: &[[f32; 3]]| all.iter().map(|v| v.map(f64::from)).collect::<Vec<_>>();
+        let (mut x, mut v) = (single(&self.x), single(&self.v));
+        let mut states = vec![[double(&x), double(&v)]];
+        for _ in 0..count {
+            let mut f = vec![[0f32; 3]; x.len()];
+            for (i, f) in f.iter_mut().enumerate() {
+                for axis in 0..3 {
+                    f[axis] = self.mass[i] as f32 * self.gravity[axis] as f32
+                        - self.drag as f32 * v[i][axis];
+                }
+            }
+            for &(p, q, k, rest, c) in &self.springs {
+                let apart: [f32; 3] = std::array::from_fn(|a| x[q][a] - x[p][a]);
+                let length = apart.iter().map(|d| d * d).sum::<f32>().sqrt();
+                let rate: f32 = (0..3).map(|a| (v[q][a] - v[p][a]) * apart[a]).sum();
+                let pull = k as f32 * (length - rest as f32) + c as f32 * rate / length;
+                for a in 0..3 {
+                    f[p][a] += pull * apart[a] / length;
+                    f[q][a] -= pull * apart[a] / length;
+                }
+            }
+            for i in (0..x.len()).filter(|i| !self.pinned.contains(i)) {
+                for a in 0..3 {
+                    v[i][a] += h * f[i][a] / self.mass[i] as f32;
+                    x[i][a] += h * v[i][a];
+                }
+            }
+            states.push([double(&x), double(&v)]);
+        }
+        states
+    }
+
     /// States of a run of steps of length h (s), with the start.
     pub fn run(&self, step: Step, h: f64, count: usize) -> Vec<[Vec<Triple>; 2]> {
         let mut states = vec![[self.x.clone(), self.v.clone()]];
@@ -109,6 +146,13 @@ pub fn trapezoid(course: &Course, h: f64, x: &[Triple], v: &[Triple]) -> [Vec<Tr
     [half(x, v, &v1), half(v, &a, &b)]
 }
 
+/// The velocities lose a hundredth in each step.
+pub fn slowed(course: &Course, h: f64, x: &[Triple], v: &[Triple]) -> [Vec<Triple>; 2] {
+    let v = plus(v, h, &course.accelerations(x, v));
+    let v: Vec<_> = v.into_iter().map(|v| v.map(|v| 0.99 * v)).collect();
+    [plus(x, h, &v), v]
+}
+
 /// The second evaluation is at the velocity before the step.
 pub fn trapezoid_late(course: &Course, h: f64, x: &[Triple], v: &[Triple]) -> [Vec<Triple>; 2] {
     let a = course.accelerations(x, v);
@@ -133,4 +177,22 @@ pub fn write(path: &Path, h: f64, states: &[[Vec<Triple>; 2]], velocities: bool)
         lines.push(cells.join(","));
     }
     fs::write(path, lines.join("\n")).unwrap();
+}
+
+/// Judges files in JSON.
+pub fn judged(folder: &Path, scene: &str, files: &[&str]) -> Vec<Value> {
+    let words = [&["judge", "--scene", scene, "--summary", "-"], files].concat();
+    serde_json::from_str(&said(folder, &words)).unwrap()
+}
+
+/// A small cloth with damped springs, a thousand times smaller if `small`.
+pub fn cloth(small: bool) -> String {
+    let scale = if small { 1e-3 } else { 1.0 };
+    format!(
+        "gravity = [0, {g}, 0]\ndrag = 0.002\n[[cloth]]\ngrid = [3, 4]\nspacing = {d}\nmass = 0.02\n\
+         stiffness = [40, 20, 10]\ndamping = 0.02\nat = [0, 0, 0]\nright = [1, 0, 0]\ndown = [0, 0, 1]\n\
+         sway = [0, 0, {g}]\npin = [{{ at = [\"top-left\", \"top-right\"] }}]\n",
+        g = -9.81 * scale,
+        d = 0.1 * scale
+    )
 }

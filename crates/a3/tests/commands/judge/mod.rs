@@ -1,35 +1,16 @@
 //! Results of another program as `a3 judge` sees them.
 
 mod course;
+mod guesses;
 
 use std::fs;
-use std::path::Path;
-
-use serde_json::Value;
 
 use super::charts::said;
 use crate::common::{a3, complaint, simulate, text};
 use course::{
-    Course, Step, Triple, euler, positions_first, symplectic, trapezoid, trapezoid_late, write,
+    Course, Step, Triple, cloth, euler, judged, positions_first, symplectic, trapezoid,
+    trapezoid_late, write,
 };
-
-/// Judges files in JSON.
-fn judged(folder: &Path, scene: &str, files: &[&str]) -> Vec<Value> {
-    let words = [&["judge", "--scene", scene, "--summary", "-"], files].concat();
-    serde_json::from_str(&said(folder, &words)).unwrap()
-}
-
-/// A small cloth with damped springs, a thousand times smaller if `small`.
-fn cloth(small: bool) -> String {
-    let scale = if small { 1e-3 } else { 1.0 };
-    format!(
-        "gravity = [0, {g}, 0]\ndrag = 0.002\n[[cloth]]\ngrid = [3, 4]\nspacing = {d}\nmass = 0.02\n\
-         stiffness = [40, 20, 10]\ndamping = 0.02\nat = [0, 0, 0]\nright = [1, 0, 0]\ndown = [0, 0, 1]\n\
-         sway = [0, 0, {g}]\npin = [{{ at = [\"top-left\", \"top-right\"] }}]\n",
-        g = -9.81 * scale,
-        d = 0.1 * scale
-    )
-}
 
 #[test]
 fn methods_and_mistakes_of_another_program_are_named() {
@@ -111,7 +92,9 @@ fn methods_and_mistakes_of_another_program_are_named() {
         {
             let method = &found["method"];
             assert_eq!(method["title"], *title, "{scene} {name}: {found:#}");
-            assert_eq!(method["mistake"].as_str(), mistake, "{scene} {name}");
+            let slip =
+                mistake.or((name == "l").then_some("the second evaluation at the old velocity"));
+            assert_eq!(method["mistake"].as_str(), slip, "{scene} {name}");
             let asks = mistake.is_some() || ["p", "l"].contains(&name);
             assert_eq!(method["question"].is_string(), asks, "{scene} {name}");
             assert_eq!(method["step"].as_f64(), Some(h), "{scene} {name}");
