@@ -40,6 +40,8 @@ pub enum Sought {
     HeldUntil(Control, f64),
     /// All were tried, down or up to this one, and failed.
     Failed(Control),
+    /// Steps that the program takes are beyond this limit of stability (s).
+    Beyond(f64),
     /// None was tried.
     Untried,
 }
@@ -59,6 +61,7 @@ impl Sought {
                 format!("no shorter step holds, down to {}", named(control))
             }
             Self::Failed(control) => format!("no tolerance holds, up to {}", named(control)),
+            Self::Beyond(limit) => format!("only steps below {} s hold", Rounded(limit)),
             Self::Untried => "no other one was tried".into(),
         }
     }
@@ -197,6 +200,9 @@ impl<'a> Trials<'a> {
         // Never fails for a method in METHODS.
         let limit = largest_step(self.run.method(), modes).ok().flatten();
         let most = limit.map_or(own, |limit| limit.step).min(LARGEST_STEP);
+        if 0.9 * most < SMALLEST_STEP {
+            return Sought::Beyond(most);
+        }
         let all = successors(Some(rounded(0.9 * most)), |last| Some(rounded(0.6 * last)));
         let all = all.take_while(|step| *step >= SMALLEST_STEP);
         self.first(all.filter(|step| *step < own).map(Control::Step))

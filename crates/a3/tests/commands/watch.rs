@@ -63,7 +63,7 @@ fn lost_rods_and_lost_energy_are_told() {
         "{said}"
     );
     assert!(summary["constraint"]["off_by_percent"].as_f64().unwrap() > 1.0);
-    assert!(summary["energy_change_percent"].as_f64().unwrap() > 30.0);
+    assert!(summary["energy_change_percent"].as_f64().unwrap() > 20.0);
     let (said, summary) = told(BEAD, "r 0.0005 --until 5");
     assert_eq!(said, "");
     assert_eq!(summary["constraint"], Value::Null);
@@ -120,10 +120,7 @@ fn advice_held_for_as_long() {
     let hopeless = "springs = [[0, 1, 1e9, 1, 0]]\n[particles]\n\
         positions = [[0, 0, 0], [1.5, 0, 0]]\nmass = 1e-9\n";
     let line = failed(hopeless, "r 0.001 --until 1", 1);
-    assert!(
-        line.contains("; no shorter step holds, down to a step of 0.00000"),
-        "{line}"
-    );
+    assert!(line.contains("; only steps below 2e-9 s hold"), "{line}");
 }
 
 /// Chain of light links on ball joints with a heavy ball at its end.
@@ -169,7 +166,7 @@ fn advice_says_how_far_it_was_tried() {
 
 #[test]
 fn a_tolerance_that_holds_is_named() {
-    let line = failed(BEAD, "a 0.05 --until 5", 1);
+    let line = failed(BEAD, "a 0.1 --until 5", 1);
     let (_, advice) = line.split_once("; a tolerance of ").unwrap();
     let (tolerance, _) = advice.split_once(" would have held").unwrap();
     let (said, _) = told(BEAD, &format!("a {tolerance} --until 5"));

@@ -11,7 +11,7 @@ use super::power::{energy_of, fastest_particle};
 use crate::error::{Cause, Unmet};
 use crate::network::{Network, is_nearly_singular};
 
-/// Shortest time between two checks of the energy (s).
+/// Length of the intervals in each of which the energy is checked once (s).
 const INTERVAL: f64 = 0.1;
 
 /// Gain, over the energy that moves, from which on users are warned that the run gains energy.
@@ -93,6 +93,8 @@ pub struct Balance {
     singular: bool,
     /// Whether hands, contact or tears may have changed the energy.
     open: bool,
+    /// Whether something has changed the run since its last step, which is no gain.
+    disturbed: bool,
 }
 
 impl Balance {
@@ -117,6 +119,7 @@ impl Balance {
     pub(super) fn start_over(&mut self) {
         (self.most, self.gain) = (0.0, 0.0);
         (self.worst, self.singular) = (None, false);
+        self.disturbed = true;
     }
 
     /// Returns the energy that moves (J): the largest exchange so far between kinetic, elastic and
@@ -136,9 +139,10 @@ impl Balance {
         self.gain <= NOTABLE_GAIN * self.scale()
     }
 
-    /// Returns whether another check is due at time t (s).
+    /// Returns whether another check is due at time t (s): one in each interval, so that a run that
+    /// goes back is checked at the same times again.
     pub(super) fn is_due(&self, t: f64) -> bool {
-        t - self.time >= INTERVAL
+        (t / INTERVAL).floor() > (self.time / INTERVAL).floor()
     }
 
     /// Adds work (J) that was done on the run.
@@ -163,6 +167,7 @@ impl Balance {
     /// the gain as it was at the last check.
     pub(super) fn forgive(&mut self, energy: f64) {
         self.begin = energy - self.work - self.gain;
+        self.disturbed = false;
     }
 
     /// Raises the energy up to which gains are no faults to that (J) of the errors that a run is
@@ -171,7 +176,17 @@ impl Balance {
         self.floor = self.floor.max(errors);
     }
 
-    /// Notes that hands or contact may have changed the energy.
+    /// Notes that something changes the run before its next step.
+    pub(super) fn disturb(&mut self) {
+        (self.disturbed, self.open) = (true, true);
+    }
+
+    /// Returns whether something has changed the run since its last step.
+    pub(super) fn is_disturbed(&self) -> bool {
+        self.disturbed
+    }
+
+    /// Notes that contact may have changed the energy.
     pub(super) fn leave_open(&mut self) {
         self.open = true;
     }

@@ -17,8 +17,6 @@ const MAX_CONSTRAINT_ERROR: f64 = 0.1;
 #[derive(Debug)]
 pub(super) struct Watch {
     power: Power,
-    /// Whether something has changed the run since its last step.
-    disturbed: bool,
     /// Radius of the scene (m).
     radius: f64,
     limits: StepLimits,
@@ -33,7 +31,6 @@ impl Watch {
     pub fn new(radius: f64, limits: StepLimits) -> Self {
         Self {
             power: Power::default(),
-            disturbed: false,
             radius,
             limits,
             last: (0.0, 0.0),
@@ -59,7 +56,6 @@ impl Watch {
     /// Forgets the gains of a run that continues with another step or method.
     pub fn start_over(&mut self, model: &Model, state: &mut RunState) {
         state.balance.start_over();
-        self.disturbed = true;
         self.power.forget();
         self.tolerate(model, state);
     }
@@ -84,7 +80,6 @@ impl Watch {
 
     /// Starts to watch the run from another state.
     pub fn resume(&mut self) {
-        self.disturbed = false;
         self.power.forget();
     }
 
@@ -92,14 +87,13 @@ impl Watch {
     /// ends at `end` (s).
     pub fn disturb(&mut self, model: &Model, state: &mut RunState, t: f64, end: f64) {
         let (y, order) = (&state.y[..], state.method.order);
-        let network = model.network().filter(|_| !self.disturbed);
+        let network = model.network().filter(|_| !state.balance.is_disturbed());
         let rest = network.map(|network| self.power.rest(network, End { order, t, y }));
         self.power.forget();
         let Some(network) = network else {
             return;
         };
         state.balance.add(rest.unwrap_or_default());
-        self.disturbed = true;
         let (begin, work) = self.last;
         if t < end && begin < end {
             let rest = work * (end - t) / (end - begin);
@@ -108,13 +102,13 @@ impl Watch {
         state
             .balance
             .check(network, (t, &state.y), &mut self.scratch);
-        state.balance.leave_open();
+        state.balance.disturb();
     }
 
     /// Accounts for what changed the run since the last check: it counts as no gain.
     pub fn forgive(&mut self, model: &Model, state: &mut RunState) {
         if let Some(network) = model.network()
-            && std::mem::take(&mut self.disturbed)
+            && state.balance.is_disturbed()
         {
             let energy = energy_of(network, state.time(), &state.y).total();
             state.balance.forgive(energy);
@@ -146,7 +140,7 @@ impl Watch {
         let network = model.network()?;
         let mut balance = *balance;
         if network.contact_layer().is_none()
-            || self.disturbed
+            || balance.is_disturbed()
             || !balance.is_exceeded(network, end.y)
         {
             return None;
@@ -215,7 +209,7 @@ impl Watch {
         end: End,
     ) -> (Balance, Option<Cause>) {
         // Changes by hands since the last check are no gain.
-        let network = model.network().filter(|_| !self.disturbed);
+        let network = model.network().filter(|_| !balance.is_disturbed());
         let lost = network.and_then(|network| {
             balance.add(self.power.rest(network, end));
             balance.check(network, (end.t, end.y), &mut vec![])
