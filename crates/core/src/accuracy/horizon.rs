@@ -12,8 +12,7 @@ use crate::random::SplitMix;
 use crate::scene::{Model, Scene};
 use crate::simulation::Simulation;
 use crate::spring::SpringKind;
-use crate::stability::{Mode, fastest, largest_step, spectrum};
-use crate::system::Linearized;
+use crate::stability::{largest_step, spectrum};
 
 /// Largest factor by which the motion of the scene alone may amplify errors within the horizon.
 const MAX_AMPLIFICATION: f64 = 1e4;
@@ -45,8 +44,6 @@ pub struct Horizon {
     /// Lyapunov time (s), in which that distance grows by the factor e; infinite if it grows
     /// 30-fold at most.
     pub lyapunov: f64,
-    /// Largest ratio of that distance, until then, to the one at the start.
-    pub growth: f64,
     /// Whether the particles start and move in a plane, and the distance grows mostly out of it:
     /// then it is not chaos that makes small errors grow, but springs that buckle out of the plane
     /// under compression.
@@ -71,11 +68,7 @@ pub fn horizon(scene: &Scene, until: f64, go_on: GoOn) -> Result<Option<Horizon>
         Error::Invalid("no method that estimates the horizon is in the table".into())
     })?;
     let modes = spectrum(scene.model.system(), 0.0, &scene.state);
-    let feedback = scene
-        .model
-        .network()
-        .and_then(Linearized::baumgarte_frequency);
-    let fastest = fastest(&modes, feedback).map_or(1.0, Mode::frequency);
+    let fastest = modes.first().map_or(1.0, crate::stability::Mode::frequency);
     let longest = if fastest > 20.0 * std::f64::consts::PI {
         3.0
     } else {
@@ -179,7 +172,6 @@ impl TwoRuns {
         let horizon = Horizon {
             until,
             lyapunov,
-            growth: grown.1,
             buckles: lyapunov.is_finite()
                 && is_sheet(&scene.model)
                 && leaves_plane(&scene.state, &run, &beside),

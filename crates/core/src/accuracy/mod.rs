@@ -13,7 +13,6 @@ mod measure;
 mod precision;
 mod reference;
 mod run;
-mod shown;
 mod snapshot;
 mod trajectory;
 
@@ -26,4 +25,3 @@ pub use measure::{Outcome, measure, measure_by};
 pub use precision::Precision;
 pub use reference::Reference;
 pub use run::{EnclosingStep, FrameState, Visit, run};
-pub use shown::{Shown, shown};

@@ -22,7 +22,6 @@ mod order;
 mod own;
 mod plain;
 mod reference;
-mod resting;
 mod scales;
 mod stability;
 mod views;
