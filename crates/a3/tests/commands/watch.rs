@@ -120,7 +120,7 @@ fn advice_held_for_as_long() {
     let hopeless = "springs = [[0, 1, 1e9, 1, 0]]\n[particles]\n\
         positions = [[0, 0, 0], [1.5, 0, 0]]\nmass = 1e-9\n";
     let line = failed(hopeless, "r 0.001 --until 1", 1);
-    assert!(line.contains("; only steps below 2e-9 s hold"), "{line}");
+    assert!(line.contains("; only steps below 2.00e-9 s hold"), "{line}");
 }
 
 /// Chain of light links on ball joints with a heavy ball at its end.

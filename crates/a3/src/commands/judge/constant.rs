@@ -78,6 +78,9 @@ const PUSH: (&str, &str) = (
     "has the force of a spring the wrong sign?",
 );
 
+/// Largest distance of a fitted factor from one that has a name.
+const NEAR: f64 = 1e-6;
+
 /// Constant that differs from that of the scene.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Change {
@@ -119,13 +122,16 @@ impl Constant {
 }
 
 impl Change {
-    /// Returns the change with a number of few digits, as people type it.
+    /// Returns the change with a number of few digits, as people type it, or with a factor that has
+    /// a name.
     pub fn typed(self) -> Self {
         let own = self.own.unwrap_or(1.0);
-        Self {
-            factor: short(own * self.factor, DIGITS) / own,
-            ..self
-        }
+        let is = |row: &&(Constant, f64, _, _)| {
+            row.0 == self.constant && (row.1 - self.factor).abs() < NEAR
+        };
+        let named = NAMED.iter().find(is).map(|row| row.1);
+        let factor = named.unwrap_or_else(|| short(own * self.factor, DIGITS) / own);
+        Self { factor, ..self }
     }
 
     fn named(self) -> Option<(&'static str, &'static str)> {

@@ -17,7 +17,7 @@ fn the_step_is_found_if_rows_lie_between_steps() {
     simulate("0.01");
     let found = judged(folder, "chain", &["mine.csv"]).remove(0);
     let method = &found["method"];
-    assert_eq!(method["solver"], "heun", "{found:#}");
+    assert_eq!(method["solver"], "trapezoid", "{found:#}");
     assert_eq!(
         (&method["step"], &method["points"]),
         (&0.01.into(), &3.into())
