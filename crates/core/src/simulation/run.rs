@@ -9,6 +9,7 @@ use super::reach::STEP_END_TOLERANCE;
 use super::state::RunState;
 use super::step::Pipeline;
 use super::stepper::Stepper;
+use super::watch::Watch;
 use crate::contact::{Guarded, Statistics};
 use crate::control::Control;
 use crate::error::{BlowUp, Cause, Error, Unmet};
@@ -200,8 +201,8 @@ impl Simulation {
         if let Some(blow_up) = self.blow_up {
             return Err(blow_up.into());
         }
-        let Pipeline { watch, bounds, .. } = &mut self.driver.pipeline;
-        watch.forgive(&self.model, &mut self.state);
+        Watch::forgive(&self.model, &mut self.state);
+        let bounds = &self.driver.pipeline.bounds;
         if self.state.balance.is_sound() && bounds.hold_closely(&self.model, &self.state.y) {
             self.good.record(&self.state, &self.model, &self.driver);
         }

@@ -106,7 +106,7 @@ impl Watch {
     }
 
     /// Accounts for what changed the run since the last check: it counts as no gain.
-    pub fn forgive(&mut self, model: &Model, state: &mut RunState) {
+    pub fn forgive(model: &Model, state: &mut RunState) {
         if let Some(network) = model.network()
             && state.balance.is_disturbed()
         {
