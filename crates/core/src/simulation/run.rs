@@ -7,9 +7,7 @@ use super::failure::Failure;
 use super::pins::strayed;
 use super::reach::STEP_END_TOLERANCE;
 use super::state::RunState;
-use super::step::Pipeline;
-use super::stepper::Stepper;
-use super::watch::Watch;
+use super::{step::Pipeline, stepper::Stepper, watch::Watch};
 use crate::contact::{Guarded, Statistics};
 use crate::control::Control;
 use crate::error::{BlowUp, Cause, Error, Unmet};
@@ -202,7 +200,7 @@ impl Simulation {
             return Err(blow_up.into());
         }
         Watch::forgive(&self.model, &mut self.state);
-        let bounds = &self.driver.pipeline.bounds;
+        let Pipeline { bounds, .. } = &self.driver.pipeline;
         if self.state.balance.is_sound() && bounds.hold_closely(&self.model, &self.state.y) {
             self.good.record(&self.state, &self.model, &self.driver);
         }

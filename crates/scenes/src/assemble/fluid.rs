@@ -270,17 +270,14 @@ pub(super) fn add(
             Rounded(MIN_DISTANCE * law.spacing)
         );
         let body = |i: u32| network.body_of(i as usize);
-        return Err(match body(i).or(body(j)) {
-            Some(k) => {
-                let key = key_of("body", k, network.bodies().len());
-                let why = "a point of it and a particle of the liquid would begin";
-                let room = "move the body, or the liquid that begins in its place";
-                Fault::new(key, format!("{why} {apart}: {room}"))
-            }
-            None => {
-                let why = format!("particles {i} and {j} would begin {apart}");
-                Fault::new("fluid", why)
-            }
+        return Err(if let Some(k) = body(i).or(body(j)) {
+            let key = key_of("body", k, network.bodies().len());
+            let why = "a point of it and a particle of the liquid would begin";
+            let room = "move the body, or the liquid that begins in its place";
+            Fault::new(key, format!("{why} {apart}: {room}"))
+        } else {
+            let why = format!("particles {i} and {j} would begin {apart}");
+            Fault::new("fluid", why)
         });
     }
     at("fluid", network.add(fluid))
