@@ -102,7 +102,7 @@ pub fn seek(run: &Simulation, until: f64) -> Sought {
     crate::base::interrupt::listen();
     let begun = processor::time();
     let bar = crate::base::progress::Bar::new(COMMAND_BUDGET.as_secs_f64());
-    bar.say("looking for a step that holds ".into());
+    bar.say("looking for a step that holds ");
     let told = Cell::new(0.0);
     let trials = Trials {
         run,

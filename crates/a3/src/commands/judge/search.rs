@@ -75,6 +75,9 @@ struct Search<'a> {
     single: Option<(Scheme, Pace, Judged<'a>)>,
 }
 
+/// Part of a search: ways, starts and paces, and whether rows are compared in single precision.
+type Plan<'a> = (&'a [Way], &'a [Start], &'a [Pace], bool);
+
 /// Finds the method that the rows agree with. `None` if the monitor stopped it. `at_start`
 /// tells whether the first row is the start of the scene.
 pub fn search(judged: &Judged, at_start: bool) -> Option<Match> {
@@ -99,7 +102,7 @@ pub fn search(judged: &Judged, at_start: bool) -> Option<Match> {
         Start::Row(usize::from(at_start)),
     ];
     let all = [&whole[..], &between].concat();
-    let plans: [(&[Way], &[Start], &[Pace], bool); 6] = [
+    let plans: [Plan; 6] = [
         (&correct, scene, &whole, false),
         (&correct, scene, &between, false),
         (&schemes, scene, &all, true),
@@ -256,20 +259,19 @@ impl Search<'_> {
         }
         let last = self.single.take();
         let last = last.filter(|(of, pace, _)| (*of, *pace) == (scheme, trial.pace));
-        let (_, _, single) = match last {
-            Some(last) => last,
-            None => {
-                // A method that is far away is so in single precision, too.
-                let near = |_: usize, _: f64| NEAR_SINGLE * self.judged.motion;
-                let compared = self.judged.compare(trial, &near, work)?;
-                if compared.at_steps < MIN_AT_STEPS {
-                    return None;
-                }
-                let noise = self.judged.noise(scheme, trial.pace, work);
-                let mut single = self.judged.clone();
-                single.noise = Some(noise?);
-                (scheme, trial.pace, single)
+        let (_, _, single) = if let Some(last) = last {
+            last
+        } else {
+            // A method that is far away is so in single precision, too.
+            let near = |_: usize, _: f64| NEAR_SINGLE * self.judged.motion;
+            let compared = self.judged.compare(trial, &near, work)?;
+            if compared.at_steps < MIN_AT_STEPS {
+                return None;
             }
+            let noise = self.judged.noise(scheme, trial.pace, work);
+            let mut single = self.judged.clone();
+            single.noise = Some(noise?);
+            (scheme, trial.pace, single)
         };
         let found = self.agreement_by(&single, trial, work);
         self.single = Some((scheme, trial.pace, single));

@@ -270,7 +270,7 @@ impl Judged<'_> {
             let is_there = match (&self.rows.grid, &mut run) {
                 (Some(grid), run) => {
                     let ahead = grid.numbers[k] * trial.pace.steps;
-                    if ahead % trial.pace.points > 0 {
+                    if !ahead.is_multiple_of(trial.pace.points) {
                         continue;
                     }
                     let steps = match (ahead / trial.pace.points, trial.start) {
