@@ -289,7 +289,8 @@ impl WindWork {
 /// Work of everything together.
 #[derive(Clone, Debug)]
 struct TotalWork {
-    /// Time (s) and power (W) at the last evaluation, the state there, and its rates of change.
+    /// Time (s) and power (W) at the last evaluation, the state there, and its rates of change: the
+    /// Hermite polynomial of rotations needs them.
     t: f64,
     power: f64,
     y: Vec<f64>,
@@ -317,8 +318,8 @@ impl TotalWork {
         let few = network.particles() <= MAX_PARTICLES_PER_STEP;
         let before = self.power;
         let after = self.power_at(network, end.t, end.y);
-        let f0 = std::mem::take(&mut self.f);
-        let f1 = self.scratch[1].clone();
+        // Now f is at the end, and the scratch has that at the beginning.
+        std::mem::swap(&mut self.f, &mut self.scratch[1]);
         let mut mean = 0.5 * (before + after);
         if !few {
             // The motion between two evaluations is unknown: its work must not count as a gain of
@@ -326,16 +327,16 @@ impl TotalWork {
             mean = 0.5 * (before.max(0.0) + after.max(0.0));
         } else if end.order > LOW_ORDER {
             let mut middle = std::mem::take(&mut self.scratch[2]);
-            let t = self.t + 0.5 * h;
-            middle.clear();
-            middle.extend(
-                (0..f1.len()).map(|k| 0.5 * (self.y[k] + end.y[k]) + 0.125 * h * (f0[k] - f1[k])),
-            );
+            let (t, moving) = (self.t + 0.5 * h, 6 * network.particles());
+            write_middle(&self.y[..moving], &end.y[..moving], h, &mut middle);
+            let (f0, f1) = (&self.scratch[1], &self.f);
+            let turned = |k: usize| 0.5 * (self.y[k] + end.y[k]) + 0.125 * h * (f0[k] - f1[k]);
+            middle.extend((moving..f1.len()).map(turned));
             network.hold(t, &mut middle);
             mean = (2.0 * mean + 4.0 * self.power_at(network, t, &middle)) / 6.0;
             self.scratch[2] = middle;
         }
-        (self.t, self.power, self.f) = (end.t, after, f1);
+        (self.t, self.power) = (end.t, after);
         self.y.copy_from_slice(end.y);
         mean * h
     }
