@@ -1,6 +1,7 @@
 //! Characters that a reader sees: others move the cursor, change colours, or turn text round.
 
-/// Returns whether a character is shown as itself. After a letter, accents that combine with it are.
+/// Returns whether a character is shown as itself. After a letter, accents that combine with it
+/// are.
 pub fn is_shown(c: char) -> bool {
     matches!(c, ' '..='~') || format!("a{c}").escape_debug().count() == 2
 }

@@ -82,12 +82,14 @@ impl Power {
     pub fn work(&mut self, network: &Network, end: End, now: bool) -> f64 {
         let few = network.particles() <= MAX_PARTICLES_PER_STEP;
         let is_due = |t: f64| now || few || end.t - t >= INTERVAL;
-        let pins = self.pins.as_mut().map(|pins| pins.work(network, end));
         let wind = self.wind.as_mut().filter(|wind| is_due(wind.t));
-        let wind = wind.map(|wind| wind.work(network, end));
         let all = self.all.as_mut().filter(|all| is_due(all.t));
-        let all = all.map(|all| all.work(network, end));
-        [pins, wind, all].into_iter().flatten().sum()
+        let pins = self.pins.as_mut().map(|pins| pins.work(network, end));
+        let others = [
+            wind.map(|wind| wind.work(network, end)),
+            all.map(|all| all.work(network, end)),
+        ];
+        pins.into_iter().chain(others.into_iter().flatten()).sum()
     }
 
     /// Returns the work (J) that is not evaluated yet at this end of a step, without noting it.
@@ -95,11 +97,12 @@ impl Power {
         if !self.is_fresh {
             return 0.0;
         }
-        let wind = self.wind.as_ref().filter(|wind| wind.t < end.t);
-        let wind = wind.map(|wind| wind.clone().work(network, end));
-        let all = self.all.as_ref().filter(|all| all.t < end.t);
-        let all = all.map(|all| all.clone().work(network, end));
-        [wind, all].into_iter().flatten().sum()
+        let mut others = Self {
+            wind: self.wind.clone().filter(|wind| wind.t < end.t),
+            all: self.all.clone().filter(|all| all.t < end.t),
+            ..Self::default()
+        };
+        others.work(network, end, true)
     }
 }
 

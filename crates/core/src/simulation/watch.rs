@@ -150,6 +150,8 @@ impl Watch {
         network.hold(end.t, &mut y);
         let work = self.power.clone().work(network, End { y: &y, ..end }, true);
         balance.add(work);
+        // The safeguard takes back how far surfaces have got into one another.
+        balance.allow(network.energy_of(end.t, &y).contact);
         balance.check(network, (end.t, &y), &mut vec![])
     }
 
