@@ -7,7 +7,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::power::{energy_of, fastest_particle};
+use super::power::energy_of;
 use crate::error::{Cause, Unmet};
 use crate::network::{Network, is_nearly_singular};
 
@@ -289,4 +289,19 @@ fn rounding(network: &Network, t: f64, y: &[f64]) -> f64 {
         (energy(&nudged.collect::<Vec<_>>()) - same).abs()
     });
     changes.fold(0.0, f64::max)
+}
+
+/// Returns the particle with the largest of the velocities v, n x 3, and its speed (m/s).
+fn fastest_particle(v: &[f64]) -> (usize, f64) {
+    let n = v.len() / 3;
+    let speed = |i: usize| {
+        (0..3)
+            .map(|axis| v[axis * n + i].powi(2))
+            .sum::<f64>()
+            .sqrt()
+    };
+    let speeds = (0..n).map(|i| (i, speed(i)));
+    speeds
+        .max_by(|a, b| a.1.total_cmp(&b.1))
+        .unwrap_or_default()
 }

@@ -82,14 +82,12 @@ impl Power {
     pub fn work(&mut self, network: &Network, end: End, now: bool) -> f64 {
         let few = network.particles() <= MAX_PARTICLES_PER_STEP;
         let is_due = |t: f64| now || few || end.t - t >= INTERVAL;
-        let wind = self.wind.as_mut().filter(|wind| is_due(wind.t));
-        let all = self.all.as_mut().filter(|all| is_due(all.t));
         let pins = self.pins.as_mut().map(|pins| pins.work(network, end));
-        let others = [
-            wind.map(|wind| wind.work(network, end)),
-            all.map(|all| all.work(network, end)),
-        ];
-        pins.into_iter().chain(others.into_iter().flatten()).sum()
+        let wind = self.wind.as_mut().filter(|wind| is_due(wind.t));
+        let wind = wind.map(|wind| wind.work(network, end));
+        let all = self.all.as_mut().filter(|all| is_due(all.t));
+        let all = all.map(|all| all.work(network, end));
+        [pins, wind, all].into_iter().flatten().sum()
     }
 
     /// Returns the work (J) that is not evaluated yet at this end of a step, without noting it.
@@ -97,12 +95,11 @@ impl Power {
         if !self.is_fresh {
             return 0.0;
         }
-        let mut others = Self {
-            wind: self.wind.clone().filter(|wind| wind.t < end.t),
-            all: self.all.clone().filter(|all| all.t < end.t),
-            ..Self::default()
-        };
-        others.work(network, end, true)
+        let wind = self.wind.as_ref().filter(|wind| wind.t < end.t);
+        let wind = wind.map(|wind| wind.clone().work(network, end));
+        let all = self.all.as_ref().filter(|all| all.t < end.t);
+        let all = all.map(|all| all.clone().work(network, end));
+        [wind, all].into_iter().flatten().sum()
     }
 }
 
@@ -383,27 +380,4 @@ pub(super) fn energy_of(network: &Network, t: f64, y: &[f64]) -> Energy {
         energy.kinetic = 0.0;
     }
     energy
-}
-
-/// Returns an upper bound of the speed (m/s) of an obstacle's points within a scene of that radius
-/// (m).
-pub(super) fn fastest(obstacle: &Obstacle, t: f64, radius: f64) -> f64 {
-    let pose = obstacle.at(t);
-    let spin = pose.orientation.map_or(0.0, |turned| turned.spin.norm());
-    pose.place.velocity.norm() + spin * 2.0 * radius
-}
-
-/// Returns the particle with the largest of the velocities v, n x 3, and its speed (m/s).
-pub(super) fn fastest_particle(v: &[f64]) -> (usize, f64) {
-    let n = v.len() / 3;
-    let speed = |i: usize| {
-        (0..3)
-            .map(|axis| v[axis * n + i].powi(2))
-            .sum::<f64>()
-            .sqrt()
-    };
-    let speeds = (0..n).map(|i| (i, speed(i)));
-    speeds
-        .max_by(|a, b| a.1.total_cmp(&b.1))
-        .unwrap_or_default()
 }

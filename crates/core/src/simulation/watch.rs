@@ -1,7 +1,7 @@
 //! Watch over a run: finds blow-ups at the ends of steps and where something changes the run.
 
 use super::balance::Balance;
-use super::power::{End, Power, energy_of, fastest};
+use super::power::{End, Power, energy_of};
 use super::state::RunState;
 use crate::contact::{Obstacle, Statistics};
 use crate::control::Control;
@@ -229,4 +229,12 @@ fn kick(network: &Network, (t, h): (f64, f64), y: &[f64]) -> f64 {
     let pulled = (0..3 * n).filter(|k| network.inverse_masses()[k % n] > 0.0);
     let energy = 0.5 * h * h * pulled.map(squared).sum::<f64>();
     if energy.is_finite() { energy } else { 0.0 }
+}
+
+/// Returns an upper bound of the speed (m/s) of an obstacle's points within a scene of that radius
+/// (m).
+fn fastest(obstacle: &Obstacle, t: f64, radius: f64) -> f64 {
+    let pose = obstacle.at(t);
+    let spin = pose.orientation.map_or(0.0, |turned| turned.spin.norm());
+    pose.place.velocity.norm() + spin * 2.0 * radius
 }
