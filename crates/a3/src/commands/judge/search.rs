@@ -140,7 +140,10 @@ pub fn search(judged: &Judged, at_start: bool) -> Option<Match> {
     let nearest = search.nearest(&correct, &few, f64::INFINITY)?;
     let far = NEAR * judged.motion;
     let bound = nearest.map_or(far, |nearest| MUCH_NEARER * nearest.compared.distance);
-    let nearest = nearest.filter(|nearest| nearest.compared.distance < far);
+    // A step that was guessed may be of a wrong neighbour.
+    let is_sure = |pace: Pace| whole.len() == 1 || (pace.steps, pace.points) == (1, 1);
+    let nearest =
+        nearest.filter(|nearest| nearest.compared.distance < far && is_sure(nearest.trial.pace));
     let suspect = search.nearest(&slips, &few[..1.min(few.len())], bound.min(far))?;
     Some(Match {
         nearest,
