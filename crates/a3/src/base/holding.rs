@@ -162,11 +162,11 @@ pub fn would_hold(run: &Simulation, until: f64, modes: &[Mode]) -> Sought {
 }
 
 impl Sought {
-    /// Returns the step (s) that holds, if one was found.
+    /// Returns the step (s) that holds, as far as it was tried.
     fn step(self) -> Option<f64> {
         match self {
-            Self::Holds(control) => control.step(),
-            _ => None,
+            Self::Holds(control) | Self::HeldUntil(control, _) => control.step(),
+            Self::Failed(_) | Self::Beyond(_) | Self::Untried => None,
         }
     }
 }

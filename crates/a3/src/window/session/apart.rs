@@ -162,7 +162,9 @@ mod tests {
             panel::undo(&mut session, true);
             assert_eq!(places(&session), after);
             frames(&mut session, 0.1);
-            assert!(session.runs.first().touching() && !crosses(&session));
+            let run = session.runs.first();
+            let lost = run.blow_up().map(|lost| lost.to_string());
+            assert!(run.touching() && !crosses(&session), "{lost:?}");
         }
     }
 
