@@ -25,6 +25,9 @@ const LIMITS: [f64; 2] = [0.03, 0.2];
 /// Energy that moves, over the whole energy, below which it is a rounding error.
 const ROUNDING: f64 = 1e-9;
 
+/// Least whole energy (J): with less, all of it is a rounding error.
+const LEAST: f64 = 1e-3;
+
 /// Course of a run: its energies at the looks, and the gain that it tells (J), if any.
 struct Course {
     energies: Vec<Energy>,
@@ -100,7 +103,7 @@ fn fault(k: usize, grammar: &Grammar) -> Option<String> {
         return None;
     }
     let most = fine.energies.iter().map(|e| e.total().abs());
-    if exchanged(&fine.energies) < ROUNDING * most.fold(ROUNDING, f64::max) {
+    if exchanged(&fine.energies) < ROUNDING * most.fold(LEAST, f64::max) {
         return None;
     }
     let both = own.energies.iter().zip(&fine.energies);
