@@ -26,6 +26,11 @@ pub fn warn(message: &str) {
     log(message);
 }
 
+/// Writes a note about a scene to the console.
+pub fn note(message: &str) {
+    warn(&format!("note: {message}"));
+}
+
 /// Returns why a file could not be read, in words.
 pub fn reason(error: &io::Error) -> String {
     error.to_string()
