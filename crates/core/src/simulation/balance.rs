@@ -23,6 +23,10 @@ const MAX_GAIN: f64 = 10.0;
 /// Speed below which motion counts as rounding noise, in radii of the scene per second (1/s).
 const ROUNDING_SPEED: f64 = 1e-6;
 
+/// Least energy that gains are compared with, over the weight times the size of the scene: the work
+/// of friction on what hardly moves is known no better.
+const LEAST_SHARE: f64 = 0.01;
+
 /// Change of a coordinate, over itself, that shows how large rounding errors of the energy are: 8
 /// units in the last place.
 const NUDGE: f64 = 8.0 * f64::EPSILON;
@@ -75,6 +79,8 @@ pub struct Balance {
     begin: f64,
     /// Energy that rounding errors, and the errors that a tolerance allows, may add.
     floor: f64,
+    /// Least energy that gains are compared with.
+    least: f64,
     /// Kinetic energy at checks, from 0 on; elastic energy, and that of repulsion; gravitational
     /// energy.
     kinetic: Range,
@@ -103,8 +109,10 @@ impl Balance {
         let energy = energy_of(network, t, y);
         let mass = network.masses().iter().sum::<f64>();
         let slow = 0.5 * mass * (ROUNDING_SPEED * radius).powi(2);
+        let weight = network.gravity().map_or(0.0, |g| g.norm()) * mass;
         let mut balance = Self {
             time: t,
+            least: LEAST_SHARE * weight * radius,
             begin: energy.total(),
             floor: slow + ROUNDING * rounding(network, t, y),
             elastic: Range::at(energy.elastic + energy.contact),
@@ -134,9 +142,14 @@ impl Balance {
         had.max((self.turnover - put_in).min(2.0 * had))
     }
 
+    /// Returns the energy that gains are compared with (J).
+    fn stake(&self) -> f64 {
+        self.scale().max(self.least)
+    }
+
     /// Returns whether the gain was small at the last check.
     pub(super) fn is_sound(&self) -> bool {
-        self.gain <= NOTABLE_GAIN * self.scale()
+        self.gain <= NOTABLE_GAIN * self.stake()
     }
 
     /// Returns whether another check is due at time t (s): one in each interval, so that a run that
@@ -206,7 +219,7 @@ impl Balance {
             let terms = network.masses().iter().zip(v).map(|(m, v)| m * v * v);
             terms.sum::<f64>()
         };
-        0.5 * (0..3).map(squared).sum::<f64>() > MAX_GAIN * self.scale()
+        0.5 * (0..3).map(squared).sum::<f64>() > MAX_GAIN * self.stake()
     }
 
     /// Checks the energy of y at time t (s), with scratch for forces. Returns the cause of a
@@ -226,7 +239,7 @@ impl Balance {
         self.time = t;
         let (x, v) = network.halves(y);
         self.singular |= is_nearly_singular(network, t, x, v, f);
-        (self.gain > MAX_GAIN * self.scale()).then(|| {
+        (self.gain > MAX_GAIN * self.stake()).then(|| {
             let (particle, speed) = fastest_particle(v);
             Cause::Gained {
                 energy: self.gain,
@@ -240,7 +253,7 @@ impl Balance {
     pub(super) fn notable_gain(&self) -> Option<Gain> {
         let gain = Gain {
             energy: self.most,
-            share: self.most / self.scale(),
+            share: self.most / self.stake(),
         };
         (gain.share > NOTABLE_GAIN).then_some(gain)
     }
