@@ -9,9 +9,8 @@ use crate::failure::succeeded;
 use crate::integrators::{Method, find};
 use crate::network::Network;
 use crate::random::SplitMix;
-use crate::scene::{Model, Scene};
+use crate::scene::Scene;
 use crate::simulation::Simulation;
-use crate::spring::SpringKind;
 use crate::stability::{largest_step, spectrum};
 
 /// Largest factor by which the motion of the scene alone may amplify errors within the horizon.
@@ -172,23 +171,11 @@ impl TwoRuns {
         let horizon = Horizon {
             until,
             lyapunov,
-            buckles: lyapunov.is_finite()
-                && is_sheet(&scene.model)
-                && leaves_plane(&scene.state, &run, &beside),
+            buckles: lyapunov.is_finite() && leaves_plane(&scene.state, &run, &beside),
             motion,
         };
         Ok(Some(Self { horizon, parted_at }))
     }
-}
-
-/// Returns whether springs make a sheet: across the cells of a grid, or over the edges of a mesh.
-fn is_sheet(model: &Model) -> bool {
-    let across = |network: &Network| {
-        let mut springs = network.all_springs();
-        springs.any(|spring| spring.kind != SpringKind::Structural)
-    };
-    let network = model.network();
-    network.is_some_and(|network| network.sheets().next().is_some() || across(network))
 }
 
 /// Returns whether particles start in a plane, with velocities in it, and two runs separate mostly
