@@ -60,7 +60,12 @@ impl Sought {
             Self::Failed(control @ Control::Step(_)) => {
                 format!("no shorter step holds, down to {}", named(control))
             }
-            Self::Failed(control) => format!("no tolerance holds, up to {}", named(control)),
+            Self::Failed(control) => {
+                format!(
+                    "no tolerance that was tried holds, the last was {}",
+                    named(control)
+                )
+            }
             Self::Beyond(limit) => format!("only steps below {} s hold", Rounded(limit)),
             Self::Untried => "no other one was tried".into(),
         }

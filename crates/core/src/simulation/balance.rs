@@ -11,7 +11,7 @@ use super::power::energy_of;
 use crate::error::{Cause, Unmet};
 use crate::network::{Network, is_nearly_singular};
 
-/// Length of the intervals in each of which the energy is checked once (s).
+/// Interval of time (s): the energy is checked once in each.
 const INTERVAL: f64 = 0.1;
 
 /// Gain, over the energy that moves, from which on users are warned that the run gains energy.

@@ -220,8 +220,8 @@ impl Watch {
     }
 }
 
-/// Returns the kinetic energy (J) that the forces at y at time t (s) give in a step of h (s) to
-/// what is at rest.
+/// Returns the kinetic energy (J) that the forces at y at time t (s) give to particles at rest in a
+/// step of h (s).
 fn kick(network: &Network, (t, h): (f64, f64), y: &[f64]) -> f64 {
     let (n, mut rates) = (network.particles(), vec![0.0; y.len()]);
     network.eval_f(t, y, &mut rates);

@@ -82,7 +82,7 @@ fn exchanged(energies: &[Energy]) -> f64 {
         .max(all)
 }
 
-/// Returns what is wrong with the alarm of scene k.
+/// Returns a sentence about the alarm of scene k if it is false, or missing.
 fn fault(k: usize, grammar: &Grammar) -> Option<String> {
     let mut chance = Chance(k as u64);
     let (mut scene, _) = grammar.table("", &mut chance);

@@ -158,7 +158,8 @@ fn way(agreement: &Agreement) -> String {
     format!("{article}{title} at {step}{precision}{slips}{end}")
 }
 
-/// Returns what is not as in the method: a slip or a mistake, and where the comparison begins.
+/// Returns the differences from the method: a slip or a mistake, and the row at which the
+/// comparison begins.
 fn slips(trial: &Trial) -> String {
     let slip = trial.way.slip().map(|slip| format!(", but with {slip}"));
     slip.unwrap_or_default() + since(trial.start)

@@ -56,7 +56,7 @@ struct Agreed {
     /// Name of the solver of a3.
     solver: Option<&'static str>,
     step: f64,
-    /// Number of grid points of the rows of which one is at the end of a step.
+    /// Number of grid points from one at which a step ends to the next such one.
     points: u64,
     /// Whether it agrees with the program in single precision.
     single_precision: bool,

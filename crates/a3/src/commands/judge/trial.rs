@@ -93,7 +93,8 @@ pub enum Start {
     Behind,
 }
 
-/// Trial of a method or a scheme with equal steps, of which a whole number ends at grid points.
+/// Trial of a method or a scheme. Its steps are equal, and a whole number of them lies between two
+/// grid points at which a step ends.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Trial {
     pub way: Way,
