@@ -43,6 +43,62 @@ fn bounded_accurate_and_slowly_growing_steps_are_told_apart() {
     }
 }
 
+/// A box on damped springs: its limits at rest are known too, and those of a solver do not depend on
+/// the others that are asked for.
+#[test]
+fn limits_of_a_solver_do_not_depend_on_the_others() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = "gravity = [0, -9.81, 0]
+        drag = 0.04
+        springs = [[0, 10, 25, 0.5, 0], [1, 5, 30, 0.55, 0.05], [2, 8, 20, 0.6, 0]]
+        [particles]
+        positions = [[0.6, 0.5, 0.1], [-0.5, 0.6, -0.2], [0.1, 0.4, 0.6]]
+        mass = 1
+        pin = [{ particles = [0, 1, 2] }]
+        [[body]]
+        parts = [{ box = [0.3, 0.2, 0.15] }]
+        mass = 0.9
+        at = [0, 0, 0]
+        velocity = [0.3, 0.2, -0.1]
+        spin = [1, 4, -2]";
+    fs::write(folder.path().join("box.toml"), scene).unwrap();
+    let pefrl = |solvers: &str| -> serde_json::Value {
+        let words = "stability --scene box.toml -o s.svg --data s.json --solvers";
+        let words: Vec<_> = words.split(' ').chain([solvers]).collect();
+        let text = said(folder.path(), &words);
+        assert!(
+            !text.contains(" 0\u{2013}") && !text.contains("ratio -"),
+            "{text}"
+        );
+        let rows = fs::read_to_string(folder.path().join("s.json")).unwrap();
+        let rows: Vec<serde_json::Value> = serde_json::from_str(&rows).unwrap();
+        let row = rows.into_iter().find(|row| row["solver"] == "pefrl");
+        row.unwrap()
+    };
+    let alone = pefrl("p");
+    assert_eq!(alone, pefrl("e,t,r,s,v,p,h"));
+    let [by_modes, seen] = [
+        &alone["rest_tenfold"],
+        &alone["rest_observed"]["longest_held"],
+    ];
+    let ratio = seen.as_f64().unwrap() / by_modes.as_f64().unwrap();
+    assert!((0.97..1.03).contains(&ratio), "{alone}");
+}
+
+/// The rods of a double pendulum are held by a feedback that is damped; its motion is not.
+#[test]
+fn the_feedback_of_constraints_is_no_motion() {
+    let folder = tempfile::tempdir().unwrap();
+    let words = "stability --scene double-pendulum --solvers r -o s.svg";
+    let text = said(folder.path(), &words.split(' ').collect::<Vec<_>>());
+    let head = text.lines().next().unwrap();
+    assert!(!head.contains("damping ratio 1.000"), "{head}");
+    assert!(
+        head.ends_with("; errors of constraints decay at 10.0 / s"),
+        "{head}"
+    );
+}
+
 #[test]
 fn an_absolute_tolerance_is_in_metres() {
     let folder = tempfile::tempdir().unwrap();
@@ -90,5 +146,38 @@ fn a_choice_comes_with_its_command() {
     assert!(
         text.contains("5 ms per frame") && text.contains("run it:  a3 "),
         "{text}"
+    );
+}
+
+/// A rod falls from its upright place: differences grow 10-fold in 10 s, which is not hardly.
+#[test]
+fn growth_is_told_by_its_size() {
+    let folder = tempfile::tempdir().unwrap();
+    let note = |gravity: &str| {
+        let scene = format!(
+            "gravity = [0, {gravity}, 0]
+            [particles]
+            positions = [[0, 0, 0], [0, 1, 0]]
+            mass = 1
+            pin = [{{ particles = [0] }}]
+            [[constraint]]
+            rod = [0, 1]
+            [state]
+            positions = [[0, 0, 0], [0, 1, 0]]
+            velocities = [[0, 0, 0], [0.01, 0, 0]]"
+        );
+        fs::write(folder.path().join("rod.toml"), scene).unwrap();
+        let words = "choose --error 1e-3 --work evaluations --scene rod.toml";
+        said(folder.path(), &words.split(' ').collect::<Vec<_>>())
+    };
+    let falls = note("-0.09");
+    assert!(
+        falls.contains("small differences grow ") && falls.contains("-fold by themselves in 10 s"),
+        "{falls}"
+    );
+    let hangs = note("0.09");
+    assert!(
+        hangs.contains("small differences hardly grow by themselves"),
+        "{hangs}"
     );
 }

@@ -11,7 +11,8 @@ use crate::network::Network;
 use crate::random::SplitMix;
 use crate::scene::Scene;
 use crate::simulation::Simulation;
-use crate::stability::{largest_step, spectrum};
+use crate::stability::{Mode, fastest, largest_step, spectrum};
+use crate::system::Linearized;
 
 /// Largest factor by which the motion of the scene alone may amplify errors within the horizon.
 const MAX_AMPLIFICATION: f64 = 1e4;
@@ -43,6 +44,8 @@ pub struct Horizon {
     /// Lyapunov time (s), in which that distance grows by the factor e; infinite if it grows
     /// 30-fold at most.
     pub lyapunov: f64,
+    /// Largest ratio of that distance, until then, to the one at the start.
+    pub growth: f64,
     /// Whether the particles start and move in a plane, and the distance grows mostly out of it:
     /// then it is not chaos that makes small errors grow, but springs that buckle out of the plane
     /// under compression.
@@ -67,7 +70,11 @@ pub fn horizon(scene: &Scene, until: f64, go_on: GoOn) -> Result<Option<Horizon>
         Error::Invalid("no method that estimates the horizon is in the table".into())
     })?;
     let modes = spectrum(scene.model.system(), 0.0, &scene.state);
-    let fastest = modes.first().map_or(1.0, crate::stability::Mode::frequency);
+    let feedback = scene
+        .model
+        .network()
+        .and_then(Linearized::baumgarte_frequency);
+    let fastest = fastest(&modes, feedback).map_or(1.0, Mode::frequency);
     let longest = if fastest > 20.0 * std::f64::consts::PI {
         3.0
     } else {
@@ -171,6 +178,7 @@ impl TwoRuns {
         let horizon = Horizon {
             until,
             lyapunov,
+            growth: grown.1,
             buckles: lyapunov.is_finite() && leaves_plane(&scene.state, &run, &beside),
             motion,
         };

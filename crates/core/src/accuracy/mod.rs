@@ -13,6 +13,7 @@ mod measure;
 mod precision;
 mod reference;
 mod run;
+mod shown;
 mod snapshot;
 mod trajectory;
 
@@ -25,3 +26,4 @@ pub use measure::{Outcome, measure, measure_by};
 pub use precision::Precision;
 pub use reference::Reference;
 pub use run::{EnclosingStep, FrameState, Visit, run};
+pub use shown::{Shown, shown};

@@ -86,8 +86,8 @@ pub struct Reference {
     pub work: Work,
     /// State from which all runs start.
     pub(super) start: Snapshot,
-    scope: Scope,
-    trajectory: Trajectory,
+    pub(super) scope: Scope,
+    pub(super) trajectory: Trajectory,
     /// Uncertainty at each frame, of the positions (m) or of the state.
     uncertain: Vec<f64>,
 }
@@ -133,7 +133,7 @@ impl Reference {
                 work: Work::default(),
                 start: Snapshot::of(&scene.model, 0.0, &scene.state),
                 scope,
-                trajectory: Trajectory::new(vec![], scope),
+                trajectory: Trajectory::new(vec![], f64::INFINITY, scope),
                 uncertain: vec![f64::INFINITY; frames.count as usize],
             },
         };
@@ -279,7 +279,7 @@ impl Making<'_> {
                 return Ok(None);
             };
             let scope = self.reference.scope;
-            self.reference.trajectory = Trajectory::new(best, scope);
+            self.reference.trajectory = Trajectory::new(best, tolerance, scope);
             let found = self.reference.disagreement(&looser);
             history.push(self.precision.metric.of(&found));
             let predicted = next * next / work;

@@ -12,16 +12,19 @@ const NODES: u64 = 4;
 /// States at each frame.
 pub(super) struct Trajectory {
     pub snapshots: Vec<Snapshot>,
+    /// Tolerance of their run.
+    pub tolerance: f64,
     /// Largest mean square speed in the scope (m2/s2).
     square_speed: f64,
 }
 
 impl Trajectory {
-    pub fn new(snapshots: Vec<Snapshot>, scope: Scope) -> Self {
+    pub fn new(snapshots: Vec<Snapshot>, tolerance: f64, scope: Scope) -> Self {
         let speeds = snapshots.iter().map(|s| s.square_speed(scope));
         Self {
             square_speed: speeds.fold(f64::MIN_POSITIVE, f64::max),
             snapshots,
+            tolerance,
         }
     }
 
@@ -89,7 +92,8 @@ impl Trajectory {
         known.collect()
     }
 
-    fn errors_of(&self, exact: &Snapshot, other: &Snapshot, scope: Scope) -> Errors {
+    /// Returns the errors of a snapshot against another that is exact.
+    pub fn errors_of(&self, exact: &Snapshot, other: &Snapshot, scope: Scope) -> Errors {
         let errors = exact.errors_of(other, scope);
         Errors {
             phase: errors.phase / self.square_speed,

@@ -2,6 +2,9 @@
 
 /// Rate of growth of a mode, over its frequency, that may be an error of differences of forces.
 const ROUNDING: f64 = 1e-6;
+/// Distance of an eigenvalue from that of the feedback of constraints, over its size, below which
+/// it is that one: differences of forces split a double eigenvalue.
+const FEEDBACK_SHARE: f64 = 0.05;
 
 /// Mode of motion x'' = -stiffness x - (drag + damping) x'.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -54,6 +57,22 @@ impl Mode {
             [[-half + root, 0.0], [-half - root, 0.0]]
         }
     }
+}
+
+/// Returns the fastest mode that returns, of modes in this order. The feedback that reduces errors
+/// of constraints, of this natural frequency (rad/s), is no motion: its modes are left out.
+#[must_use]
+pub fn fastest(modes: &[Mode], feedback: Option<f64>) -> Option<&Mode> {
+    let is_feedback = |mode: &Mode| {
+        let near = |w: f64| {
+            let [[re, im], _] = mode.eigenvalues();
+            (re + w).hypot(im) < FEEDBACK_SHARE * w
+        };
+        feedback.is_some_and(near)
+    };
+    modes
+        .iter()
+        .find(|mode| mode.returns() && !is_feedback(mode))
 }
 
 /// Sorts modes, the fastest first.

@@ -6,12 +6,13 @@
 //! its mean, but never grows: this multiple is known (`Growth::swing`) and allowed. A run is
 //! *accurate* while its error is below a hundredth of the motion.
 
+use super::budget::Budget;
 use super::checks::take_checked;
 use super::growth::Growth;
 use super::limit::{GROWTH, HORIZON, largest_step};
 use super::mode::{Mode, sort};
 use super::observation::Observation;
-use super::search::{Budget, MAX_RUN_WORK, bisect, sharpen, steps};
+use super::search::{MAX_RUN_WORK, bisect, sharpen, steps};
 use super::spectrum::spectrum;
 use std::cell::RefCell;
 
@@ -163,9 +164,10 @@ impl Motion {
     ///
     /// Runs last for [`HORIZON`] and [`STEPS`](super::STEPS) steps at least. The search begins at
     /// the limit of the modes. Runs ten times as long, with steps a tenth shorter and a tenth
-    /// longer, check whether the limit is sharp. If it is not, or if that of the modes is not, runs
-    /// from half the limit to twice it find the interval in which some hold and some fail. `None`
-    /// if the runs would take too long, and soon after `go_on` returns false.
+    /// longer, check whether the limit is sharp, and so do runs with steps down to half of it. If
+    /// it is not, or if that of the modes is not, runs from half the limit to twice it, and with
+    /// steps down to half of the shortest that failed, find the interval in which some hold and
+    /// some fail. `None` if the runs would take too long, and soon after `go_on` returns false.
     ///
     /// # Errors
     /// The method does not support the scene.
@@ -211,7 +213,7 @@ impl Motion {
             .as_mut()
             .filter(|seen| !seen.is_open() && !budget.limits())
         {
-            *seen = sharpen(*seen, sharp, PRECISION, |h| holds(h, LONG_RUN_FACTOR))?;
+            *seen = sharpen(*seen, sharp, (LONG_RUN_FACTOR, PRECISION), holds)?;
         }
         Ok(seen.filter(|_| go_on()))
     }

@@ -1,31 +1,22 @@
-//! Scenes at rest: the state of rest, and the largest step with which a small disturbance of it
-//! does not grow.
+//! Scenes at rest: the state of rest, its modes, and the largest step with which none grows.
 
-use super::checks::take_checked;
-use super::limit::{GROWTH, Limit, largest_step};
+use super::budget::cost;
+use super::jacobian::Jacobian;
+use super::limit::{Limit, largest_step};
 use super::linearised::AtRest;
-use super::mode::Mode;
+use super::mode::{Mode, sort};
 use super::normalised::Mixing;
-use super::observation::Observation;
 use super::pencil::Pencil;
-use super::search::{Budget, bisect, cost, steps};
 use super::spectrum::{Undamped, of_drag, shapes};
 use crate::control::Control;
 use crate::error::Error;
 use crate::integrators::{Method, find};
+use crate::measure::Measure;
 use crate::network::Network;
 use crate::random::SplitMix;
 use crate::scene::{Model, Scene};
 use crate::simulation::Simulation;
-use crate::system::Linearized;
-
-/// Relative precision of the largest step found by runs.
-const PRECISION: f64 = 0.01;
-/// Size of the disturbance of a scene at rest: the root of the sum of m v^2 over the particles
-/// (kg^1/2 m/s).
-const DISTURBANCE: f64 = 1e-6;
-/// Random part of that disturbance, relative to its part in the limiting mode.
-const RANDOM_SHARE: f64 = 0.1;
+use crate::system::{Mechanics, ParticleSystem};
 
 /// Rounds that bring a scene to rest: the step (s), the largest number of steps, and whether all
 /// free particles are first displaced a little.
@@ -78,12 +69,25 @@ enum RestShapes {
     Approximate(Vec<Vec<f64>>),
     /// Matrices of a scene in which damping mixes shapes.
     Mixed(Pencil),
+    /// Jacobian of a scene with rigid bodies.
+    Whole(Jacobian),
 }
 
 impl RestState {
-    /// Creates a state of rest from a scene that starts in it, with zero velocities.
-    fn new(scene: Scene, network: &Network) -> Self {
-        let x = &scene.state[..scene.state.len() / 2];
+    /// Creates a state of rest from a scene that starts in it, with zero velocities. `None` if it
+    /// has rigid bodies and is too large.
+    fn new(scene: Scene, network: &Network) -> Option<Self> {
+        if !network.bodies().is_empty() {
+            let jacobian = Jacobian::of(network, 0.0, &scene.state)?;
+            let mut modes = jacobian.modes(network);
+            sort(&mut modes);
+            return Some(Self {
+                scene,
+                modes,
+                shapes: RestShapes::Whole(jacobian),
+            });
+        }
+        let (x, _) = network.halves(&scene.state);
         let Undamped {
             mut modes,
             mut shapes,
@@ -94,29 +98,23 @@ impl RestState {
             .then(|| Pencil::of(network, 0.0, x, MAX_DENSE_UNKNOWNS))
             .flatten();
         let mixed = pencil.and_then(|pencil| Some((pencil.modes(&modes)?, pencil)));
-        if let Some((modes, pencil)) = mixed {
-            return Self {
-                scene,
-                modes,
-                shapes: RestShapes::Mixed(pencil),
-            };
-        }
-        if mixing < Mixing::Strong {
-            return Self {
-                scene,
-                modes,
-                shapes: RestShapes::Known(shapes),
-            };
-        }
-        if let Some(mode) = of_drag(network) {
-            modes.push(mode);
-            shapes.push(vec![0.0; x.len()]);
-        }
-        Self {
+        let shapes = if let Some((mixed, pencil)) = mixed {
+            modes = mixed;
+            RestShapes::Mixed(pencil)
+        } else if mixing < Mixing::Strong {
+            RestShapes::Known(shapes)
+        } else {
+            if let Some(mode) = of_drag(network) {
+                modes.push(mode);
+                shapes.push(vec![0.0; x.len()]);
+            }
+            RestShapes::Approximate(shapes)
+        };
+        Some(Self {
             scene,
             modes,
-            shapes: RestShapes::Approximate(shapes),
-        }
+            shapes,
+        })
     }
 
     /// Finds the largest steps of a method on the scene at rest, as by [`largest_step`] on its
@@ -128,7 +126,7 @@ impl RestState {
     pub fn largest_step(&self, method: &Method) -> Result<Option<Limit>, Error> {
         let by_modes = largest_step(method, &self.modes)?;
         let by_steps = match self.shapes {
-            RestShapes::Known(_) => false,
+            RestShapes::Known(_) | RestShapes::Whole(_) => false,
             RestShapes::Mixed(_) => method.needs_mechanics(),
             RestShapes::Approximate(_) => {
                 let small = self.scene.state.len() <= MAX_STEPPED_LENGTH;
@@ -158,14 +156,20 @@ impl RestState {
         Ok(found.or(by_modes))
     }
 
-    /// Returns the shape of the mode of this index.
-    fn shape(&self, mode: usize) -> Option<Vec<f64>> {
-        match &self.shapes {
-            RestShapes::Known(shapes) | RestShapes::Approximate(shapes) => {
-                Some(shapes[mode].clone())
-            }
-            RestShapes::Mixed(pencil) => pencil.shape(&self.modes[mode]),
+    /// Returns a change of the state in the mode of this index, of any size: a velocity or, with
+    /// rigid bodies, the change at one moment.
+    pub(super) fn shape(&self, mode: usize) -> Option<Vec<f64>> {
+        let shape = match &self.shapes {
+            RestShapes::Known(shapes) | RestShapes::Approximate(shapes) => shapes[mode].clone(),
+            RestShapes::Mixed(pencil) => pencil.shape(&self.modes[mode])?,
+            RestShapes::Whole(jacobian) => return jacobian.shape(&self.modes[mode]),
+        };
+        let mut change = vec![0.0; self.scene.state.len()];
+        let inverse_masses = self.scene.model.network()?.inverse_masses();
+        for (k, z) in shape.iter().enumerate() {
+            change[shape.len() + k] = z * inverse_masses[k % inverse_masses.len()].sqrt();
         }
+        Some(change)
     }
 }
 
@@ -173,8 +177,8 @@ impl RestState {
 /// Euler with growing steps.
 ///
 /// `None` if implicit Euler does not support the scene, if the scene has constraints, which the
-/// modes around rest leave out, rigid bodies, or moving pins or obstacles, and if it does not
-/// settle or takes too much work; also soon after `go_on` returns false.
+/// modes around rest leave out, or moving pins or obstacles, if it has rigid bodies and is too
+/// large, and if it does not settle or takes too much work; also soon after `go_on` returns false.
 ///
 /// # Errors
 /// The scene cannot be run.
@@ -182,8 +186,8 @@ pub fn rest(scene: &Scene, go_on: impl Fn() -> bool) -> Result<Option<RestState>
     let Some((implicit, network)) = find("implicit").zip(scene.model.network()) else {
         return Ok(None);
     };
-    let is_held = network.is_constrained() || !network.bodies().is_empty();
-    if implicit.check(network).is_err() || is_held || network.moves_by_itself() {
+    let moves = network.moves_by_itself();
+    if implicit.check(network).is_err() || network.is_constrained() || moves {
         return Ok(None);
     }
     let mut scene = scene.clone();
@@ -232,123 +236,34 @@ pub fn rest(scene: &Scene, go_on: impl Fn() -> bool) -> Result<Option<RestState>
                 run.set_control(Control::Step(next))?;
                 continue;
             }
-            let half = before.len() / 2;
-            let moved = |part: &[f64], was: &[f64]| {
-                let squares = part.iter().zip(was).map(|(a, b)| (a - b).powi(2));
-                (squares.sum::<f64>() / half as f64).sqrt()
-            };
-            if !leaves && moved(&run.state()[..half], &before[..half]) < 1e-9 * step {
+            let [now, before] = [run.state(), &before].map(|y| network.halves(y).0);
+            let squares = now.iter().zip(before).map(|(a, b)| (a - b).powi(2));
+            let moved = (squares.sum::<f64>() / now.len() as f64).sqrt();
+            if !leaves && moved < 1e-9 * step {
                 break;
             }
         }
     }
     let mut y = run.state().to_vec();
-    let half = y.len() / 2;
     let held = safeguard_actions(&run);
     let rests = run.take_steps(1).is_ok() && safeguard_actions(&run) == held;
-    let speed = y[half..].iter().fold(0.0, |m: f64, v| m.max(v.abs()));
-    y[half..].fill(0.0);
+    let speeds = network.halves(&y).1.iter();
+    let speed = speeds.fold(0.0, |m: f64, v| m.max(v.abs()));
     if speed > 1e-4 || !rests {
         return Ok(None);
     }
+    network.measures(&mut |numbers, measure| {
+        if matches!(measure, Measure::Velocity | Measure::Momentum { .. }) {
+            y[numbers].fill(0.0);
+        }
+    });
+    network.hold(0.0, &mut y);
     scene.state = y;
-    Ok(Some(RestState::new(scene, network)))
+    Ok(RestState::new(scene, network))
 }
 
 /// Returns the number of times that the collision safeguard has acted in a run.
 fn safeguard_actions(run: &Simulation) -> usize {
     let guarded = run.guarded();
     guarded.impulses + guarded.cuts
-}
-
-/// Finds the largest step with which a small disturbance of the scene at rest grows less than
-/// [`GROWTH`] times in [`HORIZON`](super::HORIZON).
-///
-/// The disturbance is a velocity in the mode that limits the method, with a small random part.
-/// Bisection begins at the predicted limit. If that is not sharp, growth is slower down to its
-/// `bounded` step, which counts as the shortest that fails.
-/// `None` if no limit is given, if the runs would take too long, and soon after `go_on` returns
-/// false.
-///
-/// # Errors
-/// The method does not support the scene.
-pub fn observe_at_rest(
-    rest: &RestState,
-    method: &'static Method,
-    limit: Option<&Limit>,
-    budget: &Budget,
-    go_on: impl Fn() -> bool,
-) -> Result<Option<Observation>, Error> {
-    let still = &rest.scene;
-    let mut nudged = still.clone();
-    let half = still.state.len() / 2;
-    let (Some(network), Some(limit)) = (still.model.network(), limit) else {
-        return Ok(None);
-    };
-    let guess = limit.step;
-    let mut random = SplitMix(5);
-    let others: Vec<_> = (0..half).map(|_| random.between(-1.0, 1.0)).collect();
-    let length = norm(&others);
-    let shape = rest.shape(limit.mode).unwrap_or_else(|| vec![0.0; half]);
-    for (k, (z, other)) in shape.iter().zip(&others).enumerate() {
-        let particle = k % network.particles();
-        if !network.is_pinned(particle) {
-            let z = z + RANDOM_SHARE * other / length;
-            nudged.state[half + k] = DISTURBANCE * z / network.masses()[particle].sqrt();
-        }
-    }
-    let size = EnergyNorm {
-        network,
-        rest: &still.state[..half],
-    };
-    let zero = vec![0.0; half];
-    let nudge = size.of(&zero, &nudged.state[half..]);
-    // The disturbance is measured against a second run without it: a method's state of rest may
-    // differ a little from the scene's, and particles on an obstacle are moved out at every step.
-    let holds = |h: f64| {
-        let mut run = Simulation::new(nudged.clone(), method, Control::Step(h))?;
-        let mut beside = Simulation::new(still.clone(), method, Control::Step(h))?;
-        let held = take_checked(steps(h, guess), |count| {
-            let held = budget.take(&mut run, count).filter(|_| go_on())?;
-            let held = held && budget.take(&mut beside, count)?;
-            let both = run.state().iter().zip(beside.state());
-            let apart: Vec<_> = both.map(|(a, b)| a - b).collect();
-            let (dx, dv) = apart.split_at(half);
-            Some(held && size.of(dx, dv) < GROWTH * nudge)
-        });
-        budget.check().map(|()| held)
-    };
-    let mut seen = bisect(guess, still.model.work(), PRECISION, true, holds)?;
-    // If the limit of the modes is not sharp, shorter steps grow too, but more slowly.
-    if let Some(seen) = seen
-        .as_mut()
-        .filter(|seen| !seen.is_open() && !limit.is_sharp())
-    {
-        seen.failed = limit.bounded.min(seen.failed);
-    }
-    Ok(seen.filter(|_| go_on()))
-}
-
-/// Norm of disturbances around a state of rest: the root of twice their energy (J^1/2).
-struct EnergyNorm<'a> {
-    network: &'a Network,
-    rest: &'a [f64],
-}
-
-impl EnergyNorm<'_> {
-    fn of(&self, dx: &[f64], dv: &[f64]) -> f64 {
-        let zero = vec![0.0; dx.len()];
-        let mut df = zero.clone();
-        let network = self.network;
-        network.force_differential(0.0, self.rest, &zero, dx, &zero, &mut df);
-        let parts = (dx.iter().zip(dv).zip(&df).enumerate()).map(|(k, ((dx, dv), df))| {
-            network.masses()[k % network.particles()] * dv * dv - dx * df
-        });
-        parts.sum::<f64>().abs().sqrt()
-    }
-}
-
-/// Returns the Euclidean length of a vector.
-fn norm(y: &[f64]) -> f64 {
-    y.iter().map(|y| y * y).sum::<f64>().sqrt()
 }

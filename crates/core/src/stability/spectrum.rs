@@ -3,19 +3,19 @@
 
 use nalgebra::{DMatrix, SymmetricEigen};
 
-use super::eigenvalues::{MAX_ITERATIONS, PRECISIONS, eigenvalues};
+use super::eigenvalues::{MAX_ITERATIONS, PRECISIONS};
+use super::jacobian::{Jacobian, MAX_DENSE_LENGTH};
 use super::mode::{Mode, sort};
 use super::normalised::{MIN_MIXING, Mixing, Normalised, dot, normalise};
 use super::pencil::Pencil;
-use crate::system::{Linearized, Mechanics, ParticleSystem, kick_reads_velocity, rigid_of};
+use crate::system::{Linearized, Mechanics, ParticleSystem, kick_reads_velocity};
 
 /// Largest number of products with the stiffness for a spectrum: enough for three exact digits of
 /// its ends on any cloth, and for a sample of its middle.
 const MAX_PRODUCTS: usize = 64;
 /// Largest number of multiplications to compute all modes, which take a few seconds.
 const MAX_MULTIPLICATIONS: f64 = 2e9;
-/// Largest length of the state of a first-order system whose Jacobian is computed.
-const MAX_DENSE_LENGTH: usize = 300;
+
 /// Returns the modes around the state y at time t (s), fastest first.
 ///
 /// For a linearised mechanical system they come from Lanczos's method on the mass-normalised
@@ -47,7 +47,7 @@ pub fn spectrum(system: &dyn ParticleSystem, t: f64, y: &[f64]) -> Vec<Mode> {
             modes.extend(of_constraints(mechanics));
             modes
         }
-        None => of_jacobian(system, t, y),
+        None => Jacobian::of(system, t, y).map_or(vec![], |jacobian| jacobian.modes(system)),
     };
     sort(&mut modes);
     modes
@@ -162,57 +162,6 @@ fn of_constraints(mechanics: &dyn Linearized) -> Option<Mode> {
         damping: 2.0 * w,
         reads_velocity: true,
     })
-}
-
-/// Returns the modes of a first-order system: one for each real eigenvalue and each conjugate pair
-/// of the Jacobian, which is the system's own or computed by central differences. The Jacobian does
-/// not distinguish drag from other damping: all damping counts as that of springs if kicks depend
-/// on v, else as drag.
-fn of_jacobian(system: &dyn ParticleSystem, t: f64, y: &[f64]) -> Vec<Mode> {
-    let carried = |k: &usize| rigid_of(system).is_some_and(|rigid| rigid.is_carried(*k));
-    let unknowns: Vec<usize> = (0..y.len()).filter(|k| !carried(k)).collect();
-    if unknowns.len() > MAX_DENSE_LENGTH {
-        return vec![];
-    }
-    let mut jacobian = DMatrix::zeros(unknowns.len(), unknowns.len());
-    let (mut at, mut above, mut below) = (y.to_vec(), vec![0.0; y.len()], vec![0.0; y.len()]);
-    let mut exact = vec![0.0; y.len() * y.len()];
-    let is_known = unknowns.len() == y.len() && system.jacobian(t, y, &mut exact);
-    if is_known {
-        jacobian = DMatrix::from_row_slice(y.len(), y.len(), &exact);
-    }
-    for (column, &j) in unknowns.iter().enumerate().filter(|_| !is_known) {
-        let h = 1e-6 * y[j].abs().max(1.0);
-        at[j] = y[j] + h;
-        system.eval_f(t, &at, &mut above);
-        at[j] = y[j] - h;
-        system.eval_f(t, &at, &mut below);
-        at[j] = y[j];
-        for (row, &i) in unknowns.iter().enumerate() {
-            jacobian[(row, column)] = (above[i] - below[i]) / (2.0 * h);
-        }
-    }
-    if jacobian.iter().any(|a| !a.is_finite()) {
-        return vec![];
-    }
-    let scale = jacobian.amax();
-    let eigenvalues = eigenvalues(&jacobian).into_iter();
-    let reads_velocity = match (rigid_of(system), system.mechanics()) {
-        (Some(rigid), _) => rigid.kick_reads_velocity(),
-        (None, mechanics) => mechanics.is_some_and(kick_reads_velocity),
-    };
-    eigenvalues
-        // Parts that central differences cannot tell from zero become zero.
-        .map(|l| [l.re, l.im].map(|part| if part.abs() < 1e-9 * scale { 0.0 } else { part }))
-        .filter(|[re, im]| *im >= 0.0 && (*re, *im) != (0.0, 0.0))
-        .map(|[re, im]| Mode::of_eigenvalue(re, im))
-        .map(|mode| Mode {
-            drag: if reads_velocity { 0.0 } else { mode.drag },
-            damping: if reads_velocity { mode.drag } else { 0.0 },
-            reads_velocity,
-            ..mode
-        })
-        .collect()
 }
 
 /// Fastest mode of a run in progress, by power iteration from the shape at the last estimate.

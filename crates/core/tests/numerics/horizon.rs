@@ -42,3 +42,29 @@ fn contact_to_come_is_no_chaos() {
     assert!(found.lyapunov.is_infinite(), "{found:?}");
     assert!(found.until == 10.0 && found.motion < 0.01, "{found:?}");
 }
+
+/// Rod that stands upright on a pin under a weak gravity: differences grow as cosh(w t), 10-fold in
+/// 10 s. That is too little for a Lyapunov time, and more than hardly.
+#[test]
+fn growth_is_told_where_it_is_no_chaos() {
+    let upright = |gravity: f64| {
+        described(&format!(
+            "gravity = [0, {gravity}, 0]
+            [particles]
+            positions = [[0, 0, 0], [0, 1, 0]]
+            mass = 1
+            pin = [{{ particles = [0] }}]
+            [[constraint]]
+            rod = [0, 1]"
+        ))
+    };
+    let find = |gravity| horizon(&upright(gravity), f64::INFINITY, &|| true);
+    let grown = [-0.09, 0.09].map(|gravity| find(gravity).unwrap().unwrap());
+    assert!(
+        grown
+            .iter()
+            .all(|found| found.lyapunov.is_infinite() && found.until == 10.0)
+    );
+    assert!((3.0..10.2).contains(&grown[0].growth), "{grown:?}");
+    assert!((0.9..1.1).contains(&grown[1].growth), "{grown:?}");
+}

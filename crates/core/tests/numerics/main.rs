@@ -22,6 +22,7 @@ mod order;
 mod own;
 mod plain;
 mod reference;
+mod resting;
 mod scales;
 mod stability;
 mod views;

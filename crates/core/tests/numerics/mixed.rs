@@ -20,7 +20,7 @@ const HEAVY_DRAG: &str = "
 ";
 
 /// Numbers between 0 and 1 from a seed.
-struct Numbers(u64);
+pub struct Numbers(pub u64);
 
 impl Numbers {
     fn next(&mut self) -> f64 {
@@ -29,14 +29,14 @@ impl Numbers {
         (self.0 >> 11) as f64 / (1u64 << 53) as f64
     }
 
-    fn between(&mut self, low: f64, high: f64) -> f64 {
+    pub fn between(&mut self, low: f64, high: f64) -> f64 {
         low + (high - low) * self.next()
     }
 }
 
 /// Net that hangs from three pins: masses over three decades, stiffness over two, and drag, damped
 /// springs or both, in metres or in other units.
-fn net(seed: u64) -> Scene {
+pub fn net(seed: u64) -> Scene {
     let mut numbers = Numbers(seed.wrapping_mul(77_777) + 1);
     for _ in 0..8 {
         numbers.next();

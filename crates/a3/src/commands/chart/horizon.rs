@@ -6,6 +6,9 @@ use a3_core::accuracy::{Horizon, horizon};
 use crate::base::failure::Failure;
 use crate::base::monitor::Monitor;
 
+/// Growth of a small difference from which on it is told.
+const MIN_GROWTH: f64 = 2.0;
+
 /// Finds the time up to which the motion of a scene can be predicted. `until` of the result is the
 /// end of the runs: `asked` (s), or else that time. Notes the end and its reason if it was not
 /// asked for, and warns of one that is too late. `None` if the monitor stopped it.
@@ -22,6 +25,7 @@ pub fn look_ahead(
     let Horizon {
         until,
         lyapunov,
+        growth,
         buckles,
         ..
     } = found;
@@ -36,6 +40,8 @@ pub fn look_ahead(
         )
     } else if lyapunov.is_finite() {
         format!("errors grow by themselves e-fold every {lyapunov:.2} s (Lyapunov time)")
+    } else if growth > MIN_GROWTH {
+        format!("small differences grow {growth:.0}-fold by themselves in {until} s")
     } else {
         "small differences hardly grow by themselves".to_owned()
     };

@@ -211,9 +211,9 @@ fn winners(
         );
     }
     text.push_str("* cheapest:\n");
-    for digits in DIGITS {
+    let line = |digits: i32| {
         let error = 10f64.powi(-digits);
-        let line = if error < resolved {
+        if error < resolved {
             format!("the reference is exact enough for errors above {resolved:.0e}{unit} only")
         } else if error > still {
             format!("nothing moves further than {still:.0e}{unit}: such an error says nothing")
@@ -227,8 +227,17 @@ fn winners(
                         format!("{}, {}", m.title, words(m.control(r.setting)))
                     }),
             }
+        }
+    };
+    let lines: Vec<_> = DIGITS.map(|digits| (digits, line(digits))).collect();
+    for same in lines.chunk_by(|a, b| a.1 == b.1) {
+        let (first, last) = (same[0].0, same[same.len() - 1].0);
+        let to = if first == last {
+            String::new()
+        } else {
+            format!(" to 1e-{last}")
         };
-        let _ = writeln!(text, "  1e-{digits}{unit}  {line}");
+        let _ = writeln!(text, "  1e-{first}{to}{unit}  {}", same[0].1);
     }
     text
 }

@@ -1,6 +1,6 @@
 //! A choice as a value: the methods that serve best, each with its step or tolerance.
 
-use a3_core::accuracy::{Candidate, Frames, Metric, Precision, Reference, Scope, SetBy};
+use a3_core::accuracy::{Candidate, Frames, Metric, Precision, Reference, Scope, SetBy, shown};
 use a3_core::{Control, Method, Scene};
 
 use super::search::{ENOUGH_MARGIN, cheapest, within};
@@ -97,6 +97,9 @@ pub struct Choice {
     pub until: f64,
     /// Uncertainty of the reference, in the unit of the metric.
     pub floor: f64,
+    /// Largest error of the best run at the ends of its steps, if they are fixed, and the largest
+    /// one of the states that it shows at any time, as films and data do, in the same unit.
+    pub shown: [f64; 2],
 }
 
 impl Choice {
@@ -127,12 +130,17 @@ pub fn choose(
     monitor.expect(methods.len() as f64);
     let found = search.run(&methods, &reference, monitor)?;
     let metric = search.metric;
+    let (best, _) = &found[0];
+    let go_on = &|| monitor.go_on();
+    let shown = shown(scene, best.method, best.control, &reference, go_on);
+    let shown = shown.map_err(Failure::run)?.ok_or_else(stopped)?;
     let chosen = |(candidate, cost): &(Candidate, f64)| Chosen::new(candidate, *cost, metric);
     Ok(Choice {
         found: found.iter().map(chosen).collect(),
         metric,
         until: reference.frames.until,
         floor: metric.of(&reference.floor),
+        shown: [shown.at_ends, shown.anywhere].map(|errors| metric.of(&errors)),
     })
 }
 

@@ -12,6 +12,9 @@ use crate::cli::What;
 use crate::commands::chart::table::fraction;
 use crate::commands::chart::{describe, unit};
 
+/// Error that is shown at any time, over the one at 60 frames a second, from which on it is told.
+const MAX_RATIO: f64 = 1.05;
+
 /// Says why the best candidate's step or tolerance is not larger.
 fn set_by(best: &Chosen) -> String {
     let what = if best.control.step().is_some() {
@@ -28,6 +31,30 @@ fn set_by(best: &Chosen) -> String {
         }
         SetBy::Nothing => format!("nothing limits the {what}: no larger one was tried\n"),
     }
+}
+
+/// Says where the error of the best run holds, if it does not hold at all times.
+fn holds(goal: Goal, choice: &Choice) -> String {
+    let best = choice.best();
+    let most = match goal {
+        Goal::Error(error) => error,
+        Goal::Budget(_) => MAX_RATIO * best.error,
+    };
+    let [at_ends, anywhere] = choice.shown;
+    if anywhere <= most {
+        return String::new();
+    }
+    let place = match best.control {
+        Control::Tolerance(_) => "at 60 frames a second; between them",
+        Control::Step(_) if at_ends <= most => "at the ends of steps; between them",
+        Control::Step(_) => {
+            "at 60 frames a second, interpolated through the ends of three steps or at the nearest end; elsewhere"
+        }
+    };
+    let unit = unit(choice.metric);
+    format!(
+        "the error holds {place}, as films, data and the window show them, it is up to {anywhere:.1e} {unit}\n"
+    )
 }
 
 /// Creates the table of candidates, with the computing times of their frames (ms). Below it is what
@@ -66,6 +93,7 @@ pub fn report(what: &What, scene: &Scene, goal: (Goal, Scope), choice: &Choice) 
         ]);
     }
     let (goal, scope) = goal;
+    let holds = holds(goal, choice);
     let foot = match goal {
         Goal::Error(_) => set_by(choice.best()),
         Goal::Budget(_) if choice.best().error < ENOUGH_MARGIN * choice.floor => {
@@ -81,7 +109,7 @@ pub fn report(what: &What, scene: &Scene, goal: (Goal, Scope), choice: &Choice) 
     Report {
         head: format!("{} for {until} s, {goal}:\n", describe(what, scene)),
         rows,
-        foot,
+        foot: foot + &holds,
     }
 }
 

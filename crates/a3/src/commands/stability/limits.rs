@@ -1,7 +1,7 @@
 //! The limits of methods on a scene.
 
 use a3_core::Method;
-use a3_core::stability::{Limit, Mode, Observation};
+use a3_core::stability::{Limit, Mode, Observation, fastest};
 
 /// Largest stable and largest accurate steps of methods on a scene.
 #[derive(Clone, Debug)]
@@ -15,12 +15,22 @@ pub struct Stability {
     pub at_start: Vec<Mode>,
     /// Modes at rest, if the scene comes to rest.
     pub at_rest: Option<Vec<Mode>>,
+    /// Natural frequency (rad/s) of the feedback that reduces errors of constraints, which is no
+    /// motion; `None` without constraints.
+    pub feedback: Option<f64>,
     /// Whether all was measured; false if the monitor stopped it.
     pub complete: bool,
     /// Name of the scene.
     pub(super) name: String,
     /// Description of the scene in titles.
     pub(super) title: String,
+}
+
+impl Stability {
+    /// Returns the fastest motion of these modes.
+    pub(super) fn fastest<'a>(&self, modes: &'a [Mode]) -> Option<&'a Mode> {
+        fastest(modes, self.feedback)
+    }
 }
 
 /// Limits of a method: of the fixed step, also for an adaptive one.

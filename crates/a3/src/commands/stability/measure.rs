@@ -3,7 +3,7 @@
 use a3_core::stability::{
     Budget, Limit, Motion, Observation, RestState, observe_at_rest, rest, spectrum,
 };
-use a3_core::{Error, Method, Scene};
+use a3_core::{Error, Linearized, Method, Scene};
 use rayon::prelude::*;
 
 use super::limits::{MethodLimits, Stability};
@@ -11,13 +11,11 @@ use crate::base::failure::Failure;
 use crate::base::monitor::Monitor;
 use crate::commands::chart::Label;
 
-/// Largest work of all searches in motion, in the unit of a [`Budget`].
-const MAX_WORK_IN_MOTION: f64 = 1.5e9;
-/// Largest work of all searches at rest, in the unit of a [`Budget`].
-const MAX_WORK_AT_REST: f64 = 8e8;
-/// Share of the work that is divided equally among all methods first. Those that need more are
-/// measured again with the rest.
-const FIRST_SHARE: f64 = 0.3;
+/// Largest work of the search for a method's limits in motion, in the unit of a [`Budget`]. It does
+/// not depend on the other methods, and so the limits do not.
+const MAX_WORK_IN_MOTION: f64 = 1.5e8;
+/// Largest work of that for its limits at rest, in the same unit.
+const MAX_WORK_AT_REST: f64 = 8e7;
 
 /// Creates the failure of a command that was interrupted before any limit was measured.
 fn nothing() -> Failure {
@@ -37,7 +35,6 @@ pub fn measure(
     let measured: Vec<_> = (methods.iter().enumerate())
         .filter_map(|(k, &method)| (first(method) == Some(k)).then_some(method))
         .collect();
-    // Each method's share is counted as half done, in case it is measured again.
     monitor.expect(2.0 + 2.0 * measured.len() as f64);
     monitor.stage("the true motion and the state of rest");
     let at_start = spectrum(scene.model.system(), 0.0, &scene.state);
@@ -46,7 +43,7 @@ pub fn measure(
     let in_motion = || {
         let motion = Motion::of(scene, go_on)?;
         monitor.advance(1.0);
-        let limits = each(&measured, MAX_WORK_IN_MOTION, monitor, |method, budget| {
+        let limits = each(&measured, MAX_WORK_IN_MOTION, |method, budget| {
             let Some(motion) = &motion else {
                 return Ok(None);
             };
@@ -67,7 +64,7 @@ pub fn measure(
     let at_rest = || {
         let hanging = rest(scene, go_on)?;
         monitor.advance(1.0);
-        let limits = each(&measured, MAX_WORK_AT_REST, monitor, |method, budget| {
+        let limits = each(&measured, MAX_WORK_AT_REST, |method, budget| {
             say(method, "at rest");
             let by_modes = |rest: &RestState| rest.largest_step(method);
             let limit = hanging.as_ref().map(by_modes).transpose()?.flatten();
@@ -75,7 +72,7 @@ pub fn measure(
                 Some(rest) => observe_at_rest(rest, method, limit.as_ref(), budget, go_on)?,
                 None => None,
             };
-            monitor.advance(0.5);
+            monitor.advance(1.0);
             Ok(go_on().then_some((limit, seen, budget.limits())))
         });
         Ok::<_, Error>((hanging, limits?))
@@ -99,6 +96,10 @@ pub fn measure(
     Ok(Stability {
         limits: rows,
         predictable: motion.predictable,
+        feedback: scene
+            .model
+            .network()
+            .and_then(Linearized::baumgarte_frequency),
         at_rest: hanging.map(|rest| rest.modes),
         at_start,
         complete: monitor.go_on(),
@@ -107,35 +108,20 @@ pub fn measure(
     })
 }
 
-/// Calls `find` for each method in parallel, within a budget of work. Returns the results in the
-/// order of the methods. The runs of implicit methods take longest, so they begin first. Methods
-/// that need more than their share of the work are measured again with the work that is left.
+/// Calls `find` for each method in parallel, with a budget of work. Returns the results in the
+/// order of the methods. The runs of implicit methods take longest, so they begin first.
 fn each<T: Send>(
     methods: &[&'static Method],
     work: f64,
-    monitor: &dyn Monitor,
     find: impl Fn(&'static Method, &Budget) -> Result<T, Error> + Sync,
 ) -> Result<Vec<T>, Error> {
     let mut places: Vec<_> = (0..methods.len()).collect();
     places.sort_by_key(|k| !methods[*k].is_implicit());
-    let measure = |places: Vec<usize>, work: f64| {
-        let share = work / places.len() as f64;
-        let found = places.into_iter().par_bridge().map(|k| {
-            let budget = Budget::new(share);
-            find(methods[k], &budget).map(|found| (k, found, budget))
-        });
-        found.collect::<Result<Vec<_>, _>>()
-    };
-    let mut found = measure(places, FIRST_SHARE * work)?;
-    let spent: f64 = found.iter().map(|(_, _, budget)| budget.spent()).sum();
-    let limited = |budget: &Budget| budget.limits() && monitor.go_on();
-    let again: Vec<_> = (found.iter())
-        .filter_map(|(k, _, budget)| limited(budget).then_some(*k))
-        .collect();
-    found.retain(|(k, _, _)| !again.contains(k));
-    found.extend(measure(again, work - spent)?);
-    found.sort_by_key(|(k, _, _)| *k);
-    Ok(found.into_iter().map(|(_, found, _)| found).collect())
+    let found = places.into_iter().par_bridge();
+    let found = found.map(|k| find(methods[k], &Budget::new(work)).map(|found| (k, found)));
+    let mut found = found.collect::<Result<Vec<_>, _>>()?;
+    found.sort_by_key(|(k, _)| *k);
+    Ok(found.into_iter().map(|(_, found)| found).collect())
 }
 
 /// Combines the limits of a method at rest and in motion.

@@ -13,6 +13,7 @@ pub fn step(seconds: f64) -> String {
     match ms {
         _ if ms.is_infinite() => "any".into(),
         0.0 => "0".into(),
+        _ if ms < 0.009_95 => format!("{ms:.1e}"),
         _ if ms < 0.999_5 => format!("{ms:.3}"),
         _ if ms < 9.995 => format!("{ms:.2}"),
         _ if ms < 99.95 => format!("{ms:.1}"),
@@ -65,13 +66,12 @@ pub fn report(found: &Stability) -> Report {
         ]);
     }
     let frequency = |modes: &[Mode]| {
-        let returning = modes.first().filter(|mode| mode.frequency() > 0.0);
         let none = if modes.is_empty() {
             "none that could be computed"
         } else {
             "none that returns"
         };
-        returning.map_or(none.to_owned(), |mode| {
+        found.fastest(modes).map_or(none.to_owned(), |mode| {
             let damping = 0.5 * (mode.drag + mode.damping) / mode.frequency();
             format!("{:.1} rad/s, damping ratio {damping:.3}", mode.frequency())
         })
@@ -83,6 +83,9 @@ pub fn report(found: &Stability) -> Report {
     );
     if let Some(rest) = &found.at_rest {
         let _ = write!(head, ", {} at rest", frequency(rest));
+    }
+    if let Some(rate) = found.feedback {
+        let _ = write!(head, "; errors of constraints decay at {rate:.1} / s");
     }
     head += "\n\nlargest step (ms), that of the fixed step for adaptive solvers\n";
     let mut foot = format!(
@@ -169,7 +172,7 @@ fn reason(row: &MethodLimits, modes: &[Mode]) -> (String, String) {
 }
 
 /// Meaning of an interval where the table shows one instead of a limit.
-pub const INTERVAL: &str = "not sharp: the shortest step that failed and the longest that held, between which some do either";
+pub const INTERVAL: &str = "not sharp: the shortest step that failed in trials down to half of it, and the longest that held; holding steps lie between failing ones";
 
 /// Returns whether any observed limit is of this kind.
 pub fn any_observed(rows: &[MethodLimits], is: fn(&Observation) -> bool) -> bool {

@@ -72,7 +72,10 @@ impl Stability {
     /// # Errors
     /// The picture does not fit on the sheet.
     pub fn figure(&self, step: Option<f64>, width: u32, height: u32) -> Result<Figure, Failure> {
-        let fastest = self.at_start.first().map_or(1.0, Mode::frequency);
+        let fastest = self.fastest(&self.at_start);
+        let fastest = fastest
+            .or(self.at_start.first())
+            .map_or(1.0, Mode::frequency);
         let h = step.unwrap_or_else(|| format!("{:.1e}", 1.0 / fastest).parse().unwrap_or(1.0));
         let title = format!("Where solvers fail: {}", self.title);
         let regions = picture::chart(title, &self.limits, &self.at_start, h);
