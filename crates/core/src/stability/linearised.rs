@@ -81,35 +81,7 @@ impl<'a> AtRest<'a> {
             }
             Ok::<_, Error>(true)
         };
-        let mut fails = |h: f64| Ok::<_, Error>(grows(h)? && grows(MIN_INTERVAL_RATIO * h)?);
-        let longest = GUESS_RANGE[1] * guess;
-        let near = self.x.len() > MIN_LARGE_LENGTH;
-        let mut low = if near { LARGE_START } else { GUESS_RANGE[0] } * guess;
-        while fails(low)? {
-            low *= if near {
-                1.0 / STEP_RATIO
-            } else {
-                GUESS_RANGE[0]
-            };
-            if low < 1e-4 * guess {
-                return Ok(None);
-            }
-        }
-        let mut high = low * STEP_RATIO;
-        while !fails(high)? {
-            (low, high) = (high, high * STEP_RATIO);
-            if low > longest {
-                return Ok(Some(f64::INFINITY));
-            }
-        }
-        if near && (low..high).contains(&guess) {
-            return Ok(Some(guess));
-        }
-        while high > (1.0 + PRECISION) * low {
-            let middle = (low * high).sqrt();
-            *(if fails(middle)? { &mut high } else { &mut low }) = middle;
-        }
-        Ok(Some(low))
+        longest_that_holds(guess, self.x.len() > MIN_LARGE_LENGTH, &mut grows)
     }
 
     /// Returns the growth per step of h (s) of the root of the energy, after `steps` steps from a
@@ -187,6 +159,45 @@ impl<'a> AtRest<'a> {
         });
         parts.sum::<f64>().abs().sqrt()
     }
+}
+
+/// Finds the longest step (s) below which no trial step grows, near an expected one; `grows` tells
+/// whether a step does. A `large` system, whose steps are expensive, is tried closely about the
+/// expected one. Infinite if no trial step fails. `None` if the shortest one fails too: then the
+/// motion grows by itself.
+pub(super) fn longest_that_holds(
+    guess: f64,
+    large: bool,
+    grows: &mut dyn FnMut(f64) -> Result<bool, Error>,
+) -> Result<Option<f64>, Error> {
+    let mut fails = |h: f64| Ok::<_, Error>(grows(h)? && grows(MIN_INTERVAL_RATIO * h)?);
+    let longest = GUESS_RANGE[1] * guess;
+    let mut low = if large { LARGE_START } else { GUESS_RANGE[0] } * guess;
+    while fails(low)? {
+        low *= if large {
+            1.0 / STEP_RATIO
+        } else {
+            GUESS_RANGE[0]
+        };
+        if low < 1e-4 * guess {
+            return Ok(None);
+        }
+    }
+    let mut high = low * STEP_RATIO;
+    while !fails(high)? {
+        (low, high) = (high, high * STEP_RATIO);
+        if low > longest {
+            return Ok(Some(f64::INFINITY));
+        }
+    }
+    if large && (low..high).contains(&guess) {
+        return Ok(Some(guess));
+    }
+    while high > (1.0 + PRECISION) * low {
+        let middle = (low * high).sqrt();
+        *(if fails(middle)? { &mut high } else { &mut low }) = middle;
+    }
+    Ok(Some(low))
 }
 
 impl Mechanics for AtRest<'_> {

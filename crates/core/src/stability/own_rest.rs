@@ -1,9 +1,12 @@
-//! State of rest of a method: the state y that a step leaves as it is, by Newton's method. Its
-//! linear systems are solved by GMRES (Saad, Schultz, *GMRES: a generalized minimal residual
+//! State of rest of a method, the state y that a step leaves as it is, and the growth of small
+//! changes of it. The state is found by Newton's method. Its linear systems are solved by GMRES (Saad, Schultz, *GMRES: a generalized minimal residual
 //! algorithm for solving nonsymmetric linear systems*, 1986), with differences of steps.
 
 use nalgebra::{DMatrix, DVector};
 
+use super::eigenvalues::eigenvalues;
+use super::limit::{GROWTH, tenfold_time};
+use super::linearised::longest_that_holds;
 use super::normalised::{dot, normalise};
 use crate::control::Control;
 use crate::error::Error;
@@ -12,16 +15,20 @@ use crate::integrators::{Integrator, Method, add_scaled};
 use crate::measure::Measure;
 use crate::scene::Scene;
 use crate::simulation::Simulation;
-use crate::system::ParticleSystem;
+use crate::system::{ParticleSystem, rigid_of};
 
 /// Largest number of Newton steps, and of products in each of them.
 const MAX_ITERATIONS: (usize, usize) = (8, 60);
 /// Change of the state in a step, over the scene's radius, that is rounding.
 const ROUNDING: f64 = 1e-12;
 /// Length of the changes by which steps are differentiated, over the scene's radius.
-const DIFFERENCE: f64 = 1e-7;
-/// Ratio of the change in a step to the one before a Newton step, from which on it ends.
-const MAX_RATIO: f64 = 0.5;
+const DIFFERENCE: f64 = 1e-5;
+/// Singular value, over the largest, that rounding cannot tell from zero.
+const SINGULAR: f64 = 1e-7;
+/// Number of unknowns from which on a system counts as large.
+const MIN_LARGE: usize = 100;
+/// Least share of a Newton step that is taken, where all of it leads too far.
+const LEAST_SHARE: f64 = 0.05;
 
 /// Returns the state of rest of a method in steps of h (s), near the scene's own; the scene's own
 /// if a run changes that less in a step, as where it lies on obstacles.
@@ -50,16 +57,31 @@ pub(super) fn own_rest(scene: &Scene, method: &'static Method, h: f64) -> Result
     })
 }
 
+/// Finds the largest step (s) of a method on a scene at rest at which no small change of the
+/// method's own state of rest grows tenfold, near an expected one, from the eigenvalues of its
+/// steps' derivatives. Infinite if no trial step fails, `None` if the shortest one fails too.
+///
+/// # Errors
+/// The method does not support the scene, or a callback failed.
+pub(super) fn largest_step(
+    scene: &Scene,
+    method: &'static Method,
+    guess: f64,
+) -> Result<Option<f64>, Error> {
+    let large = free(&lengths(scene.model.system(), guess)).len() > MIN_LARGE;
+    let mut grows = |h: f64| {
+        let y = own_rest(scene, method, h)?;
+        let growth = StepMap::new(scene, method, h)?.growth(&y)?;
+        let holds = growth.ln() * tenfold_time(h) <= h * GROWTH.ln();
+        Ok(!holds)
+    };
+    longest_that_holds(guess, large, &mut grows)
+}
+
 /// Returns the state near that of rest of a scene that steps of h (s) of a method change least.
 fn rest_of_steps(scene: &Scene, method: &Method, h: f64) -> Result<Vec<f64>, Error> {
-    let system = scene.model.system();
-    let radius = scene.extent().1;
-    let mut map = StepMap {
-        system,
-        integrator: method.integrator(system)?,
-        h,
-        lengths: lengths(system, h),
-    };
+    let mut map = StepMap::new(scene, method, h)?;
+    let radius = map.radius;
     let mut y = scene.state.clone();
     let Some(mut change) = map.change(&y)? else {
         return Ok(y);
@@ -70,24 +92,24 @@ fn rest_of_steps(scene: &Scene, method: &Method, h: f64) -> Result<Vec<f64>, Err
             break;
         }
         let towards: Vec<_> = change.iter().map(|change| -change).collect();
-        let step = gmres(&towards, |z| {
-            let mut next = map.change(&map.moved(&y, DIFFERENCE * radius, z))?;
-            for (next, change) in next.iter_mut().flatten().zip(&change) {
-                *next = (*next - change) / (DIFFERENCE * radius);
-            }
-            Ok(next)
-        })?;
+        let step = gmres(&towards, |z| map.derivative(&y, z))?;
         let Some(step) = step else { break };
-        let next = map.moved(&y, 1.0, &step);
-        let Some(left) = map.change(&next)? else {
-            break;
+        let mut share = 1.0;
+        let found = loop {
+            let next = map.moved(&y, share, &step);
+            let left = map.change(&next)?;
+            // A comparison with NaN is false.
+            let falls = |left: &Vec<f64>| dot(left, left).sqrt() < (1.0 - 0.5 * share) * size;
+            if let Some(left) = left.filter(falls) {
+                break Some((next, left));
+            }
+            share *= 0.5;
+            if share < LEAST_SHARE {
+                break None;
+            }
         };
-        // A comparison with NaN is false.
-        let falls = dot(&left, &left).sqrt() < MAX_RATIO * size;
-        if !falls {
-            break;
-        }
-        (y, change) = (next, left);
+        let Some(found) = found else { break };
+        (y, change) = found;
     }
     Ok(y)
 }
@@ -97,11 +119,47 @@ struct StepMap<'a> {
     system: &'a dyn ParticleSystem,
     integrator: Box<dyn Integrator>,
     h: f64,
+    /// Radius of the scene (m).
+    radius: f64,
     /// Displacement (m) for each unit of a number of the state; 0 for those that are not free.
     lengths: Vec<f64>,
 }
 
-impl StepMap<'_> {
+impl<'a> StepMap<'a> {
+    fn new(scene: &'a Scene, method: &Method, h: f64) -> Result<Self, Error> {
+        let system = scene.model.system();
+        Ok(Self {
+            system,
+            integrator: method.integrator(system)?,
+            h,
+            radius: scene.extent().1,
+            lengths: lengths(system, h),
+        })
+    }
+
+    /// Returns the factor by which the fastest growing change of a state of rest grows in a step;
+    /// infinite if a step fails.
+    fn growth(&mut self, y: &[f64]) -> Result<f64, Error> {
+        let free = free(&self.lengths);
+        let mut matrix = DMatrix::identity(free.len(), free.len());
+        let mut unit = vec![0.0; y.len()];
+        for (column, k) in free.iter().enumerate() {
+            unit[*k] = 1.0;
+            let Some(change) = self.derivative(y, &unit)? else {
+                return Ok(f64::INFINITY);
+            };
+            unit[*k] = 0.0;
+            for (row, k) in free.iter().enumerate() {
+                matrix[(row, column)] += change[*k];
+            }
+        }
+        if !matrix.iter().all(|a: &f64| a.is_finite()) {
+            return Ok(f64::INFINITY);
+        }
+        let sizes = eigenvalues(&matrix).into_iter().map(|l| l.norm());
+        Ok(sizes.fold(0.0, f64::max))
+    }
+
     /// Returns the change of the state y in a step, in metres; `None` if the step fails.
     fn change(&mut self, y: &[f64]) -> Result<Option<Vec<f64>>, Error> {
         let mut next = y.to_vec();
@@ -113,6 +171,20 @@ impl StepMap<'_> {
             *next = (*next - y) * length;
         }
         Ok(Some(next))
+    }
+
+    /// Returns the derivative of the change of the state y in a step along `z`, by a central
+    /// difference; `None` if a step fails.
+    fn derivative(&mut self, y: &[f64], z: &[f64]) -> Result<Option<Vec<f64>>, Error> {
+        let length = DIFFERENCE * self.radius;
+        let ends = [length, -length].map(|share| self.moved(y, share, z));
+        let Some((mut ahead, behind)) = self.change(&ends[0])?.zip(self.change(&ends[1])?) else {
+            return Ok(None);
+        };
+        for (ahead, behind) in ahead.iter_mut().zip(&behind) {
+            *ahead = (*ahead - behind) / (2.0 * length);
+        }
+        Ok(Some(ahead))
     }
 
     /// Returns the state y displaced by a share of `z` (m).
@@ -130,6 +202,11 @@ impl StepMap<'_> {
     }
 }
 
+/// Returns the indices of the numbers of a state that are free, of these displacements.
+fn free(lengths: &[f64]) -> Vec<usize> {
+    (0..lengths.len()).filter(|k| lengths[*k] > 0.0).collect()
+}
+
 /// Returns the displacement (m) for each unit of the numbers of a state, in steps of h (s).
 fn lengths(system: &dyn ParticleSystem, h: f64) -> Vec<f64> {
     let mut lengths = vec![0.0; system.dim()];
@@ -141,6 +218,11 @@ fn lengths(system: &dyn ParticleSystem, h: f64) -> Vec<f64> {
             Measure::Momentum { speed } => speed * h,
         });
     });
+    if let Some(rigid) = rigid_of(system) {
+        for (k, length) in lengths.iter_mut().enumerate() {
+            *length *= f64::from(u8::from(!rigid.is_carried(k)));
+        }
+    }
     lengths
 }
 
@@ -181,7 +263,9 @@ fn gmres(
     }
     let mut right = DVector::zeros(count + 1);
     right[0] = size;
-    let least = matrix.svd(true, true).solve(&right, 1e-9).ok();
+    let svd = matrix.svd(true, true);
+    // A rotation has no change along its own length: there, a derivative is rounding.
+    let least = svd.solve(&right, SINGULAR * svd.singular_values.max()).ok();
     Ok(least.map(|weights| {
         let mut sum = vec![0.0; b.len()];
         for (weight, z) in weights.iter().zip(&basis) {

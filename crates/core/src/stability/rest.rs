@@ -6,10 +6,12 @@ use super::limit::{Limit, largest_step};
 use super::linearised::AtRest;
 use super::mode::{Mode, sort};
 use super::normalised::Mixing;
+use super::own_rest;
 use super::pencil::Pencil;
 use super::spectrum::{Undamped, of_drag, shapes};
 use crate::control::Control;
 use crate::error::Error;
+use crate::failure::succeeded;
 use crate::integrators::{Method, find};
 use crate::measure::Measure;
 use crate::network::Network;
@@ -32,6 +34,11 @@ const SETTLING: [(f64, u32, bool); 5] = [
 /// steps: smaller and faster scenes take proportionally shorter ones.
 const SLOW_SCENE_TIME: f64 = 0.1;
 
+/// Ratio of the steps of these rounds to earlier ones, of which one failed.
+const SHORTER_RATIO: f64 = 0.25;
+/// Share of the rounds' steps below which they are not shortened.
+const MIN_PACE_SHARE: f64 = 0.01;
+
 /// Largest work of these rounds, in the unit of a [`Budget`].
 const MAX_WORK: f64 = 1e9;
 
@@ -42,6 +49,10 @@ const MAX_DENSE_UNKNOWNS: usize = 200;
 /// Largest length of the state of a scene with more coordinates than that whose limits are
 /// confirmed by steps on all motion: longer ones would take minutes.
 const MAX_STEPPED_LENGTH: usize = 1200;
+
+/// Largest length of the state of a scene of particles whose steps are differentiated about the
+/// method's own state of rest. Longer ones have stiffer springs than gravity displaces in a step.
+const MAX_MAPPED_LENGTH: usize = 60;
 
 /// Ratio of the next step to one in which the collision safeguard acted.
 const GUARDED_STEP_RATIO: f64 = 0.25;
@@ -118,16 +129,21 @@ impl RestState {
     }
 
     /// Finds the largest steps of a method on the scene at rest, as by [`largest_step`] on its
-    /// modes. If damping mixes shapes, those of a splitting method are found by its steps on all
-    /// motion at once, and so are those of all explicit methods in a large scene.
+    /// modes. If damping mixes shapes, or there are rigid bodies, those of a splitting method are
+    /// found by its steps on all motion at once, and so are those of all explicit methods in a large
+    /// scene.
     ///
     /// # Errors
     /// The method does not support the scene.
-    pub fn largest_step(&self, method: &Method) -> Result<Option<Limit>, Error> {
+    pub fn largest_step(&self, method: &'static Method) -> Result<Option<Limit>, Error> {
         let by_modes = largest_step(method, &self.modes)?;
         let by_steps = match self.shapes {
-            RestShapes::Known(_) | RestShapes::Whole(_) => false,
+            RestShapes::Known(_) => false,
             RestShapes::Mixed(_) => method.needs_mechanics(),
+            // If the motion grows by itself, so do all steps.
+            RestShapes::Whole(_) => {
+                method.needs_mechanics() && self.modes.iter().all(Mode::returns)
+            }
             RestShapes::Approximate(_) => {
                 let small = self.scene.state.len() <= MAX_STEPPED_LENGTH;
                 small && by_modes.is_some_and(|limit| limit.is_sharp())
@@ -146,8 +162,12 @@ impl RestState {
             1.0 / fastest
         };
         let half = self.scene.state.len() / 2;
-        let step =
-            AtRest::new(network, &self.scene.state[..half]).largest_step(method, guess, fastest)?;
+        let whole = matches!(self.shapes, RestShapes::Whole(_));
+        let step = if whole || self.scene.state.len() <= MAX_MAPPED_LENGTH {
+            own_rest::largest_step(&self.scene, method, guess)?
+        } else {
+            AtRest::new(network, &self.scene.state[..half]).largest_step(method, guess, fastest)?
+        };
         let found = step.map(|step| Limit {
             bounded: step,
             step,
@@ -197,51 +217,41 @@ pub fn rest(scene: &Scene, go_on: impl Fn() -> bool) -> Result<Option<RestState>
     let mut run = Simulation::new(scene.clone(), implicit, Control::Step(SETTLING[0].0))?;
     let mut random = SplitMix(4);
     let gravity = network.gravity().map_or(0.0, |g| g.norm());
-    let pace = ((scene.extent().1 / gravity).sqrt() / SLOW_SCENE_TIME).min(1.0);
+    let mut pace = ((scene.extent().1 / gravity).sqrt() / SLOW_SCENE_TIME).min(1.0);
+    let least = MIN_PACE_SHARE * pace;
     // The work of a new run starts from zero.
-    let mut before_push = 0.0;
+    let mut before = 0.0;
+    let again = |run: &Simulation, state: Vec<f64>, before: &mut f64| {
+        *before += cost(run);
+        let mut scene = scene.clone();
+        scene.state = state;
+        Simulation::new(scene, implicit, run.control())
+    };
     for (step, steps, leaves) in SETTLING {
-        let step = pace * step;
         if leaves {
             // A fold may be balanced on its edge. The push makes it fall to one side, and it needs
             // all the steps to come to rest there.
-            let mut pushed = scene.clone();
-            pushed.state = run.state().to_vec();
+            let mut pushed = run.state().to_vec();
             let (n, size) = (run.particles(), 1e-4 * run.extent().1);
-            for (k, x) in pushed.state[..3 * n].iter_mut().enumerate() {
+            for (k, x) in pushed[..3 * n].iter_mut().enumerate() {
                 if !network.is_pinned(k % n) {
                     *x += size * random.between(-1.0, 1.0);
                 }
             }
-            before_push = cost(&run);
-            run = Simulation::new(pushed, implicit, Control::Step(step))?;
+            run = again(&run, pushed, &mut before)?;
         }
-        run.set_control(Control::Step(step))?;
-        for _ in 0..steps {
-            let before = run.state().to_vec();
-            let held = safeguard_actions(&run);
-            let costs_too_much = before_push + cost(&run) > MAX_WORK;
-            if costs_too_much || !go_on() || run.take_steps(1).is_err() {
-                return Ok(None);
+        let begun = run.state().to_vec();
+        loop {
+            let allowed = |run: &Simulation| before + cost(run) <= MAX_WORK && go_on();
+            let settled = settle(&mut run, (pace * step, steps, leaves), &allowed)?;
+            match settled {
+                Settled::Yes => break,
+                Settled::Failed if pace > least => {}
+                Settled::Failed | Settled::Stopped => return Ok(None),
             }
-            // If the collision safeguard carries the weight, and not the force of contact, there is
-            // no equilibrium: steps become shorter.
-            let now = run.control().value();
-            let next = if safeguard_actions(&run) > held {
-                GUARDED_STEP_RATIO * now
-            } else {
-                step.min(FREE_STEP_RATIO * now)
-            };
-            if next != now {
-                run.set_control(Control::Step(next))?;
-                continue;
-            }
-            let [now, before] = [run.state(), &before].map(|y| network.halves(y).0);
-            let squares = now.iter().zip(before).map(|(a, b)| (a - b).powi(2));
-            let moved = (squares.sum::<f64>() / now.len() as f64).sqrt();
-            if !leaves && moved < 1e-9 * step {
-                break;
-            }
+            // Implicit Euler turns a body by its spin at the start of a step.
+            pace *= SHORTER_RATIO;
+            run = again(&run, begun.clone(), &mut before)?;
         }
     }
     let mut y = run.state().to_vec();
@@ -260,6 +270,58 @@ pub fn rest(scene: &Scene, go_on: impl Fn() -> bool) -> Result<Option<RestState>
     network.hold(0.0, &mut y);
     scene.state = y;
     Ok(RestState::new(scene, network))
+}
+
+/// Ways in which a round of steps towards rest ends.
+enum Settled {
+    Yes,
+    /// A step failed.
+    Failed,
+    /// No more work is allowed.
+    Stopped,
+}
+
+/// Takes steps of a round of [`SETTLING`], while `allowed` returns true.
+fn settle(
+    run: &mut Simulation,
+    (step, steps, leaves): (f64, u32, bool),
+    allowed: &dyn Fn(&Simulation) -> bool,
+) -> Result<Settled, Error> {
+    run.set_control(Control::Step(step))?;
+    for _ in 0..steps {
+        let before = run.state().to_vec();
+        let held = safeguard_actions(run);
+        if !allowed(run) {
+            return Ok(Settled::Stopped);
+        }
+        if !succeeded(run.take_steps(1))? {
+            return Ok(Settled::Failed);
+        }
+        // If the collision safeguard carries the weight, and not the force of contact, there is
+        // no equilibrium: steps become shorter.
+        let now = run.control().value();
+        let next = if safeguard_actions(run) > held {
+            GUARDED_STEP_RATIO * now
+        } else {
+            step.min(FREE_STEP_RATIO * now)
+        };
+        if next != now {
+            run.set_control(Control::Step(next))?;
+            continue;
+        }
+        let positions = |y| {
+            run.model()
+                .network()
+                .map_or(y, |network| network.halves(y).0)
+        };
+        let [now, before] = [run.state(), &before].map(positions);
+        let squares = now.iter().zip(before).map(|(a, b)| (a - b).powi(2));
+        let moved = (squares.sum::<f64>() / now.len() as f64).sqrt();
+        if !leaves && moved < 1e-9 * step {
+            break;
+        }
+    }
+    Ok(Settled::Yes)
 }
 
 /// Returns the number of times that the collision safeguard has acted in a run.
