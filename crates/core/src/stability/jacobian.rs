@@ -14,6 +14,9 @@ pub(super) const MAX_DENSE_LENGTH: usize = 300;
 /// differences cannot tell from zero.
 const ROUNDING: f64 = 1e-9;
 
+/// Difference of the sizes of two real eigenvalues, over the sizes, at which they count as opposite.
+const OPPOSITE: f64 = 1e-3;
+
 /// Jacobian of a system, without the particles on rigid bodies.
 #[derive(Clone)]
 pub(super) struct Jacobian {
@@ -67,12 +70,25 @@ impl Jacobian {
             (None, None) => false,
             _ => reads_velocity(system),
         };
-        let found = eigenvalues(&self.matrix);
-        let parts = found.iter().map(|l| [l.re, l.im]);
-        let parts = parts.map(|l| l.map(|a| if a.abs() < ROUNDING * scale { 0.0 } else { a }));
-        parts
+        let parts = |a: f64| if a.abs() < ROUNDING * scale { 0.0 } else { a };
+        let found = eigenvalues(&self.matrix).into_iter();
+        let found: Vec<_> = found.map(|l| [parts(l.re), parts(l.im)]).collect();
+        // Two opposite real eigenvalues are one undamped mode that falls.
+        let falls = |re: f64, im: f64| {
+            let is_opposite = |l: &[f64; 2]| l[1] == 0.0 && (l[0] + re).abs() < OPPOSITE * re.abs();
+            im == 0.0 && found.iter().any(is_opposite)
+        };
+        (found.iter())
             .filter(|[re, im]| *im >= 0.0 && (*re, *im) != (0.0, 0.0))
-            .map(|[re, im]| {
+            .filter(|[re, im]| *re > 0.0 || !falls(*re, *im))
+            .map(|&[re, im]| {
+                if falls(re, im) {
+                    return Mode {
+                        stiffness: -re * re,
+                        reads_velocity,
+                        ..Mode::default()
+                    };
+                }
                 let mode = Mode::of_eigenvalue(re, im);
                 Mode {
                     drag: if reads_velocity { 0.0 } else { mode.drag },
