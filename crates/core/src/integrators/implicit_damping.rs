@@ -2,7 +2,7 @@
 //! flow of v' = F(t + h/2, x, v) / M at fixed x for a whole step, and half a step of the first flow
 //! again (Strang, *On the construction and comparison of difference schemes*, 1968).
 //!
-//! Where F does not depend on v, its flow is the kick of [`verlet`](super::verlet), and so is the
+//! Where F does not depend on v, its flow is the kick of [`VERLET_PLAN`], and so is the
 //! step. Otherwise a Rosenbrock method takes the step of that flow. With the damping C = -dF/dv,
 //! A = M + g h C and g = 1 - 1/sqrt 2:
 //!
@@ -21,9 +21,9 @@ use std::ops::Range;
 use super::arithmetic::add_scaled;
 use super::implicit::Dense;
 use super::integrator::{Integrator, check_dim};
+use super::kicks::VERLET_PLAN;
 use super::method::{Create, Method, View};
 use super::splitting::{drift, kick};
-use super::verlet;
 use crate::control::Control;
 use crate::error::Error;
 use crate::linear::DampingSolver;
@@ -43,8 +43,7 @@ pub(super) const METHOD: Method = Method {
     evaluations: 1,
     damped_evaluations: 2,
     view: View::Damping,
-    create: Create::Table(|system| Box::new(ImplicitDamping::new(system))),
-    trial: None,
+    create: Create::Step(|system| Box::new(ImplicitDamping::new(system))),
 };
 
 /// g, of A = M + g h C.
@@ -86,7 +85,7 @@ impl ImplicitDamping {
         let solver = || Solver::new(system);
         Self {
             dim: system.dim(),
-            verlet: verlet::PLAN.integrator(system),
+            verlet: VERLET_PLAN.integrator(system),
             solver: reads_velocity(system).then(solver),
         }
     }

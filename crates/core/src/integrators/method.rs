@@ -4,8 +4,12 @@
 use std::fmt;
 
 use super::adaptive::Adaptive;
+use super::embedded::{EmbeddedPair, Tableau};
 use super::error_norm::Tolerance;
 use super::integrator::Integrator;
+use super::nystrom::{NystromPair, NystromTableau};
+use super::runge_kutta::{self, RungeKutta};
+use super::splitting::Plan;
 use super::trial::Trial;
 use crate::control::Control;
 use crate::error::{Error, positive};
@@ -18,22 +22,40 @@ pub(super) const MAX_DENSE: usize = 1024;
 /// Function of an own method that creates an integrator for a system.
 pub(super) type CreateOwn = dyn Fn(&dyn ParticleSystem) -> Box<dyn Integrator> + Send + Sync;
 
-/// Function that creates the trial steps of an adaptive method for a system.
-type CreateTrial = fn(system: &dyn ParticleSystem) -> Box<dyn Trial>;
-
-/// Function that creates an integrator for a system.
+/// Source of a method's integrators.
 #[derive(Clone, Copy)]
 pub(super) enum Create {
-    /// That of a row of the table.
-    Table(fn(system: &dyn ParticleSystem) -> Box<dyn Integrator>),
-    /// That of an own method.
+    /// Stages of which each depends only on the one before it.
+    RungeKutta(runge_kutta::Table),
+    /// Kicks and drifts.
+    Kicks(&'static Plan),
+    /// Embedded pair, whose trial steps it takes as they are where the step is fixed.
+    Embedded(&'static Tableau),
+    /// The same for accelerations.
+    Nystrom(&'static NystromTableau),
+    /// Function that creates an integrator for a system.
+    Step(CreateStep),
+    /// The same for fixed steps, and a function that creates trial steps.
+    Adaptive(CreateStep, CreateTrial),
+    /// Function of an own method.
     Own(&'static CreateOwn),
 }
+
+/// Function that creates an integrator for a system.
+type CreateStep = fn(system: &dyn ParticleSystem) -> Box<dyn Integrator>;
+
+/// Function that creates the trial steps of an adaptive method for a system.
+type CreateTrial = fn(system: &dyn ParticleSystem) -> Box<dyn Trial>;
 
 impl fmt::Debug for Create {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
-            Self::Table(_) => "Table",
+            Self::RungeKutta(_) => "RungeKutta",
+            Self::Kicks(_) => "Kicks",
+            Self::Embedded(_) => "Embedded",
+            Self::Nystrom(_) => "Nystrom",
+            Self::Step(_) => "Step",
+            Self::Adaptive(..) => "Adaptive",
             Self::Own(_) => "Own",
         })
     }
@@ -79,11 +101,8 @@ pub struct Method {
     pub damped_evaluations: u32,
     /// View of a system that the method steps with.
     pub view: View,
-    /// Creates the method's integrator.
+    /// Source of its integrators.
     pub(super) create: Create,
-    /// Creates the trial steps of an adaptive method, which chooses its steps to a tolerance;
-    /// `None` for other methods.
-    pub(super) trial: Option<CreateTrial>,
 }
 
 impl Method {
@@ -188,9 +207,21 @@ impl Method {
     pub fn integrator(&self, system: &dyn ParticleSystem) -> Result<Box<dyn Integrator>, Error> {
         self.check(system)?;
         Ok(match self.create {
-            Create::Table(create) => create(system),
+            Create::RungeKutta(table) => Box::new(RungeKutta::new(table, system)),
+            Create::Kicks(plan) => plan.integrator(system),
+            Create::Embedded(tableau) => Box::new(EmbeddedPair::new(tableau, system.dim())),
+            Create::Nystrom(tableau) => Box::new(self.nystrom(tableau, system)),
+            Create::Step(create) | Create::Adaptive(create, _) => create(system),
             Create::Own(create) => create(system),
         })
+    }
+
+    fn nystrom(
+        &self,
+        tableau: &'static NystromTableau,
+        system: &dyn ParticleSystem,
+    ) -> NystromPair {
+        NystromPair::new(self.title, tableau, system.dim())
     }
 
     /// Returns whether the method is not of the table, but made by the caller of this library.
@@ -203,24 +234,34 @@ impl Method {
     /// theirs with no other.
     #[must_use]
     pub fn shares_integrator(&self, other: &Self) -> bool {
-        match (self.create, other.create) {
-            (Create::Table(own), Create::Table(other)) => std::ptr::fn_addr_eq(own, other),
-            _ => self == other,
-        }
+        let fixed = |method: &Self| match method.create {
+            Create::Step(create) | Create::Adaptive(create, _) => Some(create),
+            _ => None,
+        };
+        let same = fixed(self).zip(fixed(other));
+        self == other || same.is_some_and(|(own, other)| std::ptr::fn_addr_eq(own, other))
     }
 
     /// Creates an integrator that chooses its steps to this tolerance; `None` if the method
     /// estimates no error.
     #[must_use]
     pub fn adaptive(&self, system: &dyn ParticleSystem, tolerance: Tolerance) -> Option<Adaptive> {
-        self.trial
-            .map(|create| Adaptive::new(create(system), tolerance))
+        let trial: Box<dyn Trial> = match self.create {
+            Create::Embedded(tableau) => Box::new(EmbeddedPair::new(tableau, system.dim())),
+            Create::Nystrom(tableau) => Box::new(self.nystrom(tableau, system)),
+            Create::Adaptive(_, create) => create(system),
+            _ => return None,
+        };
+        Some(Adaptive::new(trial, tolerance))
     }
 
     /// Returns whether the method can choose its steps by itself, to a tolerance.
     #[must_use]
     pub fn is_adaptive(&self) -> bool {
-        self.trial.is_some()
+        matches!(
+            self.create,
+            Create::Embedded(_) | Create::Nystrom(_) | Create::Adaptive(..)
+        )
     }
 
     /// Checks that the method supports a control.

@@ -1,39 +1,28 @@
-//! Methods of integration: one file for each, and one table of all. An integrator sees flat arrays
+//! Methods of integration: their rows by family, and one table of all. An integrator sees flat arrays
 //! and knows no physics.
 
 mod adaptive;
 mod arithmetic;
-mod dop853;
-mod dormand_prince;
-mod dprkn1210;
-mod dprkn1210_dense;
-mod dprkn86;
 mod embedded;
 mod error_norm;
-mod euler;
-mod heun;
+mod explicit;
 mod implicit;
 mod implicit_damping;
 mod integrator;
+mod kicks;
 mod method;
-mod midpoint;
 mod nystrom;
+mod nystrom_pairs;
 mod own;
-mod pefrl;
+mod pairs;
 mod prediction;
 mod registry;
-mod rk4;
-mod rkf45;
 mod runge_kutta;
 mod splitting;
-mod srkn11;
 mod sweep;
-mod symplectic_euler;
 mod table;
 mod trial;
 mod vbd;
-mod verlet;
-mod verner65;
 mod xpbd;
 
 pub use crate::work::Work;

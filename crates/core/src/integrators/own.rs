@@ -88,7 +88,6 @@ impl Method {
             damped_evaluations: order,
             view: View::Derivative,
             create: Create::Own(Box::leak(Box::new(create))),
-            trial: None,
         })
     }
 

@@ -247,7 +247,7 @@ mod tests {
     use super::*;
     use crate::integrators::runge_kutta::{EULER, RK4, RungeKutta, Table};
     use crate::integrators::splitting::Plan;
-    use crate::integrators::{Integrator, pefrl, symplectic_euler, verlet};
+    use crate::integrators::{Integrator, kicks};
     use crate::testing::cloth;
     use crate::{Grid, Scene};
 
@@ -291,9 +291,9 @@ mod tests {
                 for (k, method) in [
                     Kind::Table(EULER),
                     Kind::Table(RK4),
-                    Kind::Plan(&symplectic_euler::PLAN),
-                    Kind::Plan(&verlet::PLAN),
-                    Kind::Plan(&pefrl::PLAN),
+                    Kind::Plan(&kicks::SYMPLECTIC_EULER_PLAN),
+                    Kind::Plan(&kicks::VERLET_PLAN),
+                    Kind::Plan(&kicks::PEFRL_PLAN),
                 ]
                 .iter()
                 .enumerate()

@@ -2,31 +2,27 @@
 
 use super::method::Method;
 use super::registry;
-use super::{
-    dop853, dormand_prince, dprkn86, dprkn1210, euler, heun, implicit, implicit_damping, midpoint,
-    pefrl, rk4, rkf45,
-};
-use super::{srkn11, symplectic_euler, vbd, verlet, verner65, xpbd};
+use super::{explicit, implicit, implicit_damping, kicks, nystrom_pairs, pairs, vbd, xpbd};
 
 /// Table of all methods.
 pub static METHODS: &[Method] = &[
-    euler::METHOD,
-    heun::METHOD,
-    midpoint::METHOD,
-    rk4::METHOD,
-    symplectic_euler::METHOD,
-    verlet::METHOD,
-    pefrl::METHOD,
-    dormand_prince::METHOD,
-    dop853::METHOD,
+    explicit::EULER,
+    explicit::HEUN,
+    explicit::MIDPOINT,
+    explicit::RK4,
+    kicks::SYMPLECTIC_EULER,
+    kicks::VERLET,
+    kicks::PEFRL,
+    pairs::DORMAND_PRINCE,
+    pairs::DOP853,
     implicit::EULER,
-    rkf45::METHOD,
+    pairs::RKF45,
     implicit::TR_BDF2,
     implicit::MIDPOINT,
-    verner65::METHOD,
-    srkn11::METHOD,
-    dprkn86::METHOD,
-    dprkn1210::METHOD,
+    pairs::VERNER65,
+    kicks::SRKN11,
+    nystrom_pairs::DPRKN86,
+    nystrom_pairs::DPRKN1210,
     implicit::BDF,
     xpbd::METHOD,
     xpbd::TEN,

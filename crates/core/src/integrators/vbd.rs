@@ -39,8 +39,7 @@ pub(super) const METHOD: Method = Method {
     evaluations: ITERATIONS,
     damped_evaluations: ITERATIONS,
     view: View::Springs,
-    create: Create::Table(|system| Vbd::of(system, ITERATIONS)),
-    trial: None,
+    create: Create::Step(|system| Vbd::of(system, ITERATIONS)),
 };
 
 struct Vbd {

@@ -41,8 +41,7 @@ pub(super) const METHOD: Method = Method {
     evaluations: 1,
     damped_evaluations: 1,
     view: View::Springs,
-    create: Create::Table(|system| Xpbd::of(system, 1)),
-    trial: None,
+    create: Create::Step(|system| Xpbd::of(system, 1)),
 };
 
 pub(super) const TEN: Method = Method {
@@ -53,7 +52,7 @@ pub(super) const TEN: Method = Method {
     default_control: Control::Step(0.02),
     evaluations: 10,
     damped_evaluations: 10,
-    create: Create::Table(|system| Xpbd::of(system, 10)),
+    create: Create::Step(|system| Xpbd::of(system, 10)),
     ..METHOD
 };
 

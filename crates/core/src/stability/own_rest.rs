@@ -2,7 +2,7 @@
 //! changes of it. The state is found by Newton's method. Its linear systems are solved by GMRES (Saad, Schultz, *GMRES: a generalized minimal residual
 //! algorithm for solving nonsymmetric linear systems*, 1986), with differences of steps.
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{Complex, DMatrix, DVector};
 
 use super::eigenvalues::eigenvalues;
 use super::limit::{GROWTH, tenfold_time};
@@ -156,7 +156,7 @@ impl<'a> StepMap<'a> {
         if !matrix.iter().all(|a: &f64| a.is_finite()) {
             return Ok(f64::INFINITY);
         }
-        let sizes = eigenvalues(&matrix).into_iter().map(|l| l.norm());
+        let sizes = eigenvalues(&matrix).into_iter().map(Complex::norm);
         Ok(sizes.fold(0.0, f64::max))
     }
 

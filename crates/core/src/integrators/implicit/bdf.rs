@@ -8,7 +8,7 @@
 
 use super::super::arithmetic::{add_scaled, scaled_sum};
 use super::super::error_norm::ErrorNorm;
-use super::super::method::{Method, View};
+use super::super::method::{Create, Method, View};
 use super::super::trial::{LastStep, Trial};
 use super::formulas::{KAPPA, error_factor, harmonic};
 use super::kept::{KeptSolver, Tangent};
@@ -28,8 +28,7 @@ pub(crate) const METHOD: Method = Method {
     evaluations: 3,
     damped_evaluations: 3,
     view: View::Tangent,
-    create: tr_bdf2::METHOD.create,
-    trial: Some(|system| Box::new(Bdf::new(system))),
+    create: Create::Adaptive(tr_bdf2::integrator, |system| Box::new(Bdf::new(system))),
 };
 
 /// Highest order.

@@ -21,13 +21,12 @@ pub(crate) const METHOD: Method = Method {
     evaluations: 1,
     damped_evaluations: 1,
     view: View::Tangent,
-    create: Create::Table(|system| {
+    create: Create::Step(|system| {
         Box::new(ImplicitEuler {
             stage: StageSolver::new(system),
             base: vec![0.0; system.dim()],
         })
     }),
-    trial: None,
 };
 
 struct ImplicitEuler {

@@ -26,7 +26,7 @@ pub(crate) const METHOD: Method = Method {
     evaluations: 3,
     damped_evaluations: 3,
     view: View::Tangent,
-    create: Create::Table(|system| {
+    create: Create::Step(|system| {
         Box::new(ImplicitMidpoint {
             stage: StageSolver::new(system),
             base: vec![0.0; system.dim()],
@@ -34,7 +34,6 @@ pub(crate) const METHOD: Method = Method {
             part: vec![0.0; system.dim()],
         })
     }),
-    trial: None,
 };
 
 struct ImplicitMidpoint {

@@ -25,17 +25,19 @@ pub(crate) const METHOD: Method = Method {
     evaluations: 7,
     damped_evaluations: 7,
     view: View::Tangent,
-    create: Create::Table(|system| {
-        let zeros = || vec![0.0; system.dim()];
-        Box::new(TrBdf2 {
-            stage: StageSolver::new(system),
-            f1: zeros(),
-            base: zeros(),
-            last: zeros(),
-        })
-    }),
-    trial: None,
+    create: Create::Step(integrator),
 };
+
+/// Creates an integrator for a system.
+pub(super) fn integrator(system: &dyn ParticleSystem) -> Box<dyn Integrator> {
+    let zeros = || vec![0.0; system.dim()];
+    Box::new(TrBdf2 {
+        stage: StageSolver::new(system),
+        f1: zeros(),
+        base: zeros(),
+        last: zeros(),
+    })
+}
 
 const G: f64 = 1.0 - FRAC_1_SQRT_2;
 const W: f64 = SQRT_2 / 4.0;
