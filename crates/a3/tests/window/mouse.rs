@@ -55,9 +55,10 @@ fn pulling() {
     until("the mark of the grabbed particle", || {
         (display.screen().count(is_amber) > 2).then_some(())
     });
-    // A fast drag, in jumps: the particle keeps its offset from the pointer.
+    // A fast drag, in jumps, as far as the springs may stretch: the particle keeps its offset from
+    // the pointer.
     let off = (hx - x, hy - y);
-    for (dx, dy) in [(150, -60), (-170, -40), (120, 60)] {
+    for (dx, dy) in [(150, -60), (-170, -40), (90, 40)] {
         go(x + dx, y + dy);
         until("the particle under the pointer", || {
             let (hx, hy) = hand()?;

@@ -82,6 +82,15 @@ impl Grid {
         Some(Self { step, numbers })
     }
 
+    /// Returns the coarsest grid of the times with these indices.
+    pub fn of_some(&self, kept: &[usize]) -> Self {
+        let part = kept.iter().map(|k| self.numbers[*k]).fold(0, gcd).max(1);
+        Self {
+            step: self.step * part as f64,
+            numbers: kept.iter().map(|k| self.numbers[*k] / part).collect(),
+        }
+    }
+
     /// Returns the least number of grid points that a whole number of steps (s) lasts, and that
     /// number.
     pub fn meeting(&self, step: f64) -> Option<[u64; 2]> {

@@ -36,6 +36,8 @@ pub struct Judgement {
     pub states: usize,
     /// Number of states up to the end of the judgement.
     pub judged: usize,
+    /// One of how many of these is compared.
+    pub every: usize,
     /// Last time that is judged (s).
     pub until: f64,
     /// Whether the file has velocities.
@@ -188,6 +190,7 @@ fn measured(scene: &Scene, states: &States, rows: &Rows, reference: &Reference) 
     Judgement {
         states: states.times.len(),
         judged: rows.count,
+        every: rows.every,
         until: rows.until(),
         has_velocities: states.velocities.is_some(),
         start: if turned < MUCH_LESS * worst.error {

@@ -45,11 +45,13 @@ pub fn paces(grid: Option<&Grid>, step: Option<f64>) -> Option<[Vec<Pace>; 2]> {
     }
 }
 
-/// Returns the paces of steps with few digits at which some grid points lie between steps, the
-/// longest steps first.
+/// Returns the paces of steps with few digits at which some grid points lie between steps: steps
+/// shorter than the grid first, as most programs take, of these the ones of one digit, and the
+/// longest of each.
 fn between(grid: &Grid) -> Vec<Pace> {
     let seconds = |pace: &Pace| grid.step * pace.points as f64 / pace.steps as f64;
-    let is_typed = |value: f64| (short(value, STEP_DIGITS) / value - 1.0).abs() < 1e-9;
+    let has = |digits: usize, value: f64| (short(value, digits) / value - 1.0).abs() < 1e-9;
+    let is_typed = |value: f64| has(STEP_DIGITS, value);
     let all = (2..=MAX_EVERY).filter(|points| grid.meets(*points));
     let all = all.flat_map(|points| PARTS.map(|steps| Pace { steps, points }));
     let all = all.filter(|pace| gcd(pace.points, pace.steps) == 1);
@@ -57,5 +59,6 @@ fn between(grid: &Grid) -> Vec<Pace> {
         .filter(|pace| is_typed(seconds(pace)) || is_typed(1.0 / seconds(pace)))
         .collect();
     all.sort_by(|a, b| seconds(b).total_cmp(&seconds(a)));
+    all.sort_by_key(|pace| (pace.steps < pace.points, !has(1, seconds(pace))));
     all
 }

@@ -3,8 +3,9 @@
 use super::grid::Grid;
 use crate::files::states::States;
 
-/// Largest number of coordinates that are judged. Of longer files, every second row is judged, or
-/// every third, ...
+/// Largest number of rows that are judged, and of their coordinates. Of longer files, every second
+/// row is judged, or every fifth, tenth, ...
+const MAX_ROWS: usize = 2_000;
 const MAX_NUMBERS: usize = 1_000_000;
 
 /// Rows of a file up to an end.
@@ -18,6 +19,8 @@ pub struct Rows<'a> {
     pub grid: Option<Grid>,
     /// Number of rows up to the end.
     pub count: usize,
+    /// One of how many of them is judged.
+    pub every: usize,
 }
 
 impl<'a> Rows<'a> {
@@ -47,14 +50,14 @@ impl<'a> Rows<'a> {
         };
         let grid = known.or_else(|| Grid::of(times, rounding).filter(meets));
         let numbers = count * states.positions[0].len();
-        let every = numbers.div_ceil(MAX_NUMBERS);
-        let kept: Vec<_> = (0..count)
-            .filter(|k| k % every == 0 || k + 1 == count)
-            .collect();
-        let grid = grid.map(|grid| Grid {
-            numbers: kept.iter().map(|k| grid.numbers[*k]).collect(),
-            ..grid
-        });
+        let every = round(numbers.div_ceil(MAX_NUMBERS).max(count.div_ceil(MAX_ROWS)));
+        let is_kept = |k: &usize| {
+            let grid = grid.as_ref();
+            grid.is_none_or(|grid| grid.numbers[*k] % every as u64 == 0)
+        };
+        let first = (0..every.min(count)).find(is_kept).unwrap_or(0);
+        let kept: Vec<_> = (first..count).step_by(every).collect();
+        let grid = grid.map(|grid| if every > 1 { grid.of_some(&kept) } else { grid });
         let times = match &grid {
             Some(grid) => grid.times().collect(),
             None => kept.iter().map(|k| times[*k]).collect(),
@@ -65,6 +68,7 @@ impl<'a> Rows<'a> {
             times,
             grid,
             count,
+            every,
         })
     }
 
@@ -100,10 +104,24 @@ impl<'a> Rows<'a> {
         self.states.digits[1].rounding(largest)
     }
 
+    /// Returns the time of the file's first row (s).
+    pub fn begin(&self) -> f64 {
+        self.states.times[0]
+    }
+
     /// Returns the last time (s).
     pub fn until(&self) -> f64 {
         self.times[self.times.len() - 1]
     }
+}
+
+/// Returns the least of the numbers 1, 2, 5, 10, 20, ... that is as large as a number.
+fn round(number: usize) -> usize {
+    let decades = std::iter::successors(Some(1), |decade: &usize| decade.checked_mul(10));
+    let all = decades.flat_map(|decade| [1, 2, 5].map(|digit| digit * decade));
+    all.into_iter()
+        .find(|round| *round >= number)
+        .unwrap_or(number)
 }
 
 /// Returns the root mean square over the particles of the distance between two states' positions

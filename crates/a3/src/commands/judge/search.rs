@@ -214,13 +214,11 @@ impl Search<'_> {
         let (mut work, mut best, mut more) = (0.0, vec![], MORE_PARTS);
         for &pace in paces {
             let is_found = !best.is_empty() || self.part.is_some();
-            if is_found && more == 0 {
-                break;
-            }
-            more -= usize::from(is_found);
-            if work > MAX_WORK && !pace.is_one_of_few() {
+            let is_enough = is_found && more == 0 || work > MAX_WORK;
+            if is_enough && !pace.is_one_of_few() {
                 continue;
             }
+            more = more.saturating_sub(usize::from(is_found));
             let mut found = vec![];
             for &start in starts {
                 for &way in ways {

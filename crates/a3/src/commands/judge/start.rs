@@ -30,8 +30,8 @@ pub enum Difference {
 
 /// Compares the first row with the start of the scene. `None` if they agree.
 pub fn difference(scene: &Scene, rows: &Rows) -> Option<Difference> {
-    if rows.times[0] > 0.0 {
-        return Some(Difference::Later(rows.times[0]));
+    if rows.begin() > 0.0 {
+        return Some(Difference::Later(rows.begin()));
     }
     let n = scene.model.particles();
     let (start, own) = (&scene.state[..3 * n], rows.positions(0));

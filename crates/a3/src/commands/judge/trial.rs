@@ -1,5 +1,6 @@
 //! Trials: a method, or a scheme with a mistake, against the rows of a file.
 
+use a3_core::integrators::METHODS;
 use a3_core::{Control, Method, Scene, Simulation};
 
 use super::mistake::Mistake;
@@ -45,12 +46,11 @@ impl Way {
         }
     }
 
-    /// Returns the name of the solver of a3 that it is, if it is one.
+    /// Returns the name of the solver of a3 that has its title, if one has: but for a slip or a
+    /// mistake, it is that solver.
     pub fn solver(self) -> Option<&'static str> {
-        match self {
-            Self::Method(method) => Some(method.name),
-            Self::Scheme(..) => None,
-        }
+        let is_it = |method: &&Method| method.title == self.title();
+        METHODS.iter().find(is_it).map(|method| method.name)
     }
 
     /// Returns the mistake in the forces that it makes.

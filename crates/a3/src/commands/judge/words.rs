@@ -105,6 +105,9 @@ fn states(judgement: &Judgement) -> String {
         "positions only"
     };
     let mut text = format!("{judged} states to {}, {kind}", seconds(judgement.until));
+    if judgement.every > 1 {
+        _ = write!(text, "; one of {} is compared", judgement.every);
+    }
     if judged < states {
         _ = write!(text, "; {} later ones are not judged", states - judged);
     }

@@ -35,6 +35,20 @@ fn the_step_is_found_if_rows_lie_between_steps() {
     assert!(report.contains("(Heun) at 0.0137 s"), "{report}");
 }
 
+/// One row of many thousands is compared in so many, on a grid of which steps are parts.
+#[test]
+fn the_step_is_found_in_a_file_of_many_rows() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let words = "simulate r 0.0005 --scene double-pendulum --fps 20000 --until 0.5 -o mine.csv";
+    said(folder, &words.split(' ').collect::<Vec<_>>());
+    let found = judged(folder, "double-pendulum", &["mine.csv"]).remove(0);
+    assert_eq!(found["method"]["solver"], "rk4", "{found:#}");
+    assert_eq!(found["method"]["step"], 5e-4);
+    assert!(found["times"].as_array().unwrap().len() <= 2000);
+    assert!(found["error_time"].as_f64().unwrap() > 0.4, "{found:#}");
+}
+
 #[test]
 fn single_precision_is_recognised() {
     let folder = tempfile::tempdir().unwrap();
