@@ -43,8 +43,8 @@ fn bounded_accurate_and_slowly_growing_steps_are_told_apart() {
     }
 }
 
-/// A box on damped springs: its limits at rest are known too, and those of a solver do not depend on
-/// the others that are asked for.
+/// A box on damped springs: its limits at rest are known too, and those of a solver do not depend
+/// on the others that are asked for.
 #[test]
 fn limits_of_a_solver_do_not_depend_on_the_others() {
     let folder = tempfile::tempdir().unwrap();

@@ -33,9 +33,13 @@ impl Pattern {
         let (mut meeting, most) = (vec![], MAX_ELEMENTS_PER_ROW * rows.len());
         for (r, moved) in rows.iter().enumerate() {
             let mut before = vec![];
-            for place in moved.iter().filter(|place| **place != 0) {
-                before.extend_from_slice(&at_place[*place]);
-                at_place[*place].push(r as u32);
+            let places = || moved.iter().copied().filter(|place| *place != 0);
+            for place in places() {
+                before.extend_from_slice(&at_place[place]);
+            }
+            // Both ends of a constraint may be on one body.
+            for place in places() {
+                at_place[place].push(r as u32);
             }
             before.sort_unstable();
             before.dedup();
@@ -120,5 +124,17 @@ impl Factor {
         for (i, row) in rows.iter_mut().enumerate() {
             row.multiplier += self.numbers.unknowns_mut(pattern, i)[0];
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_row_that_moves_a_body_twice_does_not_meet_itself() {
+        let pattern = Pattern::new(&[[1, 2, 1, 2], [1, 2, 3, 4], [3, 4, 0, 0]], 5);
+        let (meeting, _) = pattern.meeting.unwrap();
+        assert_eq!(meeting, [[0, 1], [1, 2]]);
     }
 }

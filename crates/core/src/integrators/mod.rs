@@ -1,5 +1,5 @@
-//! Methods of integration: their rows by family, and one table of all. An integrator sees flat arrays
-//! and knows no physics.
+//! Methods of integration: their rows by family, and one table of all. An integrator sees flat
+//! arrays and knows no physics.
 
 mod adaptive;
 mod arithmetic;

@@ -14,7 +14,8 @@ pub(super) const MAX_DENSE_LENGTH: usize = 300;
 /// differences cannot tell from zero.
 const ROUNDING: f64 = 1e-9;
 
-/// Difference of the sizes of two real eigenvalues, over the sizes, at which they count as opposite.
+/// Difference of the sizes of two real eigenvalues, over the sizes, at which they count as
+/// opposite.
 const OPPOSITE: f64 = 1e-3;
 
 /// Jacobian of a system, without the particles on rigid bodies.

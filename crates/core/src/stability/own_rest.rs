@@ -1,6 +1,7 @@
 //! State of rest of a method, the state y that a step leaves as it is, and the growth of small
-//! changes of it. The state is found by Newton's method. Its linear systems are solved by GMRES (Saad, Schultz, *GMRES: a generalized minimal residual
-//! algorithm for solving nonsymmetric linear systems*, 1986), with differences of steps.
+//! changes of it. The state is found by Newton's method. Its linear systems are solved by GMRES
+//! (Saad, Schultz, *GMRES: a generalized minimal residual algorithm for solving nonsymmetric linear
+//! systems*, 1986), with differences of steps.
 
 use nalgebra::{Complex, DMatrix, DVector};
 
@@ -41,7 +42,10 @@ pub(super) fn own_rest(scene: &Scene, method: &'static Method, h: f64) -> Result
     let change = |y: &[f64]| {
         let mut scene = scene.clone();
         scene.state = y.to_vec();
-        let mut run = Simulation::new(scene, method, Control::Step(h))?;
+        // Surfaces may be crossed there, which the steps of the method do not see.
+        let Ok(mut run) = Simulation::new(scene, method, Control::Step(h)) else {
+            return Ok(f64::INFINITY);
+        };
         if !succeeded(run.take_steps(1))? {
             return Ok(f64::INFINITY);
         }
