@@ -130,8 +130,8 @@ impl RestState {
 
     /// Finds the largest steps of a method on the scene at rest, as by [`largest_step`] on its
     /// modes. If damping mixes shapes, or there are rigid bodies, those of a splitting method are
-    /// found by its steps on all motion at once, and so are those of all explicit methods in a large
-    /// scene.
+    /// found by its steps on all motion at once, and so are those of all explicit methods in a
+    /// large scene.
     ///
     /// # Errors
     /// The method does not support the scene.
