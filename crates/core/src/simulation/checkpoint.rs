@@ -117,7 +117,8 @@ impl Checkpoint {
             + size_of_val(&self.taut[..])
     }
 
-    /// Checks that the state is one of a system of this dimension, and finite.
+    /// Checks that the state is one of a system of this dimension, and finite, and that no time is
+    /// before the start.
     pub(super) fn check(&self, dim: usize) -> Result<(), Error> {
         let y = &self.run.y;
         if y.len() != dim {
@@ -126,9 +127,12 @@ impl Checkpoint {
                 found: y.len(),
             });
         }
-        if !(self.time() + self.run.end()).is_finite() || y.iter().any(|y| !y.is_finite()) {
+        let times = [self.run.since, self.run.end(), self.time()];
+        let is_time = |t: &f64| t.is_finite() && *t >= 0.0;
+        if !times.iter().all(is_time) || y.iter().any(|y| !y.is_finite()) {
             return Err(Error::Invalid(
-                "the state and the time of a checkpoint must be finite".into(),
+                "the state and the time of a checkpoint must be finite, and not before the start"
+                    .into(),
             ));
         }
         Ok(())

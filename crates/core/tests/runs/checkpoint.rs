@@ -217,6 +217,7 @@ fn checkpoints_that_do_not_fit_are_refused_and_change_nothing() {
         c.pins[0].path = Path::Still(Vector3::new(9.0, 0.0, pinned as f64));
     });
     refuse(&|c| c.run.since = f64::INFINITY);
+    refuse(&|c| c.run.since = -1e180);
     refuse(&|c| c.run.control = Control::Tolerance(-1.0));
     refuse(&|c| c.run.method = method("rk4"));
     let pin = |i: usize| Pin::new(i, Path::Still(Vector3::zeros()));
