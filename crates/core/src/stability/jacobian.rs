@@ -14,9 +14,10 @@ pub(super) const MAX_DENSE_LENGTH: usize = 300;
 /// differences cannot tell from zero.
 const ROUNDING: f64 = 1e-9;
 
-/// Difference of the sizes of two real eigenvalues, over the sizes, at which they count as
-/// opposite.
-const OPPOSITE: f64 = 1e-3;
+/// Sum of a growing and a decaying real eigenvalue, over the latter, up to which they are of one
+/// motion that falls: in a mechanical system the sum is its damping, in others it is rounding.
+const OPPOSITE: f64 = 0.5;
+const SAME: f64 = 1e-3;
 
 /// Jacobian of a system, without the particles on rigid bodies.
 #[derive(Clone)]
@@ -67,38 +68,29 @@ impl Jacobian {
     /// if kicks depend on v, else as drag.
     pub fn modes(&self, system: &dyn ParticleSystem) -> Vec<Mode> {
         let scale = self.matrix.amax();
-        let reads_velocity = match (rigid_of(system), system.mechanics()) {
-            (None, None) => false,
-            _ => reads_velocity(system),
-        };
-        let parts = |a: f64| if a.abs() < ROUNDING * scale { 0.0 } else { a };
+        let is_mechanical = rigid_of(system).is_some() || system.mechanics().is_some();
+        let reads_velocity = is_mechanical && reads_velocity(system);
+        let part = |a: f64| if a.abs() < ROUNDING * scale { 0.0 } else { a };
         let found = eigenvalues(&self.matrix).into_iter();
-        let found: Vec<_> = found.map(|l| [parts(l.re), parts(l.im)]).collect();
-        // Two opposite real eigenvalues are one undamped mode that falls.
-        let falls = |re: f64, im: f64| {
-            let is_opposite = |l: &[f64; 2]| l[1] == 0.0 && (l[0] + re).abs() < OPPOSITE * re.abs();
-            im == 0.0 && found.iter().any(is_opposite)
-        };
-        (found.iter())
-            .filter(|[re, im]| *im >= 0.0 && (*re, *im) != (0.0, 0.0))
-            .filter(|[re, im]| *re > 0.0 || !falls(*re, *im))
-            .map(|&[re, im]| {
-                if falls(re, im) {
-                    return Mode {
-                        stiffness: -re * re,
-                        reads_velocity,
-                        ..Mode::default()
-                    };
-                }
-                let mode = Mode::of_eigenvalue(re, im);
-                Mode {
-                    drag: if reads_velocity { 0.0 } else { mode.drag },
-                    damping: if reads_velocity { mode.drag } else { 0.0 },
-                    reads_velocity,
-                    ..mode
-                }
-            })
-            .collect()
+        let found = found.map(|l| [part(l.re), part(l.im)]);
+        let (real, pairs): (Vec<_>, Vec<_>) = found
+            .filter(|l| *l != [0.0, 0.0])
+            .partition(|[_, im]| *im == 0.0);
+        let (growing, mut decaying): (Vec<_>, Vec<_>) =
+            real.into_iter().map(|[re, _]| re).partition(|re| *re > 0.0);
+        let mut modes: Vec<_> = (pairs.into_iter().filter(|[_, im]| *im > 0.0))
+            .map(|[re, im]| Mode::of_eigenvalue(re, im))
+            .collect();
+        let most = if is_mechanical { OPPOSITE } else { SAME };
+        modes.extend(growing.into_iter().map(|l| fall(l, &mut decaying, most)));
+        modes.extend(decaying.into_iter().map(|l| Mode::of_eigenvalue(l, 0.0)));
+        for mode in &mut modes {
+            mode.reads_velocity = reads_velocity;
+            if reads_velocity {
+                (mode.drag, mode.damping) = (0.0, mode.drag);
+            }
+        }
+        modes
     }
 
     /// Returns the change of the state in a mode at one moment, by inverse iteration; its size is
@@ -122,5 +114,26 @@ impl Jacobian {
             whole[*k] = z.re;
         }
         whole.iter().all(|z| z.is_finite()).then_some(whole)
+    }
+}
+
+/// Returns the mode of a growing eigenvalue (1/s). Its counterpart is taken out of the `decaying`
+/// ones if their sum is at most a share of it: both are of one motion that falls, s^2 + d s = k.
+fn fall(growing: f64, decaying: &mut Vec<f64>, most: f64) -> Mode {
+    let near = |l: &f64| (l + growing).abs();
+    let nearest = (0..decaying.len()).min_by(|a, b| {
+        let [a, b] = [a, b].map(|k| near(&decaying[*k]));
+        a.total_cmp(&b)
+    });
+    match nearest.filter(|k| near(&decaying[*k]) < most * decaying[*k].abs()) {
+        Some(k) => {
+            let other = decaying.remove(k);
+            Mode {
+                stiffness: growing * other,
+                drag: -(growing + other),
+                ..Mode::default()
+            }
+        }
+        None => Mode::of_eigenvalue(growing, 0.0),
     }
 }
