@@ -97,22 +97,17 @@ fn the_feedback_of_constraints_is_no_motion() {
         head.ends_with("; errors of constraints decay at 10.0 / s"),
         "{head}"
     );
-    // Three rods that fall, in a little drag.
+    // A rod that falls from its upright place, in drag.
     let scene = "gravity = [0, -9.81, 0]
-        drag = 0.01
-        springs = [[0, 3, 6, 0.7, 0]]
+        drag = 0.3
         [particles]
-        positions = [[0, 0, 0], [0.3, 0.05, 0.1], [0.55, 0.2, 0.05], [0.8, 0.1, -0.1]]
-        masses = [1, 0.2, 0.1, 0.3]
+        positions = [[0, 0, 0], [0, 1, 0]]
+        mass = 1
         pin = [{ particles = [0] }]
         [[constraint]]
-        rod = [0, 1]
-        [[constraint]]
-        rod = [1, 2]
-        [[constraint]]
-        rod = [2, 3]";
-    fs::write(folder.path().join("rods.toml"), scene).unwrap();
-    let words = "stability --scene rods.toml --solvers r -o s.svg";
+        rod = [0, 1]";
+    fs::write(folder.path().join("rod.toml"), scene).unwrap();
+    let words = "stability --scene rod.toml --solvers r -o s.svg";
     let text = said(folder.path(), &words.split(' ').collect::<Vec<_>>());
     let head = text.lines().next().unwrap();
     assert!(!head.contains("damping ratio 1.000"), "{head}");
