@@ -18,6 +18,8 @@ use crate::scene::{Model, Scene};
 /// Largest distance of a particle from the origin in a run, over the radius of its scene; also the
 /// largest speed, over that radius in a second.
 const MAX_SHARE: f64 = 1e12;
+/// Radius (m) of a smaller scene for that: a run may leave a scene of one place far behind.
+const LEAST_RADIUS: f64 = 1.0;
 
 /// A run at one time: all data, except its scene, from which it continues bit for bit.
 ///
@@ -162,6 +164,7 @@ impl Checkpoint {
             ))
         };
         let (motion, rotations) = y.split_at(6 * n);
+        let radius = radius.max(LEAST_RADIUS);
         let is_far = |number: &f64| number.abs() > MAX_SHARE * radius;
         if let Some(k) = motion.iter().position(is_far) {
             return Err(wrong("particle", k % n));

@@ -80,7 +80,9 @@ pub fn run(
     let driven = run.swinging() || is_driven(text);
     if let (Some(begin), Some(end), false) = (begin, run.energy(), driven) {
         let fallen = (begin.gravitational - end.gravitational).max(0.0);
-        let own = own_energy(&run, begin) + fallen;
+        // A gas under pressure sets in motion what its own energy at the start does not tell.
+        let released = (begin.elastic - end.elastic).max(0.0);
+        let own = own_energy(&run, begin) + fallen + released;
         let gained = end.total() - begin.total();
         if gained.is_nan() || gained > EXPLODED * own {
             let broken = run
