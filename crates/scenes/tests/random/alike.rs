@@ -192,8 +192,8 @@ impl<'a> Known<'a> {
     /// Compares the run with one that goes through a checkpoint in the middle.
     pub fn cut(&self) -> Result<(), String> {
         let (mut whole, count) = (start(self.setup, self.method)?, steps(self.setup));
-        // A run that explodes is told of ten times a second. Until then it may have gone so far that
-        // no checkpoint of it is accepted.
+        // A run that explodes is told of ten times a second. Until then it may have gone so far
+        // that no checkpoint of it is accepted.
         let is_far = |run: &Simulation| run.state().iter().any(|y| y.abs() > 1e9);
         if whole.take_steps(count).is_err() || is_far(&whole) {
             return Ok(());
