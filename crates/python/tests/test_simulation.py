@@ -232,7 +232,7 @@ def test_reading_is_not_starved_by_steps_of_another_thread():
 @pytest.mark.skipif(os.name == "nt", reason="signals of POSIX")
 def test_ctrl_c_ends_a_wait_for_another_thread():
     run = a3.Simulation("cloth", "rk4", step=0.0005, grid=(40, 40))
-    thread = threading.Thread(target=run.step, args=(3000,))
+    thread = threading.Thread(target=run.step, args=(30000,))
     thread.start()
     time.sleep(0.05)
     timer = threading.Timer(0.3, os.kill, (os.getpid(), signal.SIGINT))
@@ -242,7 +242,7 @@ def test_ctrl_c_ends_a_wait_for_another_thread():
         run.positions
     assert time.perf_counter() - begun < 2
     thread.join()
-    assert run.steps == 3000
+    assert run.steps == 30000
 
 
 @pytest.mark.skipif(os.name == "nt", reason="signals of POSIX")
