@@ -25,17 +25,17 @@ pub(super) type CreateOwn = dyn Fn(&dyn ParticleSystem) -> Box<dyn Integrator> +
 /// Source of a method's integrators.
 #[derive(Clone, Copy)]
 pub(super) enum Create {
-    /// Stages of which each depends only on the one before it.
+    /// Runge-Kutta stages, each a function of the stage before it alone.
     RungeKutta(runge_kutta::Table),
     /// Kicks and drifts.
     Kicks(&'static Plan),
     /// Embedded pair, whose trial steps it takes as they are where the step is fixed.
     Embedded(&'static Tableau),
-    /// The same for accelerations.
+    /// Embedded pair for accelerations.
     Nystrom(&'static NystromTableau),
     /// Function that creates an integrator for a system.
     Step(CreateStep),
-    /// The same for fixed steps, and a function that creates trial steps.
+    /// Function that creates an integrator of fixed steps, and one that creates trial steps.
     Adaptive(CreateStep, CreateTrial),
     /// Function of an own method.
     Own(&'static CreateOwn),

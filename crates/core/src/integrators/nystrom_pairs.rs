@@ -1,12 +1,13 @@
-//! Pairs of Runge-Kutta-Nyström methods, for accelerations that depend on positions and time alone.
+//! Pairs of Runge-Kutta-Nyström methods. They take accelerations that depend on positions and time
+//! alone.
 
 use super::method::{Create, Method, View};
 use super::nystrom::NystromTableau;
 use crate::control::Control;
 
 /// DPRKN 8(6): the Nyström pair of orders 8 and 6 of Dormand, El-Mikkawy and Prince (*High-order
-/// embedded Runge-Kutta-Nyström formulae*, IMA J. Numer. Anal. 7, 1987). Nine stages, of which the
-/// last is the first of the next step.
+/// embedded Runge-Kutta-Nyström formulae*, IMA J. Numer. Anal. 7, 1987). Nine stages; the last
+/// one is the first of the next step.
 ///
 /// The polynomial for x has degree 8 and needs no further stage. It satisfies all conditions up to
 /// order 6 and at both ends of the step exactly, and those of orders 7 and 8 in the least-squares

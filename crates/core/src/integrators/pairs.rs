@@ -221,8 +221,8 @@ static RKF45_TABLEAU: Tableau = Tableau {
 };
 
 /// Verner 6(5): the most efficient of Verner's pairs of orders 6 and 5 (Verner, *Numerically
-/// optimal Runge-Kutta pairs with interpolants*, Numer. Algorithms 53, 2010). Nine stages, of which
-/// the last is the first of the next step.
+/// optimal Runge-Kutta pairs with interpolants*, Numer. Algorithms 53, 2010). Nine stages; the
+/// last one is the first of the next step.
 ///
 /// The dense output takes no further stage. Its polynomial has degree 6 and order 4, and satisfies
 /// the conditions of orders 5 and 6 in the least-squares sense.

@@ -117,8 +117,9 @@ impl Jacobian {
     }
 }
 
-/// Returns the mode of a growing eigenvalue (1/s). Its counterpart is taken out of the `decaying`
-/// ones if their sum is at most a share of it: both are of one motion that falls, s^2 + d s = k.
+/// Returns the mode of a growing real eigenvalue (1/s). The nearest opposite eigenvalue is taken
+/// out of `decaying` if the sum of both is at most the share `most` of its size. Then both are of
+/// one motion that falls, as the roots of s^2 + d s = k are, with damping d and k > 0.
 fn fall(growing: f64, decaying: &mut Vec<f64>, most: f64) -> Mode {
     let near = |l: &f64| (l + growing).abs();
     let nearest = (0..decaying.len()).min_by(|a, b| {

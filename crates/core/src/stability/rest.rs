@@ -34,7 +34,7 @@ const SETTLING: [(f64, u32, bool); 5] = [
 /// steps: smaller and faster scenes take proportionally shorter ones.
 const SLOW_SCENE_TIME: f64 = 0.1;
 
-/// Ratio of the steps of these rounds to earlier ones, of which one failed.
+/// Ratio of the steps of a round to those of the round before, if a step of that one failed.
 const SHORTER_RATIO: f64 = 0.25;
 /// Share of the rounds' steps below which they are not shortened.
 const MIN_PACE_SHARE: f64 = 0.01;

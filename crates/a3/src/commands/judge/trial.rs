@@ -46,8 +46,8 @@ impl Way {
         }
     }
 
-    /// Returns the name of the solver of a3 that has its title, if one has: but for a slip or a
-    /// mistake, it is that solver.
+    /// Returns the name of the solver of a3 with the same title, if there is one. Apart from a slip
+    /// or a mistake, this way takes the steps of that solver.
     pub fn solver(self) -> Option<&'static str> {
         let is_it = |method: &&Method| method.title == self.title();
         METHODS.iter().find(is_it).map(|method| method.name)

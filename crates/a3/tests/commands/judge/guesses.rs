@@ -35,7 +35,8 @@ fn the_step_is_found_if_rows_lie_between_steps() {
     assert!(report.contains("(Heun) at 0.0137 s"), "{report}");
 }
 
-/// One row of many thousands is compared in so many, on a grid of which steps are parts.
+/// A part of many thousands of rows is compared. Between each two of them lies a whole number of
+/// steps.
 #[test]
 fn the_step_is_found_in_a_file_of_many_rows() {
     let folder = tempfile::tempdir().unwrap();
