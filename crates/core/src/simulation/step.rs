@@ -123,7 +123,11 @@ impl Pipeline {
             let taken = self.integrate_and_settle(model, state, span, splits)?;
             let (cause, part) = match taken {
                 Err(cause) => (Some(cause), Part::of(begin, whole.unwrap_or(0.0))),
-                Ok((part, settled)) => {
+                Ok((mut part, settled)) => {
+                    if !in_parts {
+                        // Where the next step begins: t + h may differ in the last place.
+                        part.end = target.unwrap_or(part.end);
+                    }
                     let cause = self.end_part(model, state, part.end, &settled);
                     self.tighten(model, state, part.end, rebounds);
                     (cause, part)

@@ -14,7 +14,7 @@ fn seen(run: &Simulation) -> String {
     let pins: Vec<_> = network.into_iter().flat_map(Network::pins).collect();
     let bits: Vec<_> = run.state().iter().map(|y| y.to_bits()).collect();
     format!(
-        "{:?} {:?} {:?} {:?} {:?} {:?} {:?} {:?} {:?} {pins:?} {bits:?}",
+        "{:?} {:?} {:?} {:?} {:?} {:?} {:?} {:?} {:?} {:?} {pins:?} {bits:?}",
         run.time().to_bits(),
         run.steps(),
         run.work(),
@@ -23,6 +23,7 @@ fn seen(run: &Simulation) -> String {
         (run.windy(), run.swinging(), run.pinned()),
         run.grabbed(),
         run.blow_up(),
+        (run.gained(), run.energy_change()),
         network.map(Network::torn),
     )
 }
