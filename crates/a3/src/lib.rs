@@ -67,7 +67,10 @@ mod program;
 mod window;
 
 #[cfg(not(target_arch = "wasm32"))]
-pub use base::{failure::Failure, input_error::InputError, monitor::Monitor};
+pub use base::{
+    failure::{Failure, InputError},
+    monitor::Monitor,
+};
 #[cfg(not(target_arch = "wasm32"))]
 pub use cli::Quantity;
 #[cfg(not(target_arch = "wasm32"))]

@@ -8,7 +8,6 @@ pub mod failure;
 #[cfg(not(target_arch = "wasm32"))]
 pub mod fault;
 pub mod holding;
-pub mod input_error;
 #[cfg(not(target_arch = "wasm32"))]
 pub mod interrupt;
 pub mod monitor;

@@ -1,25 +1,25 @@
-//! The commands, and the help of the program.
+//! The commands, their options, and the help of the program.
 
-#[cfg(not(target_arch = "wasm32"))]
 use std::path::PathBuf;
 
-use clap::{Parser, Subcommand};
-#[cfg(not(target_arch = "wasm32"))]
-use clap_complete::Shell;
+use a3_core::accuracy::Metric;
+use a3_core::{Grid, Method};
+use clap::{Args, Parser, Subcommand, ValueEnum};
 
-use super::chart::Chart;
-use super::choose::Choose;
+use super::measures::{ErrorScope, WorkMeasure, metric};
+use super::run::{RunOptions, What};
+use super::values::{
+    SCENE, SOLVER_OR_ALL, budget, error, factor, grid, horizon, pause, picture_size, rate, step,
+};
+
 #[cfg(not(target_arch = "wasm32"))]
 use super::judge::Judge;
-use super::scenes::Scenes;
-use super::simplify::Simplify;
-use super::simulate::Simulate;
-use super::solvers::Solvers;
-use super::stability::Stability;
 #[cfg(not(target_arch = "wasm32"))]
 use super::sweep::Sweep;
 #[cfg(feature = "window")]
 use super::window::{Compare, Render, WindowOptions};
+#[cfg(not(target_arch = "wasm32"))]
+use clap_complete::Shell;
 
 /// Number of lessons.
 pub const LESSONS: u8 = 8;
@@ -117,4 +117,230 @@ pub enum Command {
         #[arg(long, short, value_name = "FOLDER")]
         output: Option<PathBuf>,
     },
+}
+
+#[derive(Args)]
+pub struct Chart {
+    #[command(flatten)]
+    pub what: What,
+    /// Solvers to measure and draw, such as t,r,v, or all; by default all that can run the scene
+    /// are measured, and those that are cheapest for some error, and e, t, r and i, are drawn
+    #[arg(long, value_name = "SOLVERS", value_delimiter = ',', value_parser = SOLVER_OR_ALL, hide_possible_values = true)]
+    pub solvers: Vec<Option<&'static Method>>,
+    /// Leave out the runs on finer and coarser grids that tell how much the grid itself errs
+    #[arg(long)]
+    pub no_model: bool,
+    /// Simulated seconds; by default, as long as errors are meaningful on this scene
+    #[arg(long, value_name = "T", value_parser = horizon, allow_negative_numbers = true)]
+    pub until: Option<f64>,
+    /// What counts as the error
+    #[arg(long, default_value = "position", value_parser = metric())]
+    pub error: Metric,
+    #[command(flatten)]
+    pub scope: ErrorScope,
+    /// What counts as the cost
+    #[arg(long, default_value = "time")]
+    pub work: WorkMeasure,
+    /// Factors by which the stiffness of the springs is multiplied, such as 1,10,100; the chart
+    /// has a panel for each
+    #[arg(long, value_name = "FACTORS", value_delimiter = ',', default_value = "1", value_parser = factor, allow_negative_numbers = true)]
+    pub stiffness: Vec<f64>,
+    /// Picture to write, ending in .svg, .pdf or .png; by default a3-chart-SCENE.svg
+    #[arg(long, short, value_name = "FILE")]
+    pub output: Option<PathBuf>,
+    /// File for all runs, ending in .csv or .json; if it exists, the chart continues from it
+    #[arg(long, value_name = "FILE")]
+    pub data: Option<PathBuf>,
+    /// File for the largest errors of each particle along x, y and z, ending in .csv; runs that
+    /// --data has are measured again
+    #[arg(long, value_name = "FILE")]
+    pub each: Option<PathBuf>,
+    /// Show as a light band how much errors of adaptive solvers vary: from each tolerance to three
+    /// within 4 % of it
+    #[arg(long)]
+    pub spread: bool,
+    /// Width and height of the picture in pixels, 96 to the inch, or `column`, 340x360, for a
+    /// column of a paper
+    #[arg(long, value_name = "WxH", default_value = "1200x800", value_parser = picture_size, allow_hyphen_values = true)]
+    pub size: (u32, u32),
+}
+
+#[derive(Args)]
+pub struct Choose {
+    #[command(flatten)]
+    pub what: What,
+    /// Largest error that is allowed, such as 1e-3; it is that of the positions, in m, unless --of
+    /// names another
+    #[arg(long, value_name = "E", value_parser = error, allow_negative_numbers = true, required_unless_present = "budget", conflicts_with = "budget")]
+    pub error: Option<f64>,
+    /// What counts as the error
+    #[arg(long, value_name = "QUANTITY", default_value = "position", value_parser = metric())]
+    pub of: Metric,
+    #[command(flatten)]
+    pub scope: ErrorScope,
+    /// What counts as the cost
+    #[arg(long, default_value = "time", conflicts_with = "budget")]
+    pub work: WorkMeasure,
+    /// Computing time in ms for each frame of 1/60 s: the most accurate solver within it is chosen
+    #[arg(long, value_name = "MS_PER_FRAME", value_parser = budget, allow_negative_numbers = true)]
+    pub budget: Option<f64>,
+    /// Leave out the runs on finer and coarser grids that tell how much the grid itself errs
+    #[arg(long)]
+    pub no_model: bool,
+    /// Simulated seconds; by default, as long as errors are meaningful on this scene
+    #[arg(long, value_name = "T", value_parser = horizon, allow_negative_numbers = true)]
+    pub until: Option<f64>,
+}
+
+/// Quantity by which models of a scene are compared.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum Quantity {
+    /// Positions of the particles, root mean square (m)
+    #[default]
+    Position,
+    /// Path of the centre of mass (m)
+    Centre,
+    /// Energy that the motion has gained or lost since the start (J)
+    Energy,
+}
+
+impl Quantity {
+    /// Returns the name of the quantity.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Position => "position",
+            Self::Centre => "centre",
+            Self::Energy => "energy",
+        }
+    }
+}
+
+#[derive(Args)]
+pub struct Simplify {
+    #[command(flatten)]
+    pub what: What,
+    /// Largest allowed error, in m (J for energy), such as 1e-2; it covers omitted parts, a coarser
+    /// grid and the time steps together
+    #[arg(long, value_name = "E", value_parser = error, allow_negative_numbers = true)]
+    pub error: f64,
+    #[command(flatten)]
+    pub scope: ErrorScope,
+    /// Quantity that is compared; where the motion is chaotic, the centre of mass and the energy
+    /// are known for longer than the positions
+    #[arg(long, value_name = "QUANTITY", value_enum, default_value_t)]
+    pub of: Quantity,
+    /// Simulated seconds; by default, as long as errors are meaningful on this scene
+    #[arg(long, value_name = "T", value_parser = horizon, allow_negative_numbers = true)]
+    pub until: Option<f64>,
+    /// File for the leanest scene, ending in .toml, with its solver and step
+    #[arg(long, short, value_name = "FILE.toml")]
+    pub output: Option<PathBuf>,
+    /// File for the effects of all models, ending in .csv or .json; if it exists, models in it are
+    /// not measured again
+    #[arg(long, value_name = "FILE")]
+    pub data: Option<PathBuf>,
+    /// Chart of the error against the cost, with the grid and the step both varied, ending in .svg,
+    /// .pdf or .png
+    #[arg(long, value_name = "FILE")]
+    pub chart: Option<PathBuf>,
+    /// Width and height of the chart in pixels, 96 to the inch, or `column`, 340x360, for a column
+    /// of a paper
+    #[arg(long, value_name = "WxH", default_value = "1200x800", value_parser = picture_size, allow_hyphen_values = true)]
+    pub size: (u32, u32),
+}
+
+#[derive(Args)]
+#[command(after_help = "Outputs, all in m and s, y up:\n  \
+    FILE.json      the final state at full precision; with --fps, the states of all frames\n  \
+    FILE.csv       all frames at full precision: frame,time,particle,x,y,z,vx,vy,vz\n  \
+    FILE.npz       arrays of all frames for NumPy: time, positions, velocities and masses\n  \
+    FILE.obj       the final surface with normals, or points and lines where there is no surface\n  \
+    FILE-####.obj  one such file for each frame, numbered with as many digits as there are #\n  \
+    FILE.pc2       a point cache (PC2), and beside it FILE.obj, the mesh that it moves\n  \
+    FILE.glb       glTF 2.0 with a morph target for each frame, at most 600\n  \
+    FILE.usda      Universal Scene Description: meshes, curves and points with time samples\n\n\
+    Frames are at exactly k / N, from 0 to --until; no step is shortened for them. Particles keep\n\
+    their order and numbers in all files. OBJ, PC2, GLB and USD are in single precision. A run that\n\
+    blows up or is interrupted leaves no file, except for the finished files of a sequence. In Blender,\n\
+    load a PC2 with the modifier Mesh Cache and leave its axes as they are.")]
+pub struct Simulate {
+    #[command(flatten)]
+    pub run: RunOptions,
+    /// File to write, whose ending chooses the format; - writes JSON to standard output
+    #[arg(long, short, value_name = "FILE")]
+    pub output: PathBuf,
+    /// Frames per second of outputs that have several; 30 by default
+    #[arg(long, value_name = "N", value_parser = rate, allow_negative_numbers = true)]
+    pub fps: Option<f64>,
+    /// File for a summary in JSON: energy at the start and at the end, its largest drift, the
+    /// largest stretch, steps, evaluations and real time; - is standard output
+    #[arg(long, value_name = "FILE.json")]
+    pub summary: Option<PathBuf>,
+    /// Fail if surfaces pass through one another: every edge is checked against every triangle,
+    /// exactly, sixty times a simulated second
+    #[arg(long)]
+    pub check: bool,
+    /// File to which the whole run is saved from time to time, when it is interrupted, and at the
+    /// end
+    #[arg(long, value_name = "FILE.checkpoint")]
+    pub checkpoint: Option<PathBuf>,
+    /// Real time between two checkpoints, in seconds
+    #[arg(long, value_name = "S", default_value = "60", value_parser = pause, requires = "checkpoint")]
+    pub every: f64,
+    /// Continue a run of this scene from a checkpoint, with the solver and the step of that run;
+    /// the results are exactly those of a run that had never stopped
+    #[arg(long, value_name = "FILE.checkpoint")]
+    pub resume: Option<PathBuf>,
+}
+
+#[derive(Args)]
+pub struct Solvers {
+    /// Say which solvers serve this scene, and why the others do not: a name that `a3 scenes`
+    /// lists, or a file of your own
+    #[arg(long, value_name = "NAME|FILE", value_parser = SCENE, hide_possible_values = true)]
+    pub scene: Option<String>,
+    /// Print which kinds of scenes each solver serves, as a table in Markdown
+    #[arg(long, conflicts_with = "scene")]
+    pub kinds: bool,
+}
+
+#[derive(Args)]
+pub struct Stability {
+    #[command(flatten)]
+    pub what: What,
+    /// Solvers to examine, such as t,r,v; by default all that can run the scene
+    #[arg(long, value_name = "SOLVERS", value_delimiter = ',', value_parser = SOLVER_OR_ALL, hide_possible_values = true)]
+    pub solvers: Vec<Option<&'static Method>>,
+    /// Step in seconds by which the picture multiplies the eigenvalues; by default the time in
+    /// which the fastest motion turns by one radian
+    #[arg(long, value_name = "STEP", value_parser = step, allow_negative_numbers = true)]
+    pub step: Option<f64>,
+    /// Picture to write, ending in .svg, .pdf or .png; by default a3-stability-SCENE.svg
+    #[arg(long, short, value_name = "FILE")]
+    pub output: Option<PathBuf>,
+    /// File for all limits in seconds, ending in .json
+    #[arg(long, value_name = "FILE")]
+    pub data: Option<PathBuf>,
+    /// Width and height of the picture in pixels, 96 to the inch, or `column`, 340x360, for a
+    /// column of a paper
+    #[arg(long, value_name = "WxH", default_value = "1400x1000", value_parser = picture_size, allow_hyphen_values = true)]
+    pub size: (u32, u32),
+}
+
+#[derive(Args)]
+pub struct Scenes {
+    /// Print the file of a scene, as a start for one of your own
+    #[arg(long, value_name = "NAME", value_parser = SCENE, hide_possible_values = true)]
+    pub print: Option<String>,
+    /// Print the scene as JSON with its masses, springs, pins, gravity, drag, and the positions and
+    /// velocities at the start, for programs that read no scene files; a3 reads this file too
+    #[arg(long, requires = "print")]
+    pub list: bool,
+    /// Rows and columns of the cloth in the list, such as 10x10
+    #[arg(long, value_name = "ROWSxCOLS", requires = "list", value_parser = grid, allow_hyphen_values = true)]
+    pub grid: Option<Grid>,
+    /// Print the JSON Schema of scene files, with which editors complete and check them
+    #[arg(long, conflicts_with = "print")]
+    pub schema: bool,
 }

@@ -4,7 +4,7 @@ use a3_render::Style;
 use clap::Args;
 use clap::builder::TypedValueParser;
 
-use super::names::choice;
+use super::values::choice;
 use crate::draw::show::{Arrows, Manner, Quantity};
 
 /// Creates a parser of the quantity of colours.

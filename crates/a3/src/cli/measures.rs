@@ -4,8 +4,7 @@ use a3_core::accuracy::Metric;
 use clap::builder::TypedValueParser;
 use clap::{Args, ValueEnum};
 
-use super::names::choice;
-use super::values::particle;
+use super::values::{choice, particle};
 
 /// Creates a parser of the metric of errors.
 pub fn metric() -> impl TypedValueParser<Value = Metric> {

@@ -1,7 +1,5 @@
 //! The command line: its commands, arguments and help.
 
-mod chart;
-mod choose;
 mod command;
 #[cfg(feature = "window")]
 mod drawing;
@@ -9,25 +7,24 @@ mod explain;
 #[cfg(not(target_arch = "wasm32"))]
 mod judge;
 mod measures;
-mod names;
 mod run;
-mod scenes;
 #[cfg(not(target_arch = "wasm32"))]
 pub mod share;
-mod simplify;
-mod simulate;
-mod solvers;
-mod stability;
 #[cfg(not(target_arch = "wasm32"))]
 mod sweep;
 pub mod values;
 #[cfg(feature = "window")]
 mod window;
 
-pub use chart::Chart;
-pub use choose::Choose;
+pub use command::Chart;
+pub use command::Choose;
 pub use command::LESSONS;
+pub use command::Scenes;
+pub use command::Simulate;
+pub use command::Solvers;
+pub use command::Stability;
 pub use command::{Cli, Command};
+pub use command::{Quantity, Simplify};
 #[cfg(feature = "window")]
 pub use drawing::Drawing;
 pub use explain::explain;
@@ -35,11 +32,6 @@ pub use explain::explain;
 pub use judge::Judge;
 pub use measures::{ErrorScope, WorkMeasure};
 pub use run::{RunOptions, What};
-pub use scenes::Scenes;
-pub use simplify::{Quantity, Simplify};
-pub use simulate::Simulate;
-pub use solvers::Solvers;
-pub use stability::Stability;
 #[cfg(not(target_arch = "wasm32"))]
 pub use sweep::Sweep;
 #[cfg(feature = "window")]

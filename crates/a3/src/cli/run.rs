@@ -3,8 +3,7 @@
 use a3_core::{Grid, Method, StepLimits};
 use clap::Args;
 
-use super::names::{SCENE, SOLVER};
-use super::values::{absolute, grid, max_step, step, threads, until};
+use super::values::{SCENE, SOLVER, absolute, grid, max_step, step, threads, until};
 
 /// Options of a scene: its name or file, its grid, wind, swing and self-collision.
 #[derive(Args, Clone)]

@@ -6,9 +6,10 @@ use a3_core::Method;
 use clap::Args;
 
 use super::drawing::Drawing;
-use super::names::{SOLVER_AND_STEP, SOLVER_OR_COMMAND};
 use super::run::{RunOptions, StepOptions, What};
-use super::values::{beginning, particle, rate, size, step, until};
+use super::values::{
+    SOLVER_AND_STEP, SOLVER_OR_COMMAND, beginning, particle, rate, size, step, until,
+};
 
 #[derive(Args)]
 pub struct WindowOptions {

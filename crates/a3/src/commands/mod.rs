@@ -15,5 +15,4 @@ pub mod simplify;
 pub mod simulate;
 pub mod solvers;
 pub mod stability;
-mod summary;
 pub mod sweep;

@@ -5,10 +5,8 @@ use std::sync::Arc;
 use a3_core::{Control, Method, Rounded, Scene, Simulation, integrators};
 use a3_scenes::{Description, Presentation, Setup};
 
-use crate::base::bounds;
-use crate::base::failure::Failure;
-use crate::base::input_error::InputError;
-use crate::base::terminal;
+use crate::base::failure::{Failure, InputError};
+use crate::base::{bounds, terminal};
 use crate::cli::{RunOptions, What};
 use crate::files::scene_file::Source;
 

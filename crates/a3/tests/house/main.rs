@@ -1,4 +1,4 @@
-//! The rules of the house: no file of more than 400 lines, no comment of more than 100 columns, no
+//! The rules of the house: no file of more than 700 lines, no comment of more than 100 columns, no
 //! circle of imports between the modules of a crate, a first line in each file that says its
 //! subject, and a map in ARCHITECTURE.md that names exactly the folders that exist.
 
@@ -13,7 +13,7 @@ use std::path::{Path, PathBuf};
 use imports::Crate;
 
 const ROOT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../..");
-const MAX_LINES: usize = 400;
+const MAX_LINES: usize = 700;
 const MAX_COLUMNS: usize = 100;
 
 /// Returns all files below a folder whose names have this ending, in order.
@@ -52,7 +52,7 @@ fn sources() -> Vec<PathBuf> {
 }
 
 #[test]
-fn no_file_is_longer_than_400_lines() {
+fn no_file_is_longer_than_700_lines() {
     let shaders = files(&Path::new(ROOT).join("crates"), ".wgsl");
     let all = rust_files();
     assert!(all.len() > 100, "the sources were not found");

@@ -2,10 +2,10 @@
 
 use std::time::Duration;
 
-use super::errors::Errors;
 use super::frames::GoOn;
 use super::reference::Reference;
 use super::run::{FrameState, Observer, run_observed};
+use super::snapshot::Errors;
 use crate::contact::Guarded;
 use crate::control::Control;
 use crate::error::{BlowUp, Error};

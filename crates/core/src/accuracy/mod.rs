@@ -2,15 +2,10 @@
 //! the choice of the cheapest method for an error.
 
 mod choose;
-mod errors;
-mod extrapolation;
 mod frames;
 mod hermite;
 mod horizon;
-mod impact;
-mod ladder;
 mod measure;
-mod precision;
 mod reference;
 mod run;
 mod shown;
@@ -18,12 +13,12 @@ mod snapshot;
 mod trajectory;
 
 pub use choose::{Candidate, SetBy, Trial, choose, choose_among, choose_by};
-pub use errors::{Errors, Metric, Scope};
+pub use choose::{coarser, ladder};
 pub use frames::{Frames, GoOn};
 pub use horizon::{Horizon, horizon};
-pub use ladder::{coarser, ladder};
 pub use measure::{Outcome, measure, measure_by};
-pub use precision::Precision;
+pub use reference::Precision;
 pub use reference::Reference;
 pub use run::{EnclosingStep, FrameState, Visit, run};
 pub use shown::{Shown, shown};
+pub use snapshot::{Errors, Metric, Scope};

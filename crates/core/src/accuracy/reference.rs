@@ -11,12 +11,9 @@
 
 use std::borrow::Cow;
 
-use super::errors::{Errors, Metric, Scope};
-use super::extrapolation::extrapolate;
 use super::frames::{Frames, GoOn};
-use super::precision::Precision;
 use super::run::{EnclosingStep, FrameState, run};
-use super::snapshot::Snapshot;
+use super::snapshot::{Errors, Metric, Scope, Snapshot};
 use super::trajectory::Trajectory;
 use crate::control::Control;
 use crate::error::Error;
@@ -395,4 +392,43 @@ fn is_stuck(history: &[f64]) -> bool {
 /// Returns the error for a method of the reference that is not in the table of methods.
 fn missing() -> Error {
     Error::Invalid("the methods that make a reference are not in the table".into())
+}
+
+/// Precision required of a reference; it is made no more precise.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Precision {
+    /// Quantity that the precision is of.
+    pub metric: Metric,
+    /// Sufficient uncertainty, in the unit of the metric.
+    pub uncertainty: f64,
+    /// Largest work, in evaluations: of each run at a tolerance, as predicted by those before it,
+    /// and of all runs at steps together. Infinite if the uncertainty must be reached at any cost.
+    pub max_work: f64,
+}
+
+impl Precision {
+    /// The highest precision of positions that double precision allows.
+    pub const FINEST: Self = Self {
+        metric: Metric::Position,
+        uncertainty: 0.0,
+        max_work: f64::INFINITY,
+    };
+}
+
+/// Order of the methods that are extrapolated.
+const ORDER: i32 = 4;
+/// Largest number of powers of the step that are extrapolated away.
+const MAX_POWERS: usize = 3;
+
+/// Returns the next row of the extrapolation: the run with half of the step, and its combinations
+/// with the row before. Each combination removes one more power of the step from the error.
+pub(super) fn extrapolate(row: Vec<Vec<Snapshot>>, halved: Vec<Snapshot>) -> Vec<Vec<Snapshot>> {
+    let mut next = vec![halved];
+    for (power, coarse) in row.into_iter().take(MAX_POWERS).enumerate() {
+        let share = 1.0 / (f64::powi(2.0, ORDER + power as i32) - 1.0);
+        let pairs = coarse.iter().zip(&next[power]);
+        let column = pairs.map(|(coarse, fine)| Snapshot::extrapolate(coarse, fine, share));
+        next.push(column.collect());
+    }
+    next
 }

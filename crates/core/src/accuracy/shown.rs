@@ -1,8 +1,8 @@
 //! Errors of the states that a run shows at any time, as in films and data.
 
-use super::errors::Errors;
 use super::frames::{Frames, GoOn};
 use super::reference::Reference;
+use super::snapshot::Errors;
 use crate::control::Control;
 use crate::error::Error;
 use crate::failure::succeeded;

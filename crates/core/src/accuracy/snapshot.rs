@@ -1,11 +1,17 @@
-//! Snapshot of a state: the quantities by which states are compared.
+//! Snapshot of a state: the quantities by which states are compared, their errors, the scope in
+//! which these are taken, and the first impact of a run: the times at which surfaces first touch,
+//! and at which nothing touches any more.
+//!
+//! Both times are found on cubic polynomials through the positions and velocities of two frames.
+//! They are functions of these states alone, the same for every method, so their errors fall with
+//! the order of the method. A touch that begins and ends between two frames is not detected.
 
 use nalgebra::Vector3;
 
-use super::errors::{Errors, Scope};
 use super::hermite::weights;
-use super::impact::Impact;
+use crate::contact::ContactLayer;
 use crate::elements::force::distance;
+use crate::error::Error;
 use crate::integrators::add_scaled;
 use crate::network::Network;
 use crate::scene::Model;
@@ -237,4 +243,274 @@ fn structural(network: &Network) -> impl Iterator<Item = crate::Spring> {
     network
         .springs()
         .filter(|s| s.kind == SpringKind::Structural && s.law.rest_length > 0.0)
+}
+
+/// Times of the first impact; one that has not begun or ended yet has the time of the state.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Impact {
+    /// Time of the state (s).
+    t: f64,
+    /// Time at which surfaces touched first, and time at which nothing touched any more (s).
+    times: [f64; 2],
+}
+
+impl Impact {
+    /// Creates the impact of a run that starts at time t (s).
+    pub fn at_start(t: f64) -> Self {
+        Self { t, times: [t; 2] }
+    }
+
+    /// Returns the impact at time t (s), if nothing begins or ends until then.
+    pub fn later(&self, t: f64) -> Self {
+        let times = self.times.map(|time| if time < self.t { time } else { t });
+        Self { t, times }
+    }
+
+    /// Returns the impact at time t (s), if nothing moves until then, and surfaces touch or do not.
+    pub fn still(&self, t: f64, touch: bool) -> Self {
+        let mut later = self.later(t);
+        if touch {
+            later.times[0] = later.times[0].min(self.t);
+        }
+        later
+    }
+
+    /// Returns the impact at time t (s). `ends` are the positions (m) and velocities (m/s) of the
+    /// state before and now, and `touch` tells whether surfaces touch then and now.
+    pub fn next(
+        &self,
+        layer: &ContactLayer,
+        t: f64,
+        ends: [[&[f64]; 2]; 2],
+        touch: [bool; 2],
+    ) -> Self {
+        let mut next = self.still(t, touch[0]);
+        let ended = next.times[1] < t;
+        if touch[0] == touch[1] || ended {
+            return next;
+        }
+        let mut x = vec![0.0; ends[0][0].len()];
+        let (mut low, mut high) = (0.0, 1.0);
+        // Until both times agree to double precision.
+        for _ in 0..50 {
+            let middle = f64::midpoint(low, high);
+            between(ends, t - self.t, middle, &mut x);
+            let at = self.t + middle * (t - self.t);
+            if (layer.penetration(at, &x) > 0.0) == touch[0] {
+                low = middle;
+            } else {
+                high = middle;
+            }
+        }
+        next.times[usize::from(touch[0])] = self.t + low * (t - self.t);
+        next
+    }
+
+    /// Returns the larger difference (s) between the times of two impacts.
+    pub fn error_of(&self, other: &Self) -> f64 {
+        let [begins, ends] = [0, 1].map(|k| (self.times[k] - other.times[k]).abs());
+        begins.max(ends)
+    }
+
+    /// Applies a function to both times of two runs.
+    pub fn extrapolate(coarse: &Self, fine: &Self, both: impl Fn(&f64, &f64) -> f64) -> Self {
+        let times = [0, 1].map(|k| both(&coarse.times[k], &fine.times[k]));
+        Self { t: fine.t, times }
+    }
+}
+
+/// Writes the positions (m) at a fraction s of the time (s) between two states to x.
+fn between([[xa, va], [xb, vb]]: [[&[f64]; 2]; 2], time: f64, s: f64, x: &mut [f64]) {
+    let r = 1.0 - s;
+    let [a, b] = [(1.0 + 2.0 * s) * r * r, (1.0 + 2.0 * r) * s * s];
+    let [va_weight, vb_weight] = [s * r * r * time, -s * s * r * time];
+    for (k, x) in x.iter_mut().enumerate() {
+        *x = a * xa[k] + b * xb[k] + va_weight * va[k] + vb_weight * vb[k];
+    }
+}
+
+/// Particles and times at which errors are taken.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Scope {
+    /// The only particle whose position and phase count; `None` for all of them, or for all numbers
+    /// of a state without particles.
+    pub particle: Option<usize>,
+    /// Whether only the last frame counts, instead of the largest error of all frames.
+    pub at_end: bool,
+}
+
+impl Scope {
+    /// Checks that the only particle that counts, if there is one, is among this number of
+    /// particles.
+    pub(super) fn check(self, particles: usize) -> Result<(), Error> {
+        match self.particle {
+            Some(i) if i >= particles => Err(Error::Invalid(match particles.checked_sub(1) {
+                Some(last) => {
+                    format!("there is no particle {i}: the scene has particles 0 to {last}")
+                }
+                None => format!("there is no particle {i}: the scene has plain numbers"),
+            })),
+            _ => Ok(()),
+        }
+    }
+}
+
+/// Errors of a state, or the largest ones over the frames of a run.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Errors {
+    /// Root mean square over the particles of the distance from their reference positions (m); 0
+    /// without particles.
+    pub position: f64,
+    /// Root mean square over the numbers of the state of their errors, where it has no particles; 0
+    /// otherwise.
+    pub state: f64,
+    /// Absolute error of the total energy (J); 0 for a first-order scene.
+    pub energy: f64,
+    /// Root mean square over the structural springs of the error of length over rest length; 0
+    /// without such springs.
+    pub strain: f64,
+    /// Length of the error of the total momentum of the particles that are not pinned (kg m/s); 0
+    /// for a first-order scene.
+    pub momentum: f64,
+    /// Time (s) by which the run is ahead of the reference or behind it: the error of the positions
+    /// along the reference velocities, over the largest speed squared of the reference. Without
+    /// particles, those of the numbers of the state.
+    pub phase: f64,
+    /// Error of the penetration of surfaces in contact: the largest depth over the thickness. 0
+    /// where surfaces do not touch.
+    pub penetration: f64,
+    /// Error of the first impact (s): the larger of the errors of its beginning and of its end. 0
+    /// where surfaces do not touch.
+    pub impact: f64,
+}
+
+impl Errors {
+    /// Creates errors with the same value of each quantity.
+    pub(super) fn with_all(error: f64) -> Self {
+        let zero = Self::default();
+        zero.with(zero, |_, _| error)
+    }
+
+    /// Applies a function to each quantity of both errors.
+    fn with(self, other: Self, f: impl Fn(f64, f64) -> f64) -> Self {
+        Self {
+            position: f(self.position, other.position),
+            state: f(self.state, other.state),
+            energy: f(self.energy, other.energy),
+            strain: f(self.strain, other.strain),
+            momentum: f(self.momentum, other.momentum),
+            phase: f(self.phase, other.phase),
+            penetration: f(self.penetration, other.penetration),
+            impact: f(self.impact, other.impact),
+        }
+    }
+
+    /// Returns the larger of both errors in each quantity; NaN is larger than any number.
+    pub(super) fn max(self, other: Self) -> Self {
+        self.with(other, |a, b| if a >= b || a.is_nan() { a } else { b })
+    }
+
+    /// Returns the smaller of both errors in each quantity.
+    pub(super) fn min(self, other: Self) -> Self {
+        self.with(other, f64::min)
+    }
+
+    /// Returns the error of the positions or, without particles, of the state.
+    pub(super) fn of_coordinates(&self) -> f64 {
+        // One of both is 0.
+        self.position + self.state
+    }
+}
+
+/// Choice of one of the [`Errors`].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Metric {
+    /// Error of the positions (m).
+    #[default]
+    Position,
+    /// Error of the numbers of a state without particles, in their unit.
+    State,
+    /// Error of the total energy (J).
+    Energy,
+    /// Error of length over rest length.
+    Strain,
+    /// Error of the total momentum (kg m/s).
+    Momentum,
+    /// Error of the phase (s).
+    Phase,
+    /// Error of the penetration of surfaces, as a share of the thickness.
+    Penetration,
+    /// Error of the times of the first impact (s).
+    Impact,
+}
+
+impl Metric {
+    /// Metrics of scenes with particles.
+    pub const OF_PARTICLES: [Self; 7] = [
+        Self::Position,
+        Self::Energy,
+        Self::Strain,
+        Self::Momentum,
+        Self::Phase,
+        Self::Penetration,
+        Self::Impact,
+    ];
+
+    /// Returns the name of the metric.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Position => "position",
+            Self::Energy => "energy",
+            Self::Strain => "strain",
+            Self::Momentum => "momentum",
+            Self::Phase => "phase",
+            Self::Penetration => "penetration",
+            Self::Impact => "impact",
+            Self::State => "state",
+        }
+    }
+
+    /// Returns the metric of the motion of a model: the error of its positions or, without
+    /// particles, of the numbers of its state.
+    #[must_use]
+    pub fn of_motion(model: &Model) -> Self {
+        match model.particles() {
+            0 => Self::State,
+            _ => Self::Position,
+        }
+    }
+
+    /// Checks that a model has particles, if the metric needs any, and none if it is for plain
+    /// numbers.
+    pub(super) fn check(self, model: &Model) -> Result<(), Error> {
+        let why = match (self, model.particles()) {
+            (Self::State | Self::Phase, 0) => return Ok(()),
+            (_, 0) => {
+                "the scene has no particles, but plain numbers: ask for the error of the state or \
+                 of the phase"
+            }
+            (Self::State, _) => {
+                "the scene has particles: ask for the error of their positions instead of that of \
+                 the state"
+            }
+            _ => return Ok(()),
+        };
+        Err(Error::Invalid(why.into()))
+    }
+
+    /// Returns the error that the metric chooses, in its unit.
+    #[must_use]
+    pub fn of(self, errors: &Errors) -> f64 {
+        match self {
+            Self::Position => errors.position,
+            Self::State => errors.state,
+            Self::Energy => errors.energy,
+            Self::Strain => errors.strain,
+            Self::Momentum => errors.momentum,
+            Self::Phase => errors.phase,
+            Self::Penetration => errors.penetration,
+            Self::Impact => errors.impact,
+        }
+    }
 }

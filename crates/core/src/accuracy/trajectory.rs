@@ -1,9 +1,8 @@
 //! States of a reference at the frames and between them, against which errors are taken.
 
-use super::errors::{Errors, Scope};
 use super::frames::Frames;
 use super::run::EnclosingStep;
-use super::snapshot::Snapshot;
+use super::snapshot::{Errors, Scope, Snapshot};
 use crate::scene::Model;
 
 /// Number of frames through which a state between them is interpolated.

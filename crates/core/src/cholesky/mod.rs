@@ -5,7 +5,6 @@
 //! bits on every processor: multiplications and additions are fused, and sums have a fixed order.
 
 mod factor;
-mod order;
 mod pattern;
 
 pub(crate) use factor::{Block, Factor};

@@ -1,8 +1,13 @@
 //! Symbolic factorisation: the pattern of the factor of a sparse matrix.
+//!
+//! An order of elimination that keeps a factor sparse: the row with the fewest neighbours comes
+//! next, by an upper bound of their number (approximate minimum degree; Amestoy, Davis, Duff, SIAM
+//! J. Matrix Anal. Appl. 17, 1996). Elimination makes all neighbours of a row neighbours of one
+//! another: they are stored as one list, an element, instead of pair by pair.
 
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
 use std::ops::Range;
-
-use super::order;
 
 /// Pattern of a factor.
 #[derive(Debug)]
@@ -29,7 +34,7 @@ impl Pattern {
     /// blocks below its diagonal.
     pub fn new(n: usize, pairs: impl Iterator<Item = [u32; 2]>, most: usize) -> Option<Self> {
         let meets = neighbours(n, pairs);
-        let order = order::order(meets.clone(), most)?;
+        let order = order(meets.clone(), most)?;
         Some(Self::in_order(&order, &meets))
     }
 
@@ -43,7 +48,7 @@ impl Pattern {
     ) -> Option<Self> {
         // A tie joins its ends once one of them is eliminated.
         let mut meets = neighbours(n, pairs.chain(ties.iter().copied()));
-        let ends_first = order::order(meets.clone(), usize::MAX)?;
+        let ends_first = order(meets.clone(), usize::MAX)?;
         let mut ranks = vec![0; n];
         for (row, rank) in ends_first.iter().zip(0u32..) {
             ranks[*row as usize] = rank;
@@ -201,4 +206,207 @@ fn children_first(columns: &[Vec<u32>]) -> Vec<u32> {
     }
     order.reverse();
     order
+}
+
+/// Degree above which a row counts as dense and is ordered last, because its list would be
+/// traversed too often: at least the first number, and at least the second times the root of the
+/// number of rows.
+const DENSE_DEGREES: [f64; 2] = [40.0, 2.0];
+
+/// Returns the elimination order (approximate minimum degree) of a matrix given by its adjacency
+/// lists; `None` if the factor would have more than `most` blocks below its diagonal.
+pub(super) fn order(mut meets: Vec<Vec<u32>>, most: usize) -> Option<Vec<u32>> {
+    let n = meets.len();
+    let many = DENSE_DEGREES[0].max(DENSE_DEGREES[1] * (n as f64).sqrt()) as usize;
+    let is_last: Vec<bool> = meets.iter().map(|others| others.len() > many).collect();
+    for (others, last) in meets.iter_mut().zip(&is_last) {
+        others.retain(|j| !last && !is_last[*j as usize]);
+    }
+    let last = (0..n as u32).filter(|i| is_last[*i as usize]);
+    let count = last.clone().count();
+    let mut graph = Graph {
+        left: (n - count) as u32,
+        blocks: count * (n - count) + count * count.saturating_sub(1) / 2,
+        degree: meets.iter().map(|others| others.len() as u32).collect(),
+        meets,
+        elements: vec![vec![]; n],
+        weight: is_last.iter().map(|last| u32::from(!last)).collect(),
+        followers: vec![vec![]; n],
+        members: vec![vec![]; n],
+        size: vec![0; n],
+        outside: vec![0; n],
+        seen: vec![u32::MAX; n],
+        order: Vec::with_capacity(n),
+    };
+    let degrees = graph.degree.iter().zip(0..);
+    let mut queue: BinaryHeap<_> = degrees.map(|(degree, i)| Reverse((*degree, i))).collect();
+    while graph.blocks <= most {
+        let Some(Reverse((degree, i))) = queue.pop() else {
+            graph.order.extend(last);
+            return Some(graph.order);
+        };
+        if graph.weight[i as usize] == 0 || graph.degree[i as usize] != degree {
+            continue;
+        }
+        graph.eliminate(i);
+        let members = &graph.members[i as usize];
+        queue.extend(
+            members
+                .iter()
+                .map(|j| Reverse((graph.degree[*j as usize], *j))),
+        );
+    }
+    None
+}
+
+/// The remaining rows, and the elements. An element has the number of the row whose elimination
+/// created it.
+struct Graph {
+    /// Rows that have not been eliminated.
+    left: u32,
+    /// Blocks below the diagonal in the columns of eliminated rows, and an upper bound of those in
+    /// the rows that come last.
+    blocks: usize,
+    /// Upper bound of the number of neighbours of each row, without the rows that it represents.
+    degree: Vec<u32>,
+    /// Neighbours of each row that share no element with it.
+    meets: Vec<Vec<u32>>,
+    /// Elements that each row is in.
+    elements: Vec<Vec<u32>>,
+    /// Number of rows that each row represents; 0 once it is eliminated, or another represents it.
+    weight: Vec<u32>,
+    /// Other rows that each row represents.
+    followers: Vec<Vec<u32>>,
+    /// Rows of each element; empty once it lies within others.
+    members: Vec<Vec<u32>>,
+    /// Number of rows in each element, represented ones included.
+    size: Vec<u32>,
+    /// Number of these that are not in the latest element.
+    outside: Vec<u32>,
+    /// Latest element for which a row, or an element, was visited.
+    seen: Vec<u32>,
+    order: Vec<u32>,
+}
+
+impl Graph {
+    /// Eliminates a row: its neighbours become an element.
+    fn eliminate(&mut self, pivot: u32) {
+        let (p, before) = (pivot as usize, self.left);
+        self.finish(pivot);
+        self.seen[p] = pivot;
+        let mut members = std::mem::take(&mut self.meets[p]);
+        let absorbed = std::mem::take(&mut self.elements[p]);
+        for e in &absorbed {
+            members.append(&mut self.members[*e as usize]);
+        }
+        members.retain(|i| {
+            let i = *i as usize;
+            let is_new = self.weight[i] > 0 && self.seen[i] != pivot;
+            self.seen[i] = pivot;
+            is_new
+        });
+        self.measure(pivot, &members);
+        // Rows without other neighbours could be eliminated next without enlarging the factor.
+        members.retain(|i| {
+            self.shorten(pivot, *i);
+            let i = *i as usize;
+            let follows = self.meets[i].is_empty() && self.elements[i].is_empty();
+            if follows {
+                self.finish(i as u32);
+            }
+            self.elements[i].push(pivot);
+            !follows
+        });
+        let size: u32 = members.iter().map(|i| self.weight[*i as usize]).sum();
+        self.size[p] = size;
+        let eliminated = (before - self.left) as usize;
+        self.blocks += eliminated * (eliminated - 1) / 2 + eliminated * size as usize;
+        for i in &members {
+            let i = *i as usize;
+            let met = self.meets[i].iter().map(|j| self.weight[*j as usize]);
+            let (_, elements) = self.elements[i].split_last().unwrap_or((&0, &[]));
+            let outside = elements.iter().map(|e| self.outside[*e as usize]);
+            let others = size - self.weight[i];
+            let degree = met.sum::<u32>() + outside.sum::<u32>() + others;
+            let grown = self.degree[i] + others;
+            self.degree[i] = degree.min(grown).min(self.left - self.weight[i]);
+        }
+        self.merge(&mut members);
+        self.members[p] = members;
+    }
+
+    /// Appends a row, and those that it represents, to the order.
+    fn finish(&mut self, row: u32) {
+        self.left -= self.weight[row as usize];
+        self.weight[row as usize] = 0;
+        let mut rows = vec![row];
+        while let Some(row) = rows.pop() {
+            self.order.push(row);
+            rows.append(&mut self.followers[row as usize]);
+        }
+    }
+
+    /// Counts for each element the rows that are not in `members`.
+    fn measure(&mut self, pivot: u32, members: &[u32]) {
+        for i in members {
+            let weight = self.weight[*i as usize];
+            for e in &self.elements[*i as usize] {
+                let e = *e as usize;
+                if self.seen[e] != pivot {
+                    (self.seen[e], self.outside[e]) = (pivot, self.size[e]);
+                }
+                self.outside[e] -= weight;
+            }
+        }
+    }
+
+    /// Removes neighbours and elements of a row that the pivot's element covers.
+    fn shorten(&mut self, pivot: u32, i: u32) {
+        let i = i as usize;
+        let (members, outside) = (&mut self.members, &self.outside);
+        self.elements[i].retain(|e| {
+            let e = *e as usize;
+            if outside[e] == 0 {
+                members[e] = vec![];
+            }
+            !members[e].is_empty()
+        });
+        let (weight, seen) = (&self.weight, &self.seen);
+        self.meets[i].retain(|j| weight[*j as usize] > 0 && seen[*j as usize] != pivot);
+        self.meets[i].sort_unstable();
+        self.elements[i].sort_unstable();
+    }
+
+    /// Lets one row represent all rows with the same neighbours.
+    fn merge(&mut self, members: &mut Vec<u32>) {
+        let key = |i: u32| {
+            let lists = [&self.meets[i as usize], &self.elements[i as usize]];
+            lists
+                .into_iter()
+                .flatten()
+                .fold(0u32, |sum, j| sum.wrapping_add(*j))
+        };
+        let mut keyed: Vec<_> = members.iter().map(|i| (key(*i), *i)).collect();
+        keyed.sort_unstable();
+        members.clear();
+        for group in keyed.chunk_by(|a, b| a.0 == b.0) {
+            let first = members.len();
+            for (_, i) in group {
+                let i = *i as usize;
+                let alike = |j: &&u32| {
+                    let j = **j as usize;
+                    self.meets[i] == self.meets[j] && self.elements[i] == self.elements[j]
+                };
+                let Some(&j) = members[first..].iter().find(alike) else {
+                    members.push(i as u32);
+                    continue;
+                };
+                let (j, weight) = (j as usize, std::mem::take(&mut self.weight[i]));
+                self.weight[j] += weight;
+                self.degree[j] -= weight;
+                self.followers[j].push(i as u32);
+                (self.meets[i], self.elements[i]) = (vec![], vec![]);
+            }
+        }
+    }
 }

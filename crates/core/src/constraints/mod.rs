@@ -11,29 +11,24 @@
 //! end of a rod. A force at a point of a rigid body moves and rotates the body: W then includes the
 //! body's inverse inertia, and J the lever r x g of the force along g.
 //!
-//! A rope has a row like a rod's while it is taut: see `ropes`. A joint of rigid bodies has up to
+//! A rope has a row like a rod's while it is taut: see `joints`. A joint of rigid bodies has up to
 //! six rows, which also act on the rotations alone: see `joint`.
 
 mod constraint;
-mod direct;
-mod errors;
 mod joint;
 mod joints;
 mod jump;
-mod ropes;
-mod row;
 mod set;
 mod solve;
-mod turning;
 
 pub use constraint::Constraint;
 pub(crate) use constraint::Projected;
 pub use joint::{Joint, JointKind, Stop};
-pub(crate) use joints::{joints, multipliers, nearest, project};
-pub(crate) use jump::{Struck, jump};
-pub(crate) use ropes::{
+pub(crate) use joints::{
     OneSided, beyond, has_ropes, least_tension, loosen, open_ends, parting, set_all_taut, set_taut,
     taut,
 };
+pub(crate) use joints::{joints, multipliers, nearest, project};
+pub(crate) use jump::{Struck, jump};
 pub(crate) use set::{Constraints, Moved};
-pub(crate) use turning::Turning;
+pub(crate) use solve::Turning;

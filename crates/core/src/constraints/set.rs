@@ -6,11 +6,8 @@ use std::sync::{Arc, OnceLock};
 use nalgebra::{Matrix3, Vector3};
 
 use super::constraint::{Constraint, Equation, Projected};
-use super::direct::Pattern;
 use super::joint::{JointEquation, Side};
-use super::row::Row;
-use super::solve::System;
-use super::turning::{Lever, Turning};
+use super::solve::{Lever, Pattern, Row, System, Turning};
 use crate::error::{Error, positive};
 use crate::scratch::Scratch;
 use crate::threads::each;

@@ -4,14 +4,17 @@
 //! minimises |b - A lambda| in each step. If A is singular it finds one of the solutions; if rows
 //! contradict one another, there is none, and it finds the closest approximation, while conjugate
 //! gradients would diverge. Rows are scaled so that the diagonal of A is 1.
+//!
+//! A Cholesky factorisation of A = J W J^T, for linearly independent rows. Its order and pattern
+//! are found once: an element of A is not zero if two rows move the same particle or body. A chain
+//! of n rods is factorised in time proportional to n.
 
+use std::fmt;
 use std::sync::Arc;
 
-use nalgebra::Vector3;
+use nalgebra::{Matrix3, Vector3};
 
-use super::direct::{Factor, Pattern};
-use super::row::Row;
-use super::turning::Turning;
+use crate::cholesky;
 use crate::threads::each;
 
 /// Number of rows from which on a factorisation is faster than conjugate residuals.
@@ -167,4 +170,281 @@ fn weigh(weights: &[Vector3<f64>], u: &mut [Vector3<f64>]) -> f64 {
         *u = weighted;
     }
     product
+}
+
+/// Largest number of elements of A, or of its factor, per row. Systems with more are solved without
+/// a factorisation.
+const MAX_ELEMENTS_PER_ROW: usize = 40;
+
+/// Least square of a diagonal element of the factor in independent rows. It is 1 for a row that
+/// shares nothing with others, and 0 for one that depends on others.
+const MIN_INDEPENDENT_SQUARE: f64 = 1e-9;
+
+/// Pattern of the non-zero elements of A.
+pub(super) struct Pattern {
+    /// Pairs of rows that share something they move, the lower one first; `None` if A or its factor
+    /// would be too large.
+    meeting: Option<(Vec<[u32; 2]>, cholesky::Pattern)>,
+}
+
+impl Pattern {
+    /// Creates a pattern of rows, each with the places of all that it moves, or 0; there are
+    /// `places` of them.
+    pub fn new(rows: &[[usize; 4]], places: usize) -> Self {
+        let mut at_place = vec![vec![]; places];
+        let (mut meeting, most) = (vec![], MAX_ELEMENTS_PER_ROW * rows.len());
+        for (r, moved) in rows.iter().enumerate() {
+            let mut before = vec![];
+            let places = || moved.iter().copied().filter(|place| *place != 0);
+            for place in places() {
+                before.extend_from_slice(&at_place[place]);
+            }
+            // Both ends of a constraint may be on one body.
+            for place in places() {
+                at_place[place].push(r as u32);
+            }
+            before.sort_unstable();
+            before.dedup();
+            meeting.extend(before.iter().map(|other| [*other, r as u32]));
+            if meeting.len() > most {
+                return Self { meeting: None };
+            }
+        }
+        let pattern = cholesky::Pattern::new(rows.len(), meeting.iter().copied(), most);
+        Self {
+            meeting: pattern.map(|pattern| (meeting, pattern)),
+        }
+    }
+}
+
+impl fmt::Debug for Pattern {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let elements = self.meeting.as_ref().map(|(meeting, _)| meeting.len());
+        write!(f, "Pattern of {elements:?} elements")
+    }
+}
+
+/// The factor of A.
+pub(super) struct Factor {
+    pattern: Arc<Pattern>,
+    numbers: cholesky::Factor<1, 1>,
+    /// Place of each element of A below the diagonal.
+    places: Vec<cholesky::Place>,
+}
+
+impl Factor {
+    /// Creates room for a factor of that pattern; `None` if it would be too large.
+    pub fn new(pattern: &Arc<Pattern>) -> Option<Self> {
+        let (meeting, symbolic) = pattern.meeting.as_ref()?;
+        Some(Self {
+            numbers: cholesky::Factor::new(symbolic)?,
+            places: meeting
+                .iter()
+                .map(|[i, j]| symbolic.place(*i, *j))
+                .collect(),
+            pattern: Arc::clone(pattern),
+        })
+    }
+
+    /// Returns whether it is a factor of that pattern.
+    pub fn is_of(&self, pattern: &Arc<Pattern>) -> bool {
+        Arc::ptr_eq(&self.pattern, pattern)
+    }
+
+    /// Factorises A of these rows, with the inverse masses of all that they move. Returns whether
+    /// the rows are independent.
+    pub fn factorise(&mut self, rows: &[Row], weights: &[Vector3<f64>]) -> bool {
+        let Self {
+            pattern,
+            numbers,
+            places,
+        } = self;
+        let Some((meeting, pattern)) = &pattern.meeting else {
+            return false;
+        };
+        numbers.clear();
+        for (i, row) in rows.iter().enumerate() {
+            let own = row.element(row, weights);
+            *numbers.diagonal_mut(pattern, i) = [[if row.is_left_out() { 1.0 } else { own }]];
+        }
+        for ([i, j], place) in meeting.iter().zip(places) {
+            let element = rows[*i as usize].element(&rows[*j as usize], weights);
+            *numbers.block_mut(*place) = [[element]];
+        }
+        numbers.factorise(pattern) && numbers.least_square() > MIN_INDEPENDENT_SQUARE
+    }
+
+    /// Adds the solution of A x = r, with the residuals r of the rows, to their multipliers.
+    pub fn solve(&mut self, rows: &mut [Row]) {
+        let Some((_, pattern)) = &self.pattern.meeting else {
+            return;
+        };
+        for (i, row) in rows.iter().enumerate() {
+            *self.numbers.unknowns_mut(pattern, i) = [row.residual];
+        }
+        self.numbers.solve(pattern);
+        for (i, row) in rows.iter_mut().enumerate() {
+            row.multiplier += self.numbers.unknowns_mut(pattern, i)[0];
+        }
+    }
+}
+
+/// A row of J, scaled so that the diagonal of J W J^T is 1.
+#[derive(Debug, Default)]
+pub(super) struct Row {
+    /// Places of the particles and rotations that it moves, and its parts there.
+    parts: [(usize, Vector3<f64>); 4],
+    used: usize,
+    scale: f64,
+    /// Its element of J W J^T lambda in the solution.
+    pub target: f64,
+    /// Multiplier lambda.
+    pub multiplier: f64,
+    /// Residual r = b - A lambda.
+    pub residual: f64,
+    /// Direction p, and its image A p.
+    pub direction: f64,
+    pub image: f64,
+}
+
+impl Row {
+    /// Adds a part at a place; place 0 moves nothing.
+    pub fn add(&mut self, place: usize, part: Vector3<f64>) {
+        if place == 0 {
+            return;
+        }
+        let (parts, rest) = self.parts.split_at_mut(self.used);
+        // Both ends of a rod may be on one body.
+        if let Some((_, own)) = parts.iter_mut().find(|(own, _)| *own == place) {
+            *own += part;
+        } else {
+            rest[0] = (place, part);
+            self.used += 1;
+        }
+    }
+
+    /// Returns its parts, with their places.
+    fn parts(&self) -> &[(usize, Vector3<f64>)] {
+        &self.parts[..self.used]
+    }
+
+    /// Returns its product with a vector.
+    pub fn product(&self, vectors: &[Vector3<f64>]) -> f64 {
+        let terms = self.parts().iter().map(|(i, part)| part.dot(&vectors[*i]));
+        terms.sum()
+    }
+
+    /// Adds its transpose times a number to a vector.
+    pub fn spread(&self, number: f64, out: &mut [Vector3<f64>]) {
+        for (i, part) in self.parts() {
+            out[*i] += part * number;
+        }
+    }
+
+    /// Returns the element J W J^T of this row and another.
+    pub fn element(&self, other: &Self, weights: &[Vector3<f64>]) -> f64 {
+        let mut sum = 0.0;
+        for (i, part) in self.parts() {
+            for (j, others) in other.parts() {
+                if i == j {
+                    sum += part.dot(&weights[*i].component_mul(others));
+                }
+            }
+        }
+        sum
+    }
+
+    /// Sets the right-hand side of the row, and scales the row. If all that it moves has infinite
+    /// mass, no force can have the effect, and the row is left out.
+    pub fn set_target(&mut self, target: f64, weights: &[Vector3<f64>]) {
+        let diagonal = self.element(self, weights);
+        self.scale = if diagonal > 0.0 {
+            1.0 / diagonal.sqrt()
+        } else {
+            0.0
+        };
+        for (_, part) in &mut self.parts[..self.used] {
+            *part *= self.scale;
+        }
+        self.target = target * self.scale;
+    }
+
+    /// Returns whether the row is left out, because no force has an effect.
+    pub fn is_left_out(&self) -> bool {
+        self.scale == 0.0
+    }
+
+    /// Returns the multiplier of the row as it was before it was scaled.
+    pub fn unscaled(&self) -> f64 {
+        self.scale * self.multiplier
+    }
+
+    /// Returns the product J^T lambda at a place.
+    pub fn at(&self, place: usize) -> Vector3<f64> {
+        let own = self.parts().iter().filter(|(own, _)| *own == place);
+        own.map(|(_, part)| part * self.multiplier).sum()
+    }
+
+    /// Returns the force J^T lambda on its first particle (N).
+    pub fn force(&self) -> Vector3<f64> {
+        self.parts[0].1 * self.multiplier
+    }
+}
+
+/// Rotational state of a rigid body.
+pub(crate) struct Turning {
+    /// Position of its centre (m).
+    pub center: Vector3<f64>,
+    /// Rotation matrix from its principal axes to the world.
+    pub rotation: Matrix3<f64>,
+    /// Angular velocity (rad/s).
+    pub spin: Vector3<f64>,
+    /// Angular acceleration without constraints (rad/s2).
+    pub acceleration: Vector3<f64>,
+    /// Inverses of the principal moments of inertia (1/kg m2).
+    pub inverse_inertia: Vector3<f64>,
+}
+
+impl Turning {
+    /// Returns the rotation matrix, and angular velocity (rad/s).
+    pub(super) fn turned(&self) -> (Matrix3<f64>, Vector3<f64>) {
+        (self.rotation, self.spin)
+    }
+}
+
+/// Lever of a point of a rigid body.
+pub(super) struct Lever {
+    /// From the centre to the point (m).
+    arm: Vector3<f64>,
+    rotation: Matrix3<f64>,
+    /// Acceleration of the point by the spin alone (m/s2).
+    pub(super) inwards: Vector3<f64>,
+}
+
+impl Lever {
+    pub(super) fn new(turning: &Turning, point: Vector3<f64>) -> Self {
+        let arm = point - turning.center;
+        Self {
+            arm,
+            rotation: turning.rotation,
+            inwards: turning.spin.cross(&turning.spin.cross(&arm)),
+        }
+    }
+
+    /// Returns the torque of a force at the point, along the principal axes.
+    pub(super) fn of(&self, force: Vector3<f64>) -> Vector3<f64> {
+        self.rotation.tr_mul(&self.arm.cross(&force))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_row_that_moves_a_body_twice_does_not_meet_itself() {
+        let pattern = Pattern::new(&[[1, 2, 1, 2], [1, 2, 3, 4], [3, 4, 0, 0]], 5);
+        let (meeting, _) = pattern.meeting.unwrap();
+        assert_eq!(meeting, [[0, 1], [1, 2]]);
+    }
 }

@@ -4,7 +4,7 @@ use nalgebra::{Matrix3, Vector3};
 
 use super::listing::Candidate;
 use super::motion::Motion;
-use super::rebound::{RESTORED_SHARE, change_in_impact};
+use super::obstacle::{RESTORED_SHARE, change_in_impact};
 use super::skin::Law;
 use super::solids::{Arm, Field, Masses, SAME_TOLERANCE, Solid};
 use super::surface::Surface;

@@ -4,7 +4,7 @@ use nalgebra::{Matrix3, Vector3};
 
 use super::listing::Candidate;
 use super::motion::Motion;
-use super::rebound::{RESTORED_SHARE, limited_to, rebound_speed};
+use super::obstacle::{RESTORED_SHARE, limited_to, rebound_speed};
 use super::response::{Changes, Joined, Joints, Response};
 use super::skin::Law;
 use super::solids::SAME_TOLERANCE;

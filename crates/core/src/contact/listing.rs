@@ -6,8 +6,7 @@ use rayon::prelude::*;
 
 use super::bounds::{Block, LANES};
 use super::boxes::{Bounds, Courses, Meeting, Tree};
-use super::items::Items;
-use super::surface::Surface;
+use super::surface::{Items, Surface};
 use crate::geometry::{PairKind, closest};
 
 /// Number of pairs of blocks, or of listed pairs, in a task of a thread.

@@ -4,14 +4,14 @@ use nalgebra::Vector3;
 
 use super::cut::Pinched;
 use super::guard::{Bodies, guard};
-use super::impulses::Impulses;
 use super::layer::ContactLayer;
 use super::met::{Met, Noted, Statistics};
-use super::obstacle::{Obstacle, velocity};
-use super::rebound::{change_in_impact, rebound_speed, shortest_rebound};
+use super::obstacle::{
+    Impulses, Obstacle, change_in_impact, rebound_speed, shortest_rebound, velocity,
+};
 use crate::columns::{row, set_row};
 use crate::geometry::Shape;
-use crate::geometry::nearest::{of_box, of_capsule, of_floor, of_sphere};
+use crate::geometry::closest::{of_box, of_capsule, of_floor, of_sphere};
 
 /// Share of a step within which rebounds count as simultaneous.
 pub(crate) const SIMULTANEOUS_SHARE: f64 = 1e-6;

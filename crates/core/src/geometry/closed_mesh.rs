@@ -6,8 +6,7 @@ use std::collections::BTreeMap;
 use nalgebra::Vector3;
 
 use super::bvh::{Aabb, Bvh};
-use super::closest::{PairKind, closest};
-use super::nearest::{Nearest, Separation};
+use super::closest::{Nearest, PairKind, Separation, closest};
 use super::parts::split;
 use crate::error::{Error, finite};
 

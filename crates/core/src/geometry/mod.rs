@@ -3,8 +3,6 @@
 pub(crate) mod bvh;
 pub(crate) mod closed_mesh;
 pub(crate) mod closest;
-pub(crate) mod nearest;
-mod normals;
 mod parts;
 pub(crate) mod separation;
 pub(crate) mod shape;
@@ -13,7 +11,7 @@ mod tests;
 mod triangles;
 
 pub use closed_mesh::ClosedMesh;
+pub(crate) use closest::normals;
 pub use closest::{Closest, PairKind, closest, weighted};
-pub(crate) use normals::normals;
 pub use shape::{Shape, Simplices};
 pub(crate) use triangles::Triangles;

@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use super::nearest::Separation;
+use super::closest::Separation;
 use super::shape::Shape;
 
 impl Shape {

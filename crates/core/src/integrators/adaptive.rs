@@ -5,9 +5,9 @@ use std::ops::Range;
 
 use serde::{Deserialize, Serialize};
 
-use super::arithmetic::scaled_sum;
 use super::error_norm::{BLOCK, ErrorNorm, Tolerance};
 use super::integrator::check_dim;
+use super::sweep::scaled_sum;
 use super::trial::{LastStep, Trial};
 use crate::error::{Error, at_least};
 use crate::sums::{OnBlock, add_up};

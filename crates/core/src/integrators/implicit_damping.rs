@@ -18,12 +18,12 @@
 use std::f64::consts::FRAC_1_SQRT_2;
 use std::ops::Range;
 
-use super::arithmetic::add_scaled;
 use super::implicit::Dense;
 use super::integrator::{Integrator, check_dim};
 use super::kicks::VERLET_PLAN;
 use super::method::{Create, Method, View};
 use super::splitting::{drift, kick};
+use super::sweep::add_scaled;
 use crate::control::Control;
 use crate::error::Error;
 use crate::linear::DampingSolver;

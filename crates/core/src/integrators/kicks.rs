@@ -1,8 +1,8 @@
 //! Splitting methods: sequences of kicks and drifts.
 
 use super::method::{Create, Method, View};
-use super::runge_kutta::{EULER, RK4, Table};
 use super::splitting::{Kicks, Plan};
+use super::sweep::{EULER, RK4, Table};
 use crate::control::Control;
 use crate::rows::Terms;
 

@@ -1,15 +1,18 @@
 //! A method: its name, its order, the view of a system by which it takes its steps, and the
-//! function that creates its integrator.
+//! function that creates its integrator. Own methods are found by their names, beside those of the
+//! table.
 
 use std::fmt;
+use std::sync::{PoisonError, RwLock};
 
 use super::adaptive::Adaptive;
 use super::embedded::{EmbeddedPair, Tableau};
 use super::error_norm::Tolerance;
 use super::integrator::Integrator;
 use super::nystrom::{NystromPair, NystromTableau};
-use super::runge_kutta::{self, RungeKutta};
 use super::splitting::Plan;
+use super::sweep;
+use super::sweep::RungeKutta;
 use super::trial::Trial;
 use crate::control::Control;
 use crate::error::{Error, positive};
@@ -20,13 +23,13 @@ use crate::system::{Linearized, ParticleSystem, reads_velocity};
 pub(super) const MAX_DENSE: usize = 1024;
 
 /// Function of an own method that creates an integrator for a system.
-pub(super) type CreateOwn = dyn Fn(&dyn ParticleSystem) -> Box<dyn Integrator> + Send + Sync;
+type CreateOwn = dyn Fn(&dyn ParticleSystem) -> Box<dyn Integrator> + Send + Sync;
 
 /// Source of a method's integrators.
 #[derive(Clone, Copy)]
 pub(super) enum Create {
     /// Runge-Kutta stages, each a function of the stage before it alone.
-    RungeKutta(runge_kutta::Table),
+    RungeKutta(sweep::Table),
     /// Kicks and drifts.
     Kicks(&'static Plan),
     /// Embedded pair, whose trial steps it takes as they are where the step is fixed.
@@ -319,4 +322,20 @@ fn refusal_by_size(system: &dyn ParticleSystem) -> Option<Refusal> {
         numbers,
         most: MAX_DENSE,
     })
+}
+
+/// Own methods, in the order in which they were added.
+static OWN: RwLock<Vec<&'static Method>> = RwLock::new(vec![]);
+
+/// Adds an own method. If another one has its name, the new one takes its place.
+pub(super) fn add_own(method: &'static Method) {
+    let mut own = OWN.write().unwrap_or_else(PoisonError::into_inner);
+    own.retain(|other| *other != method);
+    own.push(method);
+}
+
+/// Returns the own method with this name, if there is one.
+pub(super) fn find_own(name: &str) -> Option<&'static Method> {
+    let own = OWN.read().unwrap_or_else(PoisonError::into_inner);
+    own.iter().copied().find(|method| method.name == name)
 }

@@ -2,10 +2,8 @@
 //! arrays and knows no physics.
 
 mod adaptive;
-mod arithmetic;
 mod embedded;
 mod error_norm;
-mod explicit;
 mod implicit;
 mod implicit_damping;
 mod integrator;
@@ -16,8 +14,6 @@ mod nystrom_pairs;
 mod own;
 mod pairs;
 mod prediction;
-mod registry;
-mod runge_kutta;
 mod splitting;
 mod sweep;
 mod table;
@@ -27,10 +23,10 @@ mod xpbd;
 
 pub use crate::work::Work;
 pub use adaptive::{Adaptive, AdaptiveState, Taken};
-pub(crate) use arithmetic::add_scaled;
 pub use error_norm::Tolerance;
 pub use implicit::bdf_growth;
 pub use integrator::Integrator;
 pub use method::{Method, View};
 pub use own::Derivative;
+pub(crate) use sweep::add_scaled;
 pub use table::{METHODS, find};

@@ -10,10 +10,10 @@
 
 use std::ops::Range;
 
-use super::arithmetic::add_scaled;
 use super::embedded::{add_to_block, blocks};
 use super::error_norm::ErrorNorm;
 use super::integrator::{Integrator, check_dim};
+use super::sweep::add_scaled;
 use super::trial::{LastStep, Trial};
 use crate::error::Error;
 use crate::refusal::Refusal;

@@ -1,8 +1,9 @@
 //! Own methods: from an integrator, or from a function that takes a step.
 
 use super::integrator::{Integrator, check_dim};
+use super::method::add_own;
 use super::method::{Create, Method, View};
-use super::{registry, table};
+use super::table;
 use crate::control::Control;
 use crate::error::Error;
 use crate::system::ParticleSystem;
@@ -173,7 +174,7 @@ impl Method {
     #[must_use]
     pub fn register(self) -> &'static Self {
         let method = Box::leak(Box::new(self));
-        registry::add(method);
+        add_own(method);
         method
     }
 }

@@ -2,10 +2,8 @@
 //! at fixed x. If forces depend on v too, as those of damped springs do, a method has other kicks:
 //! each is a step of an explicit Runge-Kutta method in v, or uses forces at velocities ahead of v.
 
-use super::arithmetic::add_scaled;
 use super::integrator::{Integrator, check_dim};
-use super::runge_kutta::{Combine, Table, stages};
-use super::sweep::Sweeper;
+use super::sweep::{Combine, Sweeper, Table, add_scaled, stages};
 use crate::error::Error;
 use crate::refusal::Refusal;
 use crate::rows::{Next, Stage, Terms};
@@ -49,7 +47,7 @@ pub(super) struct Kicks {
 }
 
 /// Splitting method with its scratch.
-pub(super) struct SplittingMethod {
+struct SplittingMethod {
     plan: &'static Plan,
     dim: usize,
     stages: Vec<Stage>,

@@ -12,11 +12,11 @@
 use std::array;
 use std::ops::Range;
 
-use super::block::inverse;
 use super::multigrid::Multigrid;
-use super::tangent::Tangent;
+use super::tangent::{Tangent, inverse};
 use crate::columns::{columns, columns_mut};
-use crate::sums::{self, OnBlock, dot};
+use crate::sums;
+use crate::sums::{OnBlock, dot};
 use crate::system::Linearized;
 use crate::threads::{Columns, threads};
 
@@ -39,7 +39,7 @@ pub(crate) struct ConjugateGradients {
 
 /// Result of a solve.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Solution {
+pub(super) struct Solution {
     /// Number of iterations.
     pub iterations: u64,
     /// Relative residual |b - A x| / |b|.

@@ -1,19 +1,16 @@
 //! Linear systems of implicit steps: conjugate gradients, with multigrid or without, or a
 //! factorisation, whichever costs least.
 
-mod block;
 mod conjugate_gradients;
 mod damping;
-mod direct;
-mod ends;
 mod multigrid;
 mod saddle;
 mod tangent;
 
 use conjugate_gradients::{ConjugateGradients, MAX_ITERATIONS};
 pub(crate) use damping::DampingSolver;
-use direct::Direct;
 use multigrid::Multigrid;
+use saddle::Direct;
 pub(crate) use saddle::Saddle;
 pub(crate) use tangent::Tangent;
 
@@ -153,7 +150,7 @@ impl Solver {
     fn goes_direct(&mut self, system: &dyn Linearized, tolerance: f64) -> bool {
         let [alone, with] = self.prices(tolerance);
         let iterative = alone.min(with);
-        let least = direct::price_of_products(self.least_products());
+        let least = saddle::price_of_products(self.least_products());
         let worth_analysing = self.factorised || least * self.speed < iterative;
         if self.direct_always.unwrap_or(worth_analysing) && !self.analysed {
             self.analyse(system);

@@ -1,19 +1,16 @@
-//! How a network is built and changed.
+//! How a network is built and changed, and how its springs break.
 
 use std::ops::Range;
 
 use nalgebra::Vector3;
 
 use super::bodies::Bodies;
-use super::breaking::{break_between, remove_torn};
-use super::element::Element;
-use super::elements::Elements;
+use super::elements::{Element, Elements};
 use super::outflow::{drained, entered, is_drained, leave, set_drained};
 use super::particles::Particles;
 use super::parts::Network;
-use super::strain::StrainLimits;
 use super::surfaces::{Surfaces, Touch};
-use super::tearing::Tears;
+use super::tearing::{StrainLimits, Tears};
 use crate::constraints::{Constraint, Constraints};
 use crate::contact::{ContactLayer, Obstacle, Shape};
 use crate::elements::{Buckling, Wind};
@@ -385,5 +382,24 @@ impl Network {
         let jointed = (self.bodies.all(), self.constraints.all());
         let layer = self.surfaces.layer(jointed, &self.tears, drained(self));
         self.elements.replace_all(layer);
+    }
+}
+
+/// Breaks the springs between pairs of particles, given with the lower number first. Returns the
+/// number of new pairs.
+fn break_between(network: &mut Network, pairs: impl IntoIterator<Item = [usize; 2]>) -> usize {
+    let new = network.tears.add(pairs);
+    remove_torn(network);
+    network.surfaces.leave_out_holes(&network.tears);
+    network.renew_contact();
+    new
+}
+
+/// Removes the springs between particles where one has broken.
+fn remove_torn(network: &mut Network) {
+    let torn = network.tears.torn();
+    if !torn.is_empty() {
+        network.strain_limits.forget();
+        network.elements.remove_springs(torn);
     }
 }

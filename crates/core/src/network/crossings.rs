@@ -4,9 +4,10 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 
-use super::element::Element;
+use super::elements::Element;
 use super::parts::Network;
-use crate::contact::{self, ContactLayer, Crossed, Freedom, is_crowded};
+use crate::contact;
+use crate::contact::{ContactLayer, Crossed, Freedom, is_crowded};
 use crate::coupling::{AxialCoupling, BlockCoupling, Coupling, GeneralCoupling};
 use crate::elements::force::Matter;
 use crate::error::{Error, Vertex};

@@ -1,17 +1,28 @@
-//! Elements of a network: the forces that a scene asks for, in the order of the table.
+//! Elements of a network: the forces that a scene asks for, each with a line in one table, and
+//! their springs.
+//!
+//! The part of an implicit step's matrix whose couplings are multiplied together is that of
+//! springs in sheets, and of single springs if there are many.
 
 use std::any::Any;
 use std::ops::Range;
 
 use nalgebra::Vector3;
 
-use super::element::Element;
 use crate::contact::ContactLayer;
-use crate::elements::force::{ASSEMBLY, At, ByParticle, DriftForces, Force, Matter};
+use crate::coupling::{Coupling, Diagonal, Matrix};
+use crate::elements::force::{
+    ASSEMBLY, At, ByParticle, DriftForces, Force, Matter, check_ends, distance, ends,
+};
 use crate::elements::sheet::{Quantity, set};
-use crate::elements::{Airflow, Drag, Finish, Fluid, Gravity, Sheet, Solid, Wind};
+use crate::elements::{
+    Airflow, Attraction, Buckling, BucklingSprings, Cords, Drag, Finish, Fluid, Gas, Gravity,
+    OwnForce, Sheet, Solid, Springs, Wind,
+};
 use crate::error::Error;
 use crate::products::ITERATION;
+use crate::spring::{Spring, SpringKind};
+use crate::system::divide_by_masses;
 
 /// Elements in the order of their types, and those of one type in the order in which they were
 /// added.
@@ -305,5 +316,278 @@ impl Elements {
         } else {
             ITERATION
         }
+    }
+}
+
+macro_rules! elements {
+    ($($(#[$doc:meta])* $name:ident,)*) => {
+        /// One of the forces of a network.
+        #[derive(Clone, Debug)]
+        #[expect(clippy::large_enum_variant, reason = "the large one occurs once in a network")]
+        #[non_exhaustive]
+        pub enum Element {
+            $($(#[$doc])* $name($name),)*
+        }
+
+        impl Element {
+            /// Returns the force of the element.
+            pub(crate) fn force(&self) -> &dyn Force {
+                match self {
+                    $(Self::$name(element) => element,)*
+                }
+            }
+
+            /// Returns the force of the element, to be changed.
+            pub(crate) fn force_mut(&mut self) -> &mut dyn Force {
+                match self {
+                    $(Self::$name(element) => element,)*
+                }
+            }
+
+            /// Returns the force as one of type T, if it is one: a comparison of variants, once
+            /// compiled.
+            pub(crate) fn get<T: Any>(&self) -> Option<&T> {
+                match self {
+                    $(Self::$name(element) => (element as &dyn Any).downcast_ref(),)*
+                }
+            }
+
+            /// Returns the force as one of type T, to be changed, if it is one.
+            pub(crate) fn get_mut<T: Any>(&mut self) -> Option<&mut T> {
+                match self {
+                    $(Self::$name(element) => (element as &mut dyn Any).downcast_mut(),)*
+                }
+            }
+
+            /// Returns the position of the element's type in the table, which is the order of
+            /// summation.
+            pub(crate) fn rank(&self) -> u8 {
+                enum Rank {
+                    $($name,)*
+                }
+                match self {
+                    $(Self::$name(_) => Rank::$name as u8,)*
+                }
+            }
+        }
+
+        $(impl From<$name> for Element {
+            fn from(element: $name) -> Self {
+                Self::$name(element)
+            }
+        })*
+    };
+}
+
+// In the order in which a network sums them.
+elements! {
+    /// Springs of a grid of particles.
+    Sheet,
+    /// Single springs.
+    Springs,
+    /// Bend springs that buckle.
+    BucklingSprings,
+    /// Springs that only pull.
+    Cords,
+    /// Fluid of smoothed particles.
+    Fluid,
+    /// Tetrahedra of an elastic material.
+    Solid,
+    /// Gas in a closed surface.
+    Gas,
+    /// Uniform gravity.
+    Gravity,
+    /// Viscous drag.
+    Drag,
+    /// Wind that pushes each particle.
+    Wind,
+    /// Wind that blows on triangles.
+    Airflow,
+    /// A critically damped spring from a moving point to a particle.
+    Attraction,
+    /// Repulsion of surfaces that are nearer than their thickness.
+    ContactLayer,
+    /// A force that is a function.
+    OwnForce,
+}
+
+impl Element {
+    /// Returns whether the force is elastic: springs or a solid.
+    pub(crate) fn is_elastic(&self) -> bool {
+        matches!(
+            self.force().matter(),
+            Some(Matter::Springs | Matter::Elastic)
+        )
+    }
+
+    /// Returns whether the element couples no particles.
+    pub(crate) fn is_empty(&self) -> bool {
+        self.force().cost().couplings == 0.0
+    }
+}
+
+/// Writes the product of the matrix of these springs with p to out. Returns their number.
+pub(super) fn multiply(elements: &Elements, matrix: &Matrix, p: &[f64], out: &mut [f64]) -> usize {
+    let in_sheets: usize = elements.sheets().map(Sheet::len).sum();
+    let clamped = matrix.clamped;
+    let finish = Finish {
+        inertia: Some(matrix.masses),
+        inverse_masses: Some(matrix.free),
+        ..Finish::default()
+    };
+    elements.clear_single(out);
+    for sheet in elements.sheets() {
+        let quantity = Quantity::Tangent { clamped };
+        let sheet = sheet.scaled(matrix.stiffness, matrix.damping);
+        set(quantity, &sheet, &[matrix.x, p], out, false, &finish);
+    }
+    elements.finish_single(p, out, &finish);
+    let Some(packed) = elements.of::<Springs>().find_map(Springs::packed) else {
+        return in_sheets;
+    };
+    packed.add_product(matrix, p, out);
+    // The product is 0 on pinned particles.
+    divide_by_masses(matrix.free, out);
+    in_sheets + packed.len()
+}
+
+/// Adds the blocks of these springs to the diagonal of the matrix. Returns their number.
+pub(super) fn add_diagonal(elements: &Elements, matrix: &Matrix, diagonal: &mut Diagonal) -> usize {
+    let all = elements.all().iter();
+    all.map(|element| element.force().add_diagonal(matrix, diagonal))
+        .sum()
+}
+
+/// Visits all other couplings.
+pub(super) fn other_couplings(
+    elements: &Elements,
+    t: f64,
+    x: &[f64],
+    clamped: bool,
+    visit: &mut dyn FnMut(Coupling),
+) {
+    let all = elements.all().iter().map(Element::force);
+    for force in all.filter(|force| !force.multiplies_together()) {
+        force.couplings(t, x, clamped, visit);
+    }
+}
+
+impl Elements {
+    /// Adds one spring between particles that exist.
+    pub fn add_spring(&mut self, spring: Spring) -> Result<(), Error> {
+        check_ends([spring.i, spring.j], self.particles())?;
+        if let Some(springs) = self.first_mut::<Springs>() {
+            springs.push(spring);
+            return Ok(());
+        }
+        let mut springs = Springs::default();
+        springs.push(spring);
+        self.insert(springs.into());
+        Ok(())
+    }
+
+    /// Sorts the single springs by their ends.
+    pub fn sort_springs(&mut self) {
+        if let Some(springs) = self.first_mut::<Springs>() {
+            springs.sort();
+        }
+    }
+
+    /// Adds a bend spring that buckles, between particles that exist.
+    pub fn add_buckling(&mut self, buckling: Buckling) -> Result<(), Error> {
+        check_ends([buckling.i, buckling.j], self.particles())?;
+        if let Some(springs) = self.first_mut::<BucklingSprings>() {
+            return springs.push(buckling);
+        }
+        let mut springs = BucklingSprings::default();
+        springs.push(buckling)?;
+        self.add(springs.into())
+    }
+
+    pub fn buckling(&self) -> impl Iterator<Item = Buckling> {
+        self.of::<BucklingSprings>().flat_map(BucklingSprings::all)
+    }
+
+    /// Returns the springs of sheets, and then the single ones.
+    pub fn springs(&self) -> impl Iterator<Item = Spring> {
+        let single = self.of::<Springs>().flat_map(Springs::all).copied();
+        self.sheets().flat_map(Sheet::springs).chain(single)
+    }
+
+    pub fn all_springs(&self) -> impl Iterator<Item = Spring> {
+        self.springs().chain(self.straight()).chain(self.cords())
+    }
+
+    /// Returns the springs that buckle, as they are while straight.
+    fn straight(&self) -> impl Iterator<Item = Spring> {
+        let buckling = self.of::<BucklingSprings>();
+        buckling.flat_map(BucklingSprings::straight)
+    }
+
+    /// Returns the springs that only pull.
+    pub fn cords(&self) -> impl Iterator<Item = Spring> {
+        self.of::<Cords>().flat_map(Cords::springs)
+    }
+
+    /// Checks that there is a spring between each of these pairs of particles.
+    pub fn check_springs(&self, pairs: &[[usize; 2]]) -> Result<(), Error> {
+        let mut there: Vec<_> = self.all_springs().map(|s| ends(&s)).collect();
+        there.sort_unstable();
+        for &[i, j] in pairs {
+            if there.binary_search(&[i.min(j), i.max(j)]).is_err() {
+                return Err(Error::Invalid(format!(
+                    "there is no spring between particles {i} and {j}"
+                )));
+            }
+        }
+        Ok(())
+    }
+
+    /// Replaces the springs, the solids and the fluid by those of others, of the same particles.
+    pub fn copy_springs(&mut self, others: &Self) -> Result<(), Error> {
+        let [n, of_others] = [self, others].map(Self::particles);
+        if n != of_others {
+            return Err(Error::Invalid(format!(
+                "the springs of a network of {of_others} particles do not fit one of {n}"
+            )));
+        }
+        let is_matter = |element: &Element| element.force().matter().is_some();
+        self.replace(is_matter, None);
+        for element in others.all().iter().filter(|element| is_matter(element)) {
+            self.insert(element.clone());
+        }
+        Ok(())
+    }
+
+    /// Returns the strain at each particle at x (m).
+    pub fn strains(&self, x: &[f64]) -> Vec<f64> {
+        let mut strains = vec![f64::NAN; self.particles()];
+        let stretch = |s: &Spring| distance(x, s.i, s.j) / s.law.rest_length - 1.0;
+        let others = self.springs().chain(self.straight());
+        let others = others.map(|s| (s, stretch(&s).abs()));
+        let cords = self.cords().map(|s| (s, stretch(&s).max(0.0)));
+        let all = others.chain(cords);
+        for (s, strain) in all.filter(|(s, _)| s.law.rest_length > 0.0) {
+            for i in [s.i, s.j] {
+                strains[i] = strains[i].max(strain);
+            }
+        }
+        for (corners, strain) in self.solids().flat_map(|solid| solid.strains(x)) {
+            for i in corners {
+                strains[i as usize] = strains[i as usize].max(strain);
+            }
+        }
+        strains
+    }
+
+    /// Returns the largest length over rest length of a structural spring, or principal stretch of
+    /// a solid.
+    pub fn largest_stretch(&self, x: &[f64]) -> Option<f64> {
+        let structural = |s: &Spring| s.kind == SpringKind::Structural && s.law.rest_length > 0.0;
+        let of_springs = self.springs().chain(self.cords()).filter(structural);
+        let of_springs = of_springs.map(|s| distance(x, s.i, s.j) / s.law.rest_length);
+        let of_solids = self.solids().flat_map(|solid| solid.stretches(x));
+        let of_solids = of_solids.map(|(_, stretches)| stretches.max());
+        of_springs.chain(of_solids).reduce(f64::max)
     }
 }

@@ -1,10 +1,9 @@
 //! A network as integrators see it: forces, accelerations, kicks and drifts, couplings and springs.
 
-use super::element::Element;
-use super::energies::has_motors;
-use super::evaluation::{at, finish, flow, other_forces};
+use super::elements;
+use super::elements::Element;
+use super::evaluation::{at, finish, flow, has_motors, other_forces};
 use super::holding::hold_particles;
-use super::matrix;
 use super::parts::Network;
 use crate::columns::columns_mut;
 use crate::coupling::{Coupling, Diagonal, Matrix};
@@ -176,15 +175,15 @@ impl Linearized for Network {
 
 impl Products for Network {
     fn multiply(&self, matrix: &Matrix, p: &[f64], out: &mut [f64]) -> usize {
-        matrix::multiply(&self.elements, matrix, p, out)
+        elements::multiply(&self.elements, matrix, p, out)
     }
 
     fn add_diagonal(&self, matrix: &Matrix, diagonal: &mut Diagonal) -> usize {
-        matrix::add_diagonal(&self.elements, matrix, diagonal)
+        elements::add_diagonal(&self.elements, matrix, diagonal)
     }
 
     fn other_couplings(&self, t: f64, x: &[f64], clamped: bool, visit: &mut dyn FnMut(Coupling)) {
-        matrix::other_couplings(&self.elements, t, x, clamped, visit);
+        elements::other_couplings(&self.elements, t, x, clamped, visit);
     }
 }
 

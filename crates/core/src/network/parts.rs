@@ -3,9 +3,8 @@
 use super::bodies::Bodies;
 use super::elements::Elements;
 use super::particles::Particles;
-use super::strain::StrainLimits;
 use super::surfaces::Surfaces;
-use super::tearing::Tears;
+use super::tearing::{StrainLimits, Tears};
 use crate::constraints::Constraints;
 
 /// Particles, and the elements and constraints that act on them. Elements that a scene does not use

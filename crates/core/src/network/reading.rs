@@ -4,11 +4,11 @@ use std::ops::Range;
 
 use nalgebra::Vector3;
 
-use super::element::Element;
+use super::elements::Element;
 use super::evaluation::{at, prescribed};
 use super::parts::Network;
 use super::surfaces::Touch;
-use super::{crossings, energies, holding};
+use super::{crossings, evaluation, holding};
 use crate::constraints::Constraint;
 use crate::contact::{ContactLayer, Crossed, Obstacle, StrainLimit, crossed};
 use crate::elements::{Buckling, Finish, Fluid, Sheet, Wind};
@@ -77,7 +77,7 @@ impl Network {
         let shapes: Vec<_> = obstacles.map(|obstacle| obstacle.shape.name()).collect();
         let shown = ["sphere", "box", "capsule", "floor"].into_iter();
         let constraints = self.is_constrained().then_some("constraints");
-        let motors = energies::has_motors(self).then_some("motors");
+        let motors = evaluation::has_motors(self).then_some("motors");
         let tearing = self.tear_limit().map(|_| "tearing");
         let limits = (!self.strain_limits().is_empty()).then_some("strain limit");
         let others = constraints
@@ -385,12 +385,12 @@ impl Network {
     /// Returns the energy in the state (x, v) at time t (s), where obstacles are then.
     #[must_use]
     pub fn energy_at(&self, t: f64, x: &[f64], v: &[f64]) -> Energy {
-        energies::energy_at(self, t, x, v)
+        evaluation::energy_at(self, t, x, v)
     }
 
     /// Returns the energy of the state y at time t (s), that of rotations included.
     #[must_use]
     pub fn energy_of(&self, t: f64, y: &[f64]) -> Energy {
-        energies::energy_of(self, t, y)
+        evaluation::energy_of(self, t, y)
     }
 }

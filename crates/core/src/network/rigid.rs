@@ -3,11 +3,9 @@
 
 use std::ops::Range;
 
-use super::evaluation::{at, is_split};
-use super::holding::{free_motion, hold};
-use super::loads::{Loads, decay, turning, wrench};
+use super::evaluation::{Loads, at, decay, is_split, turning, wrench};
+use super::holding::{free_motion, has_joints, hold, project};
 use super::parts::Network;
-use super::project::{has_joints, project};
 use crate::constraints;
 use crate::elements::force::DriftForces;
 use crate::elements::{Airflow, Finish};

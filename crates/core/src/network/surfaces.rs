@@ -1,10 +1,14 @@
-//! Surfaces of a network: triangles, obstacles, and their contact properties.
+//! Surfaces of a network: triangles, obstacles, and their contact properties; and contact as a
+//! force: primitives nearer than their thickness repel each other.
 
 use super::particles::Particles;
 use super::tearing::Tears;
 use crate::constraints::Constraint;
 use crate::contact::{ContactLayer, Obstacle, Shape, Skin, Surface};
+use crate::coupling::{AxialCoupling, BlockCoupling, Coupling};
 use crate::elements::Wind;
+use crate::elements::force::{At, Force};
+use crate::energy::Energy;
 use crate::error::Error;
 use crate::geometry::Triangles;
 use crate::path::{Path, Turn};
@@ -12,7 +16,7 @@ use crate::pin::Pin;
 use crate::rigid::Body;
 
 /// Rigid bodies, with the constraints that may join them.
-pub(super) type Jointed<'a> = (&'a [Body], &'a [Constraint]);
+type Jointed<'a> = (&'a [Body], &'a [Constraint]);
 
 /// Contact properties of a network: skins, loose edges, drops, and self-contact.
 #[derive(Clone, Debug, PartialEq)]
@@ -197,5 +201,68 @@ impl Prescribed<'_> {
         let of_wind = self.wind.map(|wind| wind.quarter_period(times));
         let all = of_paths.chain(of_turns).chain(of_wind);
         all.fold(f64::INFINITY, f64::min)
+    }
+}
+
+impl Force for ContactLayer {
+    fn name(&self) -> &'static str {
+        "contact"
+    }
+
+    fn add_forces(&self, at: &At, f: &mut [f64]) {
+        self.add_repulsion(at.t, at.x, at.v, f);
+    }
+
+    fn add_differential(&self, at: &At, d: [&[f64]; 2], df: &mut [f64]) {
+        self.add_repulsion_differential(at.t, [at.x, at.v], d, df);
+    }
+
+    /// Visits couplings along the normals alone: the part from the rotation of a normal is left
+    /// out, as if clamped. The weights w of a pair sum to zero, so its stiffness k w wT couples its
+    /// points i and j by -k wi wj. Points of obstacles are places.
+    fn couplings(&self, t: f64, x: &[f64], _clamped: bool, visit: &mut dyn FnMut(Coupling)) {
+        let n = x.len() / 3;
+        self.stiffnesses(t, x, |points, pair| {
+            for k in 0..4 {
+                for l in k + 1..4 {
+                    let weight = -pair.weights[k] * pair.weights[l];
+                    let [i, j] = [points[k], points[l]].map(|i| i as usize);
+                    if weight == 0.0 || i >= n && j >= n {
+                        continue;
+                    }
+                    let [x, y, z]: [f64; 3] = pair.normal.into();
+                    let (along, damping) = (weight * pair.stiffness, weight * pair.damping);
+                    visit(if i < n && j < n {
+                        Coupling::Axial(AxialCoupling {
+                            i,
+                            j,
+                            direction: [x, y, z],
+                            along,
+                            across: 0.0,
+                            damping,
+                        })
+                    } else {
+                        let block = [x * x, y * y, z * z, x * y, x * z, y * z];
+                        Coupling::Block(BlockCoupling {
+                            i: i.min(j),
+                            j: i.min(j),
+                            stiffness: block.map(|b| b * along),
+                            damping: block.map(|b| b * damping),
+                        })
+                    });
+                }
+            }
+        });
+    }
+
+    fn energy(&self, at: &At) -> Energy {
+        Energy {
+            contact: self.repulsion_energy(at.t, at.x, at.v),
+            ..Energy::default()
+        }
+    }
+
+    fn reads_velocity(&self) -> bool {
+        self.is_damped()
     }
 }

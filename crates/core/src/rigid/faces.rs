@@ -2,8 +2,8 @@
 
 use nalgebra::Vector3;
 
-use super::part::Part;
-use super::round::{Round, round};
+use super::body::Part;
+use super::mass::{Round, round};
 use crate::geometry::Shape;
 
 /// Barycentric coordinate that a node has at two corners of a triangle, and the node's share of the

@@ -1,22 +1,31 @@
 //! Driver of a run, which takes whole steps only. If a requested time is within a step, the run
 //! continues to the end of that step, and the state at the time is interpolated by the step's
 //! polynomial. How often a run is shown therefore does not change it.
+//!
+//! The step that contains the time shown: states at its ends, and a polynomial between them.
+//!
+//! In a fixed step, positions are the polynomial of degree 5 through the positions, velocities and
+//! accelerations at both ends, and velocities are its derivative (Hermite interpolation: Hairer,
+//! Norsett, Wanner, *Solving Ordinary Differential Equations I*, 1993, II.6); its error is of order
+//! h^6. After an impact, or in a step that is long compared with the fastest motion, the polynomial
+//! oscillates: its acceleration in the middle of the step differs from that of the system, and a
+//! straight line replaces it.
 
+use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
 use super::balance::Balance;
-use super::failure::Failure;
 use super::power::End;
 use super::reach::STEP_END_TOLERANCE;
 use super::state::RunState;
-use super::step::Pipeline;
+use super::step::{Failure, Pipeline};
 use super::stepper::Stepper;
-use super::within::{Span, Within};
 use crate::control::Control;
 use crate::error::Error;
 use crate::integrators::AdaptiveState;
 use crate::network::{next_break, pass_to};
 use crate::scene::Model;
+use crate::system::ParticleSystem;
 use crate::threads::among_threads;
 
 /// Progress of a run within a step, and the memory of an adaptive method.
@@ -296,5 +305,231 @@ impl Driver {
 fn pass_model_to(model: &mut Model, t: f64) {
     if let Model::Network(network) = model {
         pass_to(network, t);
+    }
+}
+
+/// Largest difference between the accelerations of the polynomial and of the system in the middle
+/// of the step, over the largest acceleration at its ends; above it, a straight line replaces the
+/// polynomial.
+const MAX_UNEXPLAINED: f64 = 0.375;
+
+/// Largest number of times that the middle of a step is checked: each straight line changes the
+/// forces on other particles.
+const MAX_ROUNDS: usize = 4;
+
+/// Step that contains the time shown.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Span {
+    /// Times of its beginning and its end (s).
+    pub times: [f64; 2],
+    /// States at its beginning, which only a fixed step needs, and at its end.
+    pub ends: [Vec<f64>; 2],
+}
+
+/// Step that contains the time shown, if one does.
+#[derive(Default)]
+pub(super) struct Within {
+    /// Times of its beginning and its end (s).
+    times: Option<[f64; 2]>,
+    /// States at its beginning and its end.
+    ends: [Vec<f64>; 2],
+    /// Rates of change there; empty until a state between them is shown.
+    rates: [Vec<f64>; 2],
+    /// Whether each particle, and then each other number, follows its polynomial; empty until a
+    /// state between the ends is shown.
+    is_smooth: Vec<bool>,
+    /// State and rates of change in the middle.
+    middle: [Vec<f64>; 2],
+}
+
+impl Within {
+    /// Returns the time at the end of the step (s), if the time shown is within one.
+    pub fn until(&self) -> Option<f64> {
+        self.times.map(|times| times[1])
+    }
+
+    /// Returns the time (s) and state at the end of the step, if the time shown is within one.
+    pub fn end(&self) -> Option<(f64, &[f64])> {
+        self.times.map(|times| (times[1], &self.ends[1][..]))
+    }
+
+    /// Returns the times of both ends of the step (s), if the time shown is within one.
+    pub fn times(&self) -> Option<[f64; 2]> {
+        self.times
+    }
+
+    /// Returns the state at the beginning of a fixed step.
+    pub fn y0(&self) -> &[f64] {
+        &self.ends[0]
+    }
+
+    /// Remembers the state at the beginning of a step that will contain the time shown.
+    pub fn begin(&mut self, y0: &[f64]) {
+        self.ends[0].clear();
+        self.ends[0].extend_from_slice(y0);
+    }
+
+    /// Enters the step between these times (s), which ends at y1.
+    pub fn enter(&mut self, times: [f64; 2], y1: &[f64]) {
+        self.ends[1].clear();
+        self.ends[1].extend_from_slice(y1);
+        self.times = Some(times);
+        self.is_smooth.clear();
+    }
+
+    /// Leaves the step, and returns the state at its end.
+    pub fn leave(&mut self) -> Option<&mut Vec<f64>> {
+        self.times.take().map(|_| &mut self.ends[1])
+    }
+
+    /// Writes the state at a time (s) within a fixed step to `out`: first positions and velocities
+    /// of n particles, then other numbers.
+    pub fn interpolate(
+        &mut self,
+        (system, n): (&dyn ParticleSystem, usize),
+        time: f64,
+        out: &mut [f64],
+    ) {
+        let Some([t0, t1]) = self.times else { return };
+        if self.is_smooth.is_empty() {
+            self.judge(system, n, [t0, t1]);
+        }
+        self.write(n, (time - t0) / (t1 - t0), t1 - t0, out);
+        system.hold(time, out);
+    }
+
+    /// Finds the rates of change at both ends, and which numbers follow their polynomials.
+    fn judge(&mut self, system: &dyn ParticleSystem, n: usize, [t0, t1]: [f64; 2]) {
+        let ends = self.ends.iter().zip([t0, t1]);
+        for ((y, t), rates) in ends.zip(&mut self.rates) {
+            rates.resize(y.len(), 0.0);
+            system.eval_f(t, y, rates);
+        }
+        let (h, dim) = (t1 - t0, self.ends[0].len());
+        self.is_smooth.resize(n + (dim - 6 * n), true);
+        let [mut y, mut f] = std::mem::take(&mut self.middle);
+        y.resize(dim, 0.0);
+        f.resize(dim, 0.0);
+        for _ in 0..MAX_ROUNDS {
+            self.write(n, 0.5, h, &mut y);
+            system.hold(t0 + 0.5 * h, &mut y);
+            system.eval_f(t0 + 0.5 * h, &y, &mut f);
+            let swings_out = |k: &usize| {
+                self.is_smooth[*k]
+                    && if *k < n {
+                        !self.is_explained((3 * n + k..6 * n).step_by(n), &f, h)
+                    } else {
+                        !self.is_explained(std::iter::once(5 * n + k), &f, h)
+                    }
+            };
+            let out: Vec<_> = (0..self.is_smooth.len()).filter(swings_out).collect();
+            if out.is_empty() {
+                break;
+            }
+            for k in out {
+                self.is_smooth[k] = false;
+            }
+        }
+        self.middle = [y, f];
+    }
+
+    /// Returns whether the polynomials of these numbers have about the rates of change f in the
+    /// middle of a step of h (s).
+    fn is_explained(&self, numbers: impl Iterator<Item = usize>, f: &[f64], h: f64) -> bool {
+        let ([y0, y1], [f0, f1]) = (&self.ends, &self.rates);
+        let [mut missed, mut first, mut last] = [0.0; 3];
+        for k in numbers {
+            // The same for the polynomials of degree 5 and 3.
+            let middle = 1.5 * (y1[k] - y0[k]) / h - 0.25 * (f0[k] + f1[k]);
+            missed += (f[k] - middle).powi(2);
+            first += f0[k].powi(2);
+            last += f1[k].powi(2);
+        }
+        missed <= MAX_UNEXPLAINED.powi(2) * first.max(last)
+    }
+
+    /// Writes the state at the fraction theta of a step of h (s), without pins.
+    fn write(&self, n: usize, theta: f64, h: f64, out: &mut [f64]) {
+        for i in 0..n {
+            self.move_particle(n, i, h, theta, out);
+        }
+        let ([y0, y1], [f0, f1]) = (&self.ends, &self.rates);
+        for k in 6 * n..out.len() {
+            let (value, slope) = ([y0[k], y1[k]], [h * f0[k], h * f1[k]]);
+            out[k] = between(value, slope, theta, self.is_smooth[k - 5 * n]);
+        }
+    }
+
+    /// Writes position and velocity of particle i of n at the fraction theta of a step of h (s).
+    fn move_particle(&self, n: usize, i: usize, h: f64, theta: f64, out: &mut [f64]) {
+        let row = |a: &[f64], first: usize| {
+            Vector3::new(a[first + i], a[first + n + i], a[first + 2 * n + i])
+        };
+        let [x0, x1] = self.ends.each_ref().map(|y| row(y, 0));
+        let [v0, v1] = self.ends.each_ref().map(|y| row(y, 3 * n) * h);
+        let d = x1 - x0;
+        let (x, v) = if self.is_smooth[i] {
+            let [a0, a1] = self.rates.each_ref().map(|f| row(f, 3 * n) * (h * h));
+            let c3 = 10.0 * d - 6.0 * v0 - 4.0 * v1 - 1.5 * a0 + 0.5 * a1;
+            let c4 = -15.0 * d + 8.0 * v0 + 7.0 * v1 + 1.5 * a0 - a1;
+            let c5 = 6.0 * d - 3.0 * (v0 + v1) - 0.5 * a0 + 0.5 * a1;
+            let x =
+                x0 + (v0 + (0.5 * a0 + (c3 + (c4 + c5 * theta) * theta) * theta) * theta) * theta;
+            let v = v0 + (a0 + (3.0 * c3 + (4.0 * c4 + 5.0 * c5 * theta) * theta) * theta) * theta;
+            (x, v)
+        } else {
+            (x0 + d * theta, v0 + (v1 - v0) * theta)
+        };
+        for axis in 0..3 {
+            out[axis * n + i] = x[axis];
+            out[(3 + axis) * n + i] = v[axis] / h;
+        }
+    }
+
+    /// Returns the step, if the time shown is within one.
+    pub fn span(&self) -> Option<Span> {
+        self.times.map(|times| Span {
+            times,
+            ends: self.ends.clone(),
+        })
+    }
+
+    /// Creates the step of saved progress, in a system of that dimension.
+    ///
+    /// # Errors
+    /// It is of another system, or its times are not those of a step.
+    pub fn of(span: Option<&Span>, dim: usize) -> Result<Self, Error> {
+        let mut within = Self::default();
+        let Some(Span { times, ends }) = span else {
+            return Ok(within);
+        };
+        let [t0, t1] = *times;
+        if !(t0 < t1 && (t1 - t0).is_finite()) {
+            return Err(Error::Invalid(format!(
+                "a step must end after it begins, not begin at {t0} s and end at {t1} s"
+            )));
+        }
+        for end in ends.iter().filter(|end| !end.is_empty()) {
+            if end.len() != dim {
+                return Err(Error::Dimension {
+                    expected: dim,
+                    found: end.len(),
+                });
+            }
+        }
+        within.begin(&ends[0]);
+        within.enter(*times, &ends[1]);
+        Ok(within)
+    }
+}
+
+/// Returns the value at the fraction theta of a step. It is on the polynomial of degree 3 if that
+/// is smooth, else on a straight line.
+fn between([y0, y1]: [f64; 2], [s0, s1]: [f64; 2], theta: f64, is_smooth: bool) -> f64 {
+    let d = y1 - y0;
+    if is_smooth {
+        y0 + (s0 + (3.0 * d - 2.0 * s0 - s1 + (s0 + s1 - 2.0 * d) * theta) * theta) * theta
+    } else {
+        y0 + d * theta
     }
 }

@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use super::grabbed::{Grabbed, PULL_TIME};
+use super::pins::{Grabbed, PULL_TIME};
 use super::state::RunState;
 use crate::columns::row;
 use crate::contact::Shape;

@@ -2,9 +2,8 @@
 
 use nalgebra::{DMatrixView, Vector3};
 
-use super::grabbed::Grabbed;
 use super::hand::Hand;
-use super::pins::{leave, leave_all_but, own_release, pin, unpin_all_but};
+use super::pins::{Grabbed, leave, leave_all_but, own_release, pin, unpin_all_but};
 use super::run::Simulation;
 use super::state::RunState;
 use super::touching::{check_touch, let_touch, touches_itself};

@@ -1,17 +1,20 @@
 //! Phases after an integrator's step: springs that are too long are shortened, particles are moved
 //! out of obstacles, surfaces are kept from passing through one another, and pins are put in their
-//! places.
+//! places. Where joints hold bodies that meet something, they change the impulses, and the energy of
+//! such a step.
+
+use std::cell::Cell;
 
 use super::depths::Depths;
-use super::jointed::JointsOf;
 use crate::columns::row;
-use crate::constraints::Constraint;
+use crate::constraints::{Constraint, Joint};
 use crate::contact::{
-    ContactPhase, Impulses, Pinched, Statistics, Step, StrainLimiter, Strained, bulge, guard,
-    resolve,
+    Bodies, ContactPhase, Course, Impulses, Joints, Pinched, Statistics, Step, StrainLimiter,
+    Strained, bulge, earliest, guard, resolve,
 };
 use crate::error::Cause;
-use crate::network::{Network, has_ropes, outflows, project};
+use crate::network::{Network, has_joints, has_ropes, outflows, project, project_velocities};
+use crate::rigid::ROTATION;
 use crate::scene::Model;
 use crate::system::{Mechanics, ParticleSystem};
 
@@ -249,4 +252,130 @@ fn largest_shift(network: &Network, [a, b]: [&[f64]; 2]) -> f64 {
     let held = ends.flat_map(|(first, second)| [Some(first), second]);
     let shifts = held.flatten().map(|i| (row(b, n, i) - row(a, n, i)).norm());
     shifts.fold(0.0, f64::max)
+}
+
+/// Shortest interval in the search for a spring that is too long, as a share of the piece.
+const MIN_INTERVAL: f64 = 1e-4;
+
+/// Number of intervals of a piece at whose ends the lengths of ropes are looked at.
+const INTERVALS: u32 = 8;
+
+/// Number of bisections of such an interval.
+const BISECTIONS: u32 = 45;
+
+/// Finds the share of a piece at which a vector is first longer than `longest` (m).
+pub(super) fn first_longer(apart: &Course, longest: f64) -> Option<f64> {
+    let [speed, _] = apart.bounds();
+    earliest([0.0, 1.0], MIN_INTERVAL, |[a, b]| {
+        let middle = apart.position(0.5 * (a + b));
+        middle.norm() + speed * 0.5 * (b - a) >= longest
+    })
+}
+
+/// Finds the share of a piece at which a vector becomes longer than `longest` (m), unless that
+/// lasts for less than one of the intervals of the piece. A rope that has just rebounded begins at
+/// its length.
+pub(super) fn first_beyond(apart: &Course, longest: f64) -> Option<f64> {
+    let is_longer = |share: f64| apart.position(share).norm() > longest;
+    let end = |k: u32| f64::from(k) / f64::from(INTERVALS);
+    let k = (1..=INTERVALS).find(|k| is_longer(end(*k)))?;
+    let (mut low, mut high) = (end(k - 1), end(k));
+    for _ in 0..BISECTIONS {
+        let middle = 0.5 * (low + high);
+        *(if is_longer(middle) {
+            &mut high
+        } else {
+            &mut low
+        }) = middle;
+    }
+    Some(high)
+}
+
+/// Largest share by which jumps of velocities are changed.
+const MAX_SHARE: f64 = 0.05;
+
+/// Share of a sum of impulses that is a rounding error.
+const ROUNDING: f64 = 1e-12;
+
+/// Joints of the rigid bodies of a network.
+struct JointsOf<'a> {
+    network: &'a Network,
+    /// Sum of the magnitudes of the impulses that they have passed on (N s), and their work (J).
+    noted: Cell<[f64; 2]>,
+}
+
+impl<'a> JointsOf<'a> {
+    pub fn new(network: &'a Network) -> Self {
+        Self {
+            network,
+            noted: Cell::default(),
+        }
+    }
+
+    pub fn network(&self) -> &'a Network {
+        self.network
+    }
+
+    /// Returns what impulses of contact act on, in a step that has impulses in it already or not.
+    pub fn bodies(&self, are_struck: bool) -> Bodies<'_> {
+        Bodies {
+            inverse_masses: self.network.inverse_masses(),
+            joints: has_joints(self.network).then_some(self),
+            are_struck,
+        }
+    }
+
+    /// Gives y, the end of a step at time t (s), the energy of the step without impacts, which ends
+    /// at `unstruck`, and of the work of their impulses, if these were all impulses of contact
+    /// (N s): the forces of the rest of the step are those on the course without impacts, from
+    /// which joints turn the bodies. The jump of the velocities is made a little larger or smaller.
+    pub fn balance(&self, t: f64, all: f64, unstruck: &[f64], y: &mut [f64]) {
+        let [impulse, work] = self.noted.get();
+        if impulse == 0.0 || impulse < (1.0 - ROUNDING) * all {
+            return;
+        }
+        let first = 3 * self.network.particles();
+        let after = y.to_vec();
+        let mut energy = |share: f64| {
+            for k in first..y.len() {
+                let of_rotation = k.checked_sub(2 * first).map(|number| number % ROTATION);
+                if of_rotation.is_none_or(|number| number >= 4) {
+                    y[k] = after[k] + (after[k] - unstruck[k]) * share;
+                }
+            }
+            self.network.energy_of(t, y).total()
+        };
+        let [less, same, more] = [-1.0, 0.0, 1.0].map(&mut energy);
+        // The energy is quadratic in the share.
+        let (slope, bend) = (0.5 * (more - less), 0.5 * (more + less) - same);
+        let lacks = self.network.energy_of(t, unstruck).total() + work - same;
+        let root = (slope * slope + 4.0 * bend * lacks).sqrt();
+        let share = 2.0 * lacks / (slope + root);
+        energy(if share.abs() < MAX_SHARE { share } else { 0.0 });
+        project_velocities(self.network, y);
+    }
+}
+
+impl Joints for JointsOf<'_> {
+    fn hold(&self, center: usize) -> bool {
+        joints(self.network).any(|joint| joint.first == center || joint.second == Some(center))
+    }
+
+    fn fit(&self, y: &mut [f64]) {
+        project_velocities(self.network, y);
+    }
+
+    fn note(&self, impulse: f64, work: f64) {
+        let [impulses, works] = self.noted.get();
+        self.noted.set([impulses + impulse, works + work]);
+    }
+}
+
+/// Returns the joints of a network.
+fn joints(network: &Network) -> impl Iterator<Item = &Joint> {
+    let all = network.constraints().iter();
+    all.filter_map(|constraint| match constraint {
+        Constraint::Joint(joint) => Some(joint),
+        _ => None,
+    })
 }

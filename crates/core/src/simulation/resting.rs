@@ -1,4 +1,4 @@
-//! Particles that rest or slide on flat obstacles during a step.
+//! Particles that rest or slide on flat obstacles during a step, and the first event that ends it.
 //!
 //! If contact acts only after each step, a particle falls freely within the step: it sinks into the
 //! obstacle by half the acceleration times the square of the step, however small the tolerance.
@@ -13,13 +13,17 @@ use std::ops::Range;
 use nalgebra::Vector3;
 
 use super::depths::Depths;
-use super::events::Event;
-use super::searched::EventKind;
+use super::events::{Event, EventKind, Events, Searched};
+use super::state::RunState;
+use super::stepper::Stepper;
 use crate::columns::{row, set_row};
-use crate::contact::Obstacle;
-use crate::geometry::Shape;
+use crate::constraints::OneSided;
+use crate::contact::{Obstacle, Shape};
+use crate::elements::Outflow;
+use crate::integrators::Work;
 use crate::measure::Measure;
-use crate::network::Network;
+use crate::network::{Network, has_ropes, least_tension, open_ends, outflows, taut};
+use crate::path::Path;
 use crate::scene::Model;
 use crate::system::ParticleSystem;
 
@@ -69,7 +73,7 @@ impl Slide {
 
 /// Particles that rest in a step.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Rests {
+struct Rests {
     now: Vec<Rest>,
     scratch: Scratch,
 }
@@ -263,7 +267,7 @@ pub(super) fn first_end(
 
 /// Returns a share of the step, up to `before`, just after which a margin becomes negative; `None`
 /// if it is not negative there. If it is from the beginning, the result is `before`.
-pub(super) fn first_negative(before: f64, mut margin: impl FnMut(f64) -> f64) -> Option<f64> {
+fn first_negative(before: f64, mut margin: impl FnMut(f64) -> f64) -> Option<f64> {
     let mut high = (before, margin(before));
     if high.1 >= 0.0 {
         return None;
@@ -366,4 +370,231 @@ impl ParticleSystem for Resting<'_> {
     fn measures(&self, visit: &mut dyn FnMut(Range<usize>, Measure)) {
         self.network.measures(visit);
     }
+}
+
+/// Number of intervals of a step at whose ends joints are looked at.
+const INTERVALS: u32 = 16;
+
+/// Search for the first event of a step.
+pub(super) struct Locator {
+    /// Whether fixed steps are split at events too: always in a network with ropes.
+    pub splits_fixed_steps: bool,
+    events: Events,
+    /// Outflows of the fluid, as obstacles.
+    outflows: Vec<Obstacle>,
+    /// Particles that rest on obstacles in the current step.
+    rests: Rests,
+}
+
+impl Locator {
+    /// Creates a search in a model, with room for all its particles.
+    pub fn new(model: &Model) -> Self {
+        let outflows = model.network().map_or(&[][..], outflows).iter();
+        Self {
+            splits_fixed_steps: model.network().is_some_and(has_ropes),
+            events: Events::new(model),
+            outflows: outflows.map(obstacle).collect(),
+            rests: Rests::new(model),
+        }
+    }
+
+    /// Returns whether events are located in the steps of a stepper.
+    pub fn serves(&self, stepper: &Stepper) -> bool {
+        stepper.is_adaptive() || self.splits_fixed_steps
+    }
+
+    /// Returns whether fixed steps are split into parts, each up to an event.
+    pub fn splits(&self, stepper: &Stepper) -> bool {
+        self.splits_fixed_steps && !stepper.is_adaptive()
+    }
+
+    /// Returns a view of the model in which particles rest, if any do.
+    pub fn view<'a>(&'a self, model: &'a Model) -> Option<Resting<'a>> {
+        self.rests.view(model)
+    }
+
+    /// Returns the state at the event that was found.
+    pub fn state(&self) -> &[f64] {
+        &self.events.state
+    }
+
+    /// Lists the particles that rest on obstacles at time t (s), for steps that locate events.
+    pub fn list_rests(
+        &mut self,
+        model: &Model,
+        state: &mut RunState,
+        stepper: &mut Stepper,
+        t: f64,
+        depths: Depths,
+    ) {
+        let method = state.method;
+        let serves = !method.is_implicit() && !method.needs_mechanics() && !method.positions_only();
+        let network = model.network();
+        let network = network.filter(|network| serves && may_rest(network));
+        self.rests.clear();
+        if let Some(network) = network.filter(|_| self.serves(stepper)) {
+            let evaluated = self.rests.list(network, t, &mut state.y, depths);
+            state.work += Work::of(evaluated);
+        }
+        // If other particles rest, the last evaluation of the step before is of another system.
+        let before = std::mem::replace(&mut state.resting, self.rests.fingerprint());
+        if before != state.resting {
+            stepper.forget();
+        }
+    }
+
+    /// Finds the first event of a step of h (s) from time t (s), from y0 to the current state.
+    pub fn first_event(
+        &mut self,
+        model: &Model,
+        state: &mut RunState,
+        stepper: &mut Stepper,
+        y0: &[f64],
+        (t, h): (f64, f64),
+        depths: Depths,
+    ) -> Option<Event> {
+        let network = model.network()?;
+        let has_ropes = has_ropes(network);
+        let is_none = network.obstacles().is_empty() && self.outflows.is_empty();
+        if is_none && network.tear_limit().is_none() && !has_ropes {
+            return None;
+        }
+        let RunState { y, work, .. } = state;
+        let step = Searched {
+            network,
+            outflows: &self.outflows,
+            t,
+            h,
+            ends: [y0, y],
+            depths,
+        };
+        if y0.len() != y.len() || y.iter().any(|y| !y.is_finite()) {
+            return None;
+        }
+        let (rests, scratch) = self.rests.split();
+        let resting = Resting::of(model, rests);
+        let system = resting.as_ref().map_or(model.system(), |view| view);
+        let mut state_at = |share: f64, out: &mut [f64]| {
+            *work += stepper.state_at(system, t, share * h, y0, out);
+            system.hold(t + share * h, out);
+        };
+        let event = self.events.first(&step, &mut state_at);
+        let before = event.map_or(1.0, |event| event.share);
+        let state = &mut self.events.state;
+        let span = (t, h, depths.none);
+        let mut evaluated = 0;
+        let stop = if has_ropes {
+            first_stop(&step, before, state, &mut state_at)
+        } else {
+            None
+        };
+        let event = stop.or(event);
+        let before = event.map_or(1.0, |event| event.share);
+        let end = first_end(
+            network,
+            (rests, scratch),
+            span,
+            before,
+            state,
+            &mut |share, out| {
+                evaluated += 1;
+                state_at(share, out);
+            },
+        );
+        let slackens = if has_ropes {
+            let at = &mut |share: f64, out: &mut [f64]| {
+                evaluated += 1;
+                state_at(share, out);
+            };
+            first_slack(network, (t, h), before, state, at)
+        } else {
+            None
+        };
+        *work += Work::of(evaluated);
+        slackens.or(end).or(event)
+    }
+}
+
+/// Returns an outflow as an obstacle.
+fn obstacle(outflow: &Outflow) -> Obstacle {
+    let shape = Shape::Box {
+        half_extents: outflow.half,
+        axes: [Vector3::x(), Vector3::y(), Vector3::z()],
+    };
+    Obstacle::smooth(shape, Path::Still(outflow.at))
+}
+
+/// Finds where a joint first reaches one of its ends before the share `before` of a step, on the
+/// step's polynomial, unless that lasts for less than one of some intervals. Writes the state there
+/// to `state`.
+fn first_stop(
+    step: &Searched,
+    before: f64,
+    state: &mut Vec<f64>,
+    state_at: &mut dyn FnMut(f64, &mut [f64]),
+) -> Option<Event> {
+    let Searched { network, h, .. } = *step;
+    let [begun, ended] = step.ends.map(|y| open_ends(network, y));
+    // Half of the most by which an error can leave its chord.
+    let is_near = |(a, b): (&OneSided, &OneSided)| {
+        a.value.max(b.value) + 0.5 * h * (a.rate.abs() + b.rate.abs()) > 0.0
+    };
+    if !begun.iter().zip(&ended).any(is_near) {
+        return None;
+    }
+    let none = step.depths.none;
+    // A joint that begins at its end or beyond has passed it a little later.
+    let passed = |value: f64| {
+        if -value > none {
+            0.0
+        } else {
+            none.max(value + 1e-3 * none)
+        }
+    };
+    let mut found = vec![0.0; network.dim()];
+    let mut margin = |share: f64| {
+        state_at(share, &mut found);
+        let now = open_ends(network, &found);
+        let left = begun
+            .iter()
+            .zip(&now)
+            .map(|(begun, now)| passed(begun.value) - now.value);
+        left.fold(f64::INFINITY, f64::min)
+    };
+    let ends = (1..=INTERVALS).map(|k| before * f64::from(k) / f64::from(INTERVALS));
+    let end = ends.into_iter().find(|share| margin(*share) < 0.0)?;
+    let share = first_negative(end, &mut margin)?;
+    state.resize(network.dim(), 0.0);
+    state_at(share, state);
+    Some(Event {
+        share,
+        kind: EventKind::Rested,
+    })
+}
+
+/// Finds where a taut rope slackens before the share `before` of a step of h (s) from t (s), on the
+/// step's polynomial. Writes the state there to `state`.
+fn first_slack(
+    network: &Network,
+    (t, h): (f64, f64),
+    before: f64,
+    state: &mut Vec<f64>,
+    state_at: &mut dyn FnMut(f64, &mut [f64]),
+) -> Option<Event> {
+    taut(network).next()?;
+    let mut found = vec![0.0; network.dim()];
+    let mut margin = |share: f64| {
+        state_at(share, &mut found);
+        least_tension(network, t + share * h, &found).map_or(0.0, |(_, tension)| tension)
+    };
+    if margin(before) >= 0.0 || margin(0.0) <= 0.0 {
+        return None;
+    }
+    let share = first_negative(before, &mut margin)?;
+    state.resize(network.dim(), 0.0);
+    state_at(share, state);
+    Some(Event {
+        share,
+        kind: EventKind::Rested,
+    })
 }

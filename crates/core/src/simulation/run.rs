@@ -3,11 +3,12 @@
 use super::balance::Gain;
 use super::checkpoint::Checkpoint;
 use super::driver::Driver;
-use super::failure::Failure;
 use super::pins::strayed;
 use super::reach::STEP_END_TOLERANCE;
 use super::state::RunState;
-use super::{step::Pipeline, stepper::Stepper, watch::Watch};
+use super::step::{Failure, Pipeline};
+use super::stepper::Stepper;
+use super::watch::Watch;
 use crate::contact::{Guarded, Statistics};
 use crate::control::Control;
 use crate::error::{BlowUp, Cause, Error, Unmet};

@@ -4,7 +4,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::balance::Balance;
-use super::grabbed::Grabbed;
+use super::pins::Grabbed;
 use super::reach::STEP_END_TOLERANCE;
 use crate::contact::Guarded;
 use crate::control::Control;

@@ -5,25 +5,30 @@
 //! another), *watch* (blow-ups, and the balance of energy) and *change* (springs that are stretched
 //! too far break, liquid flows out, pins let go). Fixed and adaptive steps share them. They differ
 //! in two respects: whether a step ends at the first event within it, and whether it is taken again
-//! with a shorter length (see [`retry`](super::retry)).
+//! with a shorter length (see [`reach`](super::reach)).
 
-use super::bounds::Bounds;
+use std::ops::Range;
+
+use nalgebra::Vector3;
+
 use super::depths::Depths;
-use super::events::Event;
-use super::failure::{Failure, cause_of};
-use super::locator::Locator;
+use super::events::{Event, EventKind};
 use super::phases::{Phases, Settled};
 use super::power::End;
-use super::reach::{Part, Reach, STEP_END_TOLERANCE};
-use super::retry::{MIN_RETRY_SHARE, MIN_RETRY_STEP, limit_next, share_of_bulge, share_of_retry};
-use super::searched::EventKind;
+use super::reach::{
+    MIN_RETRY_SHARE, MIN_RETRY_STEP, Part, Reach, STEP_END_TOLERANCE, limit_next, share_of_bulge,
+    share_of_retry,
+};
+use super::resting::Locator;
 use super::state::RunState;
 use super::stepper::Stepper;
 use super::watch::Watch;
 use crate::contact::SIMULTANEOUS_SHARE;
 use crate::control::Control;
-use crate::error::{Cause, Error};
-use crate::network::{Network, breaks_between, has_ropes, jump_near, outflows};
+use crate::error::{Cause, Error, Unmet};
+use crate::network::{Network, breaks_between, contradiction, has_ropes, jump_near, outflows};
+use crate::refusal::Refusal;
+use crate::rigid::{Body, ROTATION};
 use crate::scene::{Model, Scene, StepLimits};
 use crate::system::ParticleSystem;
 
@@ -394,4 +399,120 @@ fn may_rebound(model: &Model) -> bool {
     let network = model.network();
     let network = network.filter(|network| network.contact_layer().is_none());
     network.is_some_and(|network| network.obstacles().iter().any(|o| o.restitution > 0.0))
+}
+
+/// Reason why a run cannot continue.
+pub(super) enum Failure {
+    /// Blow-up by a cause, at a time (s).
+    BlowUp { cause: Cause, time: f64 },
+    /// Error that is no blow-up.
+    Error(Error),
+}
+
+impl From<Error> for Failure {
+    fn from(error: Error) -> Self {
+        Self::Error(error)
+    }
+}
+
+/// Returns the cause of a model's blow-up, if a failed step with this error is one; otherwise the
+/// error.
+fn cause_of(error: Error, model: &Model) -> Result<Cause, Error> {
+    match error {
+        Error::NotFinite { component, .. } => Ok(not_finite(model, component)),
+        Error::StepTooSmall { step, .. } => Ok(Cause::StepTooSmall { step }),
+        Error::NoConvergence { residual } => Ok(Cause::NoConvergence { residual }),
+        Error::Unsupported {
+            why: Refusal::ReadsVelocity,
+            ..
+        } => Ok(Cause::ReadsVelocity),
+        error => Err(error),
+    }
+}
+
+/// Distance from the scene's middle, in its radii, beyond which a particle that has gained energy
+/// ends the run.
+const MAX_DISTANCE: f64 = 100.0;
+
+/// Largest distance of particles from the middle, in radii, in a state that a run goes back to
+/// after a blow-up: it still shows the whole scene.
+const MAX_GOOD_DISTANCE: f64 = 3.0;
+
+/// Number of particles that are checked together, without a branch.
+const BLOCK_LENGTH: usize = 64;
+
+/// Bounds of a scene as it begins.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Bounds {
+    pub middle: Vector3<f64>,
+    /// Distance of the farthest particle from the middle (m).
+    pub radius: f64,
+}
+
+impl Bounds {
+    /// Returns whether all particles of y are close enough to the middle for a state to go back to
+    /// after a blow-up.
+    pub fn hold_closely(&self, model: &Model, y: &[f64]) -> bool {
+        self.beyond(MAX_GOOD_DISTANCE, model, y).is_none()
+    }
+
+    /// Returns the cause of a blow-up, if a particle of y is too far away or not finite.
+    pub fn violation(&self, model: &Model, y: &[f64]) -> Option<Cause> {
+        self.beyond(MAX_DISTANCE, model, y)
+    }
+
+    /// Returns a constraint that contradicts others or pins, if there is one, in the state y at
+    /// time t (s).
+    pub fn contradiction(&self, model: &Model, y: &[f64], t: f64) -> Option<Unmet> {
+        let network = model.network()?;
+        contradiction(network, t, y, self.radius)
+    }
+
+    /// Finds the first particle that is farther than this many radii from the middle, or the first
+    /// number that is not finite, if there is one. Numbers of a first-order system may grow far.
+    fn beyond(&self, radii: f64, model: &Model, y: &[f64]) -> Option<Cause> {
+        let n = match model {
+            Model::FirstOrder(_) => 0,
+            Model::Points(_) | Model::Network(_) => model.particles(),
+        };
+        let (x, v) = y.split_at(3 * n);
+        let c = self.middle;
+        let limit = (radii * self.radius).powi(2);
+        let squared = |i: usize| {
+            (x[i] - c.x).powi(2) + (x[n + i] - c.y).powi(2) + (x[2 * n + i] - c.z).powi(2)
+        };
+        // In blocks without a branch inside. The comparison is written so that NaN fails it too.
+        let near = |block: Range<usize>| block.fold(true, |near, i| near & (squared(i) <= limit));
+        let mut blocks = (0..n).step_by(BLOCK_LENGTH);
+        if !blocks.all(|start| near(start..n.min(start + BLOCK_LENGTH))) {
+            let particle = (0..n).find(|&i| !near(i..i + 1))?;
+            let distance = squared(particle).sqrt();
+            return Some(if distance.is_finite() {
+                Cause::Away { particle, distance }
+            } else {
+                Cause::NotFinite { particle }
+            });
+        }
+        let finite = |block: &[f64]| block.iter().fold(true, |finite, v| finite & v.is_finite());
+        if v.chunks(BLOCK_LENGTH).all(finite) {
+            return None;
+        }
+        let first = v.iter().position(|v| !v.is_finite());
+        first.map(|k| not_finite(model, 3 * n + k))
+    }
+}
+
+/// Returns the cause of a blow-up where number k of a state is not finite. It names the particle
+/// that the number belongs to, which is the centre for the rotation of a rigid body.
+fn not_finite(model: &Model, k: usize) -> Cause {
+    let n = model.particles();
+    if n == 0 {
+        return Cause::NumberNotFinite { index: k };
+    }
+    let body = k.checked_sub(6 * n).map(|k| k / ROTATION);
+    let network = model.network();
+    let body = body.and_then(|body| network?.bodies().get(body));
+    Cause::NotFinite {
+        particle: body.map_or(k % n, Body::center),
+    }
 }

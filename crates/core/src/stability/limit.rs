@@ -1,9 +1,18 @@
-//! Largest steps by linear theory: at which no mode grows, and at which none grows tenfold.
+//! Largest steps by linear theory, at which no mode grows, and at which none grows tenfold. A mode
+//! is a system that any method can step.
 
-use super::growth::Growth;
+use nalgebra::Vector3;
+
 use super::mode::Mode;
+use crate::columns::columns_mut;
+use crate::coupling::{AxialCoupling, Coupling};
+use crate::elements::Flow;
 use crate::error::Error;
-use crate::integrators::Method;
+use crate::failure::succeeded;
+use crate::integrators::{Integrator, Method};
+use crate::path::Place;
+use crate::spring::SpringLaw;
+use crate::system::{Compliant, Linearized, Mechanics, Splitting, place_pins};
 
 /// Shortest time (s) in which, at the step that counts as the limit, no mode may grow more than
 /// [`GROWTH`] times.
@@ -137,4 +146,213 @@ fn beginning(growth: &mut Growth, rate: f64, longest: f64, ratio: f64) -> Option
     let begins = first(grows, start, longest, ratio)?;
     let hidden = !decays && growth.of_step(begins * 1.05) - 1.0 < MAX_SMOOTH_GROWTH;
     Some(if hidden { 0.0 } else { begins })
+}
+
+/// Growth of a mode in one step of a method.
+///
+/// Explicit Euler lets an undamped mode of frequency w grow by the root of 1 + (h w)^2 in a step,
+/// and symplectic Euler not at all up to h w = 2:
+///
+/// ```
+/// use a3_core::integrators;
+/// use a3_core::stability::{Growth, Mode};
+///
+/// let mode = Mode { stiffness: 4.0, ..Mode::default() };
+/// let growth = |name: &str, h: f64| -> Result<f64, a3_core::Error> {
+///     let method = integrators::find(name).unwrap();
+///     Ok(Growth::new(method, mode)?.of_step(h))
+/// };
+/// assert!((growth("euler", 0.1)? - 1.04_f64.sqrt()).abs() < 1e-15);
+/// assert!((growth("symplectic", 0.99)? - 1.0).abs() < 1e-12);
+/// assert!(growth("symplectic", 1.01)? > 1.3);
+/// # Ok::<(), a3_core::Error>(())
+/// ```
+pub struct Growth {
+    system: Tied,
+    integrator: Box<dyn Integrator>,
+    /// Failure of a callback in a step, if there was one.
+    failure: Option<Error>,
+}
+
+impl Growth {
+    /// Creates the growth of `mode` by `method`.
+    ///
+    /// # Errors
+    /// The method does not support damped springs, which damp the mode.
+    pub fn new(method: &Method, mode: Mode) -> Result<Self, Error> {
+        let system = Tied(mode);
+        let integrator = method.integrator(&system)?;
+        Ok(Self {
+            system,
+            integrator,
+            failure: None,
+        })
+    }
+
+    /// Checks that no callback has failed in a step.
+    ///
+    /// # Errors
+    /// That failure.
+    pub(super) fn check(&mut self) -> Result<(), Error> {
+        self.failure.take().map_or(Ok(()), Err)
+    }
+
+    /// Returns the matrix of a step of h (s) on x times the frequency and on v: a, b, c, d, row by
+    /// row. `None` if the step fails.
+    fn matrix(&mut self, h: f64) -> Option<[f64; 4]> {
+        let mut y = [0.0; 18];
+        // Particle 0 starts with x = 1, particle 1 with v = `unit`: v is scaled by the frequency,
+        // so that x and v have similar magnitudes.
+        let unit = self.system.0.frequency().max(1e-3);
+        (y[0], y[10]) = (1.0, unit);
+        let stepped = self.integrator.step(&self.system, 0.0, h, &mut y);
+        let stepped = succeeded(stepped).unwrap_or_else(|failure| {
+            self.failure = Some(failure);
+            false
+        });
+        let matrix = [y[0], y[1], y[9] / unit, y[10] / unit];
+        (stepped && matrix.iter().all(|m| m.is_finite())).then_some(matrix)
+    }
+
+    /// Returns the spectral radius of the matrix of a step of h (s); for a Runge-Kutta method, the
+    /// larger |R(h l)| of both eigenvalues l. It is infinite if the step fails.
+    pub fn of_step(&mut self, h: f64) -> f64 {
+        let Some([a, b, c, d]) = self.matrix(h) else {
+            return f64::INFINITY;
+        };
+        let (half_trace, determinant) = (0.5 * (a + d), a * d - b * c);
+        let square = half_trace * half_trace - determinant;
+        let radius = if square < 0.0 {
+            determinant.sqrt()
+        } else {
+            half_trace.abs() + square.sqrt()
+        };
+        if radius.is_nan() {
+            f64::INFINITY
+        } else {
+            radius
+        }
+    }
+
+    /// Returns the ratio of the largest to the smallest energy of a mode in steps of h (s), without
+    /// growth and decay, and relative to that of the exact motion.
+    ///
+    /// Steps move (x w, v) round an ellipse, c x^2 + (d - a) x v - b v^2 = const. The result is the
+    /// squared ratio of its axes over that of the exact motion, (1 + z) / (1 - z) with the damping
+    /// ratio z. It is 1 for a Runge-Kutta method; for Verlet's method without damping it is
+    /// 1 / (1 - (h w)^2 / 4), which is unbounded at the limit. The result is also 1 if the step
+    /// fails or its matrix has real eigenvalues.
+    pub fn swing(&mut self, h: f64) -> f64 {
+        let Some([a, b, c, d]) = self.matrix(h) else {
+            return 1.0;
+        };
+        let determinant = -b * c - 0.25 * (d - a).powi(2);
+        if determinant <= 0.0 {
+            return 1.0;
+        }
+        let half = 0.5 * (c - b).abs();
+        let root = (half * half - determinant).max(0.0).sqrt();
+        let Mode { drag, damping, .. } = self.system.0;
+        let ratio = 0.5 * (drag + damping) / self.system.0.frequency();
+        let own = ((1.0 + ratio) / (1.0 - ratio)).max(1.0);
+        ((half + root) / (half - root) / own).max(1.0)
+    }
+}
+
+/// Mode as a mechanical system along one axis: particles 0 and 1, of unit mass, are each tied to
+/// particle 2, which is pinned at the origin.
+struct Tied(pub Mode);
+
+impl Mechanics for Tied {
+    fn inverse_masses(&self) -> &[f64] {
+        &[1.0, 1.0, 0.0]
+    }
+
+    fn forces(&self, t: f64, x: &[f64], v: &[f64], f: &mut [f64]) {
+        self.kick_forces(t, x, v, f);
+        for (f, v) in f.iter_mut().zip(v) {
+            *f -= self.0.drag * v;
+        }
+    }
+
+    fn drag_coefficient(&self) -> f64 {
+        self.0.drag
+    }
+
+    fn pins(&self, _t: f64, visit: &mut dyn FnMut(usize, Place)) {
+        visit(2, Place::still(Vector3::zeros()));
+    }
+
+    fn splitting(&self) -> Option<&dyn Splitting> {
+        Some(self)
+    }
+
+    fn linearized(&self) -> Option<&dyn Linearized> {
+        Some(self)
+    }
+
+    fn compliant(&self) -> Option<&dyn Compliant> {
+        Some(self)
+    }
+}
+
+impl Compliant for Tied {
+    fn springs(&self, visit: &mut dyn FnMut([usize; 2], SpringLaw)) {
+        let law = SpringLaw {
+            stiffness: self.0.stiffness,
+            rest_length: 0.0,
+            damping: self.0.damping,
+        };
+        visit([0, 2], law);
+        visit([1, 2], law);
+    }
+
+    fn other_forces(&self, _t: f64, _x: &[f64], _v: &[f64], f: &mut [f64]) {
+        f.fill(0.0);
+    }
+}
+
+impl Splitting for Tied {
+    fn kick_forces(&self, _t: f64, x: &[f64], v: &[f64], f: &mut [f64]) {
+        for ((f, x), v) in f.iter_mut().zip(x).zip(v) {
+            *f = -self.0.stiffness * x - self.0.damping * v;
+        }
+    }
+
+    fn kick_reads_velocity(&self) -> bool {
+        self.0.reads_velocity || self.0.damping != 0.0
+    }
+
+    fn drift(&self, t: f64, h: f64, x: &mut [f64], v: &mut [f64]) {
+        let flow = Flow::new(self.0.drag, Vector3::zeros(), 1.0, h);
+        flow.apply(columns_mut(x), columns_mut(v));
+        place_pins(self, t + h, x, v);
+    }
+}
+
+impl Linearized for Tied {
+    fn force_differential(
+        &self,
+        t: f64,
+        _x: &[f64],
+        _v: &[f64],
+        dx: &[f64],
+        dv: &[f64],
+        df: &mut [f64],
+    ) {
+        self.forces(t, dx, dv, df);
+    }
+
+    fn couplings(&self, _t: f64, _x: &[f64], _clamped: bool, visit: &mut dyn FnMut(Coupling)) {
+        for i in 0..2 {
+            visit(Coupling::Axial(AxialCoupling {
+                i,
+                j: 2,
+                direction: [1.0, 0.0, 0.0],
+                along: self.0.stiffness,
+                across: self.0.stiffness,
+                damping: self.0.damping,
+            }));
+        }
+    }
 }

@@ -7,31 +7,22 @@
 //! written down here for either: the method takes a step on the mode, and the spectral radius of
 //! the matrix of that step is the growth.
 
-mod budget;
-mod checks;
-mod disturbance;
 mod eigenvalues;
-mod growth;
-mod jacobian;
 mod limit;
 mod linearised;
 mod mode;
 mod motion;
-mod normalised;
-mod observation;
 mod own_rest;
-mod pencil;
 mod rest;
 mod search;
 mod spectrum;
-mod tied;
 
-pub use budget::Budget;
-pub use disturbance::observe_at_rest;
-pub use growth::Growth;
+pub use limit::Growth;
 pub use limit::{GROWTH, HORIZON, Limit, STEPS, largest_step, tenfold_time};
+pub use mode::Observation;
 pub use mode::{Mode, fastest};
 pub use motion::Motion;
-pub use observation::Observation;
+pub use rest::observe_at_rest;
 pub use rest::{RestState, rest};
+pub use search::Budget;
 pub use spectrum::{LargestMode, spectrum};

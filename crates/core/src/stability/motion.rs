@@ -6,16 +6,12 @@
 //! its mean, but never grows: this multiple is known (`Growth::swing`) and allowed. A run is
 //! *accurate* while its error is below a hundredth of the motion.
 
-use super::budget::Budget;
-use super::checks::take_checked;
-use super::growth::Growth;
-use super::limit::{GROWTH, HORIZON, largest_step};
-use super::mode::{Mode, sort};
-use super::observation::Observation;
-use super::search::{MAX_RUN_WORK, bisect, sharpen, steps};
-use super::spectrum::spectrum;
 use std::cell::RefCell;
 
+use super::limit::{GROWTH, Growth, HORIZON, largest_step};
+use super::mode::{Mode, Observation, sort};
+use super::search::{Budget, MAX_RUN_WORK, bisect, sharpen, steps, take_checked};
+use super::spectrum::spectrum;
 use crate::control::Control;
 use crate::error::Error;
 use crate::failure::succeeded;

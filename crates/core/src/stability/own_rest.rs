@@ -8,7 +8,7 @@ use nalgebra::{Complex, DMatrix, DVector};
 use super::eigenvalues::eigenvalues;
 use super::limit::{GROWTH, tenfold_time};
 use super::linearised::longest_that_holds;
-use super::normalised::{dot, normalise};
+use super::mode::{dot, normalise};
 use crate::control::Control;
 use crate::error::Error;
 use crate::failure::succeeded;

@@ -7,7 +7,6 @@ mod cloth;
 mod constraints;
 mod fluid;
 mod forces;
-mod inflow;
 mod jelly;
 mod joints;
 mod lattice;
@@ -21,7 +20,6 @@ mod pins;
 mod places;
 mod rigid;
 mod skins;
-mod soaked;
 mod solid;
 mod state;
 

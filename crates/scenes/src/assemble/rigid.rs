@@ -1,4 +1,5 @@
-//! Rigid bodies.
+//! Rigid bodies, and their points that a fluid touches: particles of the fluid that the body
+//! carries.
 
 use std::sync::Arc;
 
@@ -8,8 +9,8 @@ use a3_core::{Vector3, rotation};
 use nalgebra::{Matrix3, Rotation3, UnitQuaternion};
 
 use super::assembly::{Assembly, Body, Counts};
+use super::places::LAYERS;
 use super::skins::point_skin;
-use super::soaked::{leak, soaked};
 use crate::budget::{Budget, FACES, TRIANGLES};
 use crate::check::{at, at_least, key_of, one_of, positive};
 use crate::description::{Fluid, PartSpec, Pin, RigidBody, Spot};
@@ -232,4 +233,158 @@ fn shape(
             "a part is one of box, ball, capsule and file, such as { ball = 0.2 }",
         )),
     }
+}
+
+/// Largest number of points of the lattice around a body.
+const MAX_POINTS: f64 = 500_000.0;
+/// Differences of distances that count as none, as a share of the spacing.
+const SAME: f64 = 1e-6;
+
+/// Least number of layers of points in a wall that stops a liquid. Cups with walls of 2 spacings
+/// and more keep all of it, wherever the lattice is; those with one layer lose some where it falls
+/// in.
+const LEAST_LAYERS: f64 = 2.0;
+/// Share of the surface of a body up to which its walls may be thin, as masts and tips are.
+const THIN_SHARE: f64 = 0.1;
+/// Number of depths at which the thickness of a wall is looked for.
+const DEPTHS: u32 = 40;
+
+/// Lists the points of a body of a volume (m3) that a fluid touches, relative to the body's origin
+/// (m): those of a lattice of the fluid's spacing around the middle of its parts, up to a few
+/// layers below its surface. There are as many as the volume has cells, so that the body displaces
+/// its volume. In two dimensions, the points in the plane of the origin and in the parts are taken.
+pub(super) fn soaked(
+    parts: &[Part],
+    volume: f64,
+    fluid: &Fluid,
+) -> Result<Vec<Vector3<f64>>, Fault> {
+    let spacing = fluid.spacing;
+    at("spacing", positive("it", spacing)).map_err(|fault| fault.within("fluid"))?;
+    let (low, high) = bounds(parts);
+    let size = high - low;
+    let flat = fluid.dimensions == 2;
+    // A cell more on each side, half of which is outside if the count is odd.
+    let counts = size.map(|size| (size / spacing).round() + 2.0);
+    let counts = Vector3::new(counts.x, counts.y, if flat { 1.0 } else { counts.z });
+    if counts.product() > MAX_POINTS {
+        let why = format!(
+            "the fluid's spacing {spacing} is too fine for this body, which is {} x {} x {} m large",
+            size.x, size.y, size.z
+        );
+        return Err(Fault::new("parts", why));
+    }
+    let first = 0.5 * (low + high) - 0.5 * spacing * (counts - Vector3::repeat(1.0));
+    let first = if flat {
+        Vector3::new(first.x, first.y, 0.0)
+    } else {
+        first
+    };
+    let [nx, ny, nz] = [counts.x, counts.y, counts.z].map(|count| count as usize);
+    let all = (0..nz).flat_map(|k| (0..ny).flat_map(move |j| (0..nx).map(move |i| [i, j, k])));
+    let near = all.map(|index| {
+        let place = first + spacing * Vector3::from(index.map(|i| i as f64));
+        let distances = parts
+            .iter()
+            .map(|part| part.shape.distance(place - part.at));
+        (place, distances.fold(f64::INFINITY, f64::min))
+    });
+    let mut near: Vec<_> = near.filter(|(_, distance)| *distance < spacing).collect();
+    let outermost = if flat {
+        0.0
+    } else {
+        outermost(&near, (volume / spacing.powi(3)).round() as usize, spacing)
+    };
+    near.retain(|(_, distance)| *distance < outermost);
+    let deepest = outermost.min(0.0) - f64::from(LAYERS) * spacing;
+    let shell = near.into_iter().filter(|(_, distance)| *distance > deepest);
+    Ok(shell.map(|(place, _)| place).collect())
+}
+
+/// Returns the sentence that a liquid can pass through walls of a body with this number of points,
+/// if some are too thin: the points of a wall stop it if there are two layers of them. A body of
+/// one convex part has no walls, but needs points.
+pub(super) fn leak(parts: &[Part], points: usize, fluid: &Fluid) -> Option<String> {
+    let needed = LEAST_LAYERS * fluid.spacing;
+    let is_convex = matches!(parts, [part] if !matches!(part.shape, Shape::Mesh(_)));
+    if is_convex {
+        let why = "it is too thin for the liquid to feel it: it needs to be at least";
+        return (points == 0).then(|| format!("{why} {needed} m thick, {LEAST_LAYERS} spacings"));
+    }
+    let (mut area, mut of_thin, mut thinnest) = (0.0, 0.0, f64::INFINITY);
+    for [middle, normal] in parts.iter().flat_map(sides) {
+        // A sheet of liquid reaches across z.
+        let size = normal.norm();
+        if fluid.dimensions == 2 && normal.z.abs() > 0.5 * size {
+            continue;
+        }
+        area += size;
+        let is_outside = |depth: &f64| {
+            let place = middle - normal * (depth / size);
+            let mut all = parts.iter();
+            all.all(|part| part.shape.distance(place - part.at) > -SAME * fluid.spacing)
+        };
+        let depths = (1..=DEPTHS).map(|k| needed * (1.0 - SAME) * f64::from(k) / f64::from(DEPTHS));
+        if let Some(depth) = depths.into_iter().find(is_outside) {
+            of_thin += size;
+            thinnest = depth.min(thinnest);
+        }
+    }
+    (of_thin > THIN_SHARE * area).then(|| {
+        format!(
+            "the liquid can pass through walls that are only {thinnest:.2} m thick: what holds it is \
+             at least {needed} m thick, {LEAST_LAYERS} spacings of the fluid"
+        )
+    })
+}
+
+/// Lists the middles of the sides of a part, with the areas (m2) times the normals.
+fn sides(part: &Part) -> Vec<[Vector3<f64>; 2]> {
+    let simplices = part.shape.simplices();
+    if simplices.triangles.is_empty() {
+        // A ball or a capsule is as thick everywhere.
+        let radius = simplices.radius;
+        let places = simplices.points.iter().map(|point| part.at + point);
+        let across = places.flat_map(|place| {
+            let [side, other] = [Vector3::x(), Vector3::z()];
+            [side, -side, other, -other].map(|out| [place + out * radius, out * (radius * radius)])
+        });
+        return across.collect();
+    }
+    let side = |corners: &[u32; 3]| {
+        let [a, b, c] = corners.map(|i| part.at + simplices.points[i as usize]);
+        [(a + b + c) / 3.0, 0.5 * (b - a).cross(&(c - a))]
+    };
+    simplices
+        .triangles
+        .iter()
+        .map(side)
+        .filter(|[_, area]| area.norm() > 0.0)
+        .collect()
+}
+
+/// Returns the distance (m) from the surface below which about `count` of the places lie. Places at
+/// the same distance stay together, so that symmetric bodies have symmetric points.
+fn outermost(places: &[(Vector3<f64>, f64)], count: usize, spacing: f64) -> f64 {
+    let mut distances: Vec<_> = places.iter().map(|(_, distance)| *distance).collect();
+    distances.sort_by(f64::total_cmp);
+    let Some(last) = distances.get(count.saturating_sub(1)) else {
+        return spacing;
+    };
+    let edges = [-SAME, SAME].map(|by| last + by * spacing);
+    let counts = edges.map(|edge| distances.partition_point(|d| *d < edge));
+    let is_nearer_below = count - counts[0].min(count) < counts[1] - count.min(counts[1]);
+    edges[usize::from(!is_nearer_below)]
+}
+
+/// Returns the least and the largest coordinates of all parts (m).
+fn bounds(parts: &[Part]) -> (Vector3<f64>, Vector3<f64>) {
+    let around = Vector3::repeat(f64::INFINITY);
+    parts.iter().fold((around, -around), |bounds, part| {
+        let simplices = part.shape.simplices();
+        let radius = Vector3::repeat(simplices.radius);
+        simplices.points.iter().fold(bounds, |(low, high), point| {
+            let at = part.at + point;
+            (low.inf(&(at - radius)), high.sup(&(at + radius)))
+        })
+    })
 }

@@ -2,9 +2,7 @@
 
 mod bodies;
 mod constraints;
-mod floor;
 mod fluid;
-mod forces;
 mod motion;
 mod obstacles;
 mod rigid;
@@ -16,15 +14,15 @@ use crate::budget::check_text;
 use crate::fault::Fault;
 use crate::reader::{self, Places};
 
+pub use bodies::{BucklingSpec, RegionSpec, SpringSpec, SwingSpec, WindSpec};
 pub use bodies::{Chain, Circle, Cloth, Jelly, MeshCloth, Particles, Solid, SolidModel};
 pub use constraints::{
     BallSpec, CircleSpec, ConstraintSpec, HingeSpec, JointSpec, LineSpec, SliderSpec,
 };
-pub use floor::{Floor, FloorSpec};
 pub use fluid::{Fluid, FluidShape, Inflow, Outflow, Tank};
-pub use forces::{BucklingSpec, RegionSpec, SpringSpec, SwingSpec, WindSpec};
 pub use motion::{Pin, Shift, Sine, Spot, Triple, Turn};
 pub use obstacles::{BoxSpec, CapsuleSpec, ObstacleSpec, SphereSpec};
+pub use obstacles::{Floor, FloorSpec};
 pub use rigid::{PartSpec, RigidBody};
 
 /// Description of a scene: its bodies, the forces and obstacles that act on them, how it is run,

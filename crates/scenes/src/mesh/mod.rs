@@ -10,7 +10,6 @@ mod reading;
 mod stl;
 mod tetgen;
 mod tetrahedra;
-mod weld;
 
 pub use data::Mesh;
 pub(crate) use tetrahedra::boundary;

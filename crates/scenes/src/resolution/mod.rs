@@ -1,7 +1,6 @@
 //! The same scene on finer or coarser grids.
 
 mod cells;
-mod fluid;
 mod places;
 mod regrid;
 

@@ -1,14 +1,15 @@
-//! The command `a3 chart`: measures the runs, prints the tables, and draws the chart.
+//! The command `a3 chart`: measures the runs, prints the tables, and draws the chart, in the file
+//! that is asked for.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use a3_core::accuracy::{Metric, Scope};
 use a3_core::{Method, Scene};
+use a3_plot::Figure;
 
 use super::asked::{check_metric, methods, scope};
 use super::data::Data;
 use super::each::Each;
-use super::files::{PICTURES, write_picture};
 use super::value::{Chart, ChartOptions};
 use super::words::Label;
 use crate::base::failure::Failure;
@@ -134,5 +135,19 @@ impl<'a> Asked<'a> {
         })?;
         write_picture(&self.picture, &figure)?;
         terminal::say(&format!("chart: {}\n", self.picture.display()))
+    }
+}
+
+/// Extensions of the picture formats.
+pub const PICTURES: &[&str] = &["svg", "pdf", "png"];
+
+/// Writes a figure as SVG, PDF or PNG, by the extension of the path.
+pub fn write_picture(path: &Path, figure: &Figure) -> Result<(), Failure> {
+    if output::ends_in(path, "png") {
+        output::write(path, &figure.png(1.0).map_err(Failure::run)?)
+    } else if output::ends_in(path, "pdf") {
+        output::write(path, &figure.pdf())
+    } else {
+        output::write(path, figure.svg().as_bytes())
     }
 }

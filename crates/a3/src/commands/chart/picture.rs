@@ -1,16 +1,20 @@
-//! The work-precision diagram of the runs.
+//! The work-precision diagram of the runs, and the style of each method, the same on every chart.
+//!
+//! The family of a method is shown by the hue, by the dash and by the kind of marker. The colours
+//! are after Okabe and Ito and after Tol. If two methods on a chart have colours that look alike
+//! to some kind of colour vision, one of them gets another colour there.
 
 use std::fmt::Write;
 
 use a3_core::accuracy::{Metric, Scope};
 use a3_core::{Method, Scene};
-use a3_plot::{Curve, Measurement, Problem, WorkPrecision};
+use a3_plot::{Curve, CurveStyle, Marker, Measurement, Problem, WorkPrecision};
 
 use super::data::Data;
 use super::measure::Study;
 use super::record::Record;
+use super::table;
 use super::words::unit;
-use super::{style, table};
 
 /// Largest error of a run that is drawn, over the error of a run in which nothing moves.
 const MAX_ERROR_RATIO: f64 = 10.0;
@@ -74,7 +78,7 @@ const TURNING: [char; 3] = ['s', 'v', 'p'];
 pub fn keep_best(chart: &mut WorkPrecision, methods: &[&'static Method], scene: &Scene) {
     let mut kept: Vec<_> = methods
         .iter()
-        .map(|m| m.is_own() || style::is_of_course(m))
+        .map(|m| m.is_own() || is_of_course(m))
         .collect();
     for problem in &chart.problems {
         for [curve, _] in problem.front() {
@@ -93,7 +97,7 @@ pub fn keep_best(chart: &mut WorkPrecision, methods: &[&'static Method], scene: 
     }
     let drawn = methods.iter().zip(&kept);
     let drawn: Vec<_> = drawn.filter_map(|(m, kept)| kept.then_some(*m)).collect();
-    let styles = style::together(&drawn);
+    let styles = together(&drawn);
     for problem in &mut chart.problems {
         for (curve, style) in problem.curves.iter_mut().zip(&styles) {
             curve.style = *style;
@@ -196,7 +200,7 @@ pub fn problem(
     metric: Metric,
     timed: bool,
 ) -> Problem {
-    let styles = style::together(methods);
+    let styles = together(methods);
     let curves = methods.iter().zip(styles).map(|(method, style)| {
         let records = drawn(all, method, metric);
         // A run that blew up is drawn at the work that it would have taken until the end. It was
@@ -237,5 +241,244 @@ pub fn problem(
         resolved,
         still: Some(still).filter(|still| still.is_finite()),
         ..Problem::default()
+    }
+}
+
+const EXPLICIT: &[f64] = &[];
+const EXPLICIT_2: &[f64] = &[4.0, 4.0];
+const SYMPLECTIC: &[f64] = &[7.0, 2.5];
+const ADAPTIVE: &[f64] = &[1.5, 1.8];
+const IMPLICIT: &[f64] = &[7.0, 2.0, 1.5, 2.0];
+/// Methods that solve spring by spring with a fixed number of iterations.
+const ITERATED: &[f64] = &[3.5, 3.5];
+
+/// Own methods.
+const OWN: &[f64] = &[9.0, 2.0, 1.5, 2.0, 1.5, 2.0];
+/// Colours and markers of own methods, one after the other.
+const OWN_STYLES: [(&str, Marker); 4] = [
+    ("#e6007e", Marker::Star(7, 0.6)),
+    ("#00a3c7", Marker::Polygon(7, 0.0)),
+    ("#7fae00", Marker::Star(4, 0.7)),
+    ("#8f5bd1", Marker::Star(12, 0.6)),
+];
+
+/// Letters of the solvers that the course teaches, whose curves are always drawn.
+const COURSE: [char; 4] = ['e', 't', 'r', 'i'];
+
+/// Smallest [difference] of two colours on a chart, if there are enough colours.
+const MIN_DIFFERENCE: f64 = 8.0;
+/// Colours for methods whose own colours look like others, the most visible first.
+const SPARE: [&str; 18] = [
+    "#0072b2", "#009e73", "#cc79a7", "#332288", "#56b4e9", "#117733", "#000000", "#777777",
+    "#5c3317", "#aa4499", "#0000cc", "#004d40", "#8bc34a", "#cc6677", "#999933", "#bb99ff",
+    "#d55e00", "#e69f00",
+];
+
+/// Returns the styles of methods that are drawn together, in their order. The solvers of the course
+/// keep their colours.
+pub fn together(methods: &[&Method]) -> Vec<CurveStyle> {
+    let mut styles = each(methods);
+    let mut places: Vec<_> = (0..methods.len()).collect();
+    places.sort_by_key(|k| !is_of_course(methods[*k]));
+    let own_colours: Vec<_> = styles.iter().map(|style| style.colour).collect();
+    let mut taken: Vec<&str> = vec![];
+    for k in places {
+        let nearest = |colour: &str| {
+            let distances = taken.iter().map(|other| difference(colour, other));
+            distances.fold(f64::INFINITY, f64::min)
+        };
+        let own = styles[k].colour;
+        if nearest(own) < MIN_DIFFERENCE {
+            let spare = || {
+                SPARE
+                    .into_iter()
+                    .filter(|spare| !own_colours.contains(spare))
+            };
+            let farthest = || spare().max_by(|a, b| nearest(a).total_cmp(&nearest(b)));
+            let apart = spare().find(|spare| nearest(spare) >= MIN_DIFFERENCE);
+            styles[k].colour = apart.or_else(farthest).unwrap_or(own);
+        }
+        taken.push(styles[k].colour);
+    }
+    styles
+}
+
+/// Returns whether the course teaches a method.
+pub fn is_of_course(method: &Method) -> bool {
+    method.letter.is_some_and(|letter| COURSE.contains(&letter))
+}
+
+/// Returns the own style of each of these methods. Own methods get theirs in turn.
+pub fn each(methods: &[&Method]) -> Vec<CurveStyle> {
+    let mut own = OWN_STYLES.into_iter().cycle();
+    let styles = methods.iter().map(|method| match method.letter {
+        Some(letter) => of(letter),
+        None => own
+            .next()
+            .map_or_else(CurveStyle::default, |(colour, marker)| CurveStyle {
+                colour,
+                dash: OWN,
+                marker,
+            }),
+    });
+    styles.collect()
+}
+
+/// Returns the style of a method of the table by its letter; the default style for any other
+/// letter.
+fn of(letter: char) -> CurveStyle {
+    use Marker::{Cross, Polygon, Star};
+    let (colour, dash, marker) = match letter {
+        'e' => ("#d55e00", EXPLICIT, Polygon(32, 0.0)),
+        't' => ("#e69f00", EXPLICIT, Polygon(4, 0.125)),
+        // On linear motion its errors are those of Heun, whose line shows through the gaps.
+        'm' => ("#8c8a2b", EXPLICIT_2, Polygon(4, 0.0)),
+        'r' => ("#882255", EXPLICIT, Polygon(5, 0.0)),
+        's' => ("#3f9fdc", SYMPLECTIC, Polygon(3, 0.5)),
+        'v' => ("#0072b2", SYMPLECTIC, Polygon(3, 0.0)),
+        'p' => ("#332288", SYMPLECTIC, Polygon(3, 0.25)),
+        'f' => ("#cc79a7", ADAPTIVE, Star(4, 0.4)),
+        'a' => ("#a03494", ADAPTIVE, Star(5, 0.42)),
+        'x' => ("#000000", ADAPTIVE, Star(6, 0.45)),
+        'u' => ("#aa3377", ADAPTIVE, Star(5, 0.25)),
+        'k' => ("#6699cc", SYMPLECTIC, Polygon(5, 0.5)),
+        'd' => ("#ee6677", ADAPTIVE, Star(3, 0.35)),
+        'g' => ("#997700", ADAPTIVE, Star(8, 0.5)),
+        'i' => ("#44aa99", IMPLICIT, Cross(0.0)),
+        'b' => ("#009e73", IMPLICIT, Cross(0.125)),
+        'n' => ("#117733", IMPLICIT, Polygon(6, 0.0)),
+        'o' => ("#5a7f1e", IMPLICIT, Star(3, 0.4)),
+        'c' => ("#b3703c", ITERATED, Polygon(8, 0.0)),
+        'j' => ("#7a4419", ITERATED, Polygon(8, 0.0625)),
+        'h' => ("#1f4fa8", SYMPLECTIC, Polygon(6, 0.5)),
+        'y' => ("#8a8d91", ITERATED, Star(3, 0.4)),
+        _ => return CurveStyle::default(),
+    };
+    CurveStyle {
+        colour,
+        dash,
+        marker,
+    }
+}
+
+/// Matrix from red, green and blue in linear light to the responses of the three kinds of cones
+/// (Oklab, Ottosson 2020).
+const CONES: Matrix = [
+    [0.412_221_470_8, 0.536_332_536_3, 0.051_445_992_9],
+    [0.211_903_498_2, 0.680_699_545_1, 0.107_396_956_6],
+    [0.088_302_461_9, 0.281_718_837_6, 0.629_978_700_5],
+];
+/// Matrix from the cube roots of these responses to lightness, green to red, and blue to yellow.
+const OKLAB: Matrix = [
+    [0.210_454_255_3, 0.793_617_785, -0.004_072_046_8],
+    [1.977_998_495_1, -2.428_592_205, 0.450_593_709_9],
+    [0.025_904_037_1, 0.782_771_766_2, -0.808_675_766],
+];
+/// Matrices from colours in linear light to their appearance without long, middle or short cones
+/// (Machado, Oliveira, Fernandes 2009).
+const WITHOUT: [Matrix; 3] = [
+    [
+        [0.152_286, 1.052_583, -0.204_868],
+        [0.114_503, 0.786_281, 0.099_216],
+        [-0.003_882, -0.048_116, 1.051_998],
+    ],
+    [
+        [0.367_322, 0.860_646, -0.227_968],
+        [0.280_085, 0.672_501, 0.047_413],
+        [-0.011_82, 0.042_94, 0.968_881],
+    ],
+    [
+        [1.255_528, -0.076_749, -0.178_779],
+        [-0.078_411, 0.930_809, 0.147_602],
+        [0.004_733, 0.691_367, 0.303_9],
+    ],
+];
+/// Weight of the difference that people with all cones see: thin lines need a larger difference to
+/// be told apart at a glance.
+const FULL_VISION: f64 = 0.6;
+
+type Matrix = [[f64; 3]; 3];
+
+/// Returns the difference of two colours, each `#` and six hexadecimal digits, to the kind of
+/// colour vision to which it is smallest. Black and white differ by 60.
+pub fn difference(a: &str, b: &str) -> f64 {
+    let [a, b] = [a, b].map(linear);
+    let apart = |[a, b]: [[f64; 3]; 2]| {
+        let [a, b] = [a, b].map(lab);
+        100.0 * (0..3).map(|k| (a[k] - b[k]).powi(2)).sum::<f64>().sqrt()
+    };
+    let without = WITHOUT.iter().map(|m| apart([times(m, a), times(m, b)]));
+    without.fold(FULL_VISION * apart([a, b]), f64::min)
+}
+
+/// Returns red, green and blue of a colour in linear light, from 0 to 1.
+fn linear(colour: &str) -> [f64; 3] {
+    [1, 3, 5].map(|k| {
+        let digits = colour.get(k..k + 2).unwrap_or_default();
+        let part = f64::from(u8::from_str_radix(digits, 16).unwrap_or(0)) / 255.0;
+        if part <= 0.040_45 {
+            part / 12.92
+        } else {
+            ((part + 0.055) / 1.055).powf(2.4)
+        }
+    })
+}
+
+/// Returns the Oklab coordinates of a colour in linear light.
+fn lab(colour: [f64; 3]) -> [f64; 3] {
+    let inside = colour.map(|part| part.clamp(0.0, 1.0));
+    times(&OKLAB, times(&CONES, inside).map(f64::cbrt))
+}
+
+/// Multiplies a vector by a matrix.
+fn times(m: &Matrix, v: [f64; 3]) -> [f64; 3] {
+    [0, 1, 2].map(|i| (0..3).map(|k| m[i][k] * v[k]).sum())
+}
+
+#[cfg(test)]
+mod tests {
+    use a3_core::integrators::METHODS;
+
+    use super::*;
+
+    /// The course's four and any four others, as they are drawn by default.
+    #[test]
+    fn no_two_colours_on_a_chart_look_alike() {
+        let (course, others): (Vec<_>, Vec<_>) =
+            METHODS.iter().partition(|method| is_of_course(method));
+        let mut count = 0;
+        for choice in (0..1_u32 << others.len()).filter(|set| set.count_ones() == 4) {
+            count += 1;
+            if count % 16 != 0 {
+                continue;
+            }
+            let chosen = (0..others.len()).filter(|k| choice >> k & 1 == 1);
+            let shown: Vec<_> = course
+                .iter()
+                .copied()
+                .chain(chosen.map(|k| others[k]))
+                .collect();
+            let styles = together(&shown);
+            for (k, style) in styles.iter().enumerate() {
+                assert!(k > 3 || style.colour == of(shown[k].letter.unwrap()).colour);
+                for other in &styles[..k] {
+                    let apart = difference(style.colour, other.colour);
+                    assert!(
+                        apart >= MIN_DIFFERENCE,
+                        "{} {} {apart}",
+                        style.colour,
+                        other.colour
+                    );
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn known_differences_are_found() {
+        assert!((difference("#000000", "#ffffff") - 60.0).abs() < 0.01);
+        // Red and green of one lightness, which many people cannot tell apart, and blue and yellow.
+        assert!(difference("#997700", "#5a7f1e") < 1.0);
+        assert!(difference("#0072b2", "#e69f00") > 15.0);
     }
 }

@@ -3,8 +3,7 @@
 mod command;
 mod search;
 mod value;
-mod words;
 
 pub use command::run;
+pub use command::{command, report};
 pub use value::{Choice, ChooseOptions, Chosen, Goal, choose};
-pub use words::{command, report};

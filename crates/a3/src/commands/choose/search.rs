@@ -6,7 +6,7 @@ use a3_core::{Method, Scene};
 
 use crate::base::failure::Failure;
 use crate::base::monitor::Monitor;
-use crate::commands::chart::single::time;
+use crate::commands::chart::measure::time;
 use crate::commands::chart::unit;
 
 /// Smallest error that may be asked for, over the uncertainty of the reference.

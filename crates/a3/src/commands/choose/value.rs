@@ -8,7 +8,7 @@ use crate::base::failure::Failure;
 use crate::base::monitor::Monitor;
 use crate::cli::ErrorScope;
 use crate::cli::values::{BUDGETS, ERRORS, HORIZONS};
-use crate::commands::chart::single::{precision, reference};
+use crate::commands::chart::measure::{precision, reference};
 use crate::commands::chart::{
     check_contact, check_methods, check_metric, check_motion, check_scene, look_ahead, scope, unit,
 };

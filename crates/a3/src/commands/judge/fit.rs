@@ -1,7 +1,6 @@
 //! Fit of a constant of the scene to the rows of a file, by least squares.
 
-use super::constant::Change;
-use super::mistake::Mistake;
+use super::constant::{Change, Mistake};
 use super::rows::distance;
 use super::scheme::Scheme;
 use super::trial::{Judged, Trial, Way};

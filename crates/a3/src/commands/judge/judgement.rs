@@ -4,9 +4,8 @@ use a3_core::accuracy::Reference;
 use a3_core::{Model, Network, Scene};
 
 use super::plain::Plain;
-use super::rows::{Rows, distance, farthest};
+use super::rows::{Difference, Rows, difference, distance, farthest, with_y_up};
 use super::search::{Match, search};
-use super::start::{Difference, difference, with_y_up};
 use super::trial::{Judged, size};
 use super::truth::{Truth, frame_at};
 use crate::base::failure::Failure;

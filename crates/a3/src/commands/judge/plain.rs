@@ -4,8 +4,7 @@
 use a3_core::{Scene, SpringKind};
 use a3_scenes::List;
 
-use super::constant::{Change, Constant};
-use super::mistake::Mistake;
+use super::constant::{Change, Constant, Mistake};
 
 /// Vector of a particle.
 type Triple = [f64; 3];

@@ -2,9 +2,9 @@
 
 use serde::Serialize;
 
+use super::constant::Mistake;
 use super::finding::{mistake, question};
 use super::judgement::{Drift, Judgement};
-use super::mistake::Mistake;
 use super::search::Agreement;
 use super::words::{difference, is_within};
 

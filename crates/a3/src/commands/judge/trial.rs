@@ -3,7 +3,7 @@
 use a3_core::integrators::METHODS;
 use a3_core::{Control, Method, Scene, Simulation};
 
-use super::mistake::Mistake;
+use super::constant::Mistake;
 use super::pace::Pace;
 use super::plain::{Forces, Plain};
 use super::rows::{Rows, columns, distance};

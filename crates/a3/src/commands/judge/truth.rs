@@ -8,7 +8,7 @@ use super::grid::gcd;
 use super::rows::Rows;
 use crate::base::failure::Failure;
 use crate::base::monitor::Monitor;
-use crate::commands::chart::single::{precision, reference};
+use crate::commands::chart::measure::{precision, reference};
 
 /// Largest number of coordinates in all frames of a reference.
 const MAX_NUMBERS: f64 = 2e6;

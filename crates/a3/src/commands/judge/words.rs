@@ -5,7 +5,7 @@ use std::fmt::Write;
 use super::finding::lines_of;
 use super::judgement::{Drift, Judgement};
 use super::quantity::{amount, seconds};
-use super::start::Difference;
+use super::rows::Difference;
 
 /// Number of times whose errors are printed.
 const TIMES: usize = 5;

@@ -12,7 +12,7 @@ use super::lean::Solved;
 use super::models::{FACTORS, Models};
 use crate::base::failure::Failure;
 use crate::cli::Quantity;
-use crate::commands::chart::single::time;
+use crate::commands::chart::measure::time;
 use crate::commands::chart::table::words;
 use crate::commands::motion::{GridError, Motion, Places, Track, grid};
 

@@ -11,7 +11,7 @@ use a3_scenes::{Description, Part, regridded, without};
 use super::models::{Model, Models};
 use super::turns::in_turns;
 use crate::base::failure::Failure;
-use crate::commands::chart::single::time;
+use crate::commands::chart::measure::time;
 use crate::commands::motion::Motion;
 
 /// Share of the error that the model may cause; the time steps may cause the rest.

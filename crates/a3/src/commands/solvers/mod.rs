@@ -1,6 +1,5 @@
 //! `a3 solvers`: the solvers, those that serve a scene, and the kinds of scenes that each serves.
 
-mod kinds;
 mod table;
 #[cfg(test)]
 mod tests;

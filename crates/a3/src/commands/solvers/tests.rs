@@ -3,8 +3,7 @@
 use a3_core::{Control, Simulation, integrators};
 
 use super::all;
-use super::kinds::kinds;
-use super::table::table;
+use super::table::{kinds, table};
 
 /// Every solver takes a step on the kinds that it serves, and begins no run on the others.
 #[test]

@@ -4,8 +4,7 @@ use std::path::{Path, PathBuf};
 
 use a3_core::Scene;
 
-use super::limits::Stability;
-use super::measure::measure;
+use super::measure::{Stability, measure};
 use crate::base::failure::Failure;
 use crate::base::progress::Bar;
 use crate::base::{interrupt, terminal};

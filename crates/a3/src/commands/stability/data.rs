@@ -3,7 +3,7 @@
 use a3_core::stability::Observation;
 use serde::Serialize;
 
-use super::limits::MethodLimits;
+use super::measure::MethodLimits;
 use crate::base::failure::Failure;
 
 /// Limits of a method (s), as the object of a line. Null stands for a limit that is not known.

@@ -3,12 +3,10 @@
 
 mod command;
 mod data;
-mod limits;
 mod measure;
-mod picture;
 mod table;
 mod value;
 
 pub use command::run;
-pub use limits::{MethodLimits, Stability};
+pub use measure::{MethodLimits, Stability};
 pub use value::stability;

@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use a3_core::stability::{Limit, Mode, Observation};
 
-use super::limits::{MethodLimits, Stability};
+use super::measure::{MethodLimits, Stability};
 use crate::base::report::Report;
 
 /// Writes a step (s) in ms, to three digits.

@@ -12,7 +12,7 @@ use serde_json::Value;
 use super::keys;
 use super::values::all;
 use crate::base::bounds;
-use crate::base::input_error::InputError;
+use crate::base::failure::InputError;
 use crate::base::terminal;
 use crate::cli::ErrorScope;
 use crate::files::output;

@@ -12,8 +12,8 @@ use crate::base::failure::Failure;
 use crate::base::interrupt;
 use crate::base::progress::Bar;
 use crate::commands::chart::data::VERSION;
+use crate::commands::chart::measure::{compared, precision, reference};
 use crate::commands::chart::record::Record;
-use crate::commands::chart::single::{compared, precision, reference};
 use crate::commands::motion::words;
 
 /// Makes the missing runs among those at these indices of the plan. Returns how many are left,

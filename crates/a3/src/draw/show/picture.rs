@@ -1,24 +1,24 @@
-//! A run as a picture: balls, lines and triangles from particles, springs and obstacles.
+//! A run as a picture: balls, lines and triangles from particles, springs and obstacles; the
+//! surfaces of fluids, and the edges of their tanks; the path of a particle, and the pull of the
+//! mouse.
 
+use std::collections::VecDeque;
 use std::sync::Arc;
 
 use a3_core::elements::Fluid;
-use a3_core::{Network, Simulation, SpringKind, Vector3};
-use a3_render::{Ball, Camera, Floor, Line, Picture, Solid, Style, Topology};
-use a3_scenes::Presentation;
+use a3_core::{Network, Simulation, Spring, SpringKind, Vector3};
+use a3_render::{Ball, Camera, Corner, Floor, Line, Picture, Solid, Style, Topology};
+use a3_scenes::{Presentation, TANK_LAYERS};
 
 use super::arrows::Field;
-use super::coil::coil;
 use super::colouring::{Colouring, Scale};
-use super::colours::{AMBER, BLUE, INK, RED, STEEL, TEAL};
-use super::liquid::Liquid;
-use super::manner::{Manner, Target};
-use super::parts::{self, Parts};
-use super::pull::pull;
+use super::colours::{ALARM, AMBER, BLUE, INK, RED, STEEL, TEAL};
+use super::parts::Parts;
+use super::quantity::{Arrows, Quantity};
 use super::springs::{KINDS, has_springs, kind_look, springs_of};
-use super::trail::Trail;
-use super::vectors::to_f32;
-use super::{bodies, ground, obstacles, tanks, view, wires};
+use super::vectors::{perpendicular, to_f32};
+use super::{bodies, ground, obstacles, parts, wires};
+use crate::draw::surfaces;
 
 /// Largest number of springs or particles without a surface that are drawn as coils and balls. More
 /// of them are drawn as lines and small balls, because a coil has 170 lines.
@@ -69,7 +69,7 @@ impl Show {
         colouring.set_quantity(manner.colour);
         let mut field = Field::default();
         field.set_arrows(manner.arrows);
-        let unit = view::camera(&presentation).unit();
+        let unit = camera(&presentation).unit();
         Self {
             presentation,
             style: manner.style,
@@ -97,7 +97,7 @@ impl Show {
     /// Changes to another scene, with the same options.
     pub fn set_presentation(&mut self, presentation: Arc<Presentation>) {
         self.presentation = presentation;
-        self.unit = view::camera(&self.presentation).unit();
+        self.unit = camera(&self.presentation).unit();
         self.springs_of = None;
         self.hovered = None;
         self.colouring.forget();
@@ -107,7 +107,7 @@ impl Show {
 
     /// Returns the camera that first shows the scene.
     pub fn camera(&self) -> Camera {
-        let mut camera = view::camera(&self.presentation);
+        let mut camera = camera(&self.presentation);
         camera.set_parallel(self.orthographic);
         camera
     }
@@ -360,7 +360,7 @@ impl Show {
             let spacing = fluid.law().spacing as f32;
             for tank in &self.presentation.tanks {
                 let walls = &self.points[tank.clone()];
-                self.lines.extend(tanks::edges(walls, spacing));
+                self.lines.extend(edges(walls, spacing));
             }
         }
     }
@@ -393,4 +393,216 @@ impl Show {
         }
         self.ball(i, 0.06, AMBER);
     }
+}
+
+/// Number of turns of a coil.
+const TURNS: usize = 12;
+/// Number of straight pieces of a turn.
+const PIECES: usize = 14;
+
+/// Returns the points of a coil from a to b (m) with straight ends. `unit` is the unit of length of
+/// the scene (m). A stretched coil is thinner.
+pub fn coil(a: Vector3<f64>, b: Vector3<f64>, spring: &Spring, unit: f64) -> Vec<[f32; 3]> {
+    let along = b - a;
+    let length = along.norm();
+    if length < 1e-6 * unit {
+        return vec![];
+    }
+    let side = perpendicular(along);
+    let other = along.cross(&side) / length;
+    let rest = spring.law.rest_length.max(1e-3 * unit);
+    let radius = 0.07 * rest.min(unit) * (rest / length).clamp(0.4, 1.5).sqrt();
+    let count = TURNS * PIECES;
+    let mut points = vec![to_f32(a)];
+    points.extend((0..=count).map(|k| {
+        let share = k as f64 / count as f64;
+        // The radius grows from the ends to the middle, so that the coil leaves its axis smoothly.
+        let radius = radius * (12.0 * share.min(1.0 - share)).min(1.0);
+        let (sin, cos) = (std::f64::consts::TAU * TURNS as f64 * share).sin_cos();
+        to_f32(a + along * (0.1 + 0.8 * share) + (side * cos + other * sin) * radius)
+    }));
+    points.push(to_f32(b));
+    points
+}
+
+/// The surface of a fluid.
+#[derive(Clone, Default)]
+pub struct Liquid {
+    corners: Vec<Corner>,
+    triangles: Vec<[u32; 3]>,
+}
+
+impl Liquid {
+    /// Computes the present surface of the fluid of a run, coloured or not; empty in styles without
+    /// surfaces.
+    pub fn of(simulation: &Simulation, style: Style, colouring: &Colouring) -> Self {
+        if style != Style::Shaded {
+            return Self::default();
+        }
+        let surface = surfaces::Liquid::of(simulation, |i| colouring.share(i));
+        let corners = surface.corners.iter().map(|corner| Corner {
+            place: corner.place,
+            value: corner.value,
+            normal: corner.normal,
+        });
+        Self {
+            corners: corners.collect(),
+            triangles: surface.triangles,
+        }
+    }
+
+    /// Returns the surface in the form of the renderer.
+    pub fn as_drawn(&self) -> a3_render::Liquid<'_> {
+        a3_render::Liquid {
+            corners: &self.corners,
+            triangles: &self.triangles,
+        }
+    }
+}
+
+/// Returns the edges of the space inside a tank, which is open at the top. `walls` are the places
+/// of the particles of its walls, whose layers are `spacing` apart (m).
+pub fn edges(walls: &[[f32; 4]], spacing: f32) -> impl Iterator<Item = Line> + use<> {
+    let (mut low, mut high) = ([f32::INFINITY; 3], [f32::NEG_INFINITY; 3]);
+    for point in walls {
+        for axis in 0..3 {
+            low[axis] = low[axis].min(point[axis]);
+            high[axis] = high[axis].max(point[axis]);
+        }
+    }
+    // The walls are as thick as their layers; in two dimensions there are none across z.
+    let wall = (TANK_LAYERS as f32 - 0.5) * spacing;
+    for axis in 0..3 {
+        let flat = high[axis] - low[axis] < wall;
+        low[axis] += if flat { -0.5 * spacing } else { wall };
+        high[axis] += match axis {
+            1 => 0.5 * spacing,
+            _ if flat => 0.5 * spacing,
+            _ => -wall,
+        };
+    }
+    let corner = move |k: usize| [0, 1, 2].map(|a| if k >> a & 1 == 1 { high[a] } else { low[a] });
+    (0..3).flat_map(move |axis| {
+        let from = (0..8).filter(move |k| k >> axis & 1 == 0);
+        from.map(move |from| Line::new(corner(from), corner(from | 1 << axis), 1.6, STEEL))
+    })
+}
+
+/// Largest number of points of a trail.
+const MAX_POINTS: usize = 7200;
+/// Width of the line (points).
+const WIDTH: f32 = 2.2;
+
+/// Points on the path of a particle (m), with their times (s).
+#[derive(Clone, Default)]
+pub struct Trail(VecDeque<(f64, [f32; 3])>);
+
+impl Trail {
+    /// Forgets all points.
+    pub fn clear(&mut self) {
+        self.0.clear();
+    }
+
+    /// Returns the points (m).
+    #[cfg(test)]
+    pub fn points(&self) -> impl Iterator<Item = &[f32; 3]> {
+        self.0.iter().map(|(_, point)| point)
+    }
+
+    /// Adds the point (m) where the particle is at `time` (s). Points of later times are dropped,
+    /// because the user may have gone back in time.
+    pub fn add(&mut self, time: f64, point: [f32; 3]) {
+        while self.0.back().is_some_and(|(last, _)| *last > time) {
+            self.0.pop_back();
+        }
+        if self.0.back().map(|(_, last)| last) != Some(&point) {
+            self.0.push_back((time, point));
+        }
+        if self.0.len() > MAX_POINTS {
+            self.0.pop_front();
+        }
+    }
+
+    /// Returns lines along the path up to `time` (s), the older the fainter.
+    pub fn lines(&self, time: f64, [r, g, b, _]: [f32; 4]) -> impl Iterator<Item = Line> {
+        let n = self.0.partition_point(|(then, _)| *then <= time);
+        let points = move || self.0.iter().take(n).map(|(_, point)| *point);
+        points()
+            .zip(points().skip(1))
+            .enumerate()
+            .map(move |(k, (from, to))| {
+                let age = 1.0 - (k + 1) as f32 / n as f32;
+                Line::new(from, to, WIDTH, [r, g, b, 0.12 + 0.8 * (1.0 - age)])
+            })
+    }
+}
+
+/// Length of a pull from which on it is drawn with the strongest line, as a share of the scene's
+/// radius.
+const MAX_PULL: f64 = 0.5;
+
+/// Returns a line from particle i to the pointer (m), thicker and redder the longer it is, and a
+/// ball at its end; `None` while the pointer is at the particle. `unit` is the unit of length of
+/// the scene (m).
+pub fn pull(
+    simulation: &Simulation,
+    i: usize,
+    hand: Vector3<f64>,
+    unit: f32,
+) -> Option<(Line, Ball)> {
+    let place = simulation.position(i);
+    let strength = (hand - place).norm() / simulation.extent().1;
+    if strength < 0.01 {
+        return None;
+    }
+    let share = (strength / MAX_PULL).min(1.0) as f32;
+    let color = [0, 1, 2, 3].map(|k| AMBER[k] + share * (ALARM[k] - AMBER[k]));
+    let to = to_f32(hand);
+    let ball = Ball {
+        center: to,
+        radius: 0.035 * unit,
+        color,
+    };
+    let line = Line::new(to_f32(place), to, 2.0 + 6.0 * share, color);
+    Some((line, ball))
+}
+
+/// Returns the camera that first shows a scene.
+pub fn camera(presentation: &Presentation) -> Camera {
+    let viewpoint = presentation.viewpoint;
+    Camera::look_at(to_f32(viewpoint.eye), to_f32(viewpoint.target))
+}
+
+/// A particle or an obstacle, by its number.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Target {
+    Particle(usize),
+    Obstacle(usize),
+}
+
+impl Target {
+    /// Returns the number of the particle, if the target is one.
+    pub fn particle(self) -> Option<usize> {
+        match self {
+            Self::Particle(i) => Some(i),
+            Self::Obstacle(_) => None,
+        }
+    }
+}
+
+/// The first look of a run.
+#[derive(Clone, Copy, Default)]
+pub struct Manner {
+    /// Surface, wires or springs.
+    pub style: Style,
+    /// The particle whose springs are highlighted.
+    pub springs_of: Option<usize>,
+    /// Whether the projection is orthographic, not perspective.
+    pub orthographic: bool,
+    /// Whether the background is dark and text is light.
+    pub dark: bool,
+    /// Quantity that colours the particles.
+    pub colour: Option<Quantity>,
+    /// Arrows on particles.
+    pub arrows: Option<Arrows>,
 }

@@ -1,4 +1,4 @@
-//! A run as it is saved in a file.
+//! A run as it is saved in a file, with the extremes that the summary at its end needs.
 //!
 //! The file consists of a line with the version of the program, the run in the format of
 //! `postcard`, and the CRC-32 of both.
@@ -9,15 +9,15 @@ use std::path::Path;
 use a3_core::{Checkpoint, Grid, Scene, Simulation, StepLimits};
 use serde::{Deserialize, Serialize};
 
-use super::extremes::Extremes;
-#[cfg(not(target_arch = "wasm32"))]
-use super::file::bytes_of;
-#[cfg(target_arch = "wasm32")]
-use super::page::bytes_of;
 use crate::base::bounds;
 use crate::base::failure::Failure;
 use crate::files::output;
 use crate::files::scene_file::Source;
+
+#[cfg(not(target_arch = "wasm32"))]
+use super::file::bytes_of;
+#[cfg(target_arch = "wasm32")]
+use super::page::bytes_of;
 
 /// Ending of the files.
 pub const ENDING: &str = "checkpoint";
@@ -166,6 +166,60 @@ fn identity(source: &Source, grid: Option<Grid>, scene: &Scene) -> String {
         let _ = write!(identity, " {limit}");
     }
     identity
+}
+
+/// Total energy (J).
+#[derive(Clone, Copy, Serialize, Deserialize)]
+pub struct Energy {
+    /// At the start.
+    pub begin: f64,
+    /// At the end.
+    pub end: f64,
+    /// Largest distance from the energy at the start.
+    pub largest_drift: f64,
+}
+
+/// Extremes of energy and stretch.
+#[derive(Clone, Copy, Default, Serialize, Deserialize)]
+pub struct Extremes {
+    /// The total energy; none for a system without forces.
+    pub energy: Option<Energy>,
+    /// Largest length over rest length of a spring; none without springs.
+    pub stretch: Option<f64>,
+}
+
+impl Extremes {
+    /// Updates the extremes with the present state.
+    pub fn observe(&mut self, simulation: &Simulation) {
+        if let Some(total) = simulation.energy().map(|energy| energy.total()) {
+            let energy = self.energy.get_or_insert(Energy {
+                begin: total,
+                end: total,
+                largest_drift: 0.0,
+            });
+            energy.end = total;
+            energy.largest_drift = energy.largest_drift.max((total - energy.begin).abs());
+        }
+        if let Some(stretch) = simulation.largest_stretch() {
+            self.stretch = Some(self.stretch.map_or(stretch, |most| most.max(stretch)));
+        }
+    }
+
+    /// Returns all numbers.
+    pub fn numbers(&self) -> impl Iterator<Item = f64> {
+        let energy = self.energy.into_iter();
+        let energies = energy.flat_map(|e| [e.begin, e.end, e.largest_drift]);
+        energies.chain(self.stretch)
+    }
+
+    /// Returns a copy whose stretch is not a number.
+    #[cfg(test)]
+    pub fn spoiled(self) -> Self {
+        Self {
+            stretch: Some(f64::NAN),
+            ..self
+        }
+    }
 }
 
 #[cfg(test)]

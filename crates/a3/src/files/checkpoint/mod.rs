@@ -1,7 +1,6 @@
 //! Checkpoints in files: all that a run needs to continue with the same bits, also after the
 //! program was killed.
 
-mod extremes;
 #[cfg(not(target_arch = "wasm32"))]
 mod file;
 #[cfg(not(target_arch = "wasm32"))]
@@ -10,7 +9,7 @@ mod kept;
 #[cfg(target_arch = "wasm32")]
 mod page;
 
-pub use extremes::{Energy, Extremes};
 #[cfg(not(target_arch = "wasm32"))]
 pub use keeper::Keeper;
 pub use kept::{ENDING, Kept};
+pub use kept::{Energy, Extremes};

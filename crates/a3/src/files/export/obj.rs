@@ -1,7 +1,8 @@
 //! Wavefront OBJ, a file for each frame. The vertices are the particles, in their order,
 //! and after them the points of rigid bodies.
 
-use std::io::{self, Write};
+use std::io;
+use std::io::Write;
 use std::path::PathBuf;
 use std::sync::Arc;
 

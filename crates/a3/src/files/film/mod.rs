@@ -4,8 +4,6 @@ mod begin;
 mod format;
 mod gif;
 mod mp4;
-mod palette;
-mod pictures;
 mod shoot;
 
 pub use begin::{begin, begin_new};

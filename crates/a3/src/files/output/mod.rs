@@ -1,8 +1,6 @@
 //! Writing of files: each is complete or absent, and none is also read.
 
-mod apart;
 mod draft;
-mod leftovers;
 mod lock;
 mod place;
 
@@ -14,8 +12,8 @@ use crate::base::failure::Failure;
 
 pub use crate::base::visible::part_of_name;
 
-pub use apart::{files_read, is_read, refuse_read};
 pub use draft::{Draft, Scratch};
+pub use draft::{files_read, is_read, refuse_read};
 pub use lock::lock;
 pub use place::not_written;
 
@@ -34,7 +32,7 @@ pub fn check(path: &Path, extensions: &[&str]) -> Result<(), Failure> {
         )));
     }
     place::check(path)?;
-    apart::claim(path)
+    draft::claim(path)
 }
 
 /// Checks that the path has one of the extensions. This is done before any scene is built.

@@ -1,7 +1,6 @@
 //! Scenes by name or from files: TOML, JSON, or a mesh alone.
 
 mod files;
-mod hanging;
 mod hash;
 mod hung;
 mod mesh;

@@ -10,9 +10,8 @@ use serde_json::Value;
 
 use super::files::{beside, read_input, read_text};
 use super::hash::Hash;
-use super::hung;
-use super::mesh;
-use crate::base::input_error::InputError;
+use super::{hung, mesh};
+use crate::base::failure::InputError;
 
 /// Argument that stands for standard input, and its name in messages.
 const INPUT: &str = "-";

@@ -1,10 +1,12 @@
-//! Files of states, by their endings.
+//! Files of states, read by their endings.
 
 use std::path::Path;
 
+use a3_scenes::unmarked;
+
 use super::build::States;
-use super::parse::parse;
-use crate::base::input_error::InputError;
+use super::{csv, json, npz};
+use crate::base::failure::InputError;
 use crate::files::scene_file;
 
 /// Largest size of a file (bytes).
@@ -31,4 +33,21 @@ pub fn read(path: &Path, particles: usize) -> Result<States, InputError> {
     };
     let bytes = scene_file::read(path, MAX_SIZE).map_err(wrong)?;
     parse(&bytes, ending, particles).map_err(wrong)
+}
+
+/// Reads the states of that many particles in the bytes of a file with this ending.
+///
+/// # Errors
+/// The content is wrong.
+pub fn parse(bytes: &[u8], ending: &str, particles: usize) -> Result<States, String> {
+    let text = || {
+        str::from_utf8(unmarked(bytes)?)
+            .map_err(|e| format!("it is not UTF-8 text: see byte {}", e.valid_up_to()))
+    };
+    let raw = match ending {
+        "npz" => npz::read(bytes)?,
+        "json" => json::read(text()?)?,
+        _ => csv::read(text()?, particles)?,
+    };
+    States::new(raw, particles)
 }

@@ -8,7 +8,6 @@ mod frame;
 mod graphics;
 mod hover;
 mod keyboard;
-mod layer;
 mod mouse;
 #[cfg(not(target_arch = "wasm32"))]
 mod native;
@@ -17,12 +16,10 @@ mod page;
 mod pick;
 mod platform;
 mod pointer;
-mod remember;
 mod screen;
 mod start;
 mod state;
 mod status;
-mod thumbnails;
 #[cfg_attr(target_arch = "wasm32", path = "no_tool.rs")]
 mod tool;
 mod touch;

@@ -1,22 +1,23 @@
-//! The state of the window: its session, its screen and its mouse.
+//! The state of the window: its session, its screen and its mouse. When it closes, its settings
+//! are saved.
 
 use std::path::PathBuf;
-use web_time::Instant;
 
 use a3_render::GpuError;
+use web_time::Instant;
 use winit::event::KeyEvent;
 use winit::event_loop::{ActiveEventLoop, OwnedDisplayHandle};
 use winit::keyboard::{Key, ModifiersState, NamedKey};
 
 use super::graphics::Graphics;
-use super::keyboard;
 use super::mouse::Mouse;
-use super::platform::{self, Platform};
-use super::remember::remember;
+use super::platform::Platform;
 use super::screen::Screen;
 use super::status::Status;
 use super::touch::Fingers;
+use super::{keyboard, platform};
 use crate::base::failure::Failure;
+use crate::base::terminal;
 use crate::files::output;
 use crate::window::hud::{lessons, panel, plotting};
 use crate::window::session::{Action, RunAction, Session, WindowAction};
@@ -303,4 +304,26 @@ fn write_plots(session: &Session) -> Result<PathBuf, Failure> {
     let table = panel::csv(&session.runs.panes).map_err(Failure::run)?;
     let scene = &session.runs.first().scene().name;
     output::write_new("".as_ref(), scene, "csv", &table)
+}
+
+/// Writes the present settings, if they have changed. Warns on the terminal if that fails.
+pub fn remember(before: &Settings, session: &Session, screen: &Screen) {
+    let mut now = Settings {
+        interface_scale: screen.zoom,
+        full_screen: screen.is_full_screen(),
+        dark: session.panel.dark.unwrap_or(before.dark),
+        panel: session.panel.open,
+        pulled: session.pulled,
+        frame_limit: session.panel.frame_limit,
+        film: session.panel.film,
+        film_seconds: session.panel.film_seconds,
+        recent: before.recent.clone(),
+    };
+    now.remember(session.scenes.files());
+    if now == *before {
+        return;
+    }
+    if let Err(why) = now.write() {
+        terminal::warn(&why.to_string());
+    }
 }

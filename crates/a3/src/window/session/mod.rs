@@ -1,35 +1,25 @@
 //! A session, independent of a window: one run or several side by side in real time, the
 //! interaction with them, their reference, the timeline, and the actions of keys.
 
-mod actions;
 mod acts;
-mod apart;
 pub mod asking;
-mod beside;
 mod continued;
-mod editor;
 mod effects;
 pub mod exchange;
 mod hands;
-mod hidden;
 mod history;
 mod keys;
-mod ladder;
 mod lessons;
-mod limit;
 mod list;
 pub mod looks;
 mod measuring;
-mod meter;
 mod origin;
 mod pane;
 pub mod panes;
 mod passage;
 #[cfg(not(target_arch = "wasm32"))]
 pub mod plotting;
-mod predictability;
 mod question;
-mod readings;
 mod reference;
 mod replace;
 mod runs;
@@ -43,15 +33,12 @@ mod traces;
 mod tuning;
 mod view;
 
-pub use actions::{Action, RunAction, WindowAction};
-pub use apart::{go_to, offer_at_start};
+pub use acts::{go_to, offer_at_start};
 pub use asking::MeasureRequest;
 pub use continued::continue_from;
-pub use editor::{Measure, Tool};
 pub use effects::{Deviation, Effect, Job, Situation};
-#[cfg(any(target_arch = "wasm32", test))]
-pub use hidden::Hidden;
 pub use history::{Change, EditChange};
+pub use keys::{Action, RunAction, WindowAction};
 pub use keys::{Binding, GROUPS, Group, MOUSE, action};
 pub use lessons::{Given, LessonRequest, Lessons};
 pub use list::{Entry, TextKey, Topic};
@@ -60,16 +47,19 @@ pub use origin::{Origin, begins_crossed};
 pub use pane::Pane;
 pub use passage::Passage;
 pub use question::{Answer, Answerer, Diagram, MethodSetting, Question, Task};
-pub use readings::{FilmProgress, Readings, Selection};
 pub use replace::{replace, show_edited};
 pub use samples::{SPAN, Sample, Samples};
 pub use save::write_scene;
 pub use state::{Beginning, Session};
+pub use state::{FilmProgress, Readings, Selection};
 pub use timeline::TimelinePosition;
 #[cfg(not(target_arch = "wasm32"))]
 pub use traces::{Kind, Mode, Pick, PlotFile, Row, SPANS, Trigger, Variable};
 pub use traces::{PlotRequest, RulerEnd};
+#[cfg(any(target_arch = "wasm32", test))]
+pub use tuning::Hidden;
 pub use tuning::{DEFAULT_FILM_SECONDS, Tuning};
+pub use tuning::{Measure, Tool};
 
 #[cfg(test)]
 pub use keys::bindings;

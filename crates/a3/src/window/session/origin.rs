@@ -5,7 +5,7 @@ use std::collections::HashSet;
 use a3_core::{Grid, Network, Scene, StepLimits};
 use a3_scenes::{Description, Edit, Part, PartChange, Setup, Splice, parts, without};
 
-use crate::base::input_error::InputError;
+use crate::base::failure::InputError;
 use crate::files::scene_file::Source;
 
 /// A scene's name or file, and the options that change it.

@@ -1,12 +1,17 @@
-//! The reference: a hidden, more accurate run, from which the errors of the panes are measured.
+//! The reference: a hidden, more accurate run, from which the errors of the panes are measured,
+//! and the time until which these errors are meaningful, found in the background.
 
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, OnceLock};
+use std::thread;
+use std::thread::JoinHandle;
+
+use a3_core::accuracy::horizon;
+use a3_core::{Control, Method, Scene, Simulation, integrators};
 use web_time::{Duration, Instant};
-
-use a3_core::{Control, Method, Simulation, integrators};
 
 use super::continued::continue_from;
 use super::pane::{ADAPTIVE_SLICE, Pane};
-use super::predictability::Predictability;
 use crate::base::failure::Failure;
 use crate::base::progress;
 
@@ -191,6 +196,56 @@ impl ReferenceRun {
 fn differences(a: &Simulation, b: &Simulation) -> Vec<f64> {
     let all = a.state().iter().zip(b.state());
     all.take(3 * a.particles()).map(|(a, b)| a - b).collect()
+}
+
+/// A search, on its own thread, for the time past which errors say little: small differences have
+/// grown 10,000 times by then.
+#[derive(Default)]
+pub struct Predictability {
+    /// The time (s) once it is known; infinite if the scene is not chaotic.
+    until: Arc<OnceLock<f64>>,
+    ended: Arc<AtomicBool>,
+    search: Option<JoinHandle<()>>,
+}
+
+impl Predictability {
+    /// Starts the search in a scene. Without threads, nothing is found.
+    pub fn new(scene: Scene) -> Self {
+        let mut this = Self::default();
+        let (until, ended) = (this.until.clone(), this.ended.clone());
+        let search = move || {
+            let go_on = || !ended.load(Ordering::Relaxed);
+            if let Ok(Some(found)) = horizon(&scene, f64::INFINITY, &go_on) {
+                let is_chaotic = found.lyapunov.is_finite();
+                let _ = until.set(if is_chaotic {
+                    found.until
+                } else {
+                    f64::INFINITY
+                });
+            }
+        };
+        this.search = thread::Builder::new().spawn(search).ok();
+        this
+    }
+
+    /// Returns the time past which errors say little (s), if the scene is chaotic and the search
+    /// has ended.
+    pub fn until(&self) -> Option<f64> {
+        self.until.get().copied().filter(|until| until.is_finite())
+    }
+
+    /// Waits for the end of the search.
+    pub fn wait(&mut self) {
+        if let Some(search) = self.search.take() {
+            let _ = search.join();
+        }
+    }
+}
+
+impl Drop for Predictability {
+    fn drop(&mut self) {
+        self.ended.store(true, Ordering::Relaxed);
+    }
 }
 
 #[cfg(test)]

@@ -1,11 +1,10 @@
-//! The runs of a session and their common time: the panes and the reference.
-
-use web_time::{Duration, Instant};
+//! The runs of a session and their common time: the panes and the reference, and the steps and
+//! tolerances that the keys + and - choose.
 
 use a3_core::{Control, Error, Method, Path, Simulation, integrators};
 use a3_scenes::{Defaults, Setup};
+use web_time::{Duration, Instant};
 
-use super::ladder::next_step;
 use super::pane::{ADAPTIVE_SLICE, Pane};
 use super::reference::ReferenceRun;
 use crate::base::bounds;
@@ -290,11 +289,40 @@ fn shortened(run: &mut Simulation, shorter: Option<f64>) -> Option<(f64, String)
     Some((asked, why))
 }
 
+/// Steps (s) and tolerances, over the power of ten below them.
+const LADDER: [f64; 10] = [1.0, 1.2, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0];
+
+/// Returns the next larger or smaller step or tolerance of the ladder.
+pub fn next_step(step: f64, longer: bool) -> f64 {
+    let decade = step.log10().floor() as i32;
+    let rungs = (decade - 1..=decade + 1).flat_map(|d| {
+        // Dividing by 10^n rounds correctly; multiplying by 10^-n, which is not exact, does not.
+        LADDER.iter().map(move |rung| {
+            if d < 0 {
+                rung / 10f64.powi(-d)
+            } else {
+                rung * 10f64.powi(d)
+            }
+        })
+    });
+    let next = if longer {
+        rungs
+            .filter(|rung| *rung > step * (1.0 + 1e-9))
+            .reduce(f64::min)
+    } else {
+        rungs
+            .filter(|rung| *rung < step * (1.0 - 1e-9))
+            .reduce(f64::max)
+    };
+    next.unwrap_or(step)
+}
+
 #[cfg(test)]
 mod tests {
     use a3_core::Vector3;
 
     use super::*;
+    use crate::base::bounds::{LARGEST_STEP, SMALLEST_STEP};
     use crate::window::session::{RunAction, compared, session, times};
 
     #[test]
@@ -387,5 +415,26 @@ mod tests {
             times[1] <= times[0] + 1e-9 && times[0] - times[1] < 1.1e-4,
             "{times:?}"
         );
+    }
+
+    #[test]
+    fn steps_climb_the_ladder() {
+        assert_eq!(next_step(0.01, true), 0.012);
+        assert_eq!(next_step(0.01, false), 0.008);
+        assert_eq!(next_step(0.008, true), 0.01);
+        assert_eq!(next_step(0.0123, false), 0.012);
+        assert_eq!(next_step(8.0, true), 10.0);
+        let ends = |solver, end: f64, longer| {
+            let mut session = session(&[solver, &end.to_string(), "--scene", "chain"]);
+            let action = if longer {
+                RunAction::LongerStep
+            } else {
+                RunAction::ShorterStep
+            };
+            session.act(action, 0);
+            session.runs.first().control().value() == end
+        };
+        assert!(ends("r", LARGEST_STEP, true) && ends("r", SMALLEST_STEP, false));
+        assert!(ends("a", 1.0, true) && ends("a", 1e-13, false));
     }
 }

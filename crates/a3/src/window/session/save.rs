@@ -102,14 +102,13 @@ fn write_rows(text: &mut String, key: &str, rows: &[impl Debug]) {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
-    use crate::window::hud::panel;
-    use crate::window::session::RunAction;
-    use crate::window::session::session;
     use a3_core::contact::Shape;
     use a3_core::{Network, Vector3};
 
+    use super::*;
     use crate::files::scene_file::Source;
+    use crate::window::hud::panel;
+    use crate::window::session::{RunAction, session};
 
     fn forces(run: &Simulation) -> Vec<f64> {
         let mut f = vec![0.0; run.state().len()];

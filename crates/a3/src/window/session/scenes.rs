@@ -7,7 +7,7 @@ use a3_scenes::Setup;
 
 use super::list::Entry;
 use super::origin::Origin;
-use crate::base::input_error::InputError;
+use crate::base::failure::InputError;
 use crate::files::scene_file::Source;
 
 /// The scenes that a session can show, and the one that it shows.

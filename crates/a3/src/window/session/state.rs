@@ -1,21 +1,21 @@
-//! A session: its parts, and their common advance in time.
-
-use web_time::{Duration, Instant};
+//! A session: its parts, their common advance in time, and the readings that the text over the
+//! picture shows beside those of each run: the frame rate, the time per frame, and the speed of
+//! the simulation.
 
 use a3_core::{Checkpoint, Error, Simulation};
 use a3_scenes::Setup;
+use web_time::{Duration, Instant};
 
 use super::effects::Effects;
 use super::history::History;
 use super::list::List;
 use super::measuring::Measuring;
-use super::meter::Meter;
 use super::origin::Origin;
 use super::pane::Pane;
-use super::readings::Readings;
+use super::reference::ReferenceRun;
 use super::runs::{KEY_BUDGET, Runs};
 use super::scenes::Scenes;
-use super::timeline::Timeline;
+use super::timeline::{Timeline, TimelinePosition};
 use super::tuning::{PanelState, Tuning};
 use super::view::View;
 use crate::base::failure::Failure;
@@ -319,6 +319,190 @@ impl Session {
     }
 }
 
+/// Real time between two readings (s).
+const READING_SECONDS: f32 = 0.5;
+
+/// Frames and times since the last reading.
+pub struct Meter {
+    begun: Instant,
+    frames: u32,
+    /// Simulated time (s).
+    simulated: f64,
+    /// Computing time of steps.
+    simulating: Duration,
+    /// Time spent on drawing.
+    drawing: Duration,
+}
+
+/// Means over the frames since the last reading.
+pub struct Rates {
+    /// Frames per second.
+    pub rate: f32,
+    /// Simulated time over real time.
+    pub factor: f32,
+    /// Time a frame spends on steps (ms).
+    pub simulating: f32,
+    /// Time a frame spends on drawing (ms).
+    pub drawing: f32,
+}
+
+impl Meter {
+    /// Creates a meter that starts now.
+    pub fn new() -> Self {
+        Self {
+            begun: Instant::now(),
+            frames: 0,
+            simulated: 0.0,
+            simulating: Duration::ZERO,
+            drawing: Duration::ZERO,
+        }
+    }
+
+    /// Counts steps that took `simulating` and advanced the runs by `simulated` (s).
+    pub fn count_steps(&mut self, simulated: f64, simulating: Duration) {
+        self.simulated += simulated;
+        self.simulating += simulating;
+    }
+
+    /// Counts a frame, and returns a reading twice a second.
+    pub fn count_frame(&mut self, drawing: Duration) -> Option<Rates> {
+        self.frames += 1;
+        self.drawing += drawing;
+        let elapsed = self.begun.elapsed().as_secs_f32();
+        if elapsed < READING_SECONDS {
+            return None;
+        }
+        let done = std::mem::replace(self, Self::new());
+        let frames = done.frames as f32;
+        Some(Rates {
+            rate: frames / elapsed,
+            factor: done.simulated as f32 / elapsed,
+            simulating: done.simulating.as_secs_f32() * 1e3 / frames,
+            drawing: done.drawing.as_secs_f32() * 1e3 / frames,
+        })
+    }
+}
+
+/// Time for which a message is shown.
+const MESSAGE_DURATION: Duration = Duration::from_secs(4);
+
+/// Progress of a film that is being made.
+#[derive(Clone, Debug)]
+pub struct FilmProgress {
+    /// Whether the film is live: it records until it is stopped.
+    pub live: bool,
+    /// The progress in words.
+    pub said: String,
+}
+
+/// A box drawn with the mouse, whose particles will be pinned or freed.
+#[derive(Clone, Copy, Debug)]
+pub struct Selection {
+    /// Opposite corners (points).
+    pub corners: [[f32; 2]; 2],
+    /// Number of particles in the box.
+    pub count: usize,
+    /// Whether the particles will be pinned.
+    pub pinned: bool,
+}
+
+/// Values that the text shows.
+#[derive(Clone, Debug, Default)]
+#[expect(clippy::struct_excessive_bools, reason = "each is shown by itself")]
+pub struct Readings {
+    /// Whether the runs are paused.
+    pub paused: bool,
+    /// Whether the help is shown.
+    pub help: bool,
+    /// Whether the window asks if it should close.
+    pub asks_to_quit: bool,
+    /// Simulated time over real time.
+    pub factor: f32,
+    /// Frames per second.
+    pub rate: f32,
+    /// Computing time of the steps of a frame (ms).
+    pub simulating: f32,
+    /// Time for drawing a frame, and waiting for the screen (ms).
+    pub drawing: f32,
+    /// Message that is shown.
+    pub message: Option<String>,
+    /// Time when the message disappears; `None` if it stays.
+    pub message_ends: Option<Instant>,
+    /// Whether the message offers to bring surfaces apart.
+    pub offers_apart: bool,
+    /// The box that is being drawn.
+    pub selection: Option<Selection>,
+    /// Progress of the film, if one is being made.
+    pub film: Option<FilmProgress>,
+    /// Whether there is a window, with keys to press.
+    pub in_window: bool,
+    /// Reason why the errors of the panes are unknown, if they are.
+    pub no_error: Option<&'static str>,
+    /// Time past which the errors say little (s), if the scene is known to be chaotic.
+    pub predictable: Option<f64>,
+    /// Slow motion: simulated time advances at 1 / 2^slowness of real time.
+    pub slowness: i32,
+    /// Names of the parts that are left out of the scene.
+    pub left_out: Vec<String>,
+    /// Position on the timeline; `None` before there are two moments.
+    pub timeline: Option<TimelinePosition>,
+}
+
+impl Readings {
+    /// Shows a message, as a sentence, for a few seconds.
+    pub fn say(&mut self, message: impl Into<String>) {
+        self.warn(message);
+        self.message_ends = Some(Instant::now() + MESSAGE_DURATION);
+    }
+
+    /// Shows a message, as a sentence, until the next one.
+    pub fn warn(&mut self, message: impl Into<String>) {
+        self.message = Some(sentence(message.into()));
+        self.message_ends = None;
+        self.offers_apart = false;
+    }
+
+    /// Shows a message that surfaces cross, until the next one, and offers to bring them apart.
+    pub fn offer(&mut self, message: impl Into<String>) {
+        self.warn(message);
+        self.offers_apart = true;
+    }
+
+    /// Removes an expired message, and returns when the shown one expires.
+    pub fn message_ends(&mut self) -> Option<Instant> {
+        if self.message_ends.is_some_and(|end| end <= Instant::now()) {
+            self.message_ends = None;
+            self.message = None;
+        }
+        self.message_ends
+    }
+
+    /// Returns whether the runs are at an earlier moment of the timeline than the newest.
+    pub fn rewound(&self) -> bool {
+        self.timeline.is_some_and(|position| position.share < 1.0)
+    }
+
+    /// Updates what is known about the errors from the reference, if there is one.
+    pub(super) fn read_reference(&mut self, reference: Option<&ReferenceRun>) {
+        self.no_error = reference.and_then(ReferenceRun::stopped);
+        self.predictable = reference.and_then(ReferenceRun::predictable);
+    }
+}
+
+/// Makes a sentence of a message: with a capital, unless it begins with a file or another name, and
+/// with a full stop.
+fn sentence(mut message: String) -> String {
+    let first = message.split(' ').next().unwrap_or_default();
+    let first = first.trim_end_matches([':', ',']);
+    if !first.is_empty() && first.chars().all(|c| c.is_ascii_lowercase()) {
+        message[..1].make_ascii_uppercase();
+    }
+    if !message.ends_with(['.', '!', '?']) {
+        message.push('.');
+    }
+    message
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -395,5 +579,21 @@ mod tests {
         }
         frames(&mut session, 1.0);
         assert!((session.runs.first().time() - 1.5).abs() < 3e-3);
+    }
+
+    #[test]
+    fn messages_are_sentences_and_names_stay_as_they_are() {
+        for (message, said) in [
+            ("wrote a3-cloth-1.png", "Wrote a3-cloth-1.png."),
+            ("own.toml:3: no such key", "own.toml:3: no such key."),
+            ("undone: 20 pins", "Undone: 20 pins."),
+            ("dopri5 fits no rods", "dopri5 fits no rods."),
+            ("There is no wind here.", "There is no wind here."),
+            ("3 pins", "3 pins."),
+        ] {
+            let mut readings = Readings::default();
+            readings.say(message);
+            assert_eq!(readings.message.as_deref(), Some(said));
+        }
     }
 }

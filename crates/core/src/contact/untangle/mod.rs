@@ -8,21 +8,17 @@
 //! Surface Collisions through Intersection Contour Minimization*, 2006). Movements go on from round
 //! to round, and links between particles keep their lengths, so that whole bodies follow.
 
-mod hit;
-mod pieces;
 mod points;
-mod round;
-mod shorten;
 mod skeleton;
 mod votes;
 
 use super::check::meetings;
 use super::layer::ContactLayer;
-use hit::Hit;
-use pieces::Pieces;
 pub(crate) use points::Freedom;
+use points::Hit;
 use points::Points;
 use skeleton::Skeleton;
+use votes::Pieces;
 use votes::Votes;
 
 /// Largest number of rounds.
@@ -60,10 +56,10 @@ pub(crate) fn untangle(layer: &ContactLayer, freedom: &Freedom, t: f64, x: &mut 
         let pieces = Pieces::cut(&skeleton, &hits, &all.at);
         let votes = Votes::count(&skeleton, &pieces, &hits);
         let shortens = (round - since) / PATIENCE % 2 == 1;
-        let mut pushes = round::pushes(layer.surface(), &inside, &all.at);
+        let mut pushes = points::pushes(layer.surface(), &inside, &all.at);
         for (k, hit) in hits.iter().enumerate() {
             let by = if shortens || votes.is_undecided(k) {
-                shorten::step(&skeleton, hit, &all.at)
+                points::step(&skeleton, hit, &all.at)
             } else {
                 votes.step(k)
             };

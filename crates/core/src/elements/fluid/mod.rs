@@ -11,9 +11,7 @@
 //!
 //! After Monaghan, *Smoothed particle hydrodynamics*, 2005. Walls are pinned particles.
 
-mod kernel;
 mod law;
-mod members;
 mod neighbours;
 mod triple;
 
@@ -23,12 +21,12 @@ use crate::energy::Energy;
 use crate::error::Error;
 use crate::scratch::Scratch;
 use crate::threads::threads;
-use kernel::{Kernel, each};
+use law::{Kernel, each};
 use neighbours::Neighbours;
 use triple::{Triple, add_scaled, dot, minus};
 
 pub use law::FluidLaw;
-pub use members::{Members, Outflow};
+pub use neighbours::{Members, Outflow};
 
 /// Work on a particle of fluid, over that on a particle of a sheet. Threads pay for fewer
 /// particles.

@@ -10,9 +10,6 @@
 mod blocks;
 mod laws;
 mod order;
-mod places;
-mod runs;
-mod window;
 
 use std::ops::Range;
 
@@ -24,8 +21,8 @@ use crate::spring::Spring;
 use crate::threads::{Columns, split_off, threads};
 use crate::vectors::Arch;
 use laws::Quantity;
+use order::Window;
 use order::{Order, TILE};
-use window::Window;
 
 /// Least number of springs for which packing pays.
 const MIN_SPRINGS: usize = 1024;
@@ -166,9 +163,9 @@ impl Packed {
         which: Range<usize>,
         offset: usize,
         quantity: Quantity,
-    ) -> runs::Sum<'a> {
+    ) -> order::Sum<'a> {
         let [fields @ .., f] = &mut window.columns;
-        runs::Sum {
+        order::Sum {
             runs: &self.order.runs,
             which,
             stride: self.order.window(),

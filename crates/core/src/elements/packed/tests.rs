@@ -2,7 +2,7 @@
 
 use pulp::{Scalar, WithSimd};
 
-use super::places::Columns;
+use super::blocks::Columns;
 use super::*;
 use crate::coupling::Coupling;
 use crate::elements::axial::{add_all, add_differential, coupling};

@@ -1,9 +1,9 @@
 //! The springs of a sheet as a force.
 
 use super::super::axial;
-use super::super::diagonal::add_runs;
 use super::super::finish::Finish;
 use super::super::force::{At, Cost, Force, Matter, check_particle};
+use super::super::springs::add_runs;
 use super::model::Sheet;
 use super::offsets::OFFSETS;
 use super::strips::{Quantity, set};

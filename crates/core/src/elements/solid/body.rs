@@ -5,7 +5,7 @@ use std::array::from_fn;
 use nalgebra::{Matrix3, Vector3};
 
 use super::material::Material;
-use super::matrix::Matrix;
+use super::number::Matrix;
 use super::tangent::Pairs;
 use super::tetrahedra::{Block, Deformed, LANES, deformation, shape};
 use crate::error::Error;

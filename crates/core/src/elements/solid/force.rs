@@ -10,8 +10,7 @@ use pulp::{Simd, WithSimd};
 
 use super::body::Solid;
 use super::material::Material;
-use super::matrix::{Matrix, dot, scaled, three};
-use super::number::{Dual, Number};
+use super::number::{Dual, Matrix, Number, dot, scaled, three};
 use super::tetrahedra::{Block, Corners, Deformed, LANES, deformation};
 use crate::coupling::Coupling;
 use crate::elements::force::{At, Cost, Force, Matter, check_particle};

@@ -15,8 +15,9 @@
     reason = "what is inlined into pulp's dispatch is compiled for the vectors that it found, and nothing else"
 )]
 
-use super::matrix::{Matrix, cofactors, contraction, dot, plus, product, scaled, sum, symmetric};
-use super::number::Number;
+use super::number::{
+    Matrix, Number, cofactors, contraction, dot, plus, product, scaled, sum, symmetric,
+};
 use crate::error::{Error, at_least, positive};
 
 /// Energy of an elastic material.

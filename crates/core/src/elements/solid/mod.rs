@@ -11,9 +11,7 @@
 mod body;
 mod force;
 mod material;
-mod matrix;
 mod number;
-mod principal;
 mod tangent;
 mod tetrahedra;
 

@@ -123,3 +123,106 @@ impl<N: Number> Div for Dual<N> {
         }
     }
 }
+
+/// Array of the values of an expression for 0, 1 and 2. Unlike a closure, it is always inlined.
+macro_rules! three {
+    ($k:ident => $value:expr) => {
+        [
+            {
+                let $k = 0;
+                $value
+            },
+            {
+                let $k = 1;
+                $value
+            },
+            {
+                let $k = 2;
+                $value
+            },
+        ]
+    };
+}
+pub(super) use three;
+
+/// Matrix, row by row.
+pub(super) type Matrix<N> = [[N; 3]; 3];
+
+/// Returns a . b.
+#[inline(always)]
+pub(super) fn dot<N: Number>(a: [N; 3], b: [N; 3]) -> N {
+    (a[0] * b[0])
+        .plus_product(a[1], b[1])
+        .plus_product(a[2], b[2])
+}
+
+#[inline(always)]
+fn cross<N: Number>(a: [N; 3], b: [N; 3]) -> [N; 3] {
+    [
+        a[1] * b[2] - a[2] * b[1],
+        a[2] * b[0] - a[0] * b[2],
+        a[0] * b[1] - a[1] * b[0],
+    ]
+}
+
+/// Returns column k.
+#[inline(always)]
+pub(super) fn column<N: Number>(a: &Matrix<N>, k: usize) -> [N; 3] {
+    [a[0][k], a[1][k], a[2][k]]
+}
+
+/// Returns a b.
+#[inline(always)]
+pub(super) fn product<N: Number>(a: &Matrix<N>, b: &Matrix<N>) -> Matrix<N> {
+    three!(i => three!(j => dot(a[i], column(b, j))))
+}
+
+/// Returns a : b.
+#[inline(always)]
+pub(super) fn contraction<N: Number>(a: &Matrix<N>, b: &Matrix<N>) -> N {
+    dot(a[0], b[0]) + dot(a[1], b[1]) + dot(a[2], b[2])
+}
+
+/// Returns the symmetric part of aT b.
+#[inline(always)]
+pub(super) fn symmetric<N: Number>(a: &Matrix<N>, b: &Matrix<N>) -> Matrix<N> {
+    let (a, b) = (transposed(a), transposed(b));
+    let half = a[0][0].constant(0.5);
+    let xy = half * (dot(a[0], b[1]) + dot(a[1], b[0]));
+    let xz = half * (dot(a[0], b[2]) + dot(a[2], b[0]));
+    let yz = half * (dot(a[1], b[2]) + dot(a[2], b[1]));
+    [
+        [dot(a[0], b[0]), xy, xz],
+        [xy, dot(a[1], b[1]), yz],
+        [xz, yz, dot(a[2], b[2])],
+    ]
+}
+
+#[inline(always)]
+fn transposed<N: Number>(a: &Matrix<N>) -> Matrix<N> {
+    three!(i => three!(j => a[j][i]))
+}
+
+/// Returns the matrix of cofactors, which is the derivative of the determinant.
+#[inline(always)]
+pub(super) fn cofactors<N: Number>(a: &Matrix<N>) -> Matrix<N> {
+    [cross(a[1], a[2]), cross(a[2], a[0]), cross(a[0], a[1])]
+}
+
+/// Returns a + b.
+#[inline(always)]
+pub(super) fn sum<N: Number>(a: &Matrix<N>, b: &Matrix<N>) -> Matrix<N> {
+    three!(i => three!(j => a[i][j] + b[i][j]))
+}
+
+/// Returns a + s b.
+#[inline(always)]
+pub(super) fn plus<N: Number>(a: &Matrix<N>, s: N, b: &Matrix<N>) -> Matrix<N> {
+    three!(i => three!(j => a[i][j].plus_product(s, b[i][j])))
+}
+
+/// Returns s a.
+#[inline(always)]
+pub(super) fn scaled<N: Number>(s: N, a: &Matrix<N>) -> Matrix<N> {
+    three!(i => three!(j => s * a[i][j]))
+}

@@ -4,8 +4,7 @@ use std::array::from_fn;
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::matrix::{Matrix, product, three};
-use super::number::Number;
+use super::number::{Matrix, Number, product, three};
 
 /// Smallest volume of a tetrahedron that is not flat, over that of a cube on its longest edge.
 const MIN_VOLUME: f64 = 1e-9;

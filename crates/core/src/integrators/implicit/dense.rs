@@ -1,12 +1,11 @@
 //! Implicit stages of a small system without masses, or of rigid bodies, by Newton's method with
 //! the Jacobian J of the system's own or from central differences.
 
-use super::changes::Changes;
-use super::newton::{MAX_ITERATIONS, Newton, dot};
+use super::newton::{Changes, MAX_ITERATIONS, Newton, dot};
 use crate::error::Error;
-use crate::integrators::arithmetic::add_scaled;
 use crate::integrators::integrator::check_dim;
 use crate::integrators::method::MAX_DENSE;
+use crate::integrators::sweep::add_scaled;
 use crate::measure::Measure;
 use crate::system::{ParticleSystem, rigid_of};
 use crate::work::Work;

@@ -3,8 +3,8 @@
 //! Differential Equations II*, 1996, IV.8). They end when, by their rate of convergence, the
 //! remaining error is a small part of the allowed error of a step.
 
-use super::super::arithmetic::add_scaled;
 use super::super::error_norm::ErrorNorm;
+use super::super::sweep::add_scaled;
 use super::mechanical::Mechanical;
 use super::newton::Newton;
 use super::stage::StageSolver;

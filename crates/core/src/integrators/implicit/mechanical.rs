@@ -7,12 +7,10 @@
 //! their places first and are filtered out of the equations (Baraff, Witkin, *Large Steps in Cloth
 //! Simulation*, 1998).
 
-use super::changes::{Changes, TOLERANCE};
 use super::joined::{Joined, held, project};
-use super::newton::{MAX_ITERATIONS, Newton, dot, norm};
-use super::secants::Secants;
+use super::newton::{Changes, MAX_ITERATIONS, Newton, Secants, TOLERANCE, dot, norm};
 use crate::error::Error;
-use crate::integrators::arithmetic::add_scaled;
+use crate::integrators::sweep::add_scaled;
 use crate::linear::Solver;
 use crate::system::{Linearized, place_pins};
 use crate::work::Work;

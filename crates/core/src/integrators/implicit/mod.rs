@@ -3,23 +3,19 @@
 //! ([`dense`]).
 
 mod bdf;
-mod changes;
 mod dense;
-mod differences;
 mod euler;
-mod formulas;
 mod joined;
 mod kept;
 mod mechanical;
 mod midpoint;
 mod newton;
-mod secants;
 mod stage;
 mod tr_bdf2;
 
 pub(super) use bdf::METHOD as BDF;
+pub use bdf::bdf_growth;
 pub(super) use dense::Dense;
 pub(super) use euler::METHOD as EULER;
-pub use formulas::bdf_growth;
 pub(super) use midpoint::METHOD as MIDPOINT;
 pub(super) use tr_bdf2::METHOD as TR_BDF2;

@@ -3,7 +3,7 @@
 
 use rayon::iter::{IndexedParallelIterator, IntoParallelRefMutIterator, ParallelIterator};
 
-use super::super::block::{Block, inverse};
+use super::super::tangent::{Block, inverse};
 use super::aggregates::{Aggregates, Graph, NONE};
 use super::lists::Lists;
 use crate::threads::threads;

@@ -1,7 +1,6 @@
 //! The tools that edit the scene (key F2): their palette, and what they do.
 
 mod act;
-mod icons;
 mod palette;
 
 pub use act::{Aim, click, join};

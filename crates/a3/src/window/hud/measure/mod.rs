@@ -3,7 +3,6 @@
 mod answer;
 mod chip;
 mod diagram;
-mod plot;
 mod view;
 
 pub use chip::chip;

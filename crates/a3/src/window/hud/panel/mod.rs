@@ -1,7 +1,6 @@
 //! The panel beside the picture, with knobs and plots (key Tab).
 
 mod dial;
-mod edit;
 mod knobs;
 mod measure;
 mod part_rows;
@@ -17,8 +16,6 @@ mod view;
 
 #[cfg(not(target_arch = "wasm32"))]
 pub use dial::{Dial, DialScale, Turn};
-#[cfg(not(target_arch = "wasm32"))]
-pub use edit::{edit, of_one_body};
 pub use measure::update;
 #[cfg(not(target_arch = "wasm32"))]
 pub use parts::turn as turn_part;
@@ -29,6 +26,8 @@ pub use row::slider;
 pub use row::{CHOSEN, HOVERED, INK, TRACK, button};
 pub use tune::{tune, tuned};
 pub use undo::undo;
+#[cfg(not(target_arch = "wasm32"))]
+pub use undo::{edit, of_one_body};
 pub use view::{picture_size, show};
 
 #[cfg(test)]

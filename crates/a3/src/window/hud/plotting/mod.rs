@@ -2,12 +2,10 @@
 
 mod chart;
 mod draw;
-mod files;
-mod flow;
 mod request;
 mod rows;
 mod view;
 
-pub use files::write;
+pub use request::write;
 pub use request::{apply, begin_scene, is_shown, offer, pick, press, taken};
 pub use view::show;

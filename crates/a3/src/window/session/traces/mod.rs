@@ -1,15 +1,14 @@
 //! What a user picks to be plotted, and its values over the last minute of a run.
 
 mod pick;
-mod row;
 mod section;
 mod series;
 mod settings;
 mod variable;
 
 pub use pick::Pick;
-pub use row::Row;
 pub use section::Trigger;
 pub use series::{MAX_PICKS, Traces};
 pub use settings::{Mode, PlotFile, PlotRequest, PlotSettings, RulerEnd, SPANS};
+pub use variable::Row;
 pub use variable::{Kind, Variable};

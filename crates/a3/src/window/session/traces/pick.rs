@@ -4,8 +4,7 @@ use a3_core::elements::{Buckling, Cords};
 use a3_core::{Element, Network, Simulation, Spring, Vector3};
 use a3_scenes::Splice;
 
-use super::row::{Row, VALUES};
-use super::variable::Kind;
+use super::variable::{Kind, Row, VALUES};
 
 /// A particle, a rigid body or a spring, by the numbers of its run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

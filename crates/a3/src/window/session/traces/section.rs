@@ -1,8 +1,7 @@
 //! Poincaré sections: the rows of a series at which a variable passes a value upwards, or a period
 //! ends, by cubic interpolation.
 
-use super::row::Row;
-use super::variable::{Kind, Variable};
+use super::variable::{Kind, Row, Variable};
 
 /// Number of halvings that find a crossing within an interval: as many as a double has bits.
 const HALVINGS: u32 = 53;

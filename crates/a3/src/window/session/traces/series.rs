@@ -6,8 +6,8 @@ use a3_core::Simulation;
 use a3_scenes::Splice;
 
 use super::pick::Pick;
-use super::row::Row;
 use super::section::Trigger;
+use super::variable::Row;
 
 /// Simulated time that values cover (s).
 pub const KEPT: f64 = 60.0;
