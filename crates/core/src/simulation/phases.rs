@@ -1,7 +1,7 @@
 //! Phases after an integrator's step: springs that are too long are shortened, particles are moved
 //! out of obstacles, surfaces are kept from passing through one another, and pins are put in their
-//! places. Where joints hold bodies that meet something, they change the impulses, and the energy of
-//! such a step.
+//! places. Where joints hold bodies that meet something, they change the impulses, and the energy
+//! of such a step.
 
 use std::cell::Cell;
 

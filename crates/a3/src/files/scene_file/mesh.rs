@@ -6,8 +6,8 @@ use std::path::Path;
 use a3_scenes::Mesh;
 
 use super::files::beside;
-use super::read::read;
 use super::hash::Hash;
+use super::read::read;
 
 /// Largest total size of the files of a scene's meshes and of their buffers (bytes).
 const MAX_SIZE: u64 = 64 << 20;
