@@ -142,7 +142,7 @@ fn clicks_slow_motion_and_going_back() {
         (app.number("time")? == now).then_some(())
     });
 
-    let (x, y) = display.screen().middle(is_red);
+    let (x, y) = app.still_screen().middle(is_red);
     let (left, top) = app.corner();
     let place = [(x - left).to_string(), (y - top).to_string()];
     let click = |words: &[&str]| {
