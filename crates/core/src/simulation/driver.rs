@@ -20,6 +20,7 @@ use super::reach::STEP_END_TOLERANCE;
 use super::state::RunState;
 use super::step::{Failure, Pipeline};
 use super::stepper::Stepper;
+use super::watch::Watched;
 use crate::control::Control;
 use crate::error::Error;
 use crate::integrators::AdaptiveState;
@@ -35,6 +36,8 @@ pub struct Progress {
     pub method: Option<AdaptiveState>,
     /// Step that contains the time shown, if one does.
     pub within: Option<Span>,
+    /// What the watch over the run knows.
+    pub watched: Option<Watched>,
 }
 
 /// Driver of a run.
@@ -69,16 +72,25 @@ impl Driver {
         stepper.resume(progress.method.as_ref())?;
         self.within = Within::of(progress.within.as_ref(), dim)?;
         self.pipeline.stepper = stepper;
-        self.pipeline.watch.resume();
+        self.pipeline.watch.forget();
         self.pipeline.phases.contact.forget_impulses();
         Ok(())
+    }
+
+    /// Continues the watch over the run, which has got to the saved progress.
+    pub fn watch_again(&mut self, model: &Model, state: &RunState, progress: &Progress) {
+        if let Some(watched) = &progress.watched {
+            let Self { pipeline, within } = self;
+            let end = last_end(within, state);
+            pipeline.watch.resume(model, end, watched);
+        }
     }
 
     /// Forgets the last step, because the run continues from another state.
     pub fn forget(&mut self) {
         self.within.leave();
         self.pipeline.stepper.forget();
-        self.pipeline.watch.resume();
+        self.pipeline.watch.forget();
         self.pipeline.phases.contact.forget_impulses();
     }
 
@@ -87,6 +99,7 @@ impl Driver {
         Progress {
             method: self.pipeline.stepper.memory(whole),
             within: self.within.span().filter(|_| whole),
+            watched: whole.then(|| self.pipeline.watch.watched()),
         }
     }
 
@@ -97,7 +110,7 @@ impl Driver {
 
     /// Returns the balance of energy at the end of the last step.
     pub fn balance(&self, model: &Model, state: &RunState) -> Balance {
-        let (watch, end) = (&self.pipeline.watch, self.last_end(state));
+        let (watch, end) = (&self.pipeline.watch, last_end(&self.within, state));
         watch.balance_at(model, state.balance, end).0
     }
 
@@ -106,19 +119,11 @@ impl Driver {
     /// # Errors
     /// The run has blown up.
     pub fn conclude(&self, model: &Model, state: &RunState) -> Result<(), Failure> {
-        let (watch, end) = (&self.pipeline.watch, self.last_end(state));
+        let (watch, end) = (&self.pipeline.watch, last_end(&self.within, state));
         match watch.balance_at(model, state.balance, end).1 {
             Some(cause) => Err(Failure::BlowUp { cause, time: end.t }),
             None => Ok(()),
         }
-    }
-
-    /// Returns the end of the last step.
-    fn last_end<'a>(&'a self, state: &'a RunState) -> End<'a> {
-        let within = self.within.end();
-        let (t, y) = within.unwrap_or_else(|| (state.time(), &state.y));
-        let order = state.method.order;
-        End { order, t, y }
     }
 
     /// Takes `count` steps. If the time shown is within a step, that step is finished first, and
@@ -324,6 +329,13 @@ pub struct Span {
     pub times: [f64; 2],
     /// States at its beginning, which only a fixed step needs, and at its end.
     pub ends: [Vec<f64>; 2],
+}
+
+/// Returns the end of the last step of a run.
+fn last_end<'a>(within: &'a Within, state: &'a RunState) -> End<'a> {
+    let (t, y) = (within.end()).unwrap_or_else(|| (state.time(), &state.y));
+    let order = state.method.order;
+    End { order, t, y }
 }
 
 /// Step that contains the time shown, if one does.

@@ -9,10 +9,12 @@
 //! y + e f) - E(t - e, y - e f)) / 2e.
 
 use nalgebra::Vector3;
+use serde::{Deserialize, Serialize};
 
 use crate::contact::Obstacle;
 use crate::elements::force::{Force, Matter};
 use crate::energy::Energy;
+use crate::error::Error;
 use crate::network::{Network, add_wind, has_motors};
 use crate::path::Path;
 use crate::spring::Spring;
@@ -46,6 +48,39 @@ pub(super) struct End<'a> {
     pub y: &'a [f64],
 }
 
+/// Last evaluation of the power of a run, which may be before the end of its last step.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Evaluated {
+    /// Time (s), positions (m) and forces (N) of wind.
+    wind: Option<(f64, Vec<f64>, Vec<f64>)>,
+    /// Time (s) and power (W) of everything together.
+    all: Option<(f64, f64)>,
+}
+
+impl Evaluated {
+    /// Checks that this is an evaluation of a network.
+    ///
+    /// # Errors
+    /// It has numbers of another network, or some that are not finite.
+    pub fn check(&self, network: Option<&Network>) -> Result<(), Error> {
+        let length = network.map_or(0, |network| 3 * network.particles());
+        let fits = |v: &[f64]| v.len() == length && v.iter().all(|v| v.is_finite());
+        let wind = self.wind.iter();
+        let all = self.all.iter();
+        if wind
+            .clone()
+            .all(|(t, x, f)| t.is_finite() && fits(x) && fits(f))
+            && all
+                .clone()
+                .all(|(t, power)| t.is_finite() && power.is_finite())
+        {
+            return Ok(());
+        }
+        let why = "the work in a checkpoint must be finite, and of its scene";
+        Err(Error::Invalid(why.into()))
+    }
+}
+
 /// Power of everything that works on a scene.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Power {
@@ -69,6 +104,28 @@ impl Power {
             let moving = network.pins().any(|(_, path)| moves(&path));
             self.pins = moving.then(|| PinWork::new(network, t, y));
             self.wind = network.wind().map(|_| WindWork::new(network, t, y));
+        }
+    }
+
+    /// Returns the last evaluation, unless the scene is forgotten.
+    pub fn evaluated(&self) -> Option<Evaluated> {
+        self.is_fresh.then(|| Evaluated {
+            wind: (self.wind.as_ref()).map(|wind| (wind.t, wind.x.clone(), wind.f.clone())),
+            all: self.all.as_ref().map(|all| (all.t, all.power)),
+        })
+    }
+
+    /// Continues from an evaluation up to the end of a step.
+    pub fn resume(&mut self, network: &Network, end: End, last: &Evaluated) {
+        self.forget();
+        self.begin(network, end.t, end.y);
+        if let (Some(wind), Some((t, x, f))) = (&mut self.wind, &last.wind) {
+            wind.t = *t;
+            wind.x.copy_from_slice(x);
+            wind.f.copy_from_slice(f);
+        }
+        if let (Some(all), Some(last)) = (&mut self.all, last.all) {
+            (all.t, all.power) = last;
         }
     }
 

@@ -8,7 +8,6 @@ use super::reach::STEP_END_TOLERANCE;
 use super::state::RunState;
 use super::step::{Failure, Pipeline};
 use super::stepper::Stepper;
-use super::watch::Watch;
 use crate::contact::{Guarded, Statistics};
 use crate::control::Control;
 use crate::error::{BlowUp, Cause, Error, Unmet};
@@ -200,7 +199,8 @@ impl Simulation {
         if let Some(blow_up) = self.blow_up {
             return Err(blow_up.into());
         }
-        Watch::forgive(&self.model, &mut self.state);
+        let watch = &self.driver.pipeline.watch;
+        watch.forgive(&self.model, &mut self.state);
         let Pipeline { bounds, .. } = &self.driver.pipeline;
         if self.state.balance.is_sound() && bounds.hold_closely(&self.model, &self.state.y) {
             self.good.record(&self.state, &self.model, &self.driver);
@@ -271,9 +271,13 @@ impl Simulation {
         let run = &checkpoint.run;
         let model = checkpoint.model(&self.scene)?;
         let stepper = Stepper::new(run.method, &self.scene, model.system(), run.control)?;
-        self.driver.resume(stepper, &checkpoint.progress, dim)?;
+        let progress = &checkpoint.progress;
+        let mut watched = progress.watched.iter();
+        watched.try_for_each(|watched| watched.check(&model))?;
+        self.driver.resume(stepper, progress, dim)?;
         self.model = model;
         self.state.copy_from(run);
+        self.driver.watch_again(&self.model, &self.state, progress);
         self.continue_from_here();
         Ok(())
     }

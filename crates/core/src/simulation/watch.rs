@@ -1,17 +1,42 @@
 //! Watch over a run: finds blow-ups at the ends of steps and where something changes the run.
 
+use serde::{Deserialize, Serialize};
+
 use super::balance::Balance;
-use super::power::{End, Power, energy_of};
+use super::power::{End, Evaluated, Power, energy_of};
 use super::state::RunState;
 use crate::contact::{Obstacle, Statistics};
 use crate::control::Control;
-use crate::error::Cause;
+use crate::error::{Cause, Error};
 use crate::network::{Network, energy_of_errors};
 use crate::scene::{Model, StepLimits};
 use crate::system::{Mechanics, ParticleSystem};
 
 /// Error of a constraint over its length at which a run counts as blown up.
 const MAX_CONSTRAINT_ERROR: f64 = 0.1;
+
+/// What a watch knows beside the state of its run.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Watched {
+    /// Time of the beginning of the last step (s), and its work (J).
+    last: (f64, f64),
+    power: Option<Evaluated>,
+}
+
+impl Watched {
+    /// Checks that this belongs to a run of a model.
+    ///
+    /// # Errors
+    /// It belongs to another one, or has numbers that are not finite.
+    pub fn check(&self, model: &Model) -> Result<(), Error> {
+        if !(self.last.0.is_finite() && self.last.1.is_finite()) {
+            let why = "the work in a checkpoint must be finite";
+            return Err(Error::Invalid(why.into()));
+        }
+        let mut power = self.power.iter();
+        power.try_for_each(|power| power.check(model.network()))
+    }
+}
 
 /// Watch over the energy and the constraints of a run.
 #[derive(Debug)]
@@ -79,8 +104,23 @@ impl Watch {
     }
 
     /// Starts to watch the run from another state.
-    pub fn resume(&mut self) {
+    pub fn forget(&mut self) {
         self.power.forget();
+    }
+
+    /// Returns what the run's state does not tell.
+    pub fn watched(&self) -> Watched {
+        let power = self.power.evaluated();
+        let last = self.last;
+        Watched { last, power }
+    }
+
+    /// Continues a watch over a run of a model from the end of its last step.
+    pub fn resume(&mut self, model: &Model, end: End, watched: &Watched) {
+        self.last = watched.last;
+        if let (Some(network), Some(last)) = (model.network(), &watched.power) {
+            self.power.resume(network, end, last);
+        }
     }
 
     /// Checks a run at time t (s), before something changes it, within or at the end of a step that
@@ -105,13 +145,15 @@ impl Watch {
         state.balance.disturb();
     }
 
-    /// Accounts for what changed the run since the last check: it counts as no gain.
-    pub fn forgive(model: &Model, state: &mut RunState) {
+    /// Accounts for what changed the run since the last check: it counts as no gain, and the run
+    /// begins its motion anew.
+    pub fn forgive(&self, model: &Model, state: &mut RunState) {
         if let Some(network) = model.network()
             && state.balance.is_disturbed()
         {
             let energy = energy_of(network, state.time(), &state.y).total();
             state.balance.forgive(energy);
+            self.tolerate(model, state);
         }
     }
 
