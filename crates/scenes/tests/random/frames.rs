@@ -141,6 +141,23 @@ impl Frame {
         if self.is_mirrored && (is_handed || self.turn != 0.0) {
             return false;
         }
+        let numbered = ["springs", "constraint", "pin", "torn", "state"];
+        let is_numbered = numbered.iter().any(|key| has(key));
+        // The boxes of a fluid and its inflow do not turn, and nor do the numbers in them.
+        if self.turn != 0.0 && has("fluid") && (is_numbered || says(&["inflow"])) {
+            return false;
+        }
+        // A cloth hangs around the origin unless it has a place.
+        let cloths = scene["cloth"].as_array();
+        let has_place = |cloth: &Value| cloth.get("at").or(cloth.get("foot")).is_some();
+        if self.shift != Vector3::zeros() && !cloths.is_none_or(|all| all.iter().all(has_place)) {
+            return false;
+        }
+        // The sides of a mesh are those of the world.
+        let sides = says(&["left", "right", "front", "back"]);
+        if self.turn != 0.0 && sides && says(&["file"]) {
+            return false;
+        }
         if self.turn != 0.0 && says(&["orientations"]) {
             return false;
         }
@@ -151,8 +168,7 @@ impl Frame {
         }
         if self.is_reversed {
             // Numbers of particles that are in several bodies.
-            let numbered = ["springs", "constraint", "pin", "torn", "state"];
-            return !numbered.iter().any(|key| has(key));
+            return !is_numbered;
         }
         if self.velocity == Vector3::zeros() {
             return true;
