@@ -6,9 +6,10 @@ use crate::system::{Linearized, kick_reads_velocity};
 
 /// Rate of growth of a mode, over its frequency, that may be an error of differences of forces.
 const ROUNDING: f64 = 1e-6;
-/// Distance of an eigenvalue from that of the feedback of constraints, over its size, below which
-/// it is that one: differences of forces split a double eigenvalue.
-const FEEDBACK_SHARE: f64 = 0.05;
+/// Distances of eigenvalues from that of the feedback of constraints, over its size: below the
+/// first one, an eigenvalue is that one. Rounding splits a multiple eigenvalue up to the second one
+/// (0.2 for 20 rods), but leaves the mean of its parts.
+const FEEDBACK_SHARES: [f64; 2] = [0.05, 0.4];
 
 /// Mode of motion x'' = -stiffness x - (drag + damping) x'.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -67,13 +68,16 @@ impl Mode {
 /// of constraints, of this natural frequency (rad/s), is no motion: its modes are left out.
 #[must_use]
 pub fn fastest(modes: &[Mode], feedback: Option<f64>) -> Option<&Mode> {
-    let is_feedback = |mode: &Mode| {
-        let near = |w: f64| {
-            let [[re, im], _] = mode.eigenvalues();
-            (re + w).hypot(im) < FEEDBACK_SHARE * w
-        };
-        feedback.is_some_and(near)
+    let is_near = |mode: &Mode, share: f64| {
+        let [[re, im], _] = mode.eigenvalues();
+        feedback.is_some_and(|w| (re + w).hypot(im) < share * w)
     };
+    let [close, split] = FEEDBACK_SHARES;
+    let parts = || modes.iter().filter(|mode| is_near(mode, split));
+    let sum = parts().map(|mode| mode.eigenvalues()[0][0]).sum::<f64>();
+    let mean = Mode::of_eigenvalue(sum / parts().count() as f64, 0.0);
+    let share = if is_near(&mean, close) { split } else { close };
+    let is_feedback = |mode: &Mode| is_near(mode, share);
     modes
         .iter()
         .find(|mode| mode.returns() && !is_feedback(mode))

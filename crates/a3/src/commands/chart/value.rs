@@ -348,10 +348,14 @@ pub fn look_ahead(
     } else {
         format!("{} at {stiffness} times its stiffness", scene.name)
     };
-    let why = if buckles {
+    let network = scene.model.network();
+    let is_sheet = network.is_some_and(|network| !network.triangles().is_empty());
+    let why = if buckles && is_sheet {
         format!(
             "compressed springs buckle out of the plane of the motion, and errors grow e-fold every {lyapunov:.2} s"
         )
+    } else if buckles {
+        format!("the motion leaves its plane, and errors grow e-fold every {lyapunov:.2} s")
     } else if lyapunov.is_finite() {
         format!("errors grow by themselves e-fold every {lyapunov:.2} s (Lyapunov time)")
     } else if growth > MIN_GROWTH {

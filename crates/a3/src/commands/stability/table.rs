@@ -65,24 +65,21 @@ pub fn report(found: &Stability) -> Report {
             row.accurate.map_or("-".into(), step),
         ]);
     }
-    let frequency = |modes: &[Mode]| {
-        let none = if modes.is_empty() {
-            "none that could be computed"
-        } else {
-            "none that returns"
-        };
-        found.fastest(modes).map_or(none.to_owned(), |mode| {
+    let motion = |modes: &[Mode]| {
+        found.fastest(modes).map(|mode| {
             let damping = 0.5 * (mode.drag + mode.damping) / mode.frequency();
             format!("{:.1} rad/s, damping ratio {damping:.3}", mode.frequency())
         })
     };
-    let mut head = format!(
-        "{}: fastest motion {} at the start",
-        found.name,
-        frequency(&found.at_start)
-    );
+    let start = match motion(&found.at_start) {
+        Some(motion) => format!("fastest motion {motion}"),
+        None if found.at_start.is_empty() => "no motion known".into(),
+        None => "no motion back and forth".into(),
+    };
+    let mut head = format!("{}: {start} at the start", found.name);
     if let Some(rest) = &found.at_rest {
-        let _ = write!(head, ", {} at rest", frequency(rest));
+        let rest = motion(rest).unwrap_or("none".into());
+        let _ = write!(head, ", {rest} at rest");
     }
     if let Some(rate) = found.feedback {
         let _ = write!(head, "; errors of constraints decay at {rate:.1} / s");
