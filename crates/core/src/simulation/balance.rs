@@ -211,6 +211,17 @@ impl Balance {
         }
     }
 
+    /// Widens the ranges of energy to those of another check.
+    pub(super) fn widen(&mut self, other: &Self) {
+        let Self {
+            kinetic,
+            elastic,
+            gravitational,
+            ..
+        } = *other;
+        (self.kinetic, self.elastic, self.gravitational) = (kinetic, elastic, gravitational);
+    }
+
     /// Returns whether the kinetic energy alone exceeds the energy that a run may gain.
     pub(super) fn is_exceeded(&self, network: &Network, y: &[f64]) -> bool {
         let (_, v) = network.halves(y);

@@ -257,7 +257,7 @@ impl Pipeline {
         };
         if let Some(cause) = self
             .watch
-            .check_before_safeguard(model, &state.balance, end)
+            .check_before_safeguard(model, &mut state.balance, end)
         {
             return Err(Setback::BlowUp(cause));
         }

@@ -176,11 +176,10 @@ impl Watch {
     pub fn check_before_safeguard(
         &self,
         model: &Model,
-        balance: &Balance,
+        balance: &mut Balance,
         end: End,
     ) -> Option<Cause> {
         let network = model.network()?;
-        let mut balance = *balance;
         if network.contact_layer().is_none()
             || balance.is_disturbed()
             || !balance.is_exceeded(network, end.y)
@@ -191,10 +190,13 @@ impl Watch {
         let mut y = end.y.to_vec();
         network.hold(end.t, &mut y);
         let work = self.power.clone().work(network, End { y: &y, ..end }, true);
-        balance.add(work);
+        let mut checked = *balance;
+        checked.add(work);
         // The safeguard takes back how far surfaces have got into one another.
-        balance.allow(network.energy_of(end.t, &y).contact);
-        balance.check(network, (end.t, &y), &mut vec![])
+        checked.allow(network.energy_of(end.t, &y).contact);
+        let cause = checked.check(network, (end.t, &y), &mut vec![]);
+        balance.widen(&checked);
+        cause
     }
 
     /// Records the end of a step, with its contacts, and what `Bounds` has found. Returns the cause

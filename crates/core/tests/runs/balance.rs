@@ -263,3 +263,35 @@ fn gains_are_compared_with_what_moves() {
     );
     assert_eq!(gained(1e-8), None);
 }
+
+/// Two particles on a stretched spring, whose period is 0.08 s, beside a cloth that touches itself.
+const STRETCHED: &str = "self_collision = true\n\
+    [particles]\nmass = 1\npositions = [[0, 0, 0], [1.5, 0, 0]]\nsprings = [[0, 1, 3084, 1.0, 0.0]]\n\
+    [[cloth]]\ngrid = [2, 2]\nwidth = 0.1\nmass = 0.01\nstiffness = [10, 10, 1]\nat = [0, 5, 0]\n";
+
+/// Explicit Euler gains a twentieth in a period, which is over before the energy is checked.
+#[test]
+fn what_moved_between_checks_counts() {
+    let scene = described(STRETCHED);
+    let mut run = Simulation::new(scene, method("euler"), Control::Step(1e-4)).unwrap();
+    run.advance_to(0.09).unwrap();
+    let change = run.energy_change().unwrap();
+    assert!((0.03..0.3).contains(&change), "{change}");
+    assert_eq!(run.gained(), None);
+}
+
+/// A stiff solid that flies freely, beside a box that moves.
+const FLYING: &str = "self_collision = true\n\
+    [[solid]]\ngrid = [2, 3, 2]\nsize = [0.2, 0.3, 0.2]\ndensity = 0.7\nyoung = 1e8\npoisson = 0.3\n\
+    at = [1, 0, 0]\nvelocity = [0, 0.2, -0.1]\n\
+    [[box]]\ncenter = [9, 0, 0]\nsize = [1, 1, 1]\nsine = { amplitude = [0.5, 0, 0], rate = 3 }\n";
+
+#[test]
+fn rounding_errors_are_no_work() {
+    let scene = described(FLYING);
+    let mut run = Simulation::new(scene, method("i"), Control::Step(0.1)).unwrap();
+    for _ in 0..200 {
+        run.take_steps(1).unwrap();
+        assert_eq!(run.gained(), None, "at {} s", run.time());
+    }
+}
