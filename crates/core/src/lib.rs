@@ -67,6 +67,7 @@ mod geometry;
 mod grid;
 mod held;
 pub mod integrators;
+mod interval;
 mod lanes;
 mod linear;
 mod measure;

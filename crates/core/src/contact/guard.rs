@@ -22,6 +22,7 @@ use super::solids::Masses;
 use super::strike::{find, strike};
 use super::surface::Surface;
 use crate::geometry::{Closest, closest};
+use crate::interval::Interval;
 use crate::rigid::ROTATION;
 
 /// Largest number of passes of impulses before displacements are cut.
@@ -48,7 +49,7 @@ pub(crate) struct Bodies<'a> {
 pub(crate) fn guard(
     layer: &ContactLayer,
     bodies: Bodies,
-    (t, h): (f64, f64),
+    Interval { t, h }: Interval,
     y0: &[f64],
     y1: &mut [f64],
     impulses: &mut Impulses,
@@ -56,7 +57,7 @@ pub(crate) fn guard(
     impulses.clear();
     layer.scratch.lend(|buffers| {
         std::mem::swap(impulses, &mut buffers.motion.impulses);
-        let guarded = guard_with(layer, buffers, bodies, (t, h), y0, y1);
+        let guarded = guard_with(layer, buffers, bodies, Interval { t, h }, y0, y1);
         std::mem::swap(impulses, &mut buffers.motion.impulses);
         guarded
     })
@@ -66,7 +67,7 @@ fn guard_with(
     layer: &ContactLayer,
     buffers: &mut Buffers,
     bodies: Bodies,
-    (t, h): (f64, f64),
+    Interval { t, h }: Interval,
     y0: &[f64],
     y1: &mut [f64],
 ) -> Result<Guarded, Pinched> {

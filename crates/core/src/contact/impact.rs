@@ -10,6 +10,7 @@ use super::skin::Law;
 use super::solids::SAME_TOLERANCE;
 use super::surface::Surface;
 use crate::geometry::{Closest, PairKind, closest, weighted};
+use crate::interval::Interval;
 
 /// Accuracy of the solution, as a share of the speed of an impact.
 const TOLERANCE: f64 = 1e-13;
@@ -63,7 +64,7 @@ impl Impact {
     pub fn new(
         surface: &Surface,
         pair: &Candidate,
-        (time, h): (f64, f64),
+        Interval { t: time, h }: Interval,
         motion: &Motion,
     ) -> Option<Self> {
         let law: Law = surface.law(pair.kind, &pair.points);

@@ -10,6 +10,7 @@ use super::motion::Motion;
 use super::obstacle::Obstacle;
 use super::repulsion::{Pair, Stiffness};
 use super::surface::Surface;
+use crate::interval::Interval;
 use crate::scratch::Scratch;
 
 /// Contact of the surfaces of a network with themselves, one another and obstacles.
@@ -212,7 +213,11 @@ const BULGE: f64 = 4.0 / 27.0;
 /// Returns the largest distance of a vertex from its straight course in a step of h (s) from the
 /// state y0 at time t (s) to y1, over the least thickness that is not 0. Vertices of rigid bodies
 /// do not count; 0 if there are no others.
-pub(crate) fn bulge(layer: &ContactLayer, (t, h): (f64, f64), [y0, y1]: [&[f64]; 2]) -> f64 {
+pub(crate) fn bulge(
+    layer: &ContactLayer,
+    Interval { t, h }: Interval,
+    [y0, y1]: [&[f64]; 2],
+) -> f64 {
     let (surface, obstacles) = (layer.surface(), layer.obstacles());
     let is_soft = |vertex: &&u32| surface.solid(**vertex).is_none();
     let bodies = surface.bodies.vertices.iter().filter(is_soft);

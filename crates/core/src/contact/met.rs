@@ -20,6 +20,7 @@ use super::obstacle::{
 use crate::columns::{row, set_row};
 use crate::geometry::Shape;
 use crate::geometry::closest::{Nearest, Separation};
+use crate::interval::Interval;
 use crate::path::Pose;
 
 /// Gap before a step, as a share of the depth after it, up to which a particle counts as touching
@@ -93,7 +94,7 @@ pub(super) struct Met<'a> {
     pub obstacle: &'a Obstacle,
     pub friction: f64,
     /// Time at the beginning of the step, and its length (s).
-    pub span: (f64, f64),
+    pub span: Interval,
     /// Place and orientation of the obstacle at the beginning of the step.
     pub before: Pose,
     /// Place and orientation of the obstacle at the end of the step.
@@ -147,7 +148,7 @@ impl Met<'_> {
                     set_row(v, n, i, row(v, n, i) + rebound.change);
                     let depth = nearest.normal.dot(&(nearest.point - d));
                     let impulse = rebound.change / self.inverse_masses[i];
-                    noted.add_rebound(i, 1.0 - rebound.left / self.span.1, depth, impulse);
+                    noted.add_rebound(i, 1.0 - rebound.left / self.span.h, depth, impulse);
                     continue;
                 }
             }
@@ -224,7 +225,7 @@ impl Met<'_> {
     /// Finds the first touch of particle i in the step, at whose end its position and velocity are
     /// [x, v], if it begins outside.
     fn touch(&self, i: usize, [x, v]: [Vector3<f64>; 2]) -> Option<Touch> {
-        let ((t, h), n) = (self.span, self.inverse_masses.len());
+        let (Interval { t, h }, n) = (self.span, self.inverse_masses.len());
         let course = Course {
             x: [row(self.x0?, n, i), x],
             v: [row(self.v0?, n, i), v],
@@ -270,7 +271,7 @@ impl Met<'_> {
     /// Returns the effect of restitution on a particle, whose velocity at the end of the step is v,
     /// if there is any.
     fn rebound(&self, v: Vector3<f64>, touch: &Touch) -> Option<Rebound> {
-        let ((_, h), restitution) = (self.span, self.obstacle.restitution);
+        let (h, restitution) = (self.span.h, self.obstacle.restitution);
         if restitution == 0.0 || touch.touches {
             return None;
         }
@@ -307,7 +308,7 @@ impl Met<'_> {
         let fall = speed - slip.dot(&begun) / speed + self.friction * change;
         let share = speed / fall;
         if share > 0.0 && share < 1.0 {
-            let way = 0.5 * speed * (1.0 - share) * self.span.1;
+            let way = 0.5 * speed * (1.0 - share) * self.span.h;
             Stop { share, way }
         } else {
             Stop::default()

@@ -12,6 +12,7 @@ use super::obstacle::{
 use crate::columns::{row, set_row};
 use crate::geometry::Shape;
 use crate::geometry::closest::{of_box, of_capsule, of_floor, of_sphere};
+use crate::interval::Interval;
 
 /// Share of a step within which rebounds count as simultaneous.
 pub(crate) const SIMULTANEOUS_SHARE: f64 = 1e-6;
@@ -105,7 +106,7 @@ impl ContactPhase {
         &mut self,
         obstacles: &[Obstacle],
         inverse_masses: &[f64],
-        (t, h): (f64, f64),
+        Interval { t, h }: Interval,
         y1: &mut [f64],
     ) -> Statistics {
         let step = Step { t, h, y0: &self.y0 };
@@ -190,12 +191,12 @@ impl ContactPhase {
         &mut self,
         layer: &ContactLayer,
         bodies: Bodies,
-        (t, h): (f64, f64),
+        Interval { t, h }: Interval,
         y1: &mut [f64],
     ) -> Result<Statistics, Pinched> {
         let (impulses, length) = &mut self.impulses;
         *length = h;
-        let guarded = guard(layer, bodies, (t, h), &self.y0, y1, impulses)?;
+        let guarded = guard(layer, bodies, Interval { t, h }, &self.y0, y1, impulses)?;
         self.last = Statistics {
             contacts: guarded.impulses,
             impulse: guarded.impulse,
@@ -256,7 +257,10 @@ fn resolve_noting(
             struck: masses.struck,
             obstacle,
             friction: obstacle.friction,
-            span: (step.t, step.h),
+            span: Interval {
+                t: step.t,
+                h: step.h,
+            },
             before: obstacle.at(step.t),
             after: obstacle.at(step.t + step.h),
             // A smooth floor moves particles vertically only.

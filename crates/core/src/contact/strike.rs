@@ -37,6 +37,7 @@ use super::response::{Changes, Joined};
 use super::skin::KEPT_SHARE;
 use super::surface::Surface;
 use crate::geometry::{PairKind, closest, weighted};
+use crate::interval::Interval;
 
 /// Largest number of times in a step at which a body has impacts.
 const MAX_TIMES: usize = 12;
@@ -64,7 +65,8 @@ pub(super) fn strike(
         let hits = first_hits(surface, motion, hits, &mut moved);
         let mut impacts: Vec<Impact> = vec![];
         for (pair, time) in hits {
-            let Some(mut impact) = Impact::new(surface, &pair, (time, h), motion) else {
+            let Some(mut impact) = Impact::new(surface, &pair, Interval { t: time, h }, motion)
+            else {
                 continue;
             };
             if let Some(joined) = joined.filter(|_| impact.rebounds) {

@@ -24,6 +24,7 @@ use super::watch::Watched;
 use crate::control::Control;
 use crate::error::Error;
 use crate::integrators::AdaptiveState;
+use crate::interval::Interval;
 use crate::network::{next_break, pass_to};
 use crate::scene::Model;
 use crate::system::ParticleSystem;
@@ -37,7 +38,7 @@ pub struct Progress {
     /// Step that contains the time shown, if one does.
     pub within: Option<Span>,
     /// What the watch over the run knows.
-    pub watched: Option<Watched>,
+    pub watched: Option<Box<Watched>>,
 }
 
 /// Driver of a run.
@@ -99,7 +100,7 @@ impl Driver {
         Progress {
             method: self.pipeline.stepper.memory(whole),
             within: self.within.span().filter(|_| whole),
-            watched: whole.then(|| self.pipeline.watch.watched()),
+            watched: whole.then(|| Box::new(self.pipeline.watch.watched())),
         }
     }
 
@@ -248,7 +249,9 @@ impl Driver {
         if let Some(network) = network {
             let knows_contact = !self.pipeline.stepper.is_adaptive();
             let phases = &self.pipeline.phases;
-            phases.settle_shown(network, (begin, time - begin), knows_contact, y);
+            let (t, h) = (begin, time - begin);
+            let shown = Interval { t, h };
+            phases.settle_shown(network, shown, knows_contact, y);
         }
         state.shown = Some(time);
     }
@@ -292,7 +295,7 @@ impl Driver {
             phases.begin(model, y, false);
             let step = Control::Step(end - t);
             let taken = stepper.integrate(model.system(), step, t, end - t, y);
-            let settled = phases.settle(model, (t, end - t), y);
+            let settled = phases.settle(model, Interval { t, h: end - t }, y);
             succeeds = taken.is_ok() && settled.is_ok() && y.iter().all(|y| y.is_finite());
             pass_model_to(model, end);
             self.pipeline.fit_at_jump(model, state, end);

@@ -13,6 +13,7 @@ use crate::contact::{
     Strained, bulge, earliest, guard, resolve,
 };
 use crate::error::Cause;
+use crate::interval::Interval;
 use crate::network::{Network, has_joints, has_ropes, outflows, project, project_velocities};
 use crate::rigid::ROTATION;
 use crate::scene::Model;
@@ -81,13 +82,13 @@ impl Phases {
 
     /// Returns the largest distance of vertices of surfaces from the chords of their courses in a
     /// step of h (s) from time t (s) to y1, over the least thickness; 0 if nothing touches.
-    pub fn bulge(&self, model: &Model, (t, h): (f64, f64), y1: &[f64]) -> f64 {
+    pub fn bulge(&self, model: &Model, Interval { t, h }: Interval, y1: &[f64]) -> f64 {
         let layer = model.network().and_then(Network::contact_layer);
         let states = [self.y0(), y1];
         let is_known = states[0].len() == states[1].len();
         layer
             .filter(|_| is_known)
-            .map_or(0.0, |layer| bulge(layer, (t, h), states))
+            .map_or(0.0, |layer| bulge(layer, Interval { t, h }, states))
     }
 
     /// Applies impacts to the particles that touch an obstacle at the end of a step of h (s) that
@@ -111,7 +112,7 @@ impl Phases {
     pub fn settle(
         &mut self,
         model: &Model,
-        (t, h): (f64, f64),
+        Interval { t, h }: Interval,
         y1: &mut [f64],
     ) -> Result<Settled, Cause> {
         let mut settled = Settled::default();
@@ -120,7 +121,7 @@ impl Phases {
             return Ok(settled);
         };
         self.shorten(network, h, y1, &mut settled);
-        settled.met = self.part(network, (t, h), y1)?;
+        settled.met = self.part(network, Interval { t, h }, y1)?;
         Ok(settled)
     }
 
@@ -131,7 +132,7 @@ impl Phases {
     pub fn settle_shown(
         &self,
         network: &Network,
-        (t, h): (f64, f64),
+        Interval { t, h }: Interval,
         knows_obstacles: bool,
         y: &mut [f64],
     ) {
@@ -144,7 +145,7 @@ impl Phases {
             // If prescribed motions leave no room, the step itself has ended the run.
             let none = &mut Impulses::default();
             let joints = JointsOf::new(network);
-            let _ = guard(layer, joints.bodies(false), (t, h), y0, y, none);
+            let _ = guard(layer, joints.bodies(false), Interval { t, h }, y0, y, none);
         } else if !knows_obstacles {
             resolve(network.obstacles(), inverse_masses, &Step { t, h, y0 }, y);
         }
@@ -180,14 +181,14 @@ impl Phases {
     fn part(
         &mut self,
         network: &Network,
-        times: (f64, f64),
+        times: Interval,
         y1: &mut [f64],
     ) -> Result<Statistics, Cause> {
         let joints = JointsOf::new(network);
         let touches = network.contact_layer().is_some();
         let takes_turns = network.is_constrained() && (touches || !network.obstacles().is_empty());
         if touches || takes_turns {
-            network.hold(times.0 + times.1, y1);
+            network.hold(times.t + times.h, y1);
         }
         if !takes_turns {
             return self.meet((&joints, false), times, y1);
@@ -209,7 +210,7 @@ impl Phases {
             self.meet((&joints, true), times, y1)?;
             last = largest_shift(network, [&before, y1]);
         }
-        joints.balance(times.0 + times.1, met.impulse, &unstruck, y1);
+        joints.balance(times.t + times.h, met.impulse, &unstruck, y1);
         self.scratch = [unstruck, before];
         Ok(met)
     }
@@ -219,14 +220,16 @@ impl Phases {
     fn meet(
         &mut self,
         (joints, are_struck): (&JointsOf, bool),
-        (t, h): (f64, f64),
+        Interval { t, h }: Interval,
         y1: &mut [f64],
     ) -> Result<Statistics, Cause> {
         let network = joints.network();
         let Some(layer) = network.contact_layer() else {
             let obstacles = network.obstacles();
             let inverse_masses = network.inverse_masses();
-            let met = self.contact.resolve(obstacles, inverse_masses, (t, h), y1);
+            let met = self
+                .contact
+                .resolve(obstacles, inverse_masses, Interval { t, h }, y1);
             network.hold(t + h, y1);
             return Ok(met);
         };
@@ -236,7 +239,7 @@ impl Phases {
         }
         let guarded = self
             .contact
-            .guard(layer, joints.bodies(are_struck), (t, h), y1);
+            .guard(layer, joints.bodies(are_struck), Interval { t, h }, y1);
         let met = guarded.map_err(|Pinched { vertices }| Cause::Pinched { vertices })?;
         if !network.bodies().is_empty() {
             network.hold(t + h, y1);

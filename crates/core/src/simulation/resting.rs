@@ -21,6 +21,7 @@ use crate::constraints::OneSided;
 use crate::contact::{Obstacle, Shape};
 use crate::elements::Outflow;
 use crate::integrators::Work;
+use crate::interval::Interval;
 use crate::measure::Measure;
 use crate::network::{Network, has_ropes, least_tension, open_ends, outflows, taut};
 use crate::path::Path;
@@ -450,7 +451,7 @@ impl Locator {
         state: &mut RunState,
         stepper: &mut Stepper,
         y0: &[f64],
-        (t, h): (f64, f64),
+        Interval { t, h }: Interval,
         depths: Depths,
     ) -> Option<Event> {
         let network = model.network()?;
@@ -506,7 +507,7 @@ impl Locator {
                 evaluated += 1;
                 state_at(share, out);
             };
-            first_slack(network, (t, h), before, state, at)
+            first_slack(network, Interval { t, h }, before, state, at)
         } else {
             None
         };
@@ -576,7 +577,7 @@ fn first_stop(
 /// step's polynomial. Writes the state there to `state`.
 fn first_slack(
     network: &Network,
-    (t, h): (f64, f64),
+    Interval { t, h }: Interval,
     before: f64,
     state: &mut Vec<f64>,
     state_at: &mut dyn FnMut(f64, &mut [f64]),

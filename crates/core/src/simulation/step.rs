@@ -26,6 +26,7 @@ use super::watch::Watch;
 use crate::contact::SIMULTANEOUS_SHARE;
 use crate::control::Control;
 use crate::error::{Cause, Error, Unmet};
+use crate::interval::Interval;
 use crate::network::{Network, breaks_between, contradiction, has_ropes, jump_near, outflows};
 use crate::refusal::Refusal;
 use crate::rigid::{Body, ROTATION};
@@ -242,7 +243,7 @@ impl Pipeline {
         }
         let h = part.h;
         let bulge = if self.stepper.is_adaptive() && state.method.is_implicit() {
-            self.phases.bulge(model, (t, h), &state.y)
+            self.phases.bulge(model, Interval { t, h }, &state.y)
         } else {
             0.0
         };
@@ -261,7 +262,7 @@ impl Pipeline {
         {
             return Err(Setback::BlowUp(cause));
         }
-        let settled = self.phases.settle(model, (t, h), &mut state.y);
+        let settled = self.phases.settle(model, Interval { t, h }, &mut state.y);
         let settled = settled.map_err(Setback::BlowUp)?;
         let planes = PLANE_PRICE * settled.met.guarded.planes as f64 / model.work();
         state.work.algebra += SWEEP_PRICE * settled.strained.sweeps as f64 + planes;
@@ -331,7 +332,7 @@ impl Pipeline {
         let (stepper, y0, h) = (&mut self.stepper, self.phases.y0(), whole.h);
         let event = self
             .locator
-            .first_event(model, state, stepper, y0, (t, h), depths);
+            .first_event(model, state, stepper, y0, Interval { t, h }, depths);
         let Some(Event { share, kind }) = event else {
             return Ok(whole);
         };

@@ -8,6 +8,7 @@ use super::state::RunState;
 use crate::contact::{Obstacle, Statistics};
 use crate::control::Control;
 use crate::error::{Cause, Error};
+use crate::interval::Interval;
 use crate::network::{Network, energy_of_errors};
 use crate::scene::{Model, StepLimits};
 use crate::system::{Mechanics, ParticleSystem};
@@ -94,7 +95,7 @@ impl Watch {
         };
         let (t, y) = (state.time(), &state.y[..]);
         let errors = match state.control {
-            Control::Step(h) => kick(network, (t, h), y),
+            Control::Step(h) => kick(network, Interval { t, h }, y),
             Control::Tolerance(relative) => {
                 let error = self.limits.absolute.unwrap_or(relative * self.radius);
                 energy_of_errors(network, t, y, error)
@@ -266,7 +267,7 @@ impl Watch {
 
 /// Returns the kinetic energy (J) that the forces at y at time t (s) give to particles at rest in a
 /// step of h (s).
-fn kick(network: &Network, (t, h): (f64, f64), y: &[f64]) -> f64 {
+fn kick(network: &Network, Interval { t, h }: Interval, y: &[f64]) -> f64 {
     let (n, mut rates) = (network.particles(), vec![0.0; y.len()]);
     network.eval_f(t, y, &mut rates);
     let squared = |k: usize| rates[3 * n + k].powi(2) * network.masses()[k % n];
