@@ -199,7 +199,7 @@ impl Simulation {
         if let Some(blow_up) = self.blow_up {
             return Err(blow_up.into());
         }
-        let watch = &self.driver.pipeline.watch;
+        let watch = &mut self.driver.pipeline.watch;
         watch.forgive(&self.model, &mut self.state);
         let Pipeline { bounds, .. } = &self.driver.pipeline;
         if self.state.balance.is_sound() && bounds.hold_closely(&self.model, &self.state.y) {

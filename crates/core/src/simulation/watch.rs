@@ -48,7 +48,7 @@ pub(super) struct Watch {
     limits: StepLimits,
     /// Time of the beginning of the last step (s), and its work (J).
     last: (f64, f64),
-    /// Forces (N).
+    /// Forces (N), or rates of change of a state.
     scratch: Vec<f64>,
 }
 
@@ -70,7 +70,7 @@ impl Watch {
             let (t, y) = (state.since, &state.y[..]);
             // Allocated here, so that steps allocate nothing.
             *self = Self {
-                scratch: Vec::with_capacity(y.len() / 2),
+                scratch: Vec::with_capacity(y.len()),
                 ..Self::new(self.radius, self.limits)
             };
             self.power.begin(network, t, y);
@@ -89,13 +89,13 @@ impl Watch {
     /// Counts the energy of errors within the tolerance as no gain: at rest, an adaptive method
     /// takes steps so long that it only just meets its tolerance. A method of order 1 may gain all
     /// energy of the motion in its first step.
-    fn tolerate(&self, model: &Model, state: &mut RunState) {
+    fn tolerate(&mut self, model: &Model, state: &mut RunState) {
         let Some(network) = model.network() else {
             return;
         };
         let (t, y) = (state.time(), &state.y[..]);
         let errors = match state.control {
-            Control::Step(h) => kick(network, Interval { t, h }, y),
+            Control::Step(h) => kick(network, Interval { t, h }, y, &mut self.scratch),
             Control::Tolerance(relative) => {
                 let error = self.limits.absolute.unwrap_or(relative * self.radius);
                 energy_of_errors(network, t, y, error)
@@ -148,13 +148,17 @@ impl Watch {
 
     /// Accounts for what changed the run since the last check: it counts as no gain, and the run
     /// begins its motion anew.
-    pub fn forgive(&self, model: &Model, state: &mut RunState) {
+    pub fn forgive(&mut self, model: &Model, state: &mut RunState) {
         if let Some(network) = model.network()
             && state.balance.is_disturbed()
         {
             let energy = energy_of(network, state.time(), &state.y).total();
             state.balance.forgive(energy);
-            self.tolerate(model, state);
+            if let Control::Step(h) = state.control {
+                let step = Interval { t: state.time(), h };
+                let energy = kick(network, step, &state.y, &mut self.scratch);
+                state.balance.tolerate(energy);
+            }
         }
     }
 
@@ -266,10 +270,12 @@ impl Watch {
 }
 
 /// Returns the kinetic energy (J) that the forces at y at time t (s) give to particles at rest in a
-/// step of h (s).
-fn kick(network: &Network, Interval { t, h }: Interval, y: &[f64]) -> f64 {
-    let (n, mut rates) = (network.particles(), vec![0.0; y.len()]);
-    network.eval_f(t, y, &mut rates);
+/// step of h (s), with scratch for rates of change.
+fn kick(network: &Network, Interval { t, h }: Interval, y: &[f64], rates: &mut Vec<f64>) -> f64 {
+    let n = network.particles();
+    rates.clear();
+    rates.resize(y.len(), 0.0);
+    network.eval_f(t, y, rates);
     let squared = |k: usize| rates[3 * n + k].powi(2) * network.masses()[k % n];
     let pulled = (0..3 * n).filter(|k| network.inverse_masses()[k % n] > 0.0);
     let energy = 0.5 * h * h * pulled.map(squared).sum::<f64>();
