@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use a3::{ChartOptions, ChooseOptions, Failure, Goal, JudgeOptions, StatesOf};
 use a3_core::accuracy::{Metric, SetBy};
+use a3_core::stability::Mode;
 use a3_core::{Control, Method};
 use numpy::PyArray1;
 use pyo3::prelude::*;
@@ -237,6 +238,15 @@ impl Stability {
     /// Returns whether all was measured.
     fn complete(&self) -> bool {
         self.0.complete
+    }
+
+    /// Returns frequencies (rad/s) and damping ratios of the fastest motions at the start and at
+    /// rest, the rate (1/s) at which errors of constraints decay, and the time (s) up to which the
+    /// motion can be predicted.
+    fn facts(&self) -> ([Option<(f64, f64)>; 2], Option<f64>, f64) {
+        let told = |mode: Mode| (mode.frequency(), mode.damping_ratio());
+        let motions = self.0.fastest_motions().map(|mode| mode.map(told));
+        (motions, self.0.feedback, self.0.predictable)
     }
 
     /// Draws a picture of a kind and a size (px), for a step (s).

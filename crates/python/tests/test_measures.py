@@ -125,6 +125,24 @@ def test_limits_of_steps():
         limits["verlet"]
 
 
+@pytest.mark.parametrize("scene", ["chain", "double-pendulum", "jelly"])
+def test_limits_have_the_facts_of_their_table(scene):
+    limits = a3.stability(scene, ["rk4", "verlet"], progress=False)
+    head, *rows = limits.table.splitlines()
+    for fact, time in [(limits.fastest, "at the start"), (limits.fastest_at_rest, "at rest")]:
+        if fact is not None:
+            assert f"{fact.frequency:.1f} rad/s, damping ratio {fact.damping_ratio:.3f} {time}" in head
+    assert (limits.fastest is None) == ("no motion" in head)
+    assert (limits.feedback is not None) == ("errors of constraints" in head)
+    assert limits.feedback is None or f"decay at {limits.feedback:.1f} / s" in head
+    assert f"in the first {limits.predictable:.2f} s" in limits.table
+    for row in limits.limits:
+        cells = next(line for line in rows if line.startswith(row.method)).split()
+        held = cells[4].split("\u2013")[-1].lstrip(">")
+        for cell, fact in [(cells[1], row.at_rest), (held, row.in_motion), (cells[5], row.accurate)]:
+            assert np.isnan(fact) if cell == "-" else float(cell) == pytest.approx(1000 * fact, rel=0.01)
+
+
 def test_runs_are_compared():
     compared = a3.compare("chain", [("rk4", 0.01), ("dop853", 1e-10), "euler"], until=1.0, frames=10, progress=False)
     assert compared.times == pytest.approx(np.linspace(0, 1, 11))

@@ -42,6 +42,12 @@ impl Mode {
         self.stiffness.max(0.0).sqrt()
     }
 
+    /// Returns the damping over that at which a push no longer swings back; NaN without stiffness.
+    #[must_use]
+    pub fn damping_ratio(&self) -> f64 {
+        0.5 * (self.drag + self.damping) / self.frequency()
+    }
+
     /// Returns whether the mode has a restoring force and does not grow by itself, except by
     /// rounding.
     #[must_use]

@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from ._measures import Choice as Choice
     from ._measures import Comparison as Comparison
     from ._measures import Limits as Limits
+    from ._measures import Motion as Motion
     from ._measures import Point as Point
     from ._measures import Stability as Stability
     from ._measures import chart as chart
@@ -59,6 +60,7 @@ _MODULES = {
     "Choice": "_measures",
     "Comparison": "_measures",
     "Limits": "_measures",
+    "Motion": "_measures",
     "Point": "_measures",
     "Stability": "_measures",
     "chart": "_measures",

@@ -203,11 +203,24 @@ class Limits(NamedTuple):
     accurate: float
 
 
+class Motion(NamedTuple):
+    """A motion back and forth."""
+
+    #: Angular frequency (rad/s).
+    frequency: float
+    #: Damping over that at which a push no longer swings back.
+    damping_ratio: float
+
+
 class Stability(_Drawn):
     """The largest steps of methods on a scene. A notebook shows the stable regions of the methods.
 
     Attributes:
         limits: a row for each method.
+        fastest: the fastest motion at the start, a `Motion`; `None` if nothing moves back and forth.
+        fastest_at_rest: the same at rest; `None` also where no state of rest is known.
+        feedback: rate (1/s) at which errors of constraints decay; `None` without constraints.
+        predictable: time (s) up to which the motion can be predicted; accurate steps are those of runs until then.
         table: the limits as text.
         complete: whether all was measured.
         data: all that was measured, as `a3 stability --data` writes it.
@@ -217,6 +230,8 @@ class Stability(_Drawn):
         self._source, self._size, self._step, self._forms = source, size, step, {}
         self.table = source.table()
         self.complete = source.complete()
+        motions, self.feedback, self.predictable = source.facts()
+        self.fastest, self.fastest_at_rest = (motion and Motion(*motion) for motion in motions)
         self.data: List[Dict[str, Any]] = json.loads(source.json())
         self.limits = [self._limits(row) for row in self.data]
 

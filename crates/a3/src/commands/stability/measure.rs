@@ -170,6 +170,13 @@ pub struct Stability {
 }
 
 impl Stability {
+    /// Returns the fastest motion back and forth at the start and at rest, as far as there is one.
+    #[must_use]
+    pub fn fastest_motions(&self) -> [Option<Mode>; 2] {
+        let at_rest = self.at_rest.as_deref().unwrap_or_default();
+        [&self.at_start, at_rest].map(|modes| self.fastest(modes).copied())
+    }
+
     /// Returns the fastest motion of these modes.
     pub(super) fn fastest<'a>(&self, modes: &'a [Mode]) -> Option<&'a Mode> {
         fastest(modes, self.feedback)

@@ -67,8 +67,8 @@ pub fn report(found: &Stability) -> Report {
     }
     let motion = |modes: &[Mode]| {
         found.fastest(modes).map(|mode| {
-            let damping = 0.5 * (mode.drag + mode.damping) / mode.frequency();
-            format!("{:.1} rad/s, damping ratio {damping:.3}", mode.frequency())
+            let (frequency, damping) = (mode.frequency(), mode.damping_ratio());
+            format!("{frequency:.1} rad/s, damping ratio {damping:.3}")
         })
     };
     let start = match motion(&found.at_start) {
