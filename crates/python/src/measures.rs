@@ -241,12 +241,16 @@ impl Stability {
     }
 
     /// Returns frequencies (rad/s) and damping ratios of the fastest motions at the start and at
-    /// rest, the rate (1/s) at which errors of constraints decay, and the time (s) up to which the
-    /// motion can be predicted.
-    fn facts(&self) -> ([Option<(f64, f64)>; 2], Option<f64>, f64) {
+    /// rest.
+    fn fastest(&self) -> [Option<(f64, f64)>; 2] {
         let told = |mode: Mode| (mode.frequency(), mode.damping_ratio());
-        let motions = self.0.fastest_motions().map(|mode| mode.map(told));
-        (motions, self.0.feedback, self.0.predictable)
+        self.0.fastest_motions().map(|mode| mode.map(told))
+    }
+
+    /// Returns the rate (1/s) at which errors of constraints decay, and the time (s) up to which
+    /// the motion can be predicted.
+    fn about(&self) -> (Option<f64>, f64) {
+        (self.0.feedback, self.0.predictable)
     }
 
     /// Draws a picture of a kind and a size (px), for a step (s).

@@ -230,8 +230,8 @@ class Stability(_Drawn):
         self._source, self._size, self._step, self._forms = source, size, step, {}
         self.table = source.table()
         self.complete = source.complete()
-        motions, self.feedback, self.predictable = source.facts()
-        self.fastest, self.fastest_at_rest = (motion and Motion(*motion) for motion in motions)
+        self.feedback, self.predictable = source.about()
+        self.fastest, self.fastest_at_rest = (motion and Motion(*motion) for motion in source.fastest())
         self.data: List[Dict[str, Any]] = json.loads(source.json())
         self.limits = [self._limits(row) for row in self.data]
 
