@@ -8,8 +8,8 @@ use crate::system::{Linearized, kick_reads_velocity};
 const ROUNDING: f64 = 1e-6;
 /// Distances of eigenvalues from that of the feedback of constraints, over its size: below the
 /// first one, an eigenvalue is that one. Rounding splits a multiple eigenvalue up to the second one
-/// (0.2 for 20 rods), but leaves the mean of its parts.
-const FEEDBACK_SHARES: [f64; 2] = [0.05, 0.4];
+/// (0.43 for a chain of rods), but leaves the mean of its parts.
+const FEEDBACK_SHARES: [f64; 2] = [0.05, 0.6];
 
 /// Mode of motion x'' = -stiffness x - (drag + damping) x'.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
