@@ -404,8 +404,8 @@ impl TotalWork {
         mean * h
     }
 
-    /// Returns the rate (W) at which the energy of the exact motion grows at y at time t (s), by its
-    /// change from a moment (s) before to one after.
+    /// Returns the rate (W) at which the energy of the exact motion grows at y at time t (s), by
+    /// its change from a moment (s) before to one after.
     fn power_at(&mut self, network: &Network, (t, moment): (f64, f64), y: &[f64]) -> f64 {
         let [state, f, _] = &mut self.scratch;
         network.eval_f(t, y, f);
