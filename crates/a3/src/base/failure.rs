@@ -1,5 +1,5 @@
-//! What the program ends with when it does not succeed, and what is wrong with a scene or a file
-//! that a user gives.
+//! Failures of the program, with their exit codes, and faults of scenes and files that a user
+//! gives.
 
 use std::fmt;
 use std::fmt::Display;

@@ -225,7 +225,7 @@ pub struct Motor {
 }
 
 impl Motor {
-    /// Checks its numbers, among so many bodies.
+    /// Checks all numbers of the motor, in a network with that many bodies.
     pub(crate) fn check(&self, bodies: usize) -> Result<(), Error> {
         finite("the axis of a motor", self.axis)?;
         let right = self.effort.is_finite()

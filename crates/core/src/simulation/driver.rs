@@ -37,7 +37,7 @@ pub struct Progress {
     pub method: Option<AdaptiveState>,
     /// Step that contains the time shown, if one does.
     pub within: Option<Span>,
-    /// What the watch over the run knows.
+    /// Memory of the watch over the run.
     pub watched: Option<Box<Watched>>,
 }
 
@@ -78,7 +78,7 @@ impl Driver {
         Ok(())
     }
 
-    /// Continues the watch over the run, which has got to the saved progress.
+    /// Continues the watch over the run from the saved progress.
     pub fn watch_again(&mut self, model: &Model, state: &RunState, progress: &Progress) {
         if let Some(watched) = &progress.watched {
             let Self { pipeline, within } = self;

@@ -31,9 +31,9 @@ const MAX_PARTICLES_PER_STEP: usize = 200;
 /// Least half of the interval of the difference quotient for the total power (s).
 const LEAST_MOMENT: f64 = 1e-7;
 
-/// That half over the step: the quotient is then off by 1.5e-6 (h w)2 for a motion of frequency w,
-/// no more than Simpson's rule where h w = 0.1, and the rounding error of the energy makes a work
-/// of 170 times its size in a step.
+/// That half over the step. For a motion of frequency w, the quotient is then off by 1.5e-6 (h w)2,
+/// no more than Simpson's rule is where h w = 0.1. A rounding error of the energy makes an error of
+/// the work in a step that is 170 times as large.
 const MOMENT_SHARE: f64 = 0.003;
 
 /// Order of a method up to which the trapezoidal rule is accurate enough.

@@ -16,7 +16,7 @@ use crate::system::{Mechanics, ParticleSystem};
 /// Error of a constraint over its length at which a run counts as blown up.
 const MAX_CONSTRAINT_ERROR: f64 = 0.1;
 
-/// What a watch knows beside the state of its run.
+/// Memory of a watch, beside the state of its run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Watched {
     /// Time of the beginning of the last step (s), and its work (J).
@@ -109,7 +109,7 @@ impl Watch {
         self.power.forget();
     }
 
-    /// Returns what the run's state does not tell.
+    /// Returns the memory of the watch.
     pub fn watched(&self) -> Watched {
         let power = self.power.evaluated();
         let last = self.last;
@@ -146,8 +146,8 @@ impl Watch {
         state.balance.disturb();
     }
 
-    /// Accounts for what changed the run since the last check: it counts as no gain, and the run
-    /// begins its motion anew.
+    /// Accounts for changes by hands since the last check: they count as no gain, and neither does
+    /// the energy that forces then give in the first step.
     pub fn forgive(&mut self, model: &Model, state: &mut RunState) {
         if let Some(network) = model.network()
             && state.balance.is_disturbed()

@@ -263,7 +263,7 @@ pub(super) fn soaked(
     let (low, high) = bounds(parts);
     let size = high - low;
     let flat = fluid.dimensions == 2;
-    // A cell more on each side, half of which is outside if the count is odd.
+    // One more cell on each side; if the count is odd, half of that cell is outside.
     let counts = size.map(|size| (size / spacing).round() + 2.0);
     let counts = Vector3::new(counts.x, counts.y, if flat { 1.0 } else { counts.z });
     if counts.product() > MAX_POINTS {

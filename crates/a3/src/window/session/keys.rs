@@ -201,7 +201,7 @@ pub enum RunAction {
     /// Show questions about the scene and their answers, or hide them.
     Measure,
     Lessons,
-    /// Show plots of what is picked, or hide them.
+    /// Show the plots of the picked particles, bodies and springs, or hide them.
     Plots,
     /// Show the tools that edit the scene, or hide them.
     Edit,

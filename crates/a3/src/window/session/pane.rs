@@ -314,7 +314,8 @@ const MIN_INTERVAL: Duration = Duration::from_millis(250);
 /// Shortest time between two estimates, over the time that one takes: estimates use at most 2 % of
 /// the time.
 const MIN_IDLE_RATIO: u32 = 50;
-/// Longest state of which all modes are computed during a run, at two evaluations per number.
+/// Longest state, in numbers, for which a run computes all modes: that takes two evaluations a
+/// number.
 const MAX_STATE_LENGTH: usize = 300;
 /// Twice the growth rate of a mode over its frequency, above which it is unstable by itself. Below,
 /// the growth is attributed to rounding.

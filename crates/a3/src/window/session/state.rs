@@ -482,7 +482,7 @@ impl Readings {
         self.timeline.is_some_and(|position| position.share < 1.0)
     }
 
-    /// Updates what is known about the errors from the reference, if there is one.
+    /// Updates the errors of the panes from the reference, if there is one.
     pub(super) fn read_reference(&mut self, reference: Option<&ReferenceRun>) {
         self.no_error = reference.and_then(ReferenceRun::stopped);
         self.predictable = reference.and_then(ReferenceRun::predictable);

@@ -164,7 +164,7 @@ const BEYOND: f64 = 1e-3;
 /// same side.
 const DEEP: f64 = 0.5;
 
-/// Returns the pushes that bring what is inside round bodies, obstacles and floors out of them.
+/// Returns the pushes that move points out of round bodies, obstacles and floors.
 pub(super) fn pushes(surface: &Surface, inside: &[Candidate], at: &[Vector3<f64>]) -> Vec<Push> {
     let sides = |pair: &Candidate| {
         [pair.points[0], pair.points[pair.kind.first()]].map(|i| whole(surface.vertex(i)))
