@@ -70,14 +70,10 @@ impl Evaluated {
     pub fn check(&self, network: Option<&Network>) -> Result<(), Error> {
         let length = network.map_or(0, |network| 3 * network.particles());
         let fits = |v: &[f64]| v.len() == length && v.iter().all(|v| v.is_finite());
-        let wind = self.wind.iter();
-        let all = self.all.iter();
-        if wind
-            .clone()
-            .all(|(t, x, f)| t.is_finite() && fits(x) && fits(f))
-            && all
-                .clone()
-                .all(|(t, power)| t.is_finite() && power.is_finite())
+        let mut wind = self.wind.iter();
+        let mut all = self.all.iter();
+        if wind.all(|(t, x, f)| t.is_finite() && fits(x) && fits(f))
+            && all.all(|(t, power)| t.is_finite() && power.is_finite())
         {
             return Ok(());
         }
