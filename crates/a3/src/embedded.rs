@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use a3_core::{Control, Grid, Method, Scene, Simulation, StepLimits, integrators};
+use a3_core::{Control, Method, Scene, Simulation, StepLimits, integrators};
 use a3_scenes::{Defaults, Presentation, Setup};
 
 use crate::base::failure::Failure;
@@ -10,7 +10,6 @@ use crate::base::monitor::Monitor;
 use crate::base::{progress, verdict};
 #[cfg(feature = "window")]
 use crate::cli::Drawing;
-use crate::cli::What;
 use crate::commands::chart::describe;
 use crate::commands::choose::command;
 use crate::commands::simplify::{Simplified, SimplifyOptions, measure};
@@ -24,6 +23,8 @@ use crate::files::output;
 use crate::files::scene_file::Source;
 use crate::files::setup::{self, Request};
 
+pub use crate::files::setup::SceneOptions;
+
 /// Origin of a scene.
 #[derive(Clone, Copy, Debug)]
 pub enum Origin<'a> {
@@ -35,38 +36,10 @@ pub enum Origin<'a> {
     Table(&'a str),
 }
 
-/// Options of a scene.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct SceneOptions {
-    /// Grid of the first cloth.
-    pub grid: Option<Grid>,
-    /// Whether the wind blows, in a scene where it does not from the start.
-    pub wind: bool,
-    /// Whether the pins swing.
-    pub swing: bool,
-    /// Whether surfaces touch one another and themselves, in a scene where they do not from the
-    /// start.
-    pub self_collision: bool,
-}
-
-impl SceneOptions {
-    /// Returns the options of the command line for a scene of this name.
-    fn of(self, scene: &str) -> What {
-        What {
-            scene: scene.into(),
-            grid: self.grid,
-            wind: self.wind,
-            swing: self.swing,
-            self_collision: self.self_collision,
-            threads: None,
-        }
-    }
-}
-
 /// Scene that was read, or that a program has built.
 pub struct OpenScene {
     made: Made,
-    options: What,
+    options: SceneOptions,
 }
 
 enum Made {
@@ -85,7 +58,6 @@ impl OpenScene {
             Origin::Toml(text) => Source::written(text)?,
             Origin::Table(json) => Source::tabulated(json)?,
         };
-        let options = options.of(&source.typed);
         let made = Made::Read(source);
         Ok(Self { made, options })
     }
@@ -94,8 +66,8 @@ impl OpenScene {
     #[must_use]
     pub fn of(scene: Scene, options: SceneOptions) -> Self {
         Self {
-            options: options.of(&scene.name),
             made: Made::Built(Box::new(scene)),
+            options,
         }
     }
 
@@ -139,7 +111,7 @@ impl OpenScene {
     /// # Errors
     /// The scene lacks what they turn on.
     pub fn scene(&self, setup: &Setup) -> Result<Scene, Failure> {
-        setup::scene_of(&self.options, setup)
+        setup::disturbed(setup.scene.clone(), self.options.on)
     }
 
     /// Returns the command line that runs the scene with a method at a step or a tolerance until a
@@ -148,7 +120,11 @@ impl OpenScene {
     pub fn command(&self, method: &Method, control: Control, until: f64) -> Option<String> {
         match &self.made {
             Made::Read(source) if source.is_named() && !method.is_own() => {
-                Some(command(&self.options, method, control, until))
+                let request = Request {
+                    source: source.clone(),
+                    options: self.options,
+                };
+                Some(command(&request, method, control, until))
             }
             _ => None,
         }
@@ -181,7 +157,7 @@ impl OpenScene {
         limits: StepLimits,
     ) -> Result<Simulation, Failure> {
         setup.scene.limits = limits.or(setup.scene.limits);
-        setup::simulate(&self.options, setup, method, value)
+        setup::simulate(self.options.on, setup, method, value)
     }
 }
 
@@ -202,9 +178,9 @@ pub fn simplify(
     };
     let given = Request {
         source: source.clone(),
-        options: scene.options.clone(),
+        options: scene.options,
     };
-    let title = describe(&scene.options, &given.scene()?);
+    let title = describe(scene.options.on, &given.scene()?);
     measure(&given.described(), &title, options, monitor)
 }
 

@@ -67,12 +67,12 @@ mod program;
 mod window;
 
 #[cfg(not(target_arch = "wasm32"))]
+pub use base::quantity::Quantity;
+#[cfg(not(target_arch = "wasm32"))]
 pub use base::{
     failure::{Failure, InputError},
     monitor::Monitor,
 };
-#[cfg(not(target_arch = "wasm32"))]
-pub use cli::Quantity;
 #[cfg(not(target_arch = "wasm32"))]
 pub use commands::chart::{Chart, ChartOptions, Record, chart};
 #[cfg(not(target_arch = "wasm32"))]

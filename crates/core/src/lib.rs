@@ -114,7 +114,7 @@ pub use path::{Orientation, Path, Place, Pose, Turn, rotation};
 pub use pin::Pin;
 pub use products::{Products, SolverHints};
 pub use refusal::Refusal;
-pub use scene::{FirstOrder, Model, Scene, StepLimits, Swing};
+pub use scene::{Disturbances, FirstOrder, Model, Scene, StepLimits, Swing};
 pub use simulation::{Balance, Checkpoint, Gain, Grabbed, Progress, RunState, Simulation, Span};
 pub use spring::{Spring, SpringKind, SpringLaw};
 pub use system::{Compliant, Linearized, Mechanics, ParticleSystem, Splitting};

@@ -124,6 +124,17 @@ pub struct Swing {
     pub rate: f64,
 }
 
+/// Disturbances of a scene, each on or off.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Disturbances {
+    /// Whether the scene's wind blows.
+    pub wind: bool,
+    /// Whether the pins swing.
+    pub swing: bool,
+    /// Whether surfaces touch one another and themselves.
+    pub contact: bool,
+}
+
 /// Scene: a model, the state it starts from, and the disturbances that a run of it allows.
 ///
 /// A decay y' = -50 y as a scene: explicit Euler is stable on it up to a step of 2 / 50 s.

@@ -1,7 +1,7 @@
 //! Scenes as Python gives them: by a kind and a text, or as a `System`; with options and forces.
 
 use a3::embedded::{OpenScene, SceneOptions};
-use a3_core::{Grid, Method, Scene};
+use a3_core::{Disturbances, Grid, Method, Scene};
 use a3_scenes::Setup;
 use pyo3::prelude::*;
 
@@ -42,9 +42,11 @@ impl Opened {
         let grid = grid.transpose().map_err(|why| wrong(py, why.to_string()))?;
         let options = SceneOptions {
             grid,
-            wind: given.wind,
-            swing: given.swing,
-            self_collision: given.self_collision,
+            on: Disturbances {
+                wind: given.wind,
+                swing: given.swing,
+                contact: given.self_collision,
+            },
         };
         let failed = |failure| of_failure(py, &failure);
         let raised = Raised::default();

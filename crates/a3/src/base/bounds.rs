@@ -1,8 +1,10 @@
-//! Steps and tolerances that the program accepts.
+//! Numbers that the program accepts: steps, tolerances, and those of options.
 
 use std::ops::RangeInclusive;
 
 use a3_core::Control;
+
+use super::failure::Failure;
 
 /// The largest step (s): a longer one is refused as a typing error.
 pub const LARGEST_STEP: f64 = 10.0;
@@ -20,3 +22,42 @@ pub fn of(control: Control) -> RangeInclusive<f64> {
         Control::Tolerance(_) => TOLERANCES,
     }
 }
+
+/// Numbers that an option may have.
+pub struct Allowed {
+    /// Smallest and largest number.
+    pub range: RangeInclusive<f64>,
+    /// Message for any other number.
+    pub right: &'static str,
+}
+
+impl Allowed {
+    /// Checks that a number is one of these.
+    pub fn check(&self, number: f64) -> Result<f64, Failure> {
+        if self.range.contains(&number) {
+            return Ok(number);
+        }
+        Err(Failure::usage(format!("{}, not {number}", self.right)))
+    }
+}
+
+/// Ends of runs that are compared (s).
+pub const HORIZONS: Allowed = Allowed {
+    range: 0.01..=1000.0,
+    right: "the end is a number of seconds from 0.01 to 1000, such as 1",
+};
+/// Factors of the stiffness.
+pub const FACTORS: Allowed = Allowed {
+    range: 1e-6..=1e6,
+    right: "a factor of the stiffness is a number from 1e-6 to 1e6, such as 10",
+};
+/// Errors of positions (m).
+pub const ERRORS: Allowed = Allowed {
+    range: 1e-12..=10.0,
+    right: "an error is a number of metres from 1e-12 to 10, such as 1e-3",
+};
+/// Computing times for a frame (ms).
+pub const BUDGETS: Allowed = Allowed {
+    range: 1e-4..=1e5,
+    right: "a budget is a number of milliseconds from 1e-4 to 1e5, such as 2",
+};

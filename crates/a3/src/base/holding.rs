@@ -230,17 +230,9 @@ impl<'a> Trials<'a> {
     /// Finds out whether a run from the start of the scene does not diverge, gains no energy and
     /// meets its constraints.
     fn hold(&self, control: Control) -> Tried {
-        let run = self.run;
-        let again = Simulation::new(run.scene().clone(), run.method(), control);
-        let Ok(mut again) = again else {
+        let Ok(mut again) = self.run.anew(self.run.method(), control) else {
             return Tried::Fails;
         };
-        again.set_wind(run.windy());
-        again.set_swinging(run.swinging());
-        // Fails if surfaces cross at the start, where contact cannot begin.
-        if again.set_touching(run.touching()).is_err() {
-            return Tried::Fails;
-        }
         while again.time() < self.until {
             if again.take_steps(STEPS_PER_LOOK).is_err() {
                 return Tried::Fails;

@@ -13,6 +13,7 @@ pub mod interrupt;
 pub mod monitor;
 pub mod processor;
 pub mod progress;
+pub mod quantity;
 pub mod report;
 pub mod rounding;
 #[cfg_attr(target_arch = "wasm32", path = "console.rs")]

@@ -4,13 +4,18 @@ use std::path::PathBuf;
 
 use a3_core::accuracy::Metric;
 use a3_core::{Grid, Method};
-use clap::{Args, Parser, Subcommand, ValueEnum};
+use clap::builder::TypedValueParser;
+use clap::{Args, Parser, Subcommand};
 
 use super::measures::{ErrorScope, WorkMeasure, metric};
-use super::run::{RunOptions, What};
+use super::run::{RunOptions, SceneArgs};
 use super::values::{
-    SCENE, SOLVER_OR_ALL, budget, error, factor, grid, horizon, pause, picture_size, rate, step,
+    SCENE, SOLVER_OR_ALL, budget, choice, error, factor, grid, horizon, pause, picture_size, rate,
+    step,
 };
+
+use crate::base::quantity::Quantity;
+use crate::files::lessons::LESSONS;
 
 #[cfg(not(target_arch = "wasm32"))]
 use super::judge::Judge;
@@ -20,9 +25,6 @@ use super::sweep::Sweep;
 use super::window::{Compare, Render, WindowOptions};
 #[cfg(not(target_arch = "wasm32"))]
 use clap_complete::Shell;
-
-/// Number of lessons.
-pub const LESSONS: u8 = 8;
 
 /// Reads the number of a lesson.
 fn lesson(text: &str) -> Result<u8, String> {
@@ -122,7 +124,7 @@ pub enum Command {
 #[derive(Args)]
 pub struct Chart {
     #[command(flatten)]
-    pub what: What,
+    pub what: SceneArgs,
     /// Solvers to measure and draw, such as t,r,v, or all; by default all that can run the scene
     /// are measured, and those that are cheapest for some error, and e, t, r and i, are drawn
     #[arg(long, value_name = "SOLVERS", value_delimiter = ',', value_parser = SOLVER_OR_ALL, hide_possible_values = true)]
@@ -168,7 +170,7 @@ pub struct Chart {
 #[derive(Args)]
 pub struct Choose {
     #[command(flatten)]
-    pub what: What,
+    pub what: SceneArgs,
     /// Largest error that is allowed, such as 1e-3; it is that of the positions, in m, unless --of
     /// names another
     #[arg(long, value_name = "E", value_parser = error, allow_negative_numbers = true, required_unless_present = "budget", conflicts_with = "budget")]
@@ -192,34 +194,22 @@ pub struct Choose {
     pub until: Option<f64>,
 }
 
-/// Quantity by which models of a scene are compared.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
-pub enum Quantity {
-    /// Positions of the particles, root mean square (m)
-    #[default]
-    Position,
-    /// Path of the centre of mass (m)
-    Centre,
-    /// Energy that the motion has gained or lost since the start (J)
-    Energy,
-}
-
-impl Quantity {
-    /// Returns the name of the quantity.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Position => "position",
-            Self::Centre => "centre",
-            Self::Energy => "energy",
-        }
-    }
+/// Creates a parser of the quantity by which models of a scene are compared.
+fn compared() -> impl TypedValueParser<Value = Quantity> {
+    choice(&Quantity::ALL, |quantity| {
+        let help = match quantity {
+            Quantity::Position => "Positions of the particles, root mean square (m)",
+            Quantity::Centre => "Path of the centre of mass (m)",
+            Quantity::Energy => "Energy that the motion has gained or lost since the start (J)",
+        };
+        (quantity.name(), help)
+    })
 }
 
 #[derive(Args)]
 pub struct Simplify {
     #[command(flatten)]
-    pub what: What,
+    pub what: SceneArgs,
     /// Largest allowed error, in m (J for energy), such as 1e-2; it covers omitted parts, a coarser
     /// grid and the time steps together
     #[arg(long, value_name = "E", value_parser = error, allow_negative_numbers = true)]
@@ -228,7 +218,7 @@ pub struct Simplify {
     pub scope: ErrorScope,
     /// Quantity that is compared; where the motion is chaotic, the centre of mass and the energy
     /// are known for longer than the positions
-    #[arg(long, value_name = "QUANTITY", value_enum, default_value_t)]
+    #[arg(long, value_name = "QUANTITY", default_value = "position", value_parser = compared())]
     pub of: Quantity,
     /// Simulated seconds; by default, as long as errors are meaningful on this scene
     #[arg(long, value_name = "T", value_parser = horizon, allow_negative_numbers = true)]
@@ -308,7 +298,7 @@ pub struct Solvers {
 #[derive(Args)]
 pub struct Stability {
     #[command(flatten)]
-    pub what: What,
+    pub what: SceneArgs,
     /// Solvers to examine, such as t,r,v; by default all that can run the scene
     #[arg(long, value_name = "SOLVERS", value_delimiter = ',', value_parser = SOLVER_OR_ALL, hide_possible_values = true)]
     pub solvers: Vec<Option<&'static Method>>,

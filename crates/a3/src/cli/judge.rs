@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::run::What;
+use super::run::SceneArgs;
 use super::values::{error, horizon, picture_size, seconds, step};
 
 #[derive(Args)]
@@ -27,7 +27,7 @@ pub struct Judge {
     #[arg(required = true, value_name = "FILE")]
     pub files: Vec<PathBuf>,
     #[command(flatten)]
-    pub what: What,
+    pub what: SceneArgs,
     /// Fail, with exit code 1, if the positions of a file err by more than this at any time, in m
     #[arg(long, value_name = "E", value_parser = error, allow_negative_numbers = true)]
     pub within: Option<f64>,

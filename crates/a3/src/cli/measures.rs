@@ -1,6 +1,6 @@
 //! The measures of the error and of the cost of a run.
 
-use a3_core::accuracy::Metric;
+use a3_core::accuracy::{Metric, Scope};
 use clap::builder::TypedValueParser;
 use clap::{Args, ValueEnum};
 
@@ -36,6 +36,16 @@ pub struct ErrorScope {
     /// Take the error at the end, instead of the largest one during the run
     #[arg(long)]
     pub at_end: bool,
+}
+
+impl ErrorScope {
+    /// Returns what was given.
+    pub fn given(&self) -> Scope {
+        Scope {
+            particle: self.particle,
+            at_end: self.at_end,
+        }
+    }
 }
 
 /// Measure of the cost.

@@ -18,20 +18,19 @@ mod window;
 
 pub use command::Chart;
 pub use command::Choose;
-pub use command::LESSONS;
 pub use command::Scenes;
+pub use command::Simplify;
 pub use command::Simulate;
 pub use command::Solvers;
 pub use command::Stability;
 pub use command::{Cli, Command};
-pub use command::{Quantity, Simplify};
 #[cfg(feature = "window")]
 pub use drawing::Drawing;
 pub use explain::explain;
 #[cfg(not(target_arch = "wasm32"))]
 pub use judge::Judge;
-pub use measures::{ErrorScope, WorkMeasure};
-pub use run::{RunOptions, What};
+pub use measures::WorkMeasure;
+pub use run::SceneArgs;
 #[cfg(not(target_arch = "wasm32"))]
 pub use sweep::Sweep;
 #[cfg(feature = "window")]

@@ -1,13 +1,15 @@
 //! The options of runs: what is simulated, how, and until when.
 
-use a3_core::{Grid, Method, StepLimits};
+use a3_core::{Disturbances, Grid, Method, StepLimits};
 use clap::Args;
 
 use super::values::{SCENE, SOLVER, absolute, grid, max_step, step, threads, until};
+use crate::base::failure::Failure;
+use crate::files::setup::{Request, Run, SceneOptions};
 
 /// Options of a scene: its name or file, its grid, wind, swing and self-collision.
-#[derive(Args, Clone)]
-pub struct What {
+#[derive(Args)]
+pub struct SceneArgs {
     /// Scene: a name that `a3 scenes` lists, or a file of your own: TOML, JSON, or a mesh
     #[arg(long, value_name = "NAME|FILE", default_value = "cloth", value_parser = SCENE, hide_possible_values = true)]
     pub scene: String,
@@ -27,6 +29,34 @@ pub struct What {
     /// `RAYON_NUM_THREADS` says
     #[arg(long, value_name = "N", value_parser = threads, allow_negative_numbers = true)]
     pub threads: Option<usize>,
+}
+
+impl SceneArgs {
+    /// Returns the options of the scene.
+    pub fn options(&self) -> SceneOptions {
+        SceneOptions {
+            grid: self.grid,
+            on: Disturbances {
+                wind: self.wind,
+                swing: self.swing,
+                contact: self.self_collision,
+            },
+        }
+    }
+
+    /// Reads the scene, and limits the program to the number of threads that is asked for.
+    ///
+    /// # Errors
+    /// There is no such scene, or its file has a fault.
+    pub fn request(&self) -> Result<Request, Failure> {
+        if let Some(count) = self.threads {
+            // Only the first call has an effect; later ones fail because the threads are there
+            // already.
+            let threads = rayon::ThreadPoolBuilder::new().num_threads(count);
+            let _ = threads.build_global();
+        }
+        Request::read(&self.scene, self.options())
+    }
 }
 
 /// Limits of adaptive steps.
@@ -67,5 +97,42 @@ pub struct RunOptions {
     #[command(flatten)]
     pub limits: StepOptions,
     #[command(flatten)]
-    pub what: What,
+    pub what: SceneArgs,
+}
+
+impl RunOptions {
+    /// Reads the scene and prepares its run: by the solver that the options name, or else by
+    /// `own`, or else by that of the scene.
+    ///
+    /// # Errors
+    /// The scene has a fault or no end, or the options do not fit it.
+    pub fn prepare(&self, own: Option<&'static Method>) -> Result<Run, Failure> {
+        let request = self.what.request()?;
+        if let Some(solver) = self.solver.filter(|solver| !solver.is_adaptive()) {
+            let given = [
+                (self.limits.absolute, "--absolute"),
+                (self.limits.max_step, "--max-step"),
+            ];
+            if let Some((_, option)) = given.iter().find(|(value, _)| value.is_some()) {
+                return Err(Failure::usage(format!(
+                    "{} takes a step, not a tolerance: leave out {option}",
+                    solver.name
+                )));
+            }
+        }
+        let duration = request.source.description.duration;
+        let until = self.until.or(duration).ok_or_else(|| {
+            Failure::usage("the scene has no duration of its own: give --until T in seconds, such as --until 10")
+        })?;
+        let mut setup = request.build()?;
+        let solver = request.source.solver_or(self.solver.or(own));
+        setup.scene.limits = self.limits.given().or(setup.scene.limits);
+        let simulation = request.simulate(&setup, solver, self.step)?;
+        Ok(Run {
+            request,
+            simulation,
+            presentation: setup.presentation,
+            until,
+        })
+    }
 }

@@ -10,8 +10,9 @@ use a3_scenes::nearest;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Arg, Command};
 
-use crate::base::bounds::{LARGEST_STEP, SMALLEST_STEP, TOLERANCES};
-use crate::base::failure::Failure;
+use crate::base::bounds::{
+    Allowed, BUDGETS, ERRORS, FACTORS, HORIZONS, LARGEST_STEP, SMALLEST_STEP, TOLERANCES,
+};
 
 /// Largest number of threads.
 const MAX_THREADS: usize = 1024;
@@ -121,67 +122,29 @@ pub fn rate(text: &str) -> Result<f64, String> {
     )
 }
 
-/// Numbers that an option may have.
-pub struct Allowed {
-    range: RangeInclusive<f64>,
-    /// Message for any other number.
-    right: &'static str,
+/// Reads a number of those that an option may have.
+fn allowed(text: &str, allowed: &Allowed) -> Result<f64, String> {
+    within(text, allowed.range.clone(), allowed.right)
 }
-
-impl Allowed {
-    /// Reads a number of these.
-    fn read(&self, text: &str) -> Result<f64, String> {
-        within(text, self.range.clone(), self.right)
-    }
-
-    /// Checks that a number is one of these.
-    pub fn check(&self, number: f64) -> Result<f64, Failure> {
-        if self.range.contains(&number) {
-            return Ok(number);
-        }
-        Err(Failure::usage(format!("{}, not {number}", self.right)))
-    }
-}
-
-/// Ends of runs that are compared (s).
-pub const HORIZONS: Allowed = Allowed {
-    range: 0.01..=1000.0,
-    right: "the end is a number of seconds from 0.01 to 1000, such as 1",
-};
-/// Factors of the stiffness.
-pub const FACTORS: Allowed = Allowed {
-    range: 1e-6..=1e6,
-    right: "a factor of the stiffness is a number from 1e-6 to 1e6, such as 10",
-};
-/// Errors of positions (m).
-pub const ERRORS: Allowed = Allowed {
-    range: 1e-12..=10.0,
-    right: "an error is a number of metres from 1e-12 to 10, such as 1e-3",
-};
-/// Computing times for a frame (ms).
-pub const BUDGETS: Allowed = Allowed {
-    range: 1e-4..=1e5,
-    right: "a budget is a number of milliseconds from 1e-4 to 1e5, such as 2",
-};
 
 /// Reads the end of runs that are compared (s).
 pub fn horizon(text: &str) -> Result<f64, String> {
-    HORIZONS.read(text)
+    allowed(text, &HORIZONS)
 }
 
 /// Reads a factor of the stiffness.
 pub fn factor(text: &str) -> Result<f64, String> {
-    FACTORS.read(text)
+    allowed(text, &FACTORS)
 }
 
 /// Reads an error of positions (m).
 pub fn error(text: &str) -> Result<f64, String> {
-    ERRORS.read(text)
+    allowed(text, &ERRORS)
 }
 
 /// Reads the computing time for a frame (ms).
 pub fn budget(text: &str) -> Result<f64, String> {
-    BUDGETS.read(text)
+    allowed(text, &BUDGETS)
 }
 
 /// Reads the computing time of a run (s).

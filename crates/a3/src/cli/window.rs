@@ -6,10 +6,11 @@ use a3_core::Method;
 use clap::Args;
 
 use super::drawing::Drawing;
-use super::run::{RunOptions, StepOptions, What};
+use super::run::{RunOptions, SceneArgs, StepOptions};
 use super::values::{
     SOLVER_AND_STEP, SOLVER_OR_COMMAND, beginning, particle, rate, size, step, until,
 };
+use crate::files::film::FilmOptions;
 
 #[derive(Args)]
 pub struct WindowOptions {
@@ -23,7 +24,7 @@ pub struct WindowOptions {
     #[command(flatten)]
     pub limits: StepOptions,
     #[command(flatten)]
-    pub what: What,
+    pub what: SceneArgs,
     /// Show and list the springs attached to particle I
     #[arg(long, value_name = "I", value_parser = particle, allow_negative_numbers = true)]
     pub springs_of: Option<usize>,
@@ -91,6 +92,19 @@ pub struct Render {
     pub springs_of: Option<usize>,
 }
 
+impl Render {
+    /// Returns the options of the film.
+    pub fn film(&self) -> FilmOptions<'_> {
+        FilmOptions {
+            path: &self.output,
+            size: self.size,
+            rate: self.fps,
+            from: self.from,
+            transparent: self.transparent,
+        }
+    }
+}
+
 #[derive(Args)]
 pub struct Compare {
     /// Two to four solvers by letter or name, each with its step in seconds or its tolerance after
@@ -100,7 +114,7 @@ pub struct Compare {
     #[command(flatten)]
     pub limits: StepOptions,
     #[command(flatten)]
-    pub what: What,
+    pub what: SceneArgs,
     #[command(flatten)]
     pub look: Look,
     /// Picture to write instead of opening a window, ending in .png

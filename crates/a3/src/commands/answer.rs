@@ -59,10 +59,14 @@ fn of_choice(task: &Task, monitor: &dyn Monitor) -> Result<Answer, Failure> {
         ..ChooseOptions::new(goal)
     };
     let choice = choose::choose(&scene, &[], &options, monitor)?;
-    let what = &task.request.options;
     let offers = choice.found.iter().map(|it| (it.method, it.control));
     Ok(Answer {
-        report: choose::report(what, &scene, (goal, Scope::default()), &choice),
+        report: choose::report(
+            task.request.options.on,
+            &scene,
+            (goal, Scope::default()),
+            &choice,
+        ),
         offers: offers.collect(),
         complete: true,
         ..Answer::default()
@@ -71,7 +75,7 @@ fn of_choice(task: &Task, monitor: &dyn Monitor) -> Result<Answer, Failure> {
 
 fn of_simplification(task: &Task, monitor: &dyn Monitor) -> Result<Answer, Failure> {
     let request = &task.request;
-    let title = describe(&request.options, &request.scene()?);
+    let title = describe(request.options.on, &request.scene()?);
     let options = SimplifyOptions::new(task.error);
     let found = simplify::measure(request, &title, &options, monitor)?;
     let lean = found.lean.as_ref();

@@ -21,13 +21,13 @@ pub fn run(options: &Render) -> Result<(), Failure> {
         presentation,
         until,
         ..
-    } = Run::new(&options.run, None)?;
+    } = options.run.prepare(None)?;
     begin::check_particle(&simulation, options.springs_of)?;
     begin::check_drawing(&simulation, options.manner, false)?;
     output::check(path, ENDINGS)?;
     // There may be no ffmpeg, and the device may not support pictures of this size: both are
     // checked before the work begins.
-    let film = film::begin(options, until)?;
+    let film = film::begin(options.film(), until)?;
     let mut show = Show::new(presentation, options.manner.of(options.springs_of));
     show.transparent = options.transparent;
     let caption = hud::caption(&show, size);

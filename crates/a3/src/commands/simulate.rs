@@ -26,10 +26,10 @@ pub fn run(options: &Simulate) -> Result<(), Failure> {
     let kept = kept.map(|path| Kept::read(path).map(|kept| (path, kept)));
     let kept = kept.transpose()?;
     let solver = kept.as_ref().map(|(_, kept)| kept.checkpoint.run.method);
-    let mut run = Run::new(&options.run, solver)?;
+    let mut run = options.run.prepare(solver)?;
     check_summary(options)?;
     let extremes = begin(options, kept, &mut run)?;
-    let (frames, mut export) = export::begin(options, &run)?;
+    let (frames, mut export) = export::begin(&options.output, options.fps, &run)?;
     warn_of_first_frame(options, &frames);
     let every = Duration::from_secs_f64(options.every);
     let keeper = options.checkpoint.as_deref();

@@ -1,19 +1,29 @@
-//! Scenes and simulations from the arguments of the command line.
+//! Scenes and simulations from a scene's name and its options.
 
 use std::sync::Arc;
 
-use a3_core::{Control, Method, Rounded, Scene, Simulation, integrators};
+use a3_core::{Control, Disturbances, Grid, Method, Rounded, Scene, Simulation, integrators};
 use a3_scenes::{Description, Presentation, Setup};
 
+use crate::base::bounds;
 use crate::base::failure::{Failure, InputError};
-use crate::base::{bounds, terminal};
-use crate::cli::{RunOptions, What};
+use crate::base::terminal;
 use crate::files::scene_file::Source;
 
-/// A scene, with the options that the command line gives for it.
+/// Options of a scene.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct SceneOptions {
+    /// Grid of the first cloth, `None` for the scene's own.
+    pub grid: Option<Grid>,
+    /// Wind, swing and contact of surfaces, in a scene where they do not act from the start.
+    pub on: Disturbances,
+}
+
+/// A scene, with the options that are given for it.
+#[derive(Clone)]
 pub struct Request {
     pub source: Source,
-    pub options: What,
+    pub options: SceneOptions,
 }
 
 /// A run without a window that is ready to start.
@@ -25,64 +35,35 @@ pub struct Run {
     pub until: f64,
 }
 
-impl Run {
-    /// Reads the scene and prepares its run: by the solver that the options name, or else by
-    /// `own`, or else by that of the scene.
-    pub fn new(options: &RunOptions, own: Option<&'static Method>) -> Result<Self, Failure> {
-        let request = Request::read(&options.what)?;
-        if let Some(solver) = options.solver.filter(|solver| !solver.is_adaptive()) {
-            let given = [
-                (options.limits.absolute, "--absolute"),
-                (options.limits.max_step, "--max-step"),
-            ];
-            if let Some((_, option)) = given.iter().find(|(value, _)| value.is_some()) {
-                return Err(Failure::usage(format!(
-                    "{} takes a step, not a tolerance: leave out {option}",
-                    solver.name
-                )));
-            }
-        }
-        let duration = request.source.description.duration;
-        let until = options.until.or(duration).ok_or_else(|| {
-            Failure::usage("the scene has no duration of its own: give --until T in seconds, such as --until 10")
-        })?;
-        let mut setup = request.build()?;
-        let solver = request.source.solver_or(options.solver.or(own));
-        setup.scene.limits = options.limits.given().or(setup.scene.limits);
-        let simulation = request.simulate(&setup, solver, options.step)?;
-        Ok(Self {
-            request,
-            simulation,
-            presentation: setup.presentation,
-            until,
-        })
-    }
-}
-
 impl Request {
-    /// Reads the scene that the options name.
-    pub fn read(options: &What) -> Result<Self, Failure> {
-        Ok(Self {
-            source: find(&options.scene, "--scene")?,
-            options: options.clone(),
-        })
+    /// Reads the scene of this name or file.
+    pub fn read(typed: &str, options: SceneOptions) -> Result<Self, Failure> {
+        let source = find(typed, "--scene")?;
+        Ok(Self { source, options })
     }
 
     /// Returns the same request by a description alone: the grid, the wind and the self-collision
     /// of the options are in it.
     pub fn described(&self) -> Self {
-        let mut options = self.options.clone();
+        let SceneOptions { grid, on } = self.options;
         let mut description = Description::clone(&self.source.description);
-        if let (Some(grid), Some(cloth)) = (options.grid.take(), description.cloth.first_mut()) {
+        if let (Some(grid), Some(cloth)) = (grid, description.cloth.first_mut()) {
             cloth.grid = [grid.rows(), grid.cols()];
         }
-        if let (true, Some(wind)) = (std::mem::take(&mut options.wind), &mut description.wind) {
+        if let (true, Some(wind)) = (on.wind, &mut description.wind) {
             wind.on = true;
         }
-        description.self_collision |= std::mem::take(&mut options.self_collision);
+        description.self_collision |= on.contact;
+        let swing = Disturbances {
+            swing: on.swing,
+            ..Disturbances::default()
+        };
         Self {
             source: self.source.described(description),
-            options,
+            options: SceneOptions {
+                grid: None,
+                on: swing,
+            },
         }
     }
 
@@ -90,25 +71,18 @@ impl Request {
     pub fn with(&self, description: Description) -> Self {
         Self {
             source: self.source.described(description),
-            options: self.options.clone(),
+            options: self.options,
         }
     }
 
     /// Builds the scene, with the wind, the swing and the self-collision of the options.
     pub fn scene(&self) -> Result<Scene, Failure> {
-        scene_of(&self.options, &self.build()?)
+        disturbed(self.build()?.scene, self.options.on)
     }
 
     /// Builds the scene with its presentation and its defaults.
     pub fn build(&self) -> Result<Setup, Failure> {
-        let options = &self.options;
-        if let Some(count) = options.threads {
-            // Only the first call has an effect; later ones fail because the threads are there
-            // already.
-            let threads = rayon::ThreadPoolBuilder::new().num_threads(count);
-            let _ = threads.build_global();
-        }
-        let setup = self.source.build(options.grid)?;
+        let setup = self.source.build(self.options.grid)?;
         for note in &setup.presentation.notes {
             terminal::note(&format!("{}: {note}", setup.scene.name));
         }
@@ -139,37 +113,22 @@ impl Request {
         solver: &'static Method,
         step: Option<f64>,
     ) -> Result<Simulation, Failure> {
-        simulate(&self.options, setup, solver, step)
+        simulate(self.options.on, setup, solver, step)
     }
 }
 
-/// Returns a scene as it was built, with the wind, the swing and the self-collision of the options.
-pub fn scene_of(options: &What, setup: &Setup) -> Result<Scene, Failure> {
-    // Euler's method can run every scene.
-    let run = simulate(options, setup, &integrators::METHODS[0], None)?;
-    Ok(Scene {
-        model: run.model().clone(),
-        state: run.state().to_vec(),
-        ..run.scene().clone()
-    })
+/// Returns a scene with these disturbances from its start.
+pub fn disturbed(scene: Scene, on: Disturbances) -> Result<Scene, Failure> {
+    check_disturbances(&scene, on)?;
+    scene.disturbed(on).map_err(|why| cross(&why))
 }
 
-/// Creates a simulation with these options, as [`Request::simulate`] does.
-pub fn simulate(
-    options: &What,
-    setup: &Setup,
-    solver: &'static Method,
-    step: Option<f64>,
-) -> Result<Simulation, Failure> {
-    let scene = &setup.scene;
+/// Checks that a scene has the wind, the swing and the self-collision that are asked for.
+fn check_disturbances(scene: &Scene, on: Disturbances) -> Result<(), Failure> {
     for (asked, there, option) in [
-        (options.wind, scene.wind.is_some(), "wind"),
-        (options.swing, scene.swing.is_some(), "swing"),
-        (
-            options.self_collision,
-            scene.touch.is_some(),
-            "self-collision",
-        ),
+        (on.wind, scene.wind.is_some(), "wind"),
+        (on.swing, scene.swing.is_some(), "swing"),
+        (on.contact, scene.touch.is_some(), "self-collision"),
     ] {
         if asked && !there {
             return Err(Failure::usage(format!(
@@ -178,6 +137,25 @@ pub fn simulate(
             )));
         }
     }
+    Ok(())
+}
+
+/// Returns the failure of surfaces that cannot begin to touch.
+fn cross(why: &a3_core::Error) -> Failure {
+    Failure::usage(format!(
+        "--self-collision: {why}; leave the option out, or move apart what crosses"
+    ))
+}
+
+/// Creates a simulation with these disturbances, as [`Request::simulate`] does.
+pub fn simulate(
+    on: Disturbances,
+    setup: &Setup,
+    solver: &'static Method,
+    step: Option<f64>,
+) -> Result<Simulation, Failure> {
+    let scene = &setup.scene;
+    check_disturbances(scene, on)?;
     let own = || setup.defaults.control_of(solver);
     let control = step.map_or_else(own, |value| solver.control(value));
     check_control(solver, control)?;
@@ -193,20 +171,16 @@ pub fn simulate(
         )));
     }
     let mut simulation = Simulation::new(scene.clone(), solver, control).map_err(Failure::usage)?;
-    // Without --wind the wind stays as it is: in some scenes it blows from the start.
-    if options.wind {
+    // What is not asked for stays as it is: in some scenes the wind blows from the start.
+    if on.wind {
         simulation.set_wind(true);
         solver
             .check(simulation.model().system())
             .map_err(Failure::usage)?;
     }
-    simulation.set_swinging(options.swing);
-    if options.self_collision {
-        simulation.set_touching(true).map_err(|why| {
-            Failure::usage(format!(
-                "--self-collision: {why}; leave the option out, or move apart what crosses"
-            ))
-        })?;
+    simulation.set_swinging(on.swing);
+    if on.contact {
+        simulation.set_touching(true).map_err(|why| cross(&why))?;
     }
     Ok(simulation)
 }

@@ -4,7 +4,7 @@ use a3_core::{Simulation, StepLimits};
 use clap::Parser;
 
 use crate::base::failure::Failure;
-use crate::cli::{Cli, Command, Compare, Drawing, Look, What, WindowOptions};
+use crate::cli::{Cli, Command, Compare, Drawing, Look, SceneArgs, WindowOptions};
 use crate::draw::show::{self, Quantity};
 use crate::files::checkpoint::Kept;
 use crate::files::lessons::{self, Step};
@@ -14,7 +14,7 @@ use crate::window::session::{Beginning, Origin, Session, begins_crossed, offer_a
 
 /// Creates the session of a window on one run. Fails if an option does not fit the scene.
 pub fn window(options: &WindowOptions) -> Result<Session, Failure> {
-    let mut request = Request::read(&options.what)?;
+    let mut request = options.what.request()?;
     request.source = request.source.in_window();
     window_on(request, options)
 }
@@ -31,11 +31,11 @@ fn window_on(mut request: Request, options: &WindowOptions) -> Result<Session, F
     let resumed = kept.map(|kept| kept.checkpoint.run.method);
     let solver = source.solver_or(options.solver.or(resumed));
     let mut setup = request.build()?;
-    let touches = request.source.description.self_collision || request.options.self_collision;
+    let touches = request.source.description.self_collision || request.options.on.contact;
     let crossed = touches && begins_crossed(&setup.scene);
     if crossed {
         request.source = request.source.without_touch();
-        request.options.self_collision = false;
+        request.options.on.contact = false;
         setup = request.build()?;
     }
     setup.scene.limits = options.limits.given().or(setup.scene.limits);
@@ -72,7 +72,7 @@ pub fn comparison(options: &Compare) -> Result<Session, Failure> {
             "compare takes 2 to 4 solvers, as in `a3 compare e:0.05 r:0.05`, not {count}"
         )));
     }
-    comparison_on(Request::read(&options.what)?, options)
+    comparison_on(options.what.request()?, options)
 }
 
 /// Creates the session of a comparison on a scene that was read already.
@@ -109,12 +109,12 @@ fn begun(mut run: Simulation, look: &Look) -> Result<Simulation, Failure> {
 /// command line does not fit its scene.
 pub fn step(step: &Step) -> Result<Session, Failure> {
     let options = Cli::try_parse_from(step.run.split_whitespace()).map_err(Failure::usage)?;
-    let request = |what: &What| match lessons::scene(&what.scene) {
+    let request = |what: &SceneArgs| match lessons::scene(&what.scene) {
         Some(text) => Ok(Request {
             source: Source::carried(&what.scene, text)?,
-            options: what.clone(),
+            options: what.options(),
         }),
-        None => Request::read(what),
+        None => what.request(),
     };
     let mut session = match options.command {
         Some(Command::Compare(options)) => comparison_on(request(&options.what)?, &options)?,

@@ -23,7 +23,7 @@ pub fn of(session: &Session, at: usize) -> Result<String, Failure> {
         } else {
             write_scene(
                 session,
-                &initial_run(session.runs.first()).map_err(Failure::run)?,
+                &begun_again(session.runs.first()).map_err(Failure::run)?,
             )
         };
         words = arguments_with_scene(session, at, &written.map_err(Failure::Run)?);
@@ -121,7 +121,7 @@ fn recreates(words: &[String], session: &Session) -> bool {
         let begun = if session.runs.panes.len() == 1 && session.runs.touched {
             Ok(now.moment())
         } else {
-            initial_run(now).map(|run| run.moment())
+            begun_again(now).map(|run| run.moment())
         };
         begun.is_ok_and(|begun| begun == made.moment())
     };
@@ -133,15 +133,9 @@ fn recreates(words: &[String], session: &Session) -> bool {
         && pairs.all(|(now, made)| begins_alike(&now.simulation, &made.simulation))
 }
 
-/// Returns the initial state of the run, with its present wind, swing and self-collision.
-fn initial_run(run: &Simulation) -> Result<Simulation, a3_core::Error> {
-    let mut begun = Simulation::new(run.scene().clone(), run.method(), run.control())?;
-    if run.windy() != begun.windy() {
-        begun.set_wind(run.windy());
-    }
-    begun.set_swinging(run.swinging());
-    begun.set_touching(run.touching())?;
-    Ok(begun)
+/// Returns a run in its initial state, with its present wind, swing and self-collision.
+fn begun_again(run: &Simulation) -> Result<Simulation, a3_core::Error> {
+    run.anew(run.method(), run.control())
 }
 
 /// Quotes an argument for a shell, if it needs quotes.
@@ -249,7 +243,7 @@ mod tests {
         let line = of(&several, 0).ok().unwrap();
         let made = reopen(&line);
         assert_eq!(made.runs.panes.len(), 2);
-        let begun = initial_run(several.runs.first()).unwrap();
+        let begun = begun_again(several.runs.first()).unwrap();
         assert_eq!(made.runs.first().state(), begun.state());
         several.act(RunAction::Reset, 0);
         assert!(of(&several, 0).ok().unwrap().contains("a3-flag-4"));

@@ -2,10 +2,10 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::disturbances::{let_touch, touches_itself};
 use super::driver::{Driver, Progress};
 use super::pins::strayed;
 use super::state::RunState;
-use super::touching::{let_touch, touches_itself};
 use crate::contact::Shape;
 use crate::elements::Wind;
 use crate::error::Error;
@@ -94,7 +94,7 @@ impl Checkpoint {
             self.taut.extend(taut(network));
         }
         self.wind = network.and_then(Network::wind).copied();
-        self.touching = touches_itself(model);
+        self.touching = model.network().is_some_and(touches_itself);
         self.progress = driver.progress(false);
         if driver.is_within() {
             self.run.set_time(state.time());
@@ -145,7 +145,7 @@ impl Checkpoint {
     pub(super) fn model(&self, scene: &Scene) -> Result<Model, Error> {
         let mut model = scene.model.clone();
         if let (Model::Network(network), Some(whole)) = (&mut model, scene.model.network()) {
-            if self.touching != touches_itself(&scene.model) {
+            if self.touching != scene.model.network().is_some_and(touches_itself) {
                 let_touch(network, scene, self.touching)?;
             }
             self.bind(network, whole)?;

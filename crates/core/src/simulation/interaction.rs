@@ -2,11 +2,11 @@
 
 use nalgebra::{DMatrixView, Vector3};
 
+use super::disturbances::{check_touch, let_touch, touches_itself};
 use super::hand::Hand;
 use super::pins::{Grabbed, leave, leave_all_but, own_release, pin, unpin_all_but};
 use super::run::Simulation;
 use super::state::RunState;
-use super::touching::{check_touch, let_touch, touches_itself};
 use crate::columns::row;
 use crate::elements::Wind;
 use crate::energy::Energy;
@@ -192,7 +192,7 @@ impl Simulation {
     /// Returns whether surfaces touch one another and themselves.
     #[must_use]
     pub fn touching(&self) -> bool {
-        touches_itself(&self.model)
+        self.model.network().is_some_and(touches_itself)
     }
 
     /// Lets the scene's surfaces touch one another and themselves, or pass through. A scene without
@@ -207,7 +207,8 @@ impl Simulation {
             return Ok(());
         };
         if on {
-            check_touch(network, &self.scene, &self.state)?;
+            let state = (self.time(), &*self.state.y);
+            check_touch(network, &self.scene, state, self.state.method)?;
         }
         // Where surfaces touch, a spring attracts a grabbed particle that is pinned elsewhere.
         let held = self.grabbed();

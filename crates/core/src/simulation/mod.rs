@@ -4,6 +4,7 @@ mod balance;
 mod changes;
 mod checkpoint;
 mod depths;
+mod disturbances;
 mod driver;
 mod events;
 mod hand;
@@ -17,7 +18,6 @@ mod run;
 mod state;
 mod step;
 mod stepper;
-mod touching;
 mod watch;
 
 pub use balance::{Balance, Gain};

@@ -79,12 +79,11 @@ impl Simulation {
     /// Goes back to the beginning, and mends torn springs. Wind, swing, freed pins and contact of
     /// surfaces stay as they are, unless surfaces cross at the beginning. The hand lets go.
     pub fn reset(&mut self) {
-        let (windy, touching) = (self.windy(), self.touching());
+        let disturbances = self.disturbances();
         let RunState {
             method,
             control,
             unpinned,
-            swinging,
             ..
         } = self.state;
         self.model = self.scene.model.clone();
@@ -98,10 +97,8 @@ impl Simulation {
         if unpinned {
             self.set_pinned(false);
         }
-        self.set_wind(windy);
-        self.set_swinging(swinging);
         // If surfaces cross, contact stays as in the scene.
-        let _ = self.set_touching(touching);
+        let _ = self.set_disturbances(disturbances);
         let watch = &mut self.driver.pipeline.watch;
         watch.begin(&self.model, &mut self.state);
     }

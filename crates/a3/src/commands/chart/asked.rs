@@ -5,7 +5,6 @@ use a3_core::accuracy::{Metric, Scope};
 use a3_core::{Error, Method, Scene, integrators};
 
 use crate::base::failure::Failure;
-use crate::cli::ErrorScope;
 
 /// Returns the methods that were asked for, each once. If none was named, these are all that
 /// support the scene and repeat no other.
@@ -99,11 +98,11 @@ pub fn check_metric(metric: Metric, scene: &Scene) -> Result<(), Failure> {
     }
 }
 
-/// Returns the particles and times at which errors were asked to be taken.
+/// Checks the particles and times at which errors are asked to be taken.
 ///
 /// # Errors
 /// The scene has no such particle.
-pub fn scope(asked: &ErrorScope, scene: &Scene) -> Result<Scope, Failure> {
+pub fn scope(asked: Scope, scene: &Scene) -> Result<Scope, Failure> {
     let particles = scene.model.particles();
     match asked.particle {
         Some(_) if particles == 0 => Err(Failure::usage(format!(
@@ -115,10 +114,7 @@ pub fn scope(asked: &ErrorScope, scene: &Scene) -> Result<Scope, Failure> {
             scene.name,
             particles - 1
         ))),
-        particle => Ok(Scope {
-            particle,
-            at_end: asked.at_end,
-        }),
+        _ => Ok(asked),
     }
 }
 

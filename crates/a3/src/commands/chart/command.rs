@@ -59,7 +59,7 @@ struct Asked<'a> {
 impl<'a> Asked<'a> {
     /// Reads the scene, and checks the options against it.
     fn new(options: &'a Options) -> Result<Self, Failure> {
-        let request = Request::read(&options.what)?;
+        let request = options.what.request()?;
         let scene = request.scene()?;
         let methods = methods(&scene, &options.solvers)?;
         let picture = match &options.output {
@@ -71,7 +71,7 @@ impl<'a> Asked<'a> {
         Ok(Self {
             options,
             methods,
-            scope: scope(&options.scope, &scene)?,
+            scope: scope(options.scope.given(), &scene)?,
             picture,
             scene,
             request,
@@ -82,7 +82,7 @@ impl<'a> Asked<'a> {
     fn begin(&self, data: Data, bar: &Bar) -> Result<Chart, Failure> {
         let (scene, options) = (&self.scene, self.options);
         let name = self.request.source.fingerprint(scene);
-        let label = Label::asked(&options.what, scene, name);
+        let label = Label::asked(self.request.options.on, scene, name);
         let options = ChartOptions {
             until: options.until,
             error: Some(options.error),

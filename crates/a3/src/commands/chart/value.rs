@@ -1,7 +1,7 @@
 //! A chart as a value: the runs of methods on a scene, their table, their picture and their data,
 //! up to the time to which the motion of the scene can be predicted.
 
-use a3_core::accuracy::{Horizon, Metric, horizon};
+use a3_core::accuracy::{Horizon, Metric, Scope, horizon};
 use a3_core::{Control, Method, Scene};
 use a3_plot::{Figure, WorkPrecision};
 
@@ -11,11 +11,10 @@ use super::measure::{Measured, Study, stiffened};
 use super::record::Record;
 use super::words::Label;
 use super::{picture, table};
+use crate::base::bounds::{FACTORS, HORIZONS};
 use crate::base::failure::Failure;
 use crate::base::monitor::Monitor;
 use crate::base::report::Report;
-use crate::cli::ErrorScope;
-use crate::cli::values::{FACTORS, HORIZONS};
 use crate::files::rows::text;
 
 /// Options of a [chart](chart()).
@@ -104,11 +103,11 @@ impl Chart {
     ) -> Result<Self, Failure> {
         let metric = options.error.unwrap_or(Metric::of_motion(&scene.model));
         check_metric(metric, scene)?;
-        let asked = ErrorScope {
+        let asked = Scope {
             particle: options.particle,
             at_end: options.at_end,
         };
-        let scope = scope(&asked, scene)?;
+        let scope = scope(asked, scene)?;
         let mut until = options
             .until
             .map(|until| HORIZONS.check(until))

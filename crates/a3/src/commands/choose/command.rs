@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use a3_core::accuracy::{Frames, Metric, Scope, SetBy};
-use a3_core::{Control, Method, Scene};
+use a3_core::{Control, Disturbances, Method, Scene};
 
 use super::search::ENOUGH_MARGIN;
 use super::value::{Choice, ChooseOptions, Chosen, Goal, choose, describe_goal};
@@ -11,11 +11,11 @@ use crate::base::failure::Failure;
 use crate::base::progress::Bar;
 use crate::base::report::Report;
 use crate::base::{interrupt, terminal};
-use crate::cli::{Choose, What, WorkMeasure};
+use crate::cli::{Choose, WorkMeasure};
 use crate::commands::chart::table::fraction;
 use crate::commands::chart::{check_metric, describe, methods, scope, unit};
 use crate::commands::motion::{grid_error, open};
-use crate::files::setup::Request;
+use crate::files::setup::{Request, SceneOptions};
 
 /// Finds and prints the solvers that the command line asks for.
 pub fn run(options: &Choose) -> Result<(), Failure> {
@@ -39,7 +39,7 @@ struct Asked<'a> {
 impl<'a> Asked<'a> {
     /// Reads the scene, and checks the options against it.
     fn new(options: &'a Choose) -> Result<Self, Failure> {
-        let request = Request::read(&options.what)?;
+        let request = options.what.request()?;
         let scene = request.scene()?;
         check_metric(options.of, &scene)?;
         let goal = match (options.error, options.budget) {
@@ -50,7 +50,7 @@ impl<'a> Asked<'a> {
         Ok(Self {
             options,
             request,
-            scope: scope(&options.scope, &scene)?,
+            scope: scope(options.scope.given(), &scene)?,
             scene,
             wanted: ChooseOptions {
                 goal,
@@ -65,10 +65,10 @@ impl<'a> Asked<'a> {
 
     /// Prints the candidates, and the command line that runs the best one.
     fn print(&self, choice: &Choice) -> Result<(), Failure> {
-        let (best, what, goal) = (choice.best(), &self.options.what, self.wanted.goal);
-        let report = report(what, &self.scene, (goal, self.scope), choice);
+        let (best, request, goal) = (choice.best(), &self.request, self.wanted.goal);
+        let report = report(request.options.on, &self.scene, (goal, self.scope), choice);
         terminal::say(&report.text())?;
-        let line = command(what, best.method, best.control, choice.until);
+        let line = command(request, best.method, best.control, choice.until);
         terminal::say(&format!("run it:  {line}\n"))?;
         self.print_grid_error(choice)
     }
@@ -134,7 +134,7 @@ fn holds(goal: Goal, choice: &Choice) -> String {
 
 /// Creates the table of candidates, with the computing times of their frames (ms). Below it is what
 /// limits the best one.
-pub fn report(what: &What, scene: &Scene, goal: (Goal, Scope), choice: &Choice) -> Report {
+pub fn report(on: Disturbances, scene: &Scene, goal: (Goal, Scope), choice: &Choice) -> Report {
     let (metric, until) = (choice.metric, choice.until);
     let error = format!(" error ({})", unit(metric));
     let mut rows = vec![
@@ -182,7 +182,7 @@ pub fn report(what: &What, scene: &Scene, goal: (Goal, Scope), choice: &Choice) 
     };
     let goal = describe_goal(goal, metric, scope);
     Report {
-        head: format!("{} for {until} s, {goal}:\n", describe(what, scene)),
+        head: format!("{} for {until} s, {goal}:\n", describe(on, scene)),
         rows,
         foot: foot + &holds,
     }
@@ -211,20 +211,21 @@ fn typed(control: Control, until: f64) -> String {
 }
 
 /// Writes the command line that runs the scene with a method at a step or a tolerance.
-pub fn command(what: &What, method: &Method, control: Control, until: f64) -> String {
+pub fn command(request: &Request, method: &Method, control: Control, until: f64) -> String {
     let solver = method.letter.map(String::from);
     let solver = solver.unwrap_or_else(|| method.name.into());
     let mut words = format!("a3 {solver} {}", typed(control, until));
-    if what.scene != "cloth" {
-        let _ = write!(words, " --scene {}", what.scene);
+    let (typed, SceneOptions { grid, on }) = (&request.source.typed, request.options);
+    if typed != "cloth" {
+        let _ = write!(words, " --scene {typed}");
     }
-    if let Some(grid) = what.grid {
+    if let Some(grid) = grid {
         let _ = write!(words, " --grid {}x{}", grid.rows(), grid.cols());
     }
     for (on, option) in [
-        (what.wind, " --wind"),
-        (what.swing, " --swing"),
-        (what.self_collision, " --self-collision"),
+        (on.wind, " --wind"),
+        (on.swing, " --swing"),
+        (on.contact, " --self-collision"),
     ] {
         if on {
             words += option;

@@ -4,10 +4,9 @@ use a3_core::accuracy::{Candidate, Frames, Metric, Precision, Reference, Scope, 
 use a3_core::{Control, Method, Scene};
 
 use super::search::{ENOUGH_MARGIN, cheapest, within};
+use crate::base::bounds::{BUDGETS, ERRORS, HORIZONS};
 use crate::base::failure::Failure;
 use crate::base::monitor::Monitor;
-use crate::cli::ErrorScope;
-use crate::cli::values::{BUDGETS, ERRORS, HORIZONS};
 use crate::commands::chart::measure::{precision, reference};
 use crate::commands::chart::{
     check_contact, check_methods, check_metric, check_motion, check_scene, look_ahead, scope, unit,
@@ -156,7 +155,7 @@ impl<'a> Search<'a> {
     fn new(scene: &'a Scene, options: &'a ChooseOptions) -> Result<Self, Failure> {
         let metric = options.metric.unwrap_or(Metric::of_motion(&scene.model));
         check_metric(metric, scene)?;
-        let asked = ErrorScope {
+        let asked = Scope {
             particle: options.particle,
             at_end: options.at_end,
         };
@@ -174,7 +173,7 @@ impl<'a> Search<'a> {
             scene,
             options,
             metric,
-            scope: scope(&asked, scene)?,
+            scope: scope(asked, scene)?,
         })
     }
 

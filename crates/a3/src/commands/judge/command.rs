@@ -19,7 +19,6 @@ use crate::base::{interrupt, terminal};
 use crate::cli::Judge;
 use crate::commands::chart::{PICTURES, describe};
 use crate::files::output;
-use crate::files::setup::Request;
 use crate::files::states::{States, read};
 
 /// Judges the files that the command line names.
@@ -49,7 +48,7 @@ pub fn run(options: &Judge) -> Result<(), Failure> {
 
 /// Builds the scene, and checks the outputs.
 fn scene(options: &Judge) -> Result<Scene, Failure> {
-    let scene = Request::read(&options.what)?.scene()?;
+    let scene = options.what.request()?.scene()?;
     if !options.seconds.is_empty() && options.seconds.len() != options.files.len() {
         return Err(Failure::usage(format!(
             "--seconds has {} computing times for {} files: give one for each",
@@ -176,7 +175,7 @@ fn print(
         }
         output::write(path, json.as_bytes())?;
     }
-    let name = describe(&options.what, scene);
+    let name = describe(options.what.options().on, scene);
     if judged
         .iter()
         .any(|(_, judgement)| judgement.judged < judgement.states)

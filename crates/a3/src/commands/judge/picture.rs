@@ -32,7 +32,7 @@ pub fn draw(
         timed,
         spread: false,
     };
-    let label = Label::asked(&options.what, scene, scene.name.clone());
+    let label = Label::asked(options.what.options().on, scene, scene.name.clone());
     let mut study = Study::new(scene.clone(), &label, 1.0, until, &all, of, measured);
     let mut data = Data::open(None)?;
     bar.expect(study.expected()?);

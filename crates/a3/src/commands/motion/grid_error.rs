@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 use super::track::{Compared, Motion};
 use crate::base::failure::Failure;
 use crate::base::interrupt;
-use crate::cli::Quantity;
+use crate::base::quantity::Quantity;
 use crate::files::rows::{Row, Rows};
 use crate::files::scene_file::Hash;
 use crate::files::setup::Request;
@@ -261,7 +261,7 @@ impl Known {
         let mut hash = Hash::default();
         let text = request.source.description.to_toml();
         hash.add(text.unwrap_or_default().bytes());
-        hash.add([u8::from(request.options.swing)]);
+        hash.add([u8::from(request.options.on.swing)]);
         Self {
             version: env!("CARGO_PKG_VERSION").into(),
             scene: format!(

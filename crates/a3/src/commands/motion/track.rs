@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 use a3_core::accuracy::{FrameState, Frames, GoOn, Scope, run};
 use a3_core::{Control, Error, Method, Network, Scene, Simulation};
 
-use crate::cli::Quantity;
+use crate::base::quantity::Quantity;
 
 /// Particles of one grid, each as a weighted mean of particles of another grid.
 pub type Places = [Vec<(usize, f64)>];

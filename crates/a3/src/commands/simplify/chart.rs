@@ -11,7 +11,7 @@ use a3_scenes::{Regridded, regridded};
 use super::lean::Solved;
 use super::models::{FACTORS, Models};
 use crate::base::failure::Failure;
-use crate::cli::Quantity;
+use crate::base::quantity::Quantity;
 use crate::commands::chart::measure::time;
 use crate::commands::chart::table::words;
 use crate::commands::motion::{GridError, Motion, Places, Track, grid};

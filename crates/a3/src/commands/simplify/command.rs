@@ -14,9 +14,9 @@ use crate::files::setup::Request;
 /// Measures models of a scene, prints them, and writes the leanest.
 pub fn run(options: &Simplify) -> Result<(), Failure> {
     interrupt::listen();
-    let given = Request::read(&options.what)?;
+    let given = options.what.request()?;
     // This refuses options that the scene does not support.
-    let title = describe(&options.what, &given.scene()?);
+    let title = describe(given.options.on, &given.scene()?);
     let request = given.described();
     check_files(options, &request)?;
     let bar = Bar::new(1.0);

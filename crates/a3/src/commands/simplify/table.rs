@@ -2,8 +2,8 @@
 
 use super::lean::{Answer, LeanModel};
 use super::models::{Model, Models};
+use crate::base::quantity::Quantity;
 use crate::base::report::Report;
-use crate::cli::Quantity;
 use crate::commands::chart::table::words;
 use crate::commands::motion::{GridError, grid};
 use a3_scenes::Description;

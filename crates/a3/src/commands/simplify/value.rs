@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use a3_core::accuracy::Frames;
+use a3_core::accuracy::{Frames, Scope};
 use a3_plot::{Figure, WorkPrecision};
 use serde::Serialize;
 
@@ -10,12 +10,12 @@ use super::chart::chart;
 use super::lean::{Answer, LeanModel, MAX_TIME_RATIO, Solved, assemble, solve, time_in_turns};
 use super::models::{Model, Models, measure_all};
 use super::table;
+use crate::base::bounds::{ERRORS, HORIZONS};
 use crate::base::failure::Failure;
 use crate::base::monitor::Monitor;
+use crate::base::quantity::Quantity;
 use crate::base::report::Report;
 use crate::base::visible::in_a_line;
-use crate::cli::values::{ERRORS, HORIZONS};
-use crate::cli::{ErrorScope, Quantity};
 use crate::commands::chart::{check_motion, look_ahead, scope};
 use crate::commands::motion::{Compared, open};
 use crate::files::setup::Request;
@@ -251,7 +251,7 @@ fn whole<'a>(
         .map(|until| HORIZONS.check(until))
         .transpose()?;
     let scope = scope(
-        &ErrorScope {
+        Scope {
             particle: options.particle,
             at_end: options.at_end,
         },

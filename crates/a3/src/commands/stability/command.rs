@@ -11,15 +11,15 @@ use crate::base::{interrupt, terminal};
 use crate::cli::Stability as Options;
 use crate::commands::chart::{Label, PICTURES, methods, write_picture};
 use crate::files::output;
-use crate::files::setup::Request;
 
 /// Measures, prints and draws what the command line asks for.
 pub fn run(options: &Options) -> Result<(), Failure> {
     interrupt::listen();
-    let scene = Request::read(&options.what)?.scene()?;
+    let request = options.what.request()?;
+    let scene = request.scene()?;
     let methods = methods(&scene, &options.solvers)?;
     let picture = check_outputs(options, &scene)?;
-    let label = Label::asked(&options.what, &scene, scene.name.clone());
+    let label = Label::asked(request.options.on, &scene, scene.name.clone());
     let found = measure(&scene, &label, &methods, &Bar::new(1.0))?;
     interrupt::write_on();
     terminal::say(&found.table())?;

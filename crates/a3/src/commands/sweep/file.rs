@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 
-use a3_core::accuracy::Metric;
+use a3_core::accuracy::{Metric, Scope};
 use a3_core::{Method, integrators};
 use serde::Deserialize;
 use serde_json::Value;
@@ -14,7 +14,6 @@ use super::values::all;
 use crate::base::bounds;
 use crate::base::failure::InputError;
 use crate::base::terminal;
-use crate::cli::ErrorScope;
 use crate::files::output;
 use crate::files::scene_file::Source;
 
@@ -57,7 +56,7 @@ pub struct Sweep {
     /// Factors of the stiffness of all springs; `None` where it is not swept.
     pub stiffness: Option<Vec<f64>>,
     pub error: Metric,
-    pub scope: ErrorScope,
+    pub scope: Scope,
     /// Keys of the scenes, with their values.
     pub keys: Vec<(String, Vec<Value>)>,
 }
@@ -140,7 +139,7 @@ impl Sweep {
                 factor => Some(numbers(STIFFNESS, factor.as_ref(), factors)?),
             },
             error,
-            scope: ErrorScope {
+            scope: Scope {
                 particle: text.particle,
                 at_end: text.at_end,
             },

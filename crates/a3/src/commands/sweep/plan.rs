@@ -188,7 +188,7 @@ fn variant(
         until.ok_or_else(|| format!("the scene {} has no duration: give `until`", scene.name))?;
     check_metric(sweep.error, &scene).map_err(|failure| failure.to_string())?;
     variant.metric = sweep.error;
-    variant.scope = scope(&sweep.scope, &scene).map_err(|failure| failure.to_string())?;
+    variant.scope = scope(sweep.scope, &scene).map_err(|failure| failure.to_string())?;
     let mut hash = Hash::default();
     hash.add(VERSION.bytes());
     hash.add([0]);

@@ -5,7 +5,6 @@ use std::path::Path;
 use super::format::Export;
 use super::{csv, glb, json, npz, obj, pc2, usd};
 use crate::base::failure::Failure;
-use crate::cli::Simulate;
 use crate::files::frames::{FrameTimes, Sequence};
 use crate::files::output;
 use crate::files::setup::Run;
@@ -27,19 +26,23 @@ pub fn check_ending(path: &Path) -> Result<(), Failure> {
     output::check_ending(path, ENDINGS)
 }
 
-/// Creates the export that the options describe, and the times of its frames. Impossible exports
-/// are refused here, before any work is done.
-pub fn begin(options: &Simulate, run: &Run) -> Result<(FrameTimes, Box<dyn Export>), Failure> {
+/// Creates the export of a run to a file, and the times of its frames, at this rate (1/s) if one is
+/// given. Impossible exports are refused here, before any work is done.
+pub fn begin(
+    path: &Path,
+    rate: Option<f64>,
+    run: &Run,
+) -> Result<(FrameTimes, Box<dyn Export>), Failure> {
     let (simulation, presentation) = (&run.simulation, &run.presentation);
     let surface = &presentation.surface;
     let obj = |files| obj::Obj {
         presentation: presentation.clone(),
         files,
     };
-    let (path, until) = (options.output.as_path(), run.until);
+    let until = run.until;
     let last = FrameTimes::new(until, until, DEFAULT_RATE)?;
     if path == Path::new("-") {
-        if options.fps.is_some() {
+        if rate.is_some() {
             return Err(Failure::usage(
                 "--fps needs a file: standard output gets only the final state",
             ));
@@ -50,7 +53,7 @@ pub fn begin(options: &Simulate, run: &Run) -> Result<(FrameTimes, Box<dyn Expor
     let ending = path.extension().unwrap_or_default().to_ascii_lowercase();
     let sequence = Sequence::of(path);
     let is_obj = ending == "obj" && sequence.is_none();
-    if is_obj && options.fps.is_some() {
+    if is_obj && rate.is_some() {
         return Err(Failure::usage(
             "an .obj has one frame: leave out --fps, or write a sequence such as cloth-####.obj",
         ));
@@ -58,10 +61,10 @@ pub fn begin(options: &Simulate, run: &Run) -> Result<(FrameTimes, Box<dyn Expor
     if is_obj {
         return Ok((last, Box::new(obj(obj::Files::One(path.into())))));
     }
-    if ending == "json" && options.fps.is_none() {
+    if ending == "json" && rate.is_none() {
         return Ok((last, Box::new(json::Json::new(path, false)?)));
     }
-    let all = FrameTimes::new(0.0, until, options.fps.unwrap_or(DEFAULT_RATE))?;
+    let all = FrameTimes::new(0.0, until, rate.unwrap_or(DEFAULT_RATE))?;
     let several = all.since(simulation.time());
     let particles = simulation.particles() as f64;
     let check = |size: f64, largest: f64| check_size(size, largest).map(|()| several);

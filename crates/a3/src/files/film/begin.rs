@@ -1,12 +1,11 @@
 //! Creation of films, by the ending of the file: as numbered pictures, or in one file.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use super::format::{Film, TimedFilm};
 use super::{gif, mp4};
 use crate::base::failure::Failure;
 use crate::base::terminal;
-use crate::cli::Render;
 use crate::files::ending::Ending;
 use crate::files::frames::{FrameTimes, Sequence};
 use crate::files::output;
@@ -15,15 +14,30 @@ use crate::files::output;
 /// films.
 const DEFAULT_RATES: (f64, f64) = (25.0, 30.0);
 
+/// Options of a film or of a picture.
+#[derive(Clone, Copy, Debug)]
+pub struct FilmOptions<'a> {
+    /// File, whose ending chooses the format.
+    pub path: &'a Path,
+    /// Width and height (px).
+    pub size: (u32, u32),
+    /// Frames per second, `None` for those of the format.
+    pub rate: Option<f64>,
+    /// Simulated time at which the film begins (s), `None` for 0.
+    pub from: Option<f64>,
+    /// Whether floor and background are left out.
+    pub transparent: bool,
+}
+
 /// Creates the film that the options describe, which ends at the time `until` (s); `None` for a
 /// single picture. Refuses impossible films before any work is done.
-pub fn begin(options: &Render, until: f64) -> Result<Option<TimedFilm>, Failure> {
-    let (path, size) = (options.output.as_path(), options.size);
+pub fn begin(options: FilmOptions, until: f64) -> Result<Option<TimedFilm>, Failure> {
+    let FilmOptions { path, size, .. } = options;
     let frames = |rate| FrameTimes::new(options.from.unwrap_or(0.0), until, rate);
-    let rate = options.fps.unwrap_or(DEFAULT_RATES.1);
+    let rate = options.rate.unwrap_or(DEFAULT_RATES.1);
     let ends_in = |ending| output::ends_in(path, ending);
     if ends_in("gif") {
-        let asked = options.fps.unwrap_or(DEFAULT_RATES.0);
+        let asked = options.rate.unwrap_or(DEFAULT_RATES.0);
         let delay = gif::delay(asked);
         let rate = 100.0 / delay;
         let frames = frames(rate)?;
@@ -52,7 +66,7 @@ pub fn begin(options: &Render, until: f64) -> Result<Option<TimedFilm>, Failure>
         let pictures = Pictures::new(sequence, size);
         return Ok(Some((frames, Box::new(pictures))));
     }
-    if options.fps.is_some() || options.from.is_some() {
+    if options.rate.is_some() || options.from.is_some() {
         return Err(Failure::usage(
             "--fps and --from are for films: .gif, .mp4, or a sequence such as film-####.png",
         ));

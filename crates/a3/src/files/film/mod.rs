@@ -6,6 +6,6 @@ mod gif;
 mod mp4;
 mod shoot;
 
-pub use begin::{begin, begin_new};
+pub use begin::{FilmOptions, begin, begin_new};
 pub use format::Film;
 pub use shoot::shoot;

@@ -9,7 +9,9 @@ pub use parse::{Answer, Choice, Lesson, Step};
 
 use crate::base::failure::Failure;
 use crate::base::terminal;
-use crate::cli::LESSONS;
+
+/// Number of lessons.
+pub const LESSONS: u8 = 8;
 
 macro_rules! carried {
     ($($name:literal),* $(,)?) => {

@@ -329,15 +329,11 @@ impl Session {
         }
         let typed = &self.scenes.shown.source.typed;
         self.readings.say(format!("Loaded {typed} again."));
-        let before = self.runs.first();
-        let (windy, swinging) = (before.windy(), before.swinging());
-        let touching = before.touching();
+        let disturbances = self.runs.first().disturbances();
         self.set_scene(setup);
         for run in self.runs.all_mut() {
-            run.set_wind(windy);
-            run.set_swinging(swinging);
             // If surfaces cross in the new file, its own setting of self-collision stays.
-            let _ = run.set_touching(touching);
+            let _ = run.set_disturbances(disturbances);
         }
         if let Some(method) = reloaded.method {
             let control = setup.defaults.control_of(method);

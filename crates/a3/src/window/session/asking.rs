@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use a3_core::{Model, Network, Simulation};
+use a3_core::{Model, Network};
 use a3_scenes::snapshot;
 
 use super::panes;
@@ -10,9 +10,8 @@ use super::question::{MethodSetting, Question, Task};
 use super::save;
 use super::state::Session;
 use crate::base::rounding::short;
-use crate::cli::What;
 use crate::files::output;
-use crate::files::setup::Request;
+use crate::files::setup::{Request, SceneOptions};
 
 /// Ends of the negative decimal logarithm of an error (m).
 const DIGITS: [i32; 2] = [1, 8];
@@ -124,8 +123,8 @@ fn open_lean(session: &mut Session) -> bool {
 pub fn task(session: &Session, at: usize) -> Result<(Task, String), String> {
     let (measuring, run) = (&session.measuring, &session.runs.panes[at].simulation);
     let from_start = measuring.from_start || run.blow_up().is_some();
-    let begun = from_start.then(|| initial(run)).transpose();
-    let begun = begun.map_err(|why| why.to_string())?;
+    let begun = from_start.then(|| run.anew(run.method(), run.control()));
+    let begun = begun.transpose().map_err(|why| why.to_string())?;
     let run = begun.as_ref().unwrap_or(run);
     let mut description = save::description(session, run);
     let (own, shown) = (&session.tuning.own, &session.scenes.shown);
@@ -137,14 +136,6 @@ pub fn task(session: &Session, at: usize) -> Result<(Task, String), String> {
         }
     }
     let source = &shown.source;
-    let options = What {
-        scene: source.typed.clone(),
-        grid: None,
-        wind: false,
-        swing: false,
-        self_collision: false,
-        threads: None,
-    };
     let scene = run.scene();
     let grid = scene.grid().map_or(String::new(), |grid| {
         format!(" {} × {}", grid.rows(), grid.cols())
@@ -158,7 +149,7 @@ pub fn task(session: &Session, at: usize) -> Result<(Task, String), String> {
         question: measuring.question,
         request: Request {
             source: source.described(description),
-            options,
+            options: SceneOptions::default(),
         },
         error: measuring.error(),
         timed: measuring.timed,
@@ -170,14 +161,6 @@ pub fn task(session: &Session, at: usize) -> Result<(Task, String), String> {
 fn pins(model: &Model) -> Vec<usize> {
     let network = model.network().into_iter();
     network.flat_map(Network::pins).map(|(i, _)| i).collect()
-}
-
-/// Returns a run as it is after a reset.
-fn initial(run: &Simulation) -> Result<Simulation, a3_core::Error> {
-    let mut begun = Simulation::new(run.scene().clone(), run.method(), run.control())?;
-    begun.restore(&run.moment())?;
-    begun.reset();
-    Ok(begun)
 }
 
 #[cfg(test)]

@@ -225,21 +225,12 @@ mod tests {
 
     use super::*;
     use crate::base::report::Report;
-    use crate::cli::What;
-    use crate::files::setup::Request;
+    use crate::files::setup::{Request, SceneOptions};
 
     fn task() -> Task {
-        let scene = What {
-            scene: "pendulum".into(),
-            grid: None,
-            wind: false,
-            swing: false,
-            self_collision: false,
-            threads: None,
-        };
         Task {
             question: Question::Choose,
-            request: Request::read(&scene).unwrap(),
+            request: Request::read("pendulum", SceneOptions::default()).unwrap(),
             error: 1e-3,
             timed: false,
         }

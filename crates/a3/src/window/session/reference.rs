@@ -53,11 +53,8 @@ impl ReferenceRun {
         scene.limits.absolute = None;
         let predictability = Predictability::new(scene.clone());
         let mut simulation = Simulation::new(scene, method, control).map_err(Failure::run)?;
-        simulation.set_wind(run.windy());
-        simulation.set_swinging(run.swinging());
-        simulation
-            .set_touching(run.touching())
-            .map_err(Failure::run)?;
+        let disturbed = simulation.set_disturbances(run.disturbances());
+        disturbed.map_err(Failure::run)?;
         Ok(Some(Self {
             simulation,
             predictability,

@@ -1,0 +1,110 @@
+//! Disturbances of a scene: its wind, the swing of its pins, and contact of its surfaces.
+
+use super::pins::leave_all_but;
+use super::run::Simulation;
+use crate::control::Control;
+use crate::error::Error;
+use crate::integrators::Method;
+use crate::network::{Least, Network, Touch, fit};
+use crate::scene::{Disturbances, Model, Scene};
+
+impl Scene {
+    /// Returns the scene with these disturbances from its start. Those that it does not allow do
+    /// nothing.
+    ///
+    /// # Errors
+    /// Surfaces that are to touch cross, and the error names the first pair.
+    pub fn disturbed(self, on: Disturbances) -> Result<Self, Error> {
+        let mut disturbed = self.clone();
+        let (Model::Network(network), y) = (&mut disturbed.model, &mut disturbed.state) else {
+            return Ok(self);
+        };
+        if on.wind && self.wind.is_some() {
+            network.set_wind(self.wind);
+        }
+        if let Some(swing) = self.swing.filter(|_| on.swing) {
+            leave_all_but(None, network, y, (Some(swing), 0.0), 0.0);
+            fit(network, 0.0, y, Least::AT_START);
+        }
+        if on.contact && self.touch.is_some() && !touches_itself(network) {
+            *network = Box::new(touching(network, &self, (0.0, y))?);
+        }
+        Ok(disturbed)
+    }
+}
+
+impl Simulation {
+    /// Returns the disturbances that act.
+    #[must_use]
+    pub fn disturbances(&self) -> Disturbances {
+        Disturbances {
+            wind: self.windy(),
+            swing: self.swinging(),
+            contact: self.touching(),
+        }
+    }
+
+    /// Switches the scene's disturbances on or off, those of `on` and the others. A scene that does
+    /// not allow one stays without.
+    ///
+    /// # Errors
+    /// Surfaces that are to touch cross, and the error names the first pair; or the method does not
+    /// support contact. Wind and swing are switched nevertheless.
+    pub fn set_disturbances(&mut self, on: Disturbances) -> Result<(), Error> {
+        if on.wind != self.windy() {
+            self.set_wind(on.wind);
+        }
+        self.set_swinging(on.swing);
+        self.set_touching(on.contact)
+    }
+
+    /// Creates a run from the start of the same scene with the disturbances that act now, and with
+    /// freed pins if they are free now, by a method in fixed steps or to a tolerance.
+    ///
+    /// # Errors
+    /// The method does not support the scene or the control; or surfaces cross at the start, where
+    /// they cannot begin to touch.
+    pub fn anew(&self, method: &'static Method, control: Control) -> Result<Self, Error> {
+        let mut begun = Self::new(self.scene().clone(), method, control)?;
+        begun.set_pinned(self.pinned());
+        begun.set_disturbances(self.disturbances())?;
+        Ok(begun)
+    }
+}
+
+/// Returns whether the surfaces of a network touch one another and themselves.
+pub(super) fn touches_itself(network: &Network) -> bool {
+    network.touch().is_some_and(|touch| touch.bodies)
+}
+
+/// Lets the surfaces of a scene touch one another, themselves and obstacles; without `on`, only
+/// those contacts stay that the scene has in any case.
+pub(super) fn let_touch(network: &mut Network, scene: &Scene, on: bool) -> Result<(), Error> {
+    let own = scene.model.network().is_some_and(|n| n.touch().is_some());
+    let touch = scene.touch.as_deref().filter(|_| on || own);
+    network.set_touch(touch.map(|touch| Touch {
+        bodies: on,
+        ..touch.clone()
+    }))
+}
+
+/// Returns a network whose surfaces touch one another, themselves and obstacles from this state y
+/// at a time t (s) on.
+fn touching(network: &Network, scene: &Scene, (t, y): (f64, &[f64])) -> Result<Network, Error> {
+    let mut touching = network.clone();
+    let_touch(&mut touching, scene, true)?;
+    let apart = touching.check_apart(t, touching.halves(y).0);
+    apart.map_err(|e| Error::Invalid(format!("surfaces that cross cannot begin to touch: {e}")))?;
+    Ok(touching)
+}
+
+/// Checks that the surfaces of a scene can begin to touch in a state y of its network at a time
+/// t (s), and that the method supports it.
+pub(super) fn check_touch(
+    network: &Network,
+    scene: &Scene,
+    state: (f64, &[f64]),
+    method: &Method,
+) -> Result<(), Error> {
+    method.check(&touching(network, scene, state)?)
+}
