@@ -8,15 +8,13 @@ use a3_scenes::{Defaults, Presentation, Setup};
 use crate::base::failure::Failure;
 use crate::base::monitor::Monitor;
 use crate::base::{progress, verdict};
-#[cfg(feature = "window")]
-use crate::cli::Drawing;
 use crate::commands::chart::describe;
 use crate::commands::choose::command;
 use crate::commands::simplify::{Simplified, SimplifyOptions, measure};
 #[cfg(feature = "window")]
 use crate::draw::{
     painter::Painter,
-    show::{Arrows, Quantity, Show},
+    show::{Arrows, Manner, Quantity, Show, check_drawing, style},
 };
 #[cfg(feature = "window")]
 use crate::files::output;
@@ -237,17 +235,16 @@ pub fn picture(
     look: Look,
     size: (u32, u32),
 ) -> Result<Vec<u8>, Failure> {
-    let drawing = Drawing {
-        wireframe: look.wireframe,
-        springs: look.springs,
+    let manner = Manner {
+        style: style(look.wireframe, look.springs),
+        springs_of: None,
         orthographic: look.orthographic,
         dark: look.dark,
-        light: false,
         colour: named(look.colour, "colour", &Quantity::ALL, Quantity::name)?,
         arrows: named(look.arrows, "arrows", &Arrows::ALL, Arrows::name)?,
     };
-    crate::window::begin::check_drawing(run, drawing, false)?;
-    let mut show = Show::new(presentation.clone(), drawing.of(None));
+    check_drawing(run, manner, false)?;
+    let mut show = Show::new(presentation.clone(), manner);
     show.transparent = look.transparent;
     let caption = crate::window::hud::caption(&show, size);
     let mut painter = Painter::new(&show, run, size, caption)?;

@@ -6,13 +6,12 @@ use std::panic;
 use std::path::Path;
 
 use a3_core::Simulation;
-use clap::Parser;
 use web_time::Instant;
 
 use crate::base::browser::{self, files};
 use crate::base::failure::Failure;
 use crate::base::progress;
-use crate::cli::{self, Cli, Command};
+use crate::cli;
 use crate::files::scene_file::Hash;
 use crate::window::address::Address;
 use crate::window::app;
@@ -34,21 +33,10 @@ pub fn start() {
 
 fn begin() -> Result<(), Failure> {
     let address = Address::read(browser::words())?;
-    let words = ["a3".to_owned()].into_iter().chain(address.words);
-    let options = Cli::try_parse_from(words).map_err(|error| match cli::explain(&error, &[]) {
-        Err(failure) => failure,
-        Ok(()) => Failure::usage(error),
-    })?;
-    let (mut session, look) = match options.command {
-        None => (begin::window(&options.window)?, options.window.look),
-        Some(Command::Compare(options)) => (begin::comparison(&options)?, options.look),
-        Some(_) => {
-            return Err(Failure::usage(
-                "a page has no command except compare: the other commands need the program",
-            ));
-        }
-    };
-    let settings = if look.no_config || address.embedded {
+    let opening = cli::read(&address.words)?;
+    let mut session = begin::session(&opening)?;
+    session.scenes.reader = Some(cli::read);
+    let settings = if opening.no_settings || address.embedded {
         None
     } else {
         Settings::read().map_err(|why| browser::log(&why)).ok()
@@ -61,7 +49,7 @@ fn begin() -> Result<(), Failure> {
         session.panel.lessons.open = true;
         lessons::apply(&mut session, LessonRequest::Open(lesson, step));
     }
-    app::spawn(session, &look, settings)
+    app::spawn(session, &opening, settings)
 }
 
 /// Takes steps of the run that a command line describes, as fast as possible. Returns a hash
@@ -69,10 +57,9 @@ fn begin() -> Result<(), Failure> {
 /// message.
 #[must_use]
 pub fn run_steps(words: &str, steps: u32) -> String {
-    let words = ["a3"].into_iter().chain(words.split_whitespace());
-    let session = Cli::try_parse_from(words)
-        .map_err(|why| why.to_string())
-        .and_then(|cli| begin::window(&cli.window).map_err(|failure| failure.to_string()));
+    let words: Vec<_> = words.split_whitespace().map(str::to_owned).collect();
+    let session = cli::read(&words).and_then(|opening| begin::session(&opening));
+    let session = session.map_err(|failure| failure.to_string());
     let begun = Instant::now();
     let run = session.and_then(|session| {
         let first = session.runs.first();

@@ -7,6 +7,8 @@ use clap::Parser;
 
 use crate::base::failure::Failure;
 use crate::base::{interrupt, terminal};
+#[cfg(feature = "window")]
+use crate::cli::Compare;
 use crate::cli::{self, Cli, Command};
 #[cfg(feature = "window")]
 use crate::commands::{answer, render};
@@ -15,7 +17,7 @@ use crate::commands::{
 };
 use crate::files::lessons;
 #[cfg(feature = "window")]
-use crate::window::{self, compare};
+use crate::window;
 
 /// Runs the command of the command line, and returns the exit code of the program.
 #[must_use]
@@ -32,17 +34,13 @@ pub fn run(args: &[OsString]) -> u8 {
     let result = match Cli::try_parse_from(args) {
         Ok(cli) => match cli.command {
             #[cfg(feature = "window")]
-            None => window::run(&cli.window, answer::answer),
+            None => window::open(&cli.window.opening(), answer::answer, cli::read),
             #[cfg(not(feature = "window"))]
             None => Err(Failure::usage(
                 "this a3 was built without its window: give a command; --help lists them",
             )),
             #[cfg(feature = "window")]
-            Some(Command::Compare(options)) if options.output.is_none() => {
-                window::open_comparison(&options, answer::answer)
-            }
-            #[cfg(feature = "window")]
-            Some(Command::Compare(options)) => compare::run(&options),
+            Some(Command::Compare(options)) => compare(&options),
             Some(Command::Simulate(options)) => simulate::run(&options),
             #[cfg(feature = "window")]
             Some(Command::Render(options)) => render::run(&options),
@@ -73,4 +71,15 @@ pub fn run(args: &[OsString]) -> u8 {
     };
     terminal::warn(&format!("error: {failure}"));
     code
+}
+
+/// Opens the window on several runs, or draws their picture.
+#[cfg(feature = "window")]
+fn compare(options: &Compare) -> Result<(), Failure> {
+    let opening = options.opening()?;
+    match (&options.output, options.until) {
+        (Some(path), Some(until)) => window::compare::run(&opening, path, until, options.size),
+        (None, None) => window::open(&opening, answer::answer, cli::read),
+        _ => Err(Failure::usage("a picture takes both --output and --until")),
+    }
 }

@@ -1,11 +1,10 @@
 //! The options for the look of a picture.
 
-use a3_render::Style;
 use clap::Args;
 use clap::builder::TypedValueParser;
 
 use super::values::choice;
-use crate::draw::show::{Arrows, Manner, Quantity};
+use crate::draw::show::{Arrows, Manner, Quantity, style};
 
 /// Creates a parser of the quantity of colours.
 fn quantity() -> impl TypedValueParser<Value = Quantity> {
@@ -64,11 +63,7 @@ impl Drawing {
     /// Returns the look of a picture, with the springs of a particle highlighted, if one is given.
     pub fn of(self, springs_of: Option<usize>) -> Manner {
         Manner {
-            style: match (self.wireframe, self.springs) {
-                (false, false) => Style::Shaded,
-                (true, false) => Style::Wireframe,
-                (_, true) => Style::Springs,
-            },
+            style: style(self.wireframe, self.springs),
             springs_of,
             orthographic: self.orthographic,
             dark: self.dark,

@@ -15,6 +15,8 @@ mod sweep;
 pub mod values;
 #[cfg(feature = "window")]
 mod window;
+#[cfg(feature = "window")]
+mod words;
 
 pub use command::Chart;
 pub use command::Choose;
@@ -24,14 +26,13 @@ pub use command::Simulate;
 pub use command::Solvers;
 pub use command::Stability;
 pub use command::{Cli, Command};
-#[cfg(feature = "window")]
-pub use drawing::Drawing;
 pub use explain::explain;
 #[cfg(not(target_arch = "wasm32"))]
 pub use judge::Judge;
 pub use measures::WorkMeasure;
-pub use run::SceneArgs;
 #[cfg(not(target_arch = "wasm32"))]
 pub use sweep::Sweep;
 #[cfg(feature = "window")]
-pub use window::{Compare, Look, Render, WindowOptions};
+pub use window::{Compare, Render};
+#[cfg(feature = "window")]
+pub use words::read;

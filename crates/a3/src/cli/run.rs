@@ -44,17 +44,22 @@ impl SceneArgs {
         }
     }
 
-    /// Reads the scene, and limits the program to the number of threads that is asked for.
-    ///
-    /// # Errors
-    /// There is no such scene, or its file has a fault.
-    pub fn request(&self) -> Result<Request, Failure> {
+    /// Limits the program to the number of threads that is asked for, if one is.
+    pub fn limit_threads(&self) {
         if let Some(count) = self.threads {
             // Only the first call has an effect; later ones fail because the threads are there
             // already.
             let threads = rayon::ThreadPoolBuilder::new().num_threads(count);
             let _ = threads.build_global();
         }
+    }
+
+    /// Reads the scene, after it has limited the program's threads.
+    ///
+    /// # Errors
+    /// There is no such scene, or its file has a fault.
+    pub fn request(&self) -> Result<Request, Failure> {
+        self.limit_threads();
         Request::read(&self.scene, self.options())
     }
 }

@@ -10,7 +10,8 @@ use super::run::{RunOptions, SceneArgs, StepOptions};
 use super::values::{
     SOLVER_AND_STEP, SOLVER_OR_COMMAND, beginning, particle, rate, size, step, until,
 };
-use crate::files::film::FilmOptions;
+use crate::base::failure::Failure;
+use crate::window::session::Opening;
 
 #[derive(Args)]
 pub struct WindowOptions {
@@ -38,6 +39,20 @@ pub struct WindowOptions {
     pub resume: Option<PathBuf>,
 }
 
+impl WindowOptions {
+    /// Returns what the window is to open with.
+    pub fn opening(&self) -> Opening {
+        self.what.limit_threads();
+        Opening {
+            methods: vec![(self.solver, self.step)],
+            manner: self.look.manner.of(self.springs_of),
+            watch: self.watch,
+            resume: self.resume.clone(),
+            ..self.look.opening(&self.what, &self.limits)
+        }
+    }
+}
+
 /// Options for the start of a window.
 #[derive(Args)]
 #[expect(clippy::struct_excessive_bools, reason = "each is an option")]
@@ -56,6 +71,26 @@ pub struct Look {
     /// Write what is on the screen as lines of text to stderr
     #[arg(long, hide = true)]
     pub status: bool,
+}
+
+impl Look {
+    /// Returns what a window of this scene is to open with, without its runs.
+    fn opening(&self, what: &SceneArgs, limits: &StepOptions) -> Opening {
+        Opening {
+            scene: what.scene.clone(),
+            options: what.options(),
+            methods: vec![],
+            limits: limits.given(),
+            no_contact: self.no_self_collision,
+            manner: self.manner.of(None),
+            light: self.manner.light,
+            paused: self.paused,
+            no_settings: self.no_config,
+            watch: false,
+            resume: None,
+            status: self.status,
+        }
+    }
 }
 
 #[derive(Args)]
@@ -92,19 +127,6 @@ pub struct Render {
     pub springs_of: Option<usize>,
 }
 
-impl Render {
-    /// Returns the options of the film.
-    pub fn film(&self) -> FilmOptions<'_> {
-        FilmOptions {
-            path: &self.output,
-            size: self.size,
-            rate: self.fps,
-            from: self.from,
-            transparent: self.transparent,
-        }
-    }
-}
-
 #[derive(Args)]
 pub struct Compare {
     /// Two to four solvers by letter or name, each with its step in seconds or its tolerance after
@@ -126,4 +148,27 @@ pub struct Compare {
     /// Width and height of the picture in pixels
     #[arg(long, value_name = "WxH", value_parser = size, allow_hyphen_values = true, requires = "output")]
     pub size: Option<(u32, u32)>,
+}
+
+impl Compare {
+    /// Returns what the window is to open with.
+    ///
+    /// # Errors
+    /// There are fewer than two or more than four solvers.
+    pub fn opening(&self) -> Result<Opening, Failure> {
+        let count = self.methods.len();
+        if !(2..=4).contains(&count) {
+            return Err(Failure::usage(format!(
+                "compare takes 2 to 4 solvers, as in `a3 compare e:0.05 r:0.05`, not {count}"
+            )));
+        }
+        self.what.limit_threads();
+        let methods = self.methods.iter();
+        Ok(Opening {
+            methods: methods
+                .map(|(method, step)| (Some(*method), *step))
+                .collect(),
+            ..self.look.opening(&self.what, &self.limits)
+        })
+    }
 }

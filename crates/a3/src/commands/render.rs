@@ -4,10 +4,11 @@ use crate::base::failure::Failure;
 use crate::base::{progress, terminal, verdict};
 use crate::cli::Render;
 use crate::draw::painter::Painter;
-use crate::draw::show::{self, Show};
+use crate::draw::show::{self, Show, check_drawing, check_particle};
+use crate::files::film::{self, FilmOptions};
+use crate::files::output;
 use crate::files::setup::Run;
-use crate::files::{film, output};
-use crate::window::{begin, hud};
+use crate::window::hud;
 
 /// Endings of pictures and films.
 const ENDINGS: &[&str] = &["png", "gif", "mp4"];
@@ -22,13 +23,23 @@ pub fn run(options: &Render) -> Result<(), Failure> {
         until,
         ..
     } = options.run.prepare(None)?;
-    begin::check_particle(&simulation, options.springs_of)?;
-    begin::check_drawing(&simulation, options.manner, false)?;
+    let manner = options.manner.of(options.springs_of);
+    check_particle(&simulation, manner.springs_of)?;
+    check_drawing(&simulation, manner, false)?;
     output::check(path, ENDINGS)?;
     // There may be no ffmpeg, and the device may not support pictures of this size: both are
     // checked before the work begins.
-    let film = film::begin(options.film(), until)?;
-    let mut show = Show::new(presentation, options.manner.of(options.springs_of));
+    let film = film::begin(
+        FilmOptions {
+            path,
+            size,
+            rate: options.fps,
+            from: options.from,
+            transparent: options.transparent,
+        },
+        until,
+    )?;
+    let mut show = Show::new(presentation, manner);
     show.transparent = options.transparent;
     let caption = hud::caption(&show, size);
     let mut painter = Painter::new(&show, &simulation, size, caption)?;

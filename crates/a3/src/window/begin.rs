@@ -1,35 +1,69 @@
-//! Sessions from command-line arguments, for windows and for pictures.
+//! Sessions as windows and pictures begin with them.
 
-use a3_core::{Simulation, StepLimits};
-use clap::Parser;
+use a3_core::Simulation;
 
 use crate::base::failure::Failure;
-use crate::cli::{Cli, Command, Compare, Drawing, Look, SceneArgs, WindowOptions};
-use crate::draw::show::{self, Quantity};
+use crate::draw::show::{check_drawing, check_particle};
 use crate::files::checkpoint::Kept;
 use crate::files::lessons::{self, Step};
 use crate::files::scene_file::Source;
-use crate::files::setup::Request;
-use crate::window::session::{Beginning, Origin, Session, begins_crossed, offer_at_start};
+use crate::files::setup::{Request, find};
+use crate::window::session::{
+    Beginning, Opening, Origin, Reader, Session, begins_crossed, offer_at_start,
+};
 
-/// Creates the session of a window on one run. Fails if an option does not fit the scene.
-pub fn window(options: &WindowOptions) -> Result<Session, Failure> {
-    let mut request = options.what.request()?;
-    request.source = request.source.in_window();
-    window_on(request, options)
+/// Creates the session of a window on one run, or on several side by side. Fails if an option does
+/// not fit the scene.
+pub fn session(opening: &Opening) -> Result<Session, Failure> {
+    let mut source = find(&opening.scene, "--scene")?;
+    if opening.methods.len() == 1 {
+        source = source.in_window();
+    }
+    session_on(source, opening)
 }
 
-/// Creates the session of a window on one run of a scene that was read already.
-fn window_on(mut request: Request, options: &WindowOptions) -> Result<Session, Failure> {
+/// Creates the session of a step of a lesson, which pauses at the time of the step. Fails if its
+/// command line does not fit its scene.
+pub fn step(step: &Step, read: Reader) -> Result<Session, Failure> {
+    let words = step.run.split_whitespace().skip(1).map(str::to_owned);
+    let opening = read(&words.collect::<Vec<_>>())?;
+    let source = match lessons::scene(&opening.scene) {
+        Some(text) => Source::carried(&opening.scene, text)?,
+        None => find(&opening.scene, "--scene")?,
+    };
+    let mut session = session_on(source, &opening)?;
+    let own = session.tuning.defaults.duration;
+    session.tuning.defaults.duration = step.until.or(own);
+    Ok(session)
+}
+
+/// Creates a session on a scene that was read already.
+fn session_on(source: Source, opening: &Opening) -> Result<Session, Failure> {
+    let request = Request {
+        source,
+        options: opening.options,
+    };
+    match opening.methods[..] {
+        [method] => alone(request, method, opening),
+        _ => beside(request, opening),
+    }
+}
+
+/// Creates a session on one run.
+fn alone(
+    mut request: Request,
+    (solver, step): (Option<&'static a3_core::Method>, Option<f64>),
+    opening: &Opening,
+) -> Result<Session, Failure> {
     let source = request.source.clone();
-    if options.watch && (source.path.is_none() || source.is_input()) {
+    if opening.watch && (source.path.is_none() || source.is_input()) {
         return Err(Failure::usage(
             "--watch needs a scene file, as in `--scene flag.toml --watch`",
         ));
     }
-    let kept = options.resume.as_deref().map(Kept::read).transpose()?;
+    let kept = opening.resume.as_deref().map(Kept::read).transpose()?;
     let resumed = kept.map(|kept| kept.checkpoint.run.method);
-    let solver = source.solver_or(options.solver.or(resumed));
+    let solver = source.solver_or(solver.or(resumed));
     let mut setup = request.build()?;
     let touches = request.source.description.self_collision || request.options.on.contact;
     let crossed = touches && begins_crossed(&setup.scene);
@@ -38,21 +72,14 @@ fn window_on(mut request: Request, options: &WindowOptions) -> Result<Session, F
         request.options.on.contact = false;
         setup = request.build()?;
     }
-    setup.scene.limits = options.limits.given().or(setup.scene.limits);
-    let simulation = begun(
-        request.simulate(&setup, solver, options.step)?,
-        &options.look,
-    )?;
-    check_particle(&simulation, options.springs_of)?;
-    check_drawing(&simulation, options.look.manner, false)?;
-    let beginning = Beginning {
-        manner: options.look.manner.of(options.springs_of),
-        paused: options.look.paused,
-    };
-    let mut origin = origin(request, options.limits.given());
-    origin.crossed = crossed && !options.look.no_self_collision;
-    let mut session = Session::new(origin, &setup, vec![simulation], &beginning)?;
-    let is_asked = options.step.is_some() || options.resume.is_some();
+    setup.scene.limits = opening.limits.or(setup.scene.limits);
+    let simulation = begun(request.simulate(&setup, solver, step)?, opening)?;
+    check_particle(&simulation, opening.manner.springs_of)?;
+    check_drawing(&simulation, opening.manner, false)?;
+    let mut origin = origin(request, opening);
+    origin.crossed = crossed && !opening.no_contact;
+    let mut session = Session::new(origin, &setup, vec![simulation], &beginning(opening))?;
+    let is_asked = step.is_some() || opening.resume.is_some();
     let names_none = session.scenes.shown.source.description.step.is_none();
     if !is_asked
         && names_none
@@ -64,117 +91,43 @@ fn window_on(mut request: Request, options: &WindowOptions) -> Result<Session, F
     Ok(session)
 }
 
-/// Creates the session of a comparison. Fails if an option does not fit the scene.
-pub fn comparison(options: &Compare) -> Result<Session, Failure> {
-    let count = options.methods.len();
-    if !(2..=4).contains(&count) {
-        return Err(Failure::usage(format!(
-            "compare takes 2 to 4 solvers, as in `a3 compare e:0.05 r:0.05`, not {count}"
-        )));
-    }
-    comparison_on(options.what.request()?, options)
+/// Creates a session on several runs side by side.
+fn beside(request: Request, opening: &Opening) -> Result<Session, Failure> {
+    let mut setup = request.build()?;
+    setup.scene.limits = opening.limits.or(setup.scene.limits);
+    let simulations = opening.methods.iter().map(|(solver, step)| {
+        let solver = request.source.solver_or(*solver);
+        begun(request.simulate(&setup, solver, *step)?, opening)
+    });
+    let simulations = simulations.collect::<Result<Vec<_>, Failure>>()?;
+    check_drawing(&simulations[0], opening.manner, true)?;
+    let origin = origin(request, opening);
+    Session::new(origin, &setup, simulations, &beginning(opening))
 }
 
-/// Creates the session of a comparison on a scene that was read already.
-fn comparison_on(request: Request, options: &Compare) -> Result<Session, Failure> {
-    let mut setup = request.build()?;
-    setup.scene.limits = options.limits.given().or(setup.scene.limits);
-    let simulations = options
-        .methods
-        .iter()
-        .map(|(solver, step)| begun(request.simulate(&setup, solver, *step)?, &options.look))
-        .collect::<Result<Vec<_>, Failure>>()?;
-    check_drawing(&simulations[0], options.look.manner, true)?;
-    let beginning = Beginning {
-        manner: options.look.manner.of(None),
-        paused: options.look.paused,
-    };
-    Session::new(
-        origin(request, options.limits.given()),
-        &setup,
-        simulations,
-        &beginning,
-    )
+fn beginning(opening: &Opening) -> Beginning {
+    Beginning {
+        manner: opening.manner,
+        paused: opening.paused,
+    }
 }
 
 /// Returns a run that begins with or without self-collision, as the options say.
-fn begun(mut run: Simulation, look: &Look) -> Result<Simulation, Failure> {
-    if look.no_self_collision {
+fn begun(mut run: Simulation, opening: &Opening) -> Result<Simulation, Failure> {
+    if opening.no_contact {
         run.set_touching(false).map_err(Failure::usage)?;
     }
     Ok(run)
 }
 
-/// Creates the session of a step of a lesson, which pauses at the time of the step. Fails if its
-/// command line does not fit its scene.
-pub fn step(step: &Step) -> Result<Session, Failure> {
-    let options = Cli::try_parse_from(step.run.split_whitespace()).map_err(Failure::usage)?;
-    let request = |what: &SceneArgs| match lessons::scene(&what.scene) {
-        Some(text) => Ok(Request {
-            source: Source::carried(&what.scene, text)?,
-            options: what.options(),
-        }),
-        None => what.request(),
-    };
-    let mut session = match options.command {
-        Some(Command::Compare(options)) => comparison_on(request(&options.what)?, &options)?,
-        _ => window_on(request(&options.window.what)?, &options.window)?,
-    };
-    let own = session.tuning.defaults.duration;
-    session.tuning.defaults.duration = step.until.or(own);
-    Ok(session)
-}
-
-fn origin(request: Request, limits: StepLimits) -> Origin {
+fn origin(request: Request, opening: &Opening) -> Origin {
     Origin {
         source: request.source,
         grid: request.options.grid,
-        limits,
+        limits: opening.limits,
         edited: false,
         crossed: false,
     }
-}
-
-/// Checks that the scene has the particle whose springs are requested, if one is.
-pub fn check_particle(simulation: &Simulation, particle: Option<usize>) -> Result<(), Failure> {
-    match (particle, simulation.model().network()) {
-        (Some(i), Some(network)) => network
-            .check_particle(i)
-            .map_err(|e| Failure::usage(format!("--springs-of: {e}"))),
-        (Some(_), None) => Err(Failure::usage("--springs-of: this scene has no springs")),
-        (None, _) => Ok(()),
-    }
-}
-
-/// Checks that the scene supports the requested colours, arrows and springs. `compared` says
-/// whether the run is part of a comparison, which has errors.
-pub fn check_drawing(
-    simulation: &Simulation,
-    drawing: Drawing,
-    compared: bool,
-) -> Result<(), Failure> {
-    let scene = &simulation.scene().name;
-    let has_none = |what: &str, option: &str| {
-        format!("the scene {scene} has no {what} to show: leave out --{option}")
-    };
-    let colour = drawing.colour.filter(|c| !c.is_in(simulation, compared));
-    let arrows = drawing.arrows.filter(|a| !a.is_in(simulation));
-    let why = match (colour, arrows) {
-        (Some(Quantity::Contact), _) => format!(
-            "nothing can touch in the scene {scene}: leave out --colour, or let surfaces touch \
-             by --self-collision"
-        ),
-        (Some(Quantity::Error), _) => {
-            "errors need a reference, which only a3 compare runs: leave out --colour".into()
-        }
-        (Some(colour), _) => has_none(colour.name(), "colour"),
-        (None, Some(arrows)) => has_none(arrows.name(), "arrows"),
-        (None, None) if drawing.springs && !show::has_springs(simulation) => {
-            has_none("springs", "springs")
-        }
-        (None, None) => return Ok(()),
-    };
-    Err(Failure::usage(why))
 }
 
 #[cfg(test)]

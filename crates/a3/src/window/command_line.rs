@@ -2,10 +2,8 @@
 
 use a3_core::{Simulation, StepLimits};
 use a3_render::Style;
-use clap::Parser;
 
 use crate::base::failure::Failure;
-use crate::cli::{Cli, Command};
 use crate::draw::show::has_springs;
 use crate::window::begin;
 use crate::window::hud::panel;
@@ -106,15 +104,8 @@ fn arguments_with_scene(session: &Session, at: usize, scene: &str) -> Vec<String
 /// Returns whether these arguments recreate the run of a session, or the initial state of a
 /// comparison. A run that no hand has touched is recreated by its beginning.
 fn recreates(words: &[String], session: &Session) -> bool {
-    let program = ["a3".to_owned()];
-    let Ok(options) = Cli::try_parse_from(program.iter().chain(words)) else {
-        return false;
-    };
-    let made = match options.command {
-        Some(Command::Compare(options)) => begin::comparison(&options),
-        _ => begin::window(&options.window),
-    };
-    let Ok(made) = made else {
+    let opening = session.scenes.reader.map(|read| read(words));
+    let Some(Ok(made)) = opening.map(|opening| begin::session(&opening?)) else {
         return false;
     };
     let begins_alike = |now: &Simulation, made: &Simulation| {

@@ -1,27 +1,31 @@
 //! `a3 compare --output`: several methods side by side in a picture.
 
+use std::path::Path;
+
 use a3_render::{Gpu, Offscreen};
 
 use crate::base::failure::Failure;
 use crate::base::terminal;
-use crate::cli::Compare;
 use crate::draw::painter;
 use crate::files::output;
 use crate::window::begin;
 use crate::window::hud::{Studio, digits};
-use crate::window::session::{Pane, Session};
+use crate::window::session::{Opening, Pane, Session};
 
 /// Default size of a picture (px).
 pub const SIZE: (u32, u32) = (1280, 720);
 
-/// Runs the methods and writes their picture and table. Fails if an option does not fit, the
-/// graphics device cannot draw the picture, or a file cannot be written.
-pub fn run(options: &Compare) -> Result<(), Failure> {
-    let mut session = begin::comparison(options)?;
-    let (Some(path), Some(until)) = (&options.output, options.until) else {
-        return Err(Failure::usage("a picture takes both --output and --until"));
-    };
-    if options.look.paused {
+/// Runs the methods until a time (s), and writes their picture of a size (px) and their table. Fails
+/// if an option does not fit, the graphics device cannot draw the picture, or a file cannot be
+/// written.
+pub fn run(
+    opening: &Opening,
+    path: &Path,
+    until: f64,
+    size: Option<(u32, u32)>,
+) -> Result<(), Failure> {
+    let mut session = begin::session(opening)?;
+    if opening.paused {
         return Err(Failure::usage(
             "a picture cannot begin paused: leave out --paused, or --output",
         ));
@@ -29,7 +33,7 @@ pub fn run(options: &Compare) -> Result<(), Failure> {
     output::check(path, &["png"])?;
     let gpu = pollster::block_on(Gpu::headless()).map_err(Failure::run)?;
     // The device may not support this size, so check it before the runs.
-    let offscreen = Offscreen::new(&gpu, options.size.unwrap_or(SIZE)).map_err(Failure::usage)?;
+    let offscreen = Offscreen::new(&gpu, size.unwrap_or(SIZE)).map_err(Failure::usage)?;
     session.run_to(until);
     terminal::say(&table(&session))?;
     output::write(path, &picture(&gpu, offscreen, &mut session)?)

@@ -19,4 +19,4 @@ pub mod session;
 pub mod settings;
 
 #[cfg(not(target_arch = "wasm32"))]
-pub use open::{compare as open_comparison, run};
+pub use open::open;

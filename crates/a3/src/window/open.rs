@@ -1,52 +1,42 @@
-//! Opening `a3` and `a3 compare` in a window, or running them without one if there is no display.
+//! Opening a window on one run or several, or running them without one if there is no display.
 
 use std::path::PathBuf;
 
 use crate::base::failure::Failure;
 use crate::base::terminal;
-use crate::cli::{Compare, Look, WindowOptions};
 use crate::draw::show;
 use crate::files::output;
 use crate::window::app::{self, End};
-use crate::window::session::{Answerer, Session};
+use crate::window::session::{Answerer, Opening, Reader};
 use crate::window::settings::Settings;
 use crate::window::{begin, headless, keep};
 
-/// Opens the window on one run, until it is closed. `answerer` answers questions about the scene.
-/// Fails if an option does not fit, or with the failure that closed the window.
-pub fn run(options: &WindowOptions, answerer: Answerer) -> Result<(), Failure> {
-    let mut session = begin::window(options)?;
+/// Opens the window, until it is closed. `answerer` answers questions about the scene, and `reader`
+/// reads command lines. Fails if an option does not fit, or with the failure that closed the
+/// window.
+pub fn open(opening: &Opening, answerer: Answerer, reader: Reader) -> Result<(), Failure> {
+    let mut session = begin::session(opening)?;
     session.measuring.answerer = Some(answerer);
+    session.scenes.reader = Some(reader);
     // The scene, its meshes and their buffers.
-    let files = if options.watch {
+    let files: Vec<PathBuf> = if opening.watch {
         output::files_read()
     } else {
         vec![]
     };
-    if let Some(path) = &options.resume {
+    if let Some(path) = &opening.resume {
         keep::load(&mut session, path)?;
     }
-    if let Some(i) = options.springs_of {
+    if let Some(i) = opening.manner.springs_of {
         terminal::say(&show::list_springs_of(session.runs.first(), i))?;
     }
-    open(session, &options.look, files)
-}
-
-/// Opens the window on several runs, until it is closed. Fails as [`run`] does.
-pub fn compare(options: &Compare, answerer: Answerer) -> Result<(), Failure> {
-    let mut session = begin::comparison(options)?;
-    session.measuring.answerer = Some(answerer);
-    open(session, &options.look, vec![])
-}
-
-fn open(session: Session, look: &Look, files: Vec<PathBuf>) -> Result<(), Failure> {
-    let settings = if look.no_config {
+    let settings = if opening.no_settings {
         None
     } else {
         // A file of another program or version is not overwritten.
         Settings::read().map_err(|why| terminal::warn(&why)).ok()
     };
-    match app::open(session, look, files, settings)? {
+    match app::open(session, opening, files, settings)? {
         End::Closed => Ok(()),
         End::NoWindow(why, session) => headless::run(&why, *session),
     }

@@ -1,8 +1,6 @@
 //! Disturbances of a scene: its wind, the swing of its pins, and contact of its surfaces.
 
 use super::pins::leave_all_but;
-use super::run::Simulation;
-use crate::control::Control;
 use crate::error::Error;
 use crate::integrators::Method;
 use crate::network::{Least, Network, Touch, fit};
@@ -30,45 +28,6 @@ impl Scene {
             *network = Box::new(touching(network, &self, (0.0, y))?);
         }
         Ok(disturbed)
-    }
-}
-
-impl Simulation {
-    /// Returns the disturbances that act.
-    #[must_use]
-    pub fn disturbances(&self) -> Disturbances {
-        Disturbances {
-            wind: self.windy(),
-            swing: self.swinging(),
-            contact: self.touching(),
-        }
-    }
-
-    /// Switches the scene's disturbances on or off, those of `on` and the others. A scene that does
-    /// not allow one stays without.
-    ///
-    /// # Errors
-    /// Surfaces that are to touch cross, and the error names the first pair; or the method does not
-    /// support contact. Wind and swing are switched nevertheless.
-    pub fn set_disturbances(&mut self, on: Disturbances) -> Result<(), Error> {
-        if on.wind != self.windy() {
-            self.set_wind(on.wind);
-        }
-        self.set_swinging(on.swing);
-        self.set_touching(on.contact)
-    }
-
-    /// Creates a run from the start of the same scene with the disturbances that act now, and with
-    /// freed pins if they are free now, by a method in fixed steps or to a tolerance.
-    ///
-    /// # Errors
-    /// The method does not support the scene or the control; or surfaces cross at the start, where
-    /// they cannot begin to touch.
-    pub fn anew(&self, method: &'static Method, control: Control) -> Result<Self, Error> {
-        let mut begun = Self::new(self.scene().clone(), method, control)?;
-        begun.set_pinned(self.pinned());
-        begun.set_disturbances(self.disturbances())?;
-        Ok(begun)
     }
 }
 

@@ -8,13 +8,15 @@ use super::pins::{Grabbed, leave, leave_all_but, own_release, pin, unpin_all_but
 use super::run::Simulation;
 use super::state::RunState;
 use crate::columns::row;
+use crate::control::Control;
 use crate::elements::Wind;
 use crate::energy::Energy;
 use crate::error::Error;
+use crate::integrators::Method;
 use crate::network::{Network, let_go};
 use crate::path::Path;
 use crate::pin::Pin;
-use crate::scene::Model;
+use crate::scene::{Disturbances, Model};
 
 impl Simulation {
     /// Returns the model as it is now, with its current pins, obstacles, wind and tears.
@@ -219,6 +221,43 @@ impl Simulation {
         }
         self.refit();
         held.map_or(Ok(()), |i| self.grab(i))
+    }
+
+    /// Returns the disturbances that act.
+    #[must_use]
+    pub fn disturbances(&self) -> Disturbances {
+        Disturbances {
+            wind: self.windy(),
+            swing: self.swinging(),
+            contact: self.touching(),
+        }
+    }
+
+    /// Switches the scene's disturbances on or off, those of `on` and the others. A scene that does
+    /// not allow one stays without.
+    ///
+    /// # Errors
+    /// Surfaces that are to touch cross, and the error names the first pair; or the method does not
+    /// support contact. Wind and swing are switched nevertheless.
+    pub fn set_disturbances(&mut self, on: Disturbances) -> Result<(), Error> {
+        if on.wind != self.windy() {
+            self.set_wind(on.wind);
+        }
+        self.set_swinging(on.swing);
+        self.set_touching(on.contact)
+    }
+
+    /// Creates a run from the start of the same scene with the disturbances that act now, and with
+    /// freed pins if they are free now, by a method in fixed steps or to a tolerance.
+    ///
+    /// # Errors
+    /// The method does not support the scene or the control; or surfaces cross at the start, where
+    /// they cannot begin to touch.
+    pub fn anew(&self, method: &'static Method, control: Control) -> Result<Self, Error> {
+        let mut begun = Self::new(self.scene().clone(), method, control)?;
+        begun.set_pinned(self.pinned());
+        begun.set_disturbances(self.disturbances())?;
+        Ok(begun)
     }
 
     /// Returns whether the scene's pins hold.

@@ -13,8 +13,8 @@ use a3_scenes::{Presentation, TANK_LAYERS};
 use super::arrows::Field;
 use super::colouring::{Colouring, Scale};
 use super::colours::{ALARM, AMBER, BLUE, INK, RED, STEEL, TEAL};
+use super::manner::Manner;
 use super::parts::Parts;
-use super::quantity::{Arrows, Quantity};
 use super::springs::{KINDS, has_springs, kind_look, springs_of};
 use super::vectors::{perpendicular, to_f32};
 use super::{bodies, ground, obstacles, parts, wires};
@@ -588,21 +588,4 @@ impl Target {
             Self::Obstacle(_) => None,
         }
     }
-}
-
-/// The first look of a run.
-#[derive(Clone, Copy, Default)]
-pub struct Manner {
-    /// Surface, wires or springs.
-    pub style: Style,
-    /// The particle whose springs are highlighted.
-    pub springs_of: Option<usize>,
-    /// Whether the projection is orthographic, not perspective.
-    pub orthographic: bool,
-    /// Whether the background is dark and text is light.
-    pub dark: bool,
-    /// Quantity that colours the particles.
-    pub colour: Option<Quantity>,
-    /// Arrows on particles.
-    pub arrows: Option<Arrows>,
 }

@@ -8,8 +8,7 @@ use winit::event_loop::EventLoop;
 use super::platform::{Event, Platform};
 use super::state::App;
 use crate::base::failure::Failure;
-use crate::cli::Look;
-use crate::window::session::{Session, looks};
+use crate::window::session::{Opening, Session, looks};
 use crate::window::settings::Settings;
 
 /// The outcome of opening the window.
@@ -26,7 +25,7 @@ pub enum End {
 #[cfg(not(target_arch = "wasm32"))]
 pub fn open(
     mut session: Session,
-    look: &Look,
+    opening: &Opening,
     files: Vec<PathBuf>,
     settings: Option<Settings>,
 ) -> Result<End, Failure> {
@@ -34,10 +33,10 @@ pub fn open(
         Ok(event_loop) => event_loop,
         Err(why) => return Ok(End::NoWindow(why, Box::new(session))),
     };
-    prepare(&mut session, look, settings.as_ref());
+    prepare(&mut session, opening, settings.as_ref());
     let display = event_loop.owned_display_handle();
     let platform = Platform::new(files);
-    let mut app = App::new(session, display, look.status, platform, settings);
+    let mut app = App::new(session, display, opening.status, platform, settings);
     event_loop.run_app(&mut app).map_err(Failure::run)?;
     match app.failure {
         None => Ok(End::Closed),
@@ -51,31 +50,35 @@ pub fn open(
 
 /// Opens the window in a page, and returns at once. Fails if there is no event loop.
 #[cfg(target_arch = "wasm32")]
-pub fn spawn(mut session: Session, look: &Look, settings: Option<Settings>) -> Result<(), Failure> {
+pub fn spawn(
+    mut session: Session,
+    opening: &Opening,
+    settings: Option<Settings>,
+) -> Result<(), Failure> {
     use winit::platform::web::EventLoopExtWebSys;
     let event_loop = EventLoop::<Event>::with_user_event().build();
     let event_loop = event_loop.map_err(Failure::run)?;
     super::platform::connect(event_loop.create_proxy());
-    prepare(&mut session, look, settings.as_ref());
+    prepare(&mut session, opening, settings.as_ref());
     let display = event_loop.owned_display_handle();
     event_loop.spawn_app(App::new(
         session,
         display,
-        look.status,
+        opening.status,
         Platform::default(),
         settings,
     ));
     Ok(())
 }
 
-/// Applies the saved settings to a session, as far as its `look` does not say otherwise, and marks
+/// Applies the saved settings to a session, as far as it was not opened otherwise, and marks
 /// it as being in a window.
-fn prepare(session: &mut Session, look: &Look, settings: Option<&Settings>) {
+fn prepare(session: &mut Session, opening: &Opening, settings: Option<&Settings>) {
     session.readings.in_window = true;
     if let Some(settings) = settings {
         session.panel.open = settings.panel && !session.panel.lessons.open;
         session.pulled = settings.pulled;
-        if settings.dark && !look.manner.light {
+        if settings.dark && !opening.light {
             looks::set_dark(&mut session.runs.panes, true);
         }
         session.panel.film = settings.film;

@@ -13,6 +13,7 @@ mod lessons;
 mod list;
 pub mod looks;
 mod measuring;
+mod opening;
 mod origin;
 mod pane;
 pub mod panes;
@@ -32,6 +33,8 @@ mod timeline;
 mod traces;
 mod tuning;
 mod view;
+#[cfg(test)]
+mod words;
 
 pub use acts::{go_to, offer_at_start};
 pub use asking::MeasureRequest;
@@ -43,6 +46,7 @@ pub use keys::{Binding, GROUPS, Group, MOUSE, action};
 pub use lessons::{Given, LessonRequest, Lessons};
 pub use list::{Entry, TextKey, Topic};
 pub use measuring::Progress;
+pub use opening::{Opening, Reader};
 pub use origin::{Origin, begins_crossed};
 pub use pane::Pane;
 pub use passage::Passage;
@@ -67,26 +71,22 @@ pub use keys::bindings;
 pub use pane::Cost;
 #[cfg(test)]
 pub use tests::{compared, frames, session, times};
+#[cfg(test)]
+pub use words::read;
 
 #[cfg(test)]
 mod tests {
     //! Sessions for tests.
 
-    use clap::Parser;
-
-    use super::Session;
-    use crate::cli;
+    use super::{Session, words};
     use crate::window::begin;
 
     /// Creates the session of a command line.
     pub fn session(words: &[&str]) -> Session {
-        let words = ["a3"].iter().chain(words);
-        let options = cli::Cli::try_parse_from(words).unwrap();
-        let session = match options.command {
-            Some(cli::Command::Compare(options)) => begin::comparison(&options),
-            _ => begin::window(&options.window),
-        };
-        session.unwrap()
+        let owned: Vec<_> = words.iter().map(|word| (*word).to_owned()).collect();
+        let mut session = begin::session(&words::read(&owned).unwrap()).unwrap();
+        session.scenes.reader = Some(words::read);
+        session
     }
 
     /// Creates a comparison, advanced to a time (s) in frames of 60 Hz.

@@ -15,6 +15,7 @@ pub fn replace(session: &mut Session, next: Session) {
     (session.panel.pane, session.panel.typed) = (0, None);
     session.panel.editor.forget(&session.runs);
     session.pulled = former.pulled;
+    session.measuring.answerer = former.measuring.answerer;
     session.scenes.adopt(former.scenes);
     session.readings.in_window = former.readings.in_window;
     session.readings.film = former.readings.film;

@@ -6,6 +6,7 @@ use a3_core::Method;
 use a3_scenes::Setup;
 
 use super::list::Entry;
+use super::opening::Reader;
 use super::origin::Origin;
 use crate::base::failure::InputError;
 use crate::files::scene_file::Source;
@@ -26,6 +27,8 @@ pub struct Scenes {
     pub recent: Vec<PathBuf>,
     /// The checkpoint that was last saved or loaded.
     pub checkpoint: Option<PathBuf>,
+    /// Function that reads command lines.
+    pub reader: Option<Reader>,
 }
 
 /// A reloaded scene, and the changes in its file.
@@ -51,6 +54,7 @@ impl Scenes {
             asked: vec![origin],
             recent: vec![],
             checkpoint: None,
+            reader: None,
         }
     }
 
@@ -74,6 +78,7 @@ impl Scenes {
         self.offered = former.offered;
         self.recent = former.recent;
         self.checkpoint = former.checkpoint;
+        self.reader = former.reader;
         let number = self.names().iter().position(|name| *name == shown);
         self.number = number.unwrap_or(0);
     }

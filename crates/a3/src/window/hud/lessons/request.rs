@@ -38,7 +38,10 @@ fn begin(session: &mut Session) -> bool {
     let Some((_, step)) = session.panel.lessons.shown() else {
         return false;
     };
-    match begin::step(step) {
+    let Some(reader) = session.scenes.reader else {
+        return false;
+    };
+    match begin::step(step, reader) {
         Ok(next) => replace(session, next),
         Err(why) => {
             session.readings.warn(why.to_string());

@@ -7,7 +7,7 @@ use super::super::style::context;
 use super::{apply, press_text, request, show, taken};
 use crate::files::lessons::{ALL, Answer};
 use crate::window::begin;
-use crate::window::session::{LessonRequest, RunAction, Session, TextKey, session};
+use crate::window::session::{LessonRequest, RunAction, Session, TextKey, read, session};
 
 /// Height of the bar (points).
 const BAR: f32 = 48.0;
@@ -72,7 +72,8 @@ impl Asked {
 fn the_answers_are_what_the_runs_say() {
     for (k, lesson) in ALL.iter().enumerate() {
         for (n, step) in lesson.steps.iter().enumerate() {
-            let mut session = begin::step(step).unwrap_or_else(|why| panic!("{}: {why}", step.run));
+            let mut session =
+                begin::step(step, read).unwrap_or_else(|why| panic!("{}: {why}", step.run));
             let place = (k + 1, n + 1);
             let asked = ASKED.iter().find(|(k, n, _)| (*k, *n) == place);
             let number = matches!(step.question.answer, Answer::Number { .. });
@@ -103,7 +104,7 @@ fn the_answers_are_what_the_runs_say() {
 #[test]
 fn the_right_choices_are_what_happens() {
     let of = |lesson: usize, step: usize, time: f64| {
-        let mut session = begin::step(&ALL[lesson - 1].steps[step - 1]).unwrap();
+        let mut session = begin::step(&ALL[lesson - 1].steps[step - 1], read).unwrap();
         session.run_to(time);
         session
     };
