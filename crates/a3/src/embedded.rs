@@ -5,23 +5,23 @@ use std::sync::Arc;
 use a3_core::{Control, Method, Scene, Simulation, StepLimits, integrators};
 use a3_scenes::{Defaults, Presentation, Setup};
 
-use crate::base::failure::Failure;
-use crate::base::monitor::Monitor;
-use crate::base::{progress, verdict};
-use crate::commands::chart::describe;
-use crate::commands::choose::command;
-use crate::commands::simplify::{Simplified, SimplifyOptions, measure};
+use a3_files::failure::Failure;
+use a3_files::monitor::Monitor;
 #[cfg(feature = "window")]
-use crate::draw::{
+use a3_files::output;
+use a3_files::scene_file::Source;
+use a3_files::setup::{self, Request};
+use a3_files::{progress, verdict};
+use a3_lab::chart::describe;
+use a3_lab::choose::command;
+use a3_lab::simplify::{Simplified, SimplifyOptions, measure};
+#[cfg(feature = "window")]
+use a3_media::{
     painter::Painter,
     show::{Arrows, Manner, Quantity, Show, check_drawing, style},
 };
-#[cfg(feature = "window")]
-use crate::files::output;
-use crate::files::scene_file::Source;
-use crate::files::setup::{self, Request};
 
-pub use crate::files::setup::SceneOptions;
+pub use a3_files::setup::SceneOptions;
 
 /// Origin of a scene.
 #[derive(Clone, Copy, Debug)]
@@ -246,7 +246,7 @@ pub fn picture(
     check_drawing(run, manner, false)?;
     let mut show = Show::new(presentation.clone(), manner);
     show.transparent = look.transparent;
-    let caption = crate::window::hud::caption(&show, size);
+    let caption = a3_studio::hud::caption(&show, size);
     let mut painter = Painter::new(&show, run, size, caption)?;
     let pixels = painter.draw(&mut show, run)?;
     output::png(&pixels, size)

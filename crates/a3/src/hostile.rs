@@ -4,14 +4,14 @@
 #[path = "../../scenes/tests/hostile/mutation.rs"]
 mod mutation;
 
+use a3_files::rows::{Row, text::read};
+use a3_files::states::parse;
+use a3_lab::chart::record::Record;
 use clap::Parser;
 use clap::error::ErrorKind;
+use mutation::{Random, seeds};
 
 use crate::cli::{Cli, explain};
-use crate::commands::chart::record::Record;
-use crate::files::rows::{Row, text::read};
-use crate::files::states::parse;
-use mutation::{Random, seeds};
 
 /// Number of inputs of each kind.
 const INPUTS: usize = 10_000;

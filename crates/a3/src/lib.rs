@@ -49,43 +49,33 @@
     allow(clippy::unused_self, clippy::unnecessary_wraps)
 )]
 
-mod base;
 mod cli;
 #[cfg(not(target_arch = "wasm32"))]
 mod commands;
-mod draw;
 #[cfg(not(target_arch = "wasm32"))]
 pub mod embedded;
-mod files;
 #[cfg(test)]
 mod hostile;
 #[cfg(target_arch = "wasm32")]
 pub mod page;
 #[cfg(not(target_arch = "wasm32"))]
 mod program;
-#[cfg(feature = "window")]
-mod window;
 
 #[cfg(not(target_arch = "wasm32"))]
-pub use base::quantity::Quantity;
-#[cfg(not(target_arch = "wasm32"))]
-pub use base::{
+pub use a3_files::{
     failure::{Failure, InputError},
     monitor::Monitor,
+    quantity::Quantity,
+    setup::scene,
 };
 #[cfg(not(target_arch = "wasm32"))]
-pub use commands::chart::{Chart, ChartOptions, Record, chart};
-#[cfg(not(target_arch = "wasm32"))]
-pub use commands::choose::{Choice, ChooseOptions, Chosen, Goal, choose};
-#[cfg(not(target_arch = "wasm32"))]
-pub use commands::compare::{ComparedRun, Comparison, compare};
-#[cfg(not(target_arch = "wasm32"))]
-pub use commands::judge::{JudgeOptions, StatesOf, Verdict, judge_states};
-#[cfg(not(target_arch = "wasm32"))]
-pub use commands::simplify::{LeanScene, ModelEffect, SceneRun, Simplified, SimplifyOptions};
-#[cfg(not(target_arch = "wasm32"))]
-pub use commands::stability::{MethodLimits, Stability, stability};
-#[cfg(not(target_arch = "wasm32"))]
-pub use files::setup::scene;
+pub use a3_lab::{
+    chart::{Chart, ChartOptions, Record, chart},
+    choose::{Choice, ChooseOptions, Chosen, Goal, choose},
+    compare::{ComparedRun, Comparison, compare},
+    judge::{JudgeOptions, StatesOf, Verdict, judge_states},
+    simplify::{LeanScene, ModelEffect, SceneRun, Simplified, SimplifyOptions},
+    stability::{MethodLimits, Stability, stability},
+};
 #[cfg(not(target_arch = "wasm32"))]
 pub use program::{main, run};

@@ -6,19 +6,19 @@ use std::panic;
 use std::path::Path;
 
 use a3_core::Simulation;
+use a3_files::browser::{self, files};
+use a3_files::failure::Failure;
+use a3_files::progress;
+use a3_files::scene_file::Hash;
+use a3_studio::address::Address;
+use a3_studio::app;
+use a3_studio::begin;
+use a3_studio::hud::lessons;
+use a3_studio::session::LessonRequest;
+use a3_studio::settings::Settings;
 use web_time::Instant;
 
-use crate::base::browser::{self, files};
-use crate::base::failure::Failure;
-use crate::base::progress;
 use crate::cli;
-use crate::files::scene_file::Hash;
-use crate::window::address::Address;
-use crate::window::app;
-use crate::window::begin;
-use crate::window::hud::lessons;
-use crate::window::session::LessonRequest;
-use crate::window::settings::Settings;
 
 /// Starts the run that the address describes, or shows on the page why that is not possible.
 pub fn start() {

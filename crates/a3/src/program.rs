@@ -3,10 +3,13 @@
 use std::ffi::OsString;
 use std::process::ExitCode;
 
+use a3_files::failure::Failure;
+use a3_files::lessons;
+use a3_files::{interrupt, terminal};
+#[cfg(feature = "window")]
+use a3_studio as window;
 use clap::Parser;
 
-use crate::base::failure::Failure;
-use crate::base::{interrupt, terminal};
 #[cfg(feature = "window")]
 use crate::cli::Compare;
 use crate::cli::{self, Cli, Command};
@@ -15,9 +18,6 @@ use crate::commands::{answer, render};
 use crate::commands::{
     chart, choose, judge, list, manual, simplify, simulate, solvers, stability, sweep,
 };
-use crate::files::lessons;
-#[cfg(feature = "window")]
-use crate::window;
 
 /// Runs the command of the command line, and returns the exit code of the program.
 #[must_use]

@@ -4,27 +4,25 @@ use std::path::PathBuf;
 
 use a3_core::accuracy::Metric;
 use a3_core::{Grid, Method};
+use a3_files::lessons::LESSONS;
+use a3_files::quantity::Quantity;
 use clap::builder::TypedValueParser;
 use clap::{Args, Parser, Subcommand};
+#[cfg(not(target_arch = "wasm32"))]
+use clap_complete::Shell;
 
+#[cfg(not(target_arch = "wasm32"))]
+use super::judge::Judge;
 use super::measures::{ErrorScope, WorkMeasure, metric};
 use super::run::{RunOptions, SceneArgs};
+#[cfg(not(target_arch = "wasm32"))]
+use super::sweep::Sweep;
 use super::values::{
     SCENE, SOLVER_OR_ALL, budget, choice, error, factor, grid, horizon, pause, picture_size, rate,
     step,
 };
-
-use crate::base::quantity::Quantity;
-use crate::files::lessons::LESSONS;
-
-#[cfg(not(target_arch = "wasm32"))]
-use super::judge::Judge;
-#[cfg(not(target_arch = "wasm32"))]
-use super::sweep::Sweep;
 #[cfg(feature = "window")]
 use super::window::{Compare, Render, WindowOptions};
-#[cfg(not(target_arch = "wasm32"))]
-use clap_complete::Shell;
 
 /// Reads the number of a lesson.
 fn lesson(text: &str) -> Result<u8, String> {

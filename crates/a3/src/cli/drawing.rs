@@ -1,10 +1,10 @@
 //! The options for the look of a picture.
 
+use a3_media::show::{Arrows, Manner, Quantity, style};
 use clap::Args;
 use clap::builder::TypedValueParser;
 
 use super::values::choice;
-use crate::draw::show::{Arrows, Manner, Quantity, style};
 
 /// Creates a parser of the quantity of colours.
 fn quantity() -> impl TypedValueParser<Value = Quantity> {

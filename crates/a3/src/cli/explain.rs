@@ -3,13 +3,13 @@
 use std::error::Error;
 use std::ffi::OsString;
 
+use a3_files::failure::Failure;
+use a3_files::terminal;
 use a3_scenes::nearest;
 use clap::CommandFactory;
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 
 use super::command::Cli;
-use crate::base::failure::Failure;
-use crate::base::terminal;
 
 /// Largest number of characters of a quoted argument.
 const MAX_QUOTED_CHARS: usize = 80;

@@ -10,7 +10,7 @@ use a3_scenes::nearest;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Arg, Command};
 
-use crate::base::bounds::{
+use a3_files::bounds::{
     Allowed, BUDGETS, ERRORS, FACTORS, HORIZONS, LARGEST_STEP, SMALLEST_STEP, TOLERANCES,
 };
 

@@ -3,6 +3,8 @@
 use std::path::PathBuf;
 
 use a3_core::Method;
+use a3_files::failure::Failure;
+use a3_studio::session::Opening;
 use clap::Args;
 
 use super::drawing::Drawing;
@@ -10,8 +12,6 @@ use super::run::{RunOptions, SceneArgs, StepOptions};
 use super::values::{
     SOLVER_AND_STEP, SOLVER_OR_COMMAND, beginning, particle, rate, size, step, until,
 };
-use crate::base::failure::Failure;
-use crate::window::session::Opening;
 
 #[derive(Args)]
 pub struct WindowOptions {

@@ -1,10 +1,10 @@
 //! The words of a command line that opens a window, from a link, a lesson or the window itself.
 
+use a3_files::failure::Failure;
+use a3_studio::session::Opening;
 use clap::Parser;
 
 use super::{Cli, Command, explain};
-use crate::base::failure::Failure;
-use crate::window::session::Opening;
 
 /// Reads the words that follow the name of the program.
 ///

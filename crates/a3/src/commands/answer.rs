@@ -2,13 +2,13 @@
 
 use a3_core::accuracy::Scope;
 
-use super::chart::{ChartOptions, chart, describe};
-use super::choose::{self, ChooseOptions, Goal};
-use super::simplify::{self, SimplifyOptions};
-use super::stability::stability;
-use crate::base::failure::Failure;
-use crate::base::monitor::Monitor;
-use crate::window::session::{Answer, Diagram, Question, Task};
+use a3_files::failure::Failure;
+use a3_files::monitor::Monitor;
+use a3_lab::chart::{ChartOptions, chart, describe};
+use a3_lab::choose::{self, ChooseOptions, Goal};
+use a3_lab::simplify::{self, SimplifyOptions};
+use a3_lab::stability::stability;
+use a3_studio::session::{Answer, Diagram, Question, Task};
 
 /// Answers a question as its command does: with the same runs, and in the same words.
 ///
@@ -91,15 +91,17 @@ fn of_simplification(task: &Task, monitor: &dyn Monitor) -> Result<Answer, Failu
 #[cfg(test)]
 mod tests {
     use a3_core::accuracy::Metric;
+    use a3_files::report::Report;
+    use a3_lab::chart::unit;
+    use a3_studio::begin;
+    use a3_studio::session::asking::{MeasureRequest, apply, task};
 
     use super::*;
-    use crate::base::report::Report;
-    use crate::commands::chart::unit;
-    use crate::window::session::asking::{MeasureRequest, apply, task};
-    use crate::window::session::session;
 
     fn answered(question: Question, words: &[&str]) -> Answer {
-        let mut session = session(words);
+        let words: Vec<_> = words.iter().map(|word| (*word).to_owned()).collect();
+        let opening = crate::cli::read(&words).unwrap();
+        let mut session = begin::session(&opening).unwrap();
         apply(&mut session, MeasureRequest::Ask(question), 0);
         apply(&mut session, MeasureRequest::FromStart(true), 0);
         let (task, _) = task(&session, 0).unwrap();
@@ -118,7 +120,7 @@ mod tests {
             assert_eq!(curve.runs.len(), runs.len());
             for (point, (method, control)) in curve.runs.iter().zip(runs) {
                 assert_eq!(method.title, curve.name);
-                let words = crate::commands::chart::table::words(*control);
+                let words = a3_lab::chart::table::words(*control);
                 assert_eq!(point.label.as_deref(), Some(&*words));
             }
         }
@@ -139,7 +141,7 @@ mod tests {
     fn answers_have_the_words_of_the_commands() {
         let words = ["t", "0.01", "--scene", "chain"];
         let found = answered(Question::Choose, &words);
-        let scene = crate::files::setup::scene("chain").unwrap();
+        let scene = a3_files::setup::scene("chain").unwrap();
         let options = ChooseOptions::new(Goal::Error(1e-3));
         let choice = choose::choose(&scene, &[], &options, &()).unwrap();
         let best = choice.best();

@@ -1,12 +1,12 @@
 //! `a3 scenes`: the built-in scenes.
 
+use a3_files::failure::Failure;
+use a3_files::report::table;
+use a3_files::setup::find;
+use a3_files::terminal;
 use a3_scenes::{Description, List};
 
-use crate::base::failure::Failure;
-use crate::base::report::table;
-use crate::base::terminal;
 use crate::cli::Scenes;
-use crate::files::setup::find;
 
 /// Lists the scenes, or prints the file of one, its list or the schema.
 pub fn scenes(options: &Scenes) -> Result<(), Failure> {

@@ -4,14 +4,14 @@
 use std::io;
 use std::path::Path;
 
+use a3_files::failure::{EXIT_CODES, Failure};
+use a3_files::output;
+use a3_files::terminal;
 use clap::{Command, CommandFactory};
 use clap_complete::Shell;
 use clap_mangen::Man;
 
-use crate::base::failure::{EXIT_CODES, Failure};
-use crate::base::terminal;
 use crate::cli::Cli;
-use crate::files::output;
 
 /// Prints the script with which a shell completes words.
 pub fn completions(shell: Shell) -> Result<(), Failure> {

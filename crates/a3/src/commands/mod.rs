@@ -4,11 +4,9 @@
 pub mod answer;
 pub mod chart;
 pub mod choose;
-pub mod compare;
 pub mod judge;
 pub mod list;
 pub mod manual;
-mod motion;
 #[cfg(feature = "window")]
 pub mod render;
 pub mod simplify;

@@ -1,14 +1,15 @@
 //! `a3 render`: pictures and films without a window.
 
-use crate::base::failure::Failure;
-use crate::base::{progress, terminal, verdict};
+use a3_files::failure::Failure;
+use a3_files::output;
+use a3_files::setup::Run;
+use a3_files::{progress, terminal, verdict};
+use a3_media::film::{self, FilmOptions};
+use a3_media::painter::Painter;
+use a3_media::show::{self, Show, check_drawing, check_particle};
+use a3_studio::hud;
+
 use crate::cli::Render;
-use crate::draw::painter::Painter;
-use crate::draw::show::{self, Show, check_drawing, check_particle};
-use crate::files::film::{self, FilmOptions};
-use crate::files::output;
-use crate::files::setup::Run;
-use crate::window::hud;
 
 /// Endings of pictures and films.
 const ENDINGS: &[&str] = &["png", "gif", "mp4"];

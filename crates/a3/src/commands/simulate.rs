@@ -5,18 +5,19 @@ use std::path::Path;
 use std::time::Duration;
 
 use a3_core::Simulation;
+use a3_files::checkpoint::{Energy, Extremes, Keeper, Kept};
+use a3_files::failure::Failure;
+use a3_files::frames::{FrameTimes, Sequence};
+use a3_files::output;
+use a3_files::progress::Bar;
+use a3_files::setup::{Request, Run};
+use a3_files::{interrupt, progress, terminal, verdict};
+use a3_media::export;
+use a3_media::export::Export;
 use serde::Serialize;
 use web_time::Instant;
 
-use crate::base::failure::Failure;
-use crate::base::progress::Bar;
-use crate::base::{interrupt, progress, terminal, verdict};
 use crate::cli::Simulate;
-use crate::files::checkpoint::{Energy, Extremes, Keeper, Kept};
-use crate::files::export::Export;
-use crate::files::frames::{FrameTimes, Sequence};
-use crate::files::setup::{Request, Run};
-use crate::files::{export, output};
 
 /// Runs the simulation and writes its files.
 pub fn run(options: &Simulate) -> Result<(), Failure> {

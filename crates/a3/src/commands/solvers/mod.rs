@@ -5,12 +5,12 @@ mod table;
 mod tests;
 
 use a3_core::{Control, Method, ParticleSystem, Refusal, integrators};
+use a3_files::failure::Failure;
+use a3_files::report;
+use a3_files::setup::find;
+use a3_files::terminal;
 
-use crate::base::failure::Failure;
-use crate::base::report;
-use crate::base::terminal;
 use crate::cli::Solvers;
-use crate::files::setup::find;
 
 /// Largest order of the backward differentiation formulas.
 const BDF_ORDER: u32 = 5;

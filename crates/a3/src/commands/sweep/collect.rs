@@ -1,18 +1,18 @@
 //! The table of all runs of a sweep, and its chart.
 
 use a3_core::Method;
+use a3_files::failure::Failure;
+use a3_files::output;
+use a3_files::rows::text;
+use a3_files::terminal;
+use a3_lab::chart::picture;
+use a3_lab::chart::record::Record;
 use a3_plot::WorkPrecision;
 use serde_json::Value;
 
 use super::file::Sweep;
 use super::folder::Folder;
 use super::plan::{Plan, Variant};
-use crate::base::failure::Failure;
-use crate::base::terminal;
-use crate::commands::chart::picture;
-use crate::commands::chart::record::Record;
-use crate::files::output;
-use crate::files::rows::text;
 
 /// Largest number of panels of a chart.
 const MAX_PANELS: usize = 25;

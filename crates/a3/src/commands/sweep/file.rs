@@ -6,16 +6,16 @@ use std::path::Path;
 
 use a3_core::accuracy::{Metric, Scope};
 use a3_core::{Method, integrators};
+use a3_files::bounds;
+use a3_files::failure::InputError;
+use a3_files::output;
+use a3_files::scene_file::Source;
+use a3_files::terminal;
 use serde::Deserialize;
 use serde_json::Value;
 
 use super::keys;
 use super::values::all;
-use crate::base::bounds;
-use crate::base::failure::InputError;
-use crate::base::terminal;
-use crate::files::output;
-use crate::files::scene_file::Source;
 
 /// Largest size of the file (bytes).
 const MAX_SIZE: u64 = 1 << 20;

@@ -4,14 +4,15 @@ use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use a3_files::failure::Failure;
+use a3_files::output;
+use a3_files::rows::text;
+use a3_files::terminal;
+use a3_lab::chart::data::VERSION;
+use a3_lab::chart::record::Record;
+
 use super::plan::{Plan, Run};
-use crate::base::failure::Failure;
-use crate::base::terminal;
 use crate::cli::share::Id;
-use crate::commands::chart::data::VERSION;
-use crate::commands::chart::record::Record;
-use crate::files::output;
-use crate::files::rows::text;
 
 /// Largest size of the file of a run (bytes).
 const MAX_SIZE: u64 = 1 << 16;

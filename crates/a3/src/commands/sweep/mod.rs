@@ -12,12 +12,13 @@ mod work;
 
 use std::fmt::Write;
 
-use crate::base::failure::Failure;
-use crate::base::{interrupt, terminal};
-use crate::cli::Sweep as Options;
+use a3_files::failure::Failure;
+use a3_files::{interrupt, terminal};
 use file::Sweep;
 use folder::Folder;
 use plan::Plan;
+
+use crate::cli::Sweep as Options;
 
 /// Runs the command.
 pub fn run(options: &Options) -> Result<(), Failure> {

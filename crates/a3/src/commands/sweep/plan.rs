@@ -2,19 +2,19 @@
 
 use a3_core::accuracy::{Metric, Scope};
 use a3_core::{Method, Scene, integrators};
+use a3_files::failure::Failure;
+use a3_files::scene_file::{Hash, Source};
+use a3_lab::chart::data::VERSION;
+use a3_lab::chart::measure::stiffened;
+use a3_lab::chart::{check_metric, scope};
+use a3_lab::motion::words;
 use rayon::prelude::*;
 use serde_json::Value;
 
 use super::file::Sweep;
 use super::keys;
 use super::values::exact;
-use crate::base::failure::Failure;
 use crate::cli::share::Id;
-use crate::commands::chart::data::VERSION;
-use crate::commands::chart::measure::stiffened;
-use crate::commands::chart::{check_metric, scope};
-use crate::commands::motion::words;
-use crate::files::scene_file::{Hash, Source};
 
 /// Largest number of runs.
 const MAX_RUNS: u128 = 1_000_000;

@@ -3,18 +3,18 @@
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use a3_core::accuracy::{Frames, horizon};
+use a3_files::failure::Failure;
+use a3_files::interrupt;
+use a3_files::progress::Bar;
+use a3_lab::chart::data::VERSION;
+use a3_lab::chart::measure::{compared, precision, reference};
+use a3_lab::chart::record::Record;
+use a3_lab::motion::words;
 use rayon::prelude::*;
 
 use super::file::Sweep;
 use super::folder::Folder;
 use super::plan::{Plan, Run, Variant};
-use crate::base::failure::Failure;
-use crate::base::interrupt;
-use crate::base::progress::Bar;
-use crate::commands::chart::data::VERSION;
-use crate::commands::chart::measure::{compared, precision, reference};
-use crate::commands::chart::record::Record;
-use crate::commands::motion::words;
 
 /// Makes the missing runs among those at these indices of the plan. Returns how many are left,
 /// which is not 0 after an interrupt.

@@ -1,0 +1,113 @@
+//! The command `a3 simplify`: measures the models, prints them, and writes the leanest scene.
+
+use std::path::Path;
+
+use a3_files::failure::Failure;
+use a3_files::output;
+use a3_files::progress::Bar;
+use a3_files::setup::Request;
+use a3_files::{interrupt, terminal};
+use a3_lab::chart::describe;
+use a3_lab::figure_file::{PICTURES, write_picture};
+use a3_lab::simplify::{Simplified, SimplifyOptions, measure};
+
+use crate::cli::Simplify;
+
+/// Measures models of a scene, prints them, and writes the leanest.
+pub fn run(options: &Simplify) -> Result<(), Failure> {
+    interrupt::listen();
+    let given = options.what.request()?;
+    // This refuses options that the scene does not support.
+    let title = describe(given.options.on, &given.scene()?);
+    let request = given.described();
+    check_files(options, &request)?;
+    let bar = Bar::new(1.0);
+    let asked = SimplifyOptions {
+        error: options.error,
+        of: options.of,
+        until: options.until,
+        particle: options.scope.particle,
+        at_end: options.scope.at_end,
+        data: options.data.clone(),
+        chart: options.chart.is_some(),
+    };
+    let found = measure(&request, &title, &asked, &bar)?;
+    bar.clear();
+    interrupt::write_on();
+    if let Some(path) = &options.chart {
+        draw(path, options.size, &found)?;
+    }
+    terminal::say(&found.text())?;
+    match (&found.lean, &options.output) {
+        (Some(lean), Some(path)) => {
+            output::write(path, lean.scene.as_bytes())?;
+            terminal::say(&format!("scene: {}\n", path.display()))
+        }
+        (Some(_), None) => Ok(()),
+        (None, _) => Err(Failure::Interrupted(
+            "interrupted: the table has what was measured until then".into(),
+        )),
+    }
+}
+
+/// Draws the chart of models, and says where it is.
+fn draw(path: &Path, (width, height): (u32, u32), found: &Simplified) -> Result<(), Failure> {
+    match found.figure(width, height)? {
+        Some(figure) => {
+            write_picture(path, &figure)?;
+            terminal::say(&format!("chart: {}\n", path.display()))
+        }
+        None if found.lean.is_some() => terminal::say(
+            "no chart: the scene has one grid only, or grids differ by more than the motion\n",
+        ),
+        None => Ok(()),
+    }
+}
+
+/// Checks that the chart and the leanest scene can be written.
+fn check_files(options: &Simplify, request: &Request) -> Result<(), Failure> {
+    if let Some(path) = &options.chart {
+        output::check(path, PICTURES)?;
+    }
+    if let Some(path) = &options.output {
+        output::check(path, &["toml"])?;
+        if path.exists() {
+            return Err(Failure::usage(format!(
+                "{}: there is such a file already: give the scene another name",
+                path.display()
+            )));
+        }
+        check_folder(path, request)?;
+    }
+    Ok(())
+}
+
+/// Checks that a scene with meshes in files is written to its own folder, because these files are
+/// found relative to it.
+fn check_folder(path: &Path, request: &Request) -> Result<(), Failure> {
+    let description = &request.source.description;
+    let parts = description.body.iter().flat_map(|body| &body.parts);
+    let has_files = !description.mesh.is_empty()
+        || !description.obstacle.is_empty()
+        || description.solid.iter().any(|solid| solid.file.is_some())
+        || parts.into_iter().any(|part| part.file.is_some());
+    let folder = |path: &Path| path.parent().map(Path::to_path_buf).unwrap_or_default();
+    let own = request
+        .source
+        .path
+        .as_deref()
+        .map(folder)
+        .unwrap_or_default();
+    if has_files && folder(path) != own {
+        return Err(Failure::usage(format!(
+            "{}: the scene has meshes in files beside it: write the lean scene to the folder {}",
+            path.display(),
+            if own.as_os_str().is_empty() {
+                ".".into()
+            } else {
+                own.display().to_string()
+            }
+        )));
+    }
+    Ok(())
+}

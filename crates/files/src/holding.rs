@@ -1,0 +1,276 @@
+//! Search for a step or a tolerance that holds, after a run with another one blew up.
+
+#[cfg(not(target_arch = "wasm32"))]
+use std::cell::Cell;
+use std::iter::successors;
+use std::ops::RangeInclusive;
+use std::time::Duration;
+
+use a3_core::stability::{Mode, largest_step, spectrum};
+use a3_core::{BlowUp, Cause, Control, Rounded, Simulation};
+
+use crate::bounds::{LARGEST_STEP, SMALLEST_STEP};
+use crate::processor;
+
+/// Least simulated time (s) for which a step has to hold before the window recommends it.
+pub const MIN_HOLD_TIME: f64 = 10.0;
+
+/// Processor time of the trials while a window waits.
+const WINDOW_BUDGET: Duration = Duration::from_millis(300);
+
+/// Processor time of the trials at the end of a command.
+#[cfg(not(target_arch = "wasm32"))]
+const COMMAND_BUDGET: Duration = Duration::from_secs(3);
+
+/// Number of steps of a trial between two looks at the time.
+const STEPS_PER_LOOK: u64 = 4;
+
+/// Ratio of two tolerances that are tried one after the other.
+const TOLERANCE_RATIO: f64 = 10.0;
+
+/// Smallest and largest tolerance that is tried.
+const TOLERANCES: RangeInclusive<f64> = 1e-12..=0.1;
+
+/// Result of a search for a step, or a tolerance, that holds.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Sought {
+    /// This one holds.
+    Holds(Control),
+    /// This one held up to a time (s), when the search ended.
+    HeldUntil(Control, f64),
+    /// All were tried, down or up to this one, and failed.
+    Failed(Control),
+    /// Steps that the program takes are beyond this limit of stability (s).
+    Beyond(f64),
+    /// None was tried.
+    Untried,
+}
+
+impl Sought {
+    /// Returns a clause about the result of a search until a time (s), without a full stop.
+    pub fn clause(&self, until: f64) -> String {
+        match *self {
+            Self::Holds(control) => format!("{} would have held", named(control)),
+            Self::HeldUntil(control, time) => format!(
+                "{} held {} s of {} s, as far as it was tried",
+                named(control),
+                Rounded(time),
+                Rounded(until)
+            ),
+            Self::Failed(control @ Control::Step(_)) => {
+                format!("no shorter step holds, down to {}", named(control))
+            }
+            Self::Failed(control) => {
+                format!(
+                    "no tolerance that was tried holds, the last was {}",
+                    named(control)
+                )
+            }
+            Self::Beyond(limit) => format!("only steps below {} s hold", Rounded(limit)),
+            Self::Untried => "no other one was tried".into(),
+        }
+    }
+}
+
+/// Returns the words for a step or a tolerance.
+fn named(control: Control) -> String {
+    match control {
+        Control::Step(step) => format!("a step of {step} s"),
+        Control::Tolerance(tolerance) => format!("a tolerance of {tolerance:e}"),
+    }
+}
+
+/// Result of a trial.
+enum Tried {
+    Holds,
+    Fails,
+    /// The search ended at that simulated time (s).
+    Unended(f64),
+}
+
+/// Trial runs of a scene with other steps or tolerances.
+struct Trials<'a> {
+    run: &'a Simulation,
+    /// Simulated time for which a step has to hold (s).
+    until: f64,
+    /// Processor time of the program at which the search ends.
+    end: Duration,
+    /// Returns whether trials may continue.
+    may_continue: &'a dyn Fn() -> bool,
+}
+
+/// Seeks a step that holds until the time `until` (s) on the scene of a run with fixed steps: the
+/// longest of the trials that is shorter than its own. For a run to a tolerance that blew up, it
+/// seeks a smaller tolerance or, if the run found no step to meet it, a larger one.
+#[cfg(not(target_arch = "wasm32"))]
+pub fn seek(run: &Simulation, until: f64) -> Sought {
+    crate::interrupt::listen();
+    let begun = processor::time();
+    let bar = crate::progress::Bar::new(COMMAND_BUDGET.as_secs_f64());
+    bar.say("looking for a step that holds ");
+    let told = Cell::new(0.0);
+    let trials = Trials {
+        run,
+        until,
+        end: begun + COMMAND_BUDGET,
+        may_continue: &|| {
+            let taken = processor::time().saturating_sub(begun).as_secs_f64();
+            bar.advance(taken - told.replace(taken));
+            crate::interrupt::go_on()
+        },
+    };
+    let modes = match run.control() {
+        Control::Step(_) => spectrum(run.model().system(), 0.0, &run.scene().state),
+        Control::Tolerance(_) => vec![],
+    };
+    let sought = trials.seek(&modes);
+    bar.clear();
+    sought
+}
+
+/// Returns a shorter step (s) for a run whose own fixed step does not hold on its scene; `None` if
+/// that step was not found to fail. Scenes with contact or rigid bodies are judged by their modes
+/// alone, because trial runs of them take too long.
+pub fn shorter_step(run: &Simulation) -> Option<f64> {
+    let step = run.control().step()?;
+    let scene = run.scene();
+    let modes = spectrum(scene.model.system(), 0.0, &scene.state);
+    let limit = largest_step(run.method(), &modes).ok().flatten();
+    let past = limit.is_some_and(|limit| step > limit.step);
+    let network = run.model().network();
+    let slow = network.is_some_and(|n| n.contact_layer().is_some() || !n.bodies().is_empty());
+    let trials = Trials::of_window(run, MIN_HOLD_TIME);
+    let fails = past || !slow && matches!(trials.hold(run.control()), Tried::Fails);
+    let shorter = match slow {
+        true => limit.map(|limit| rounded(0.9 * limit.step)),
+        false if fails => would_hold(run, MIN_HOLD_TIME, &modes).step(),
+        false => None,
+    };
+    shorter.filter(|shorter| fails && (SMALLEST_STEP..step).contains(shorter))
+}
+
+/// Returns a shorter step (s), as [`shorter_step`] does, for a run whose own fixed step is beyond
+/// the limit of the modes at the start of its scene: without trials if it is not.
+pub fn step_within_limit(run: &Simulation) -> Option<f64> {
+    let step = run.control().step()?;
+    let modes = spectrum(run.model().system(), 0.0, &run.scene().state);
+    let limit = largest_step(run.method(), &modes).ok().flatten()?;
+    (step > limit.step).then(|| shorter_step(run)).flatten()
+}
+
+/// Seeks a step, as [`seek`] does, that holds until the time `until` (s), at least for ten seconds.
+/// Trials start just below the stability limit of these modes, those at the start of the scene, so
+/// that the result depends neither on the state in which the run diverged nor, except for being
+/// shorter, on its step.
+pub fn would_hold(run: &Simulation, until: f64, modes: &[Mode]) -> Sought {
+    Trials::of_window(run, until.max(MIN_HOLD_TIME)).seek(modes)
+}
+
+impl Sought {
+    /// Returns the step (s) that holds, as far as it was tried.
+    fn step(self) -> Option<f64> {
+        match self {
+            Self::Holds(control) | Self::HeldUntil(control, _) => control.step(),
+            Self::Failed(_) | Self::Beyond(_) | Self::Untried => None,
+        }
+    }
+}
+
+impl<'a> Trials<'a> {
+    /// Creates trials while a window waits.
+    fn of_window(run: &'a Simulation, until: f64) -> Self {
+        Self {
+            run,
+            until,
+            end: processor::time() + WINDOW_BUDGET,
+            may_continue: &|| true,
+        }
+    }
+
+    /// Seeks a step, in a scene of these modes, or a tolerance, in place of the run's own.
+    fn seek(&self, modes: &[Mode]) -> Sought {
+        let own = match self.run.control() {
+            Control::Step(own) => own,
+            Control::Tolerance(own) => {
+                let missed = |lost: BlowUp| matches!(lost.cause, Cause::StepTooSmall { .. });
+                let is_larger = self.run.blow_up().is_some_and(missed);
+                let ratio = [TOLERANCE_RATIO.recip(), TOLERANCE_RATIO][usize::from(is_larger)];
+                let all = successors(Some(own * ratio), |last| Some(last * ratio));
+                let all = all.take_while(|it| TOLERANCES.contains(it));
+                // Printing and reading removes the rounding error.
+                let read = |it: f64| format!("{it:.3e}").parse().unwrap_or(it);
+                return self.first(all.map(|it| Control::Tolerance(read(it))));
+            }
+        };
+        // Never fails for a method in METHODS.
+        let limit = largest_step(self.run.method(), modes).ok().flatten();
+        let most = limit.map_or(own, |limit| limit.step).min(LARGEST_STEP);
+        if 0.9 * most < SMALLEST_STEP {
+            return Sought::Beyond(most);
+        }
+        let all = successors(Some(rounded(0.9 * most)), |last| Some(rounded(0.6 * last)));
+        let all = all.take_while(|step| *step >= SMALLEST_STEP);
+        self.first(all.filter(|step| *step < own).map(Control::Step))
+    }
+
+    /// Seeks the first that holds.
+    fn first(&self, all: impl Iterator<Item = Control>) -> Sought {
+        let mut sought = Sought::Untried;
+        for control in all {
+            sought = match self.hold(control) {
+                Tried::Holds => return Sought::Holds(control),
+                Tried::Fails => Sought::Failed(control),
+                Tried::Unended(time) if time > 0.0 => return Sought::HeldUntil(control, time),
+                Tried::Unended(_) => return sought,
+            };
+        }
+        sought
+    }
+
+    /// Finds out whether a run from the start of the scene does not diverge, gains no energy and
+    /// meets its constraints.
+    fn hold(&self, control: Control) -> Tried {
+        let Ok(mut again) = self.run.anew(self.run.method(), control) else {
+            return Tried::Fails;
+        };
+        while again.time() < self.until {
+            if again.take_steps(STEPS_PER_LOOK).is_err() {
+                return Tried::Fails;
+            }
+            if processor::time() > self.end || !(self.may_continue)() {
+                return Tried::Unended(again.time().min(self.until));
+            }
+        }
+        let broken = again.worst_constraint().is_some_and(|c| c.is_visible());
+        if again.conclude().is_ok() && again.gained().is_none() && !broken {
+            Tried::Holds
+        } else {
+            Tried::Fails
+        }
+    }
+}
+
+/// Rounds a number down to one digit.
+fn rounded(most: f64) -> f64 {
+    let unit = 10f64.powi(most.log10().floor() as i32);
+    // Printing and reading removes the rounding error.
+    let digits = (most / unit + 1e-9).floor() * unit;
+    format!("{digits:.0e}").parse().unwrap_or(digits)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn steps_are_rounded_down_to_a_digit() {
+        for (most, expected) in [
+            (0.013, 0.01),
+            (0.031, 0.03),
+            (0.000_35, 0.000_3),
+            (0.09, 0.09),
+        ] {
+            assert_eq!(rounded(most), expected);
+        }
+    }
+}

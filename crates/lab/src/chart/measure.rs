@@ -1,0 +1,520 @@
+//! Measurement of the runs of a chart: each method at smaller and smaller steps or tolerances,
+//! until the reference cannot tell its errors from 0 or a run takes too much work. Runs are taken
+//! one at a time, so that their computing times are comparable. A run has errors against a
+//! reference, and a computing time.
+
+use std::time::{Duration, Instant};
+
+use a3_core::accuracy::{
+    Errors, Frames, GoOn, Metric, Outcome, Precision, Reference, Scope, coarser, ladder,
+};
+use a3_core::stability::{Mode, largest_step, spectrum};
+use a3_core::{Control, Method, Model, Scene, Simulation, accuracy};
+use a3_files::failure::Failure;
+use a3_files::monitor::Monitor;
+
+use super::asked::check_contact;
+use super::data::{Data, VERSION};
+use super::record::Record;
+use super::words::Label;
+use crate::motion::words;
+
+/// Largest work of a run, in evaluations. A run that blows up may take more.
+const MAX_EVALUATIONS: f64 = 20_000.0;
+/// Smallest ratio of the longest step of a method to its shortest, even if the runs take long.
+const MIN_STEP_RATIO: f64 = 6.0;
+/// Estimated work of a step of an implicit method, in evaluations, right within a factor of three.
+const IMPLICIT_WORK: f64 = 25.0;
+/// Neighbouring tolerances over a tolerance, at which `--spread` measures how much errors vary.
+const NEIGHBOURS: [f64; 3] = [0.96, 0.98, 1.02];
+
+/// Scene at one stiffness, with all that its runs share.
+pub struct Study {
+    pub scene: Scene,
+    pub frames: Frames,
+    modes: Vec<Mode>,
+    scope: Scope,
+    /// Largest distance of the particles from where they start, root mean square over them (m).
+    pub motion: f64,
+    /// Record of the scene, whose other fields are filled in for each run.
+    blank: Record,
+    pub reference: Option<Reference>,
+    methods: Vec<&'static Method>,
+    metric: Metric,
+    /// Measurements besides errors and work.
+    measured: Measured,
+}
+
+/// Measurements of runs besides their errors and their work.
+#[derive(Clone, Copy)]
+pub struct Measured {
+    /// Whether computing times are measured.
+    pub timed: bool,
+    /// Whether errors at neighbouring tolerances are measured.
+    pub spread: bool,
+}
+
+impl Study {
+    /// Creates a study of a scene until `until` (s). Its label describes it in the records; errors
+    /// are of a metric in a scope, and `motion` is the largest distance of the particles from where
+    /// they start (m).
+    pub fn new(
+        scene: Scene,
+        label: &Label,
+        stiffness: f64,
+        until: f64,
+        methods: &[&'static Method],
+        (metric, scope, motion): (Metric, Scope, f64),
+        measured: Measured,
+    ) -> Self {
+        let grid = scene.grid();
+        let blank = Record {
+            version: VERSION.into(),
+            scene: label.name.clone(),
+            rows: grid.map_or(0, |grid| grid.rows()),
+            cols: grid.map_or(0, |grid| grid.cols()),
+            wind: label.on.wind,
+            swing: label.on.swing,
+            self_collision: label.on.contact,
+            stiffness,
+            until,
+            scope: words(scope),
+            ..Record::default()
+        };
+        Self {
+            frames: Frames::new(until),
+            modes: spectrum(scene.model.system(), 0.0, &scene.state),
+            scope,
+            motion,
+            scene,
+            blank,
+            reference: None,
+            methods: methods.to_vec(),
+            metric,
+            measured,
+        }
+    }
+
+    /// Returns the stiffness of the springs, over that of the scene itself.
+    pub fn stiffness(&self) -> f64 {
+        self.blank.stiffness
+    }
+
+    /// Returns the particles and times at which errors are taken.
+    pub fn scope(&self) -> Scope {
+        self.scope
+    }
+
+    /// Returns the runs of this study, without those at neighbouring tolerances.
+    pub fn records<'d>(&'d self, data: &'d Data) -> impl Iterator<Item = &'d Record> {
+        self.all(data).filter(|r| r.beside.is_none())
+    }
+
+    /// Returns the runs at neighbouring tolerances, if they were asked for.
+    pub fn beside<'d>(&'d self, data: &'d Data) -> impl Iterator<Item = &'d Record> {
+        self.all(data)
+            .filter(|r| self.measured.spread && r.beside.is_some())
+    }
+
+    /// Returns all runs of this study's scene.
+    fn all<'d>(&'d self, data: &'d Data) -> impl Iterator<Item = &'d Record> {
+        data.runs.all().iter().filter(|r| r.same_scene(&self.blank))
+    }
+
+    /// Returns the steps or tolerances at which a method is run, the coarsest first.
+    fn rungs(&self, method: &'static Method) -> Result<Vec<Control>, Failure> {
+        let max_steps = self.max_work(method)? / each(method);
+        ladder(&self.modes, method, &self.frames, max_steps as u64).map_err(Failure::run)
+    }
+
+    /// Returns the largest work of a run of a method, in evaluations.
+    fn max_work(&self, method: &'static Method) -> Result<f64, Failure> {
+        let limit = largest_step(method, &self.modes).map_err(Failure::run)?;
+        let limit = limit.filter(|limit| limit.step > 0.0);
+        let steps = limit.map_or(0.0, |limit| MIN_STEP_RATIO * self.frames.until / limit.step);
+        Ok(MAX_EVALUATIONS.max(steps * each(method)))
+    }
+
+    /// Estimates the work of all runs, in evaluations.
+    pub fn expected(&self) -> Result<f64, Failure> {
+        let mut sum = 0.0;
+        for &method in &self.methods {
+            sum += self
+                .rungs(method)?
+                .iter()
+                .map(|control| self.expected_of(method, *control))
+                .sum::<f64>();
+        }
+        Ok(sum)
+    }
+
+    /// Estimates the work of a run, in evaluations.
+    fn expected_of(&self, method: &Method, control: Control) -> f64 {
+        let steps = match control {
+            Control::Step(step) => self.frames.until / step,
+            // On most scenes this is right within a factor of three.
+            Control::Tolerance(tolerance) => {
+                20.0 * self.frames.until * tolerance.powf(-0.9 / f64::from(method.order))
+            }
+        };
+        steps * each(method) + 100.0
+    }
+
+    /// Measures the runs that the data do not have yet. Returns `false` if the monitor
+    /// stopped it.
+    pub fn run(&mut self, data: &mut Data, monitor: &dyn Monitor) -> Result<bool, Failure> {
+        for method in self.methods.clone() {
+            let (rungs, max_work) = (self.rungs(method)?, self.max_work(method)?);
+            let mut coarser_run: Option<Record> = None;
+            for (i, &control) in rungs.iter().enumerate() {
+                let like = self.like(method, control);
+                let Some(record) =
+                    self.record(method, like, coarser_run.as_ref(), data, monitor)?
+                else {
+                    return Ok(false);
+                };
+                if !self.look_beside(method, control, &record, data, monitor)? {
+                    return Ok(false);
+                }
+                coarser_run = Some(record.clone());
+                // The ladder begins just beyond the stability limit at the start of the motion.
+                // Later, longer steps may be stable too.
+                let mut longest = (control, record.clone());
+                while i == 0
+                    && longest.1.lost_at.is_none()
+                    && longest.1.error(self.metric) < longest.1.still(self.metric)
+                    && let Some(longer) = coarser(longest.0, &self.frames)
+                {
+                    let like = self.like(method, longer);
+                    let Some(record) = self.record(method, like, None, data, monitor)? else {
+                        return Ok(false);
+                    };
+                    longest = (longer, record);
+                }
+                monitor.advance(self.expected_of(method, control));
+                // Errors that the reference cannot tell from 0 end the ladder, and so does too much
+                // work: that of linear algebra is known only after a run.
+                let enough = record.resolved(self.metric).max(1e-12);
+                let next = rungs
+                    .get(i + 1)
+                    .map_or(1.0, |next| control.value() / next.value());
+                let is_expensive = control.step().is_some() && record.work * next > max_work;
+                if record.lost_at.is_none() && (record.error(self.metric) < enough || is_expensive)
+                {
+                    let rest = rungs[i + 1..].iter();
+                    monitor.advance(rest.map(|s| self.expected_of(method, *s)).sum());
+                    break;
+                }
+            }
+            data.runs.save()?;
+        }
+        Ok(true)
+    }
+
+    /// Measures the runs at the neighbours of a tolerance, if they were asked for. Returns `false`
+    /// if the command was stopped.
+    fn look_beside(
+        &mut self,
+        method: &'static Method,
+        control: Control,
+        record: &Record,
+        data: &mut Data,
+        monitor: &dyn Monitor,
+    ) -> Result<bool, Failure> {
+        let Some(tolerance) = control.tolerance() else {
+            return Ok(true);
+        };
+        if record.lost_at.is_some() || !self.measured.spread {
+            return Ok(true);
+        }
+        for factor in NEIGHBOURS {
+            let like = Record {
+                beside: Some(tolerance),
+                ..self.like(method, Control::Tolerance(factor * tolerance))
+            };
+            if self.record(method, like, None, data, monitor)?.is_none() {
+                return Ok(false);
+            }
+        }
+        Ok(true)
+    }
+
+    /// Creates the record of a run that is not measured yet: its scene, method and setting.
+    fn like(&self, method: &Method, control: Control) -> Record {
+        Record {
+            solver: method.name.into(),
+            setting: control.value(),
+            ..self.blank.clone()
+        }
+    }
+
+    /// Returns the run of a method with the setting of `like`. A run that the data do not have yet
+    /// is measured and added, with the order between it and a coarser run. `None` if the command
+    /// was stopped.
+    fn record(
+        &mut self,
+        method: &'static Method,
+        like: Record,
+        coarser_run: Option<&Record>,
+        data: &mut Data,
+        monitor: &dyn Monitor,
+    ) -> Result<Option<Record>, Failure> {
+        monitor.stage(method.name);
+        let timed = self.measured.timed && like.beside.is_none();
+        let known = data.find(&like, timed).cloned();
+        let known = known.filter(|_| data.each.is_none());
+        let is_new = known.is_none();
+        let record = match known {
+            Some(known) => Some(known),
+            None => self
+                .measure(method, like, data, monitor)?
+                .map(|record| Record {
+                    order: coarser_run.and_then(|run| record.order_from(run, method.is_adaptive())),
+                    ..record
+                }),
+        };
+        if let Some(record) = &record {
+            check_contact(self.metric, record.still(self.metric), record.until)?;
+            if is_new {
+                data.runs.add(record.clone());
+            }
+        }
+        Ok(record)
+    }
+
+    /// Measures one run, and the reference before the first. `None` if the command was stopped.
+    fn measure(
+        &mut self,
+        method: &'static Method,
+        like: Record,
+        data: &mut Data,
+        monitor: &dyn Monitor,
+    ) -> Result<Option<Record>, Failure> {
+        let go_on = &|| monitor.go_on();
+        if self.reference.is_none() {
+            monitor.stage("reference");
+            let precision = precision(&self.scene, self.motion);
+            self.reference = reference(go_on, &self.scene, self.frames, self.scope, precision)?;
+            monitor.start();
+            monitor.stage(method.name);
+        }
+        let Some(reference) = &self.reference else {
+            return Ok(None);
+        };
+        let timed = self.measured.timed && like.beside.is_none();
+        let mut coordinates = match (&data.each, like.beside) {
+            (Some(_), None) => vec![0.0; 3 * self.scene.model.particles()],
+            _ => vec![],
+        };
+        let found = compared(
+            like,
+            &self.scene,
+            method,
+            reference,
+            &mut coordinates,
+            go_on,
+        )?;
+        let Some((record, once)) = found else {
+            return Ok(None);
+        };
+        if let Some(each) = data.each.as_mut().filter(|_| record.lost_at.is_none()) {
+            each.add(&record, &coordinates)?;
+        }
+        let seconds = if timed && record.lost_at.is_none() {
+            let control = method.control(record.setting);
+            let timed = time(
+                go_on,
+                &self.scene,
+                method,
+                control,
+                &self.frames,
+                Some(once),
+            )?;
+            let Some(time) = timed else {
+                return Ok(None);
+            };
+            Some(time.as_secs_f64())
+        } else {
+            None
+        };
+        Ok(Some(Record { seconds, ..record }))
+    }
+}
+
+/// Estimates the work of a step, in evaluations.
+fn each(method: &Method) -> f64 {
+    if method.solves_linear_systems() {
+        IMPLICIT_WORK
+    } else {
+        f64::from(method.damped_evaluations.max(method.evaluations))
+    }
+}
+
+/// Returns the scene with the stiffness of its springs multiplied by a factor, and their damping by
+/// its square root, which keeps the damping ratios.
+///
+/// # Errors
+/// The scene has no springs, unless the factor is 1; or the stiffness is out of range.
+pub fn stiffened(scene: &Scene, factor: f64) -> Result<Scene, Failure> {
+    let mut scene = scene.clone();
+    match &mut scene.model {
+        Model::Network(network) => network
+            .scale_springs(factor, factor.sqrt())
+            .map_err(Failure::usage)?,
+        Model::FirstOrder(_) | Model::Points(_) if factor == 1.0 => {}
+        Model::FirstOrder(_) | Model::Points(_) => {
+            return Err(Failure::usage(format!(
+                "the scene {} has no springs: leave out --stiffness",
+                scene.name
+            )));
+        }
+    }
+    Ok(scene)
+}
+
+/// Largest work of a reference, in evaluations. Small scenes may take more, see
+/// [`MAX_REFERENCE_NUMBERS`].
+const MAX_REFERENCE_EVALUATIONS: f64 = 80_000.0;
+/// Largest work of the reference of a small scene, in evaluations times the length of the state.
+const MAX_REFERENCE_NUMBERS: f64 = 1.5e8;
+/// Uncertainty of a reference, over the motion of the scene, that suffices for any run.
+const UNCERTAINTY: f64 = 1e-10;
+/// Largest number of times that a run is timed, including the run whose errors are measured. The
+/// shortest time counts.
+const MAX_TIMINGS: u32 = 3;
+/// Total computing time of two or more runs after which no other is timed.
+const MAX_TOTAL: Duration = Duration::from_millis(20);
+/// Computing time of a single run after which no other is timed.
+const MAX_SINGLE: Duration = Duration::from_millis(50);
+
+/// Runs a method with the setting of `like`, and compares the run with the reference of its scene.
+/// Returns its record and its computing time; `None` if `go_on` returned false. `coordinates`
+/// receives the largest error of each coordinate (m), n x 3, unless it is empty.
+pub fn compared(
+    like: Record,
+    scene: &Scene,
+    method: &'static Method,
+    reference: &Reference,
+    coordinates: &mut [f64],
+    go_on: GoOn,
+) -> Result<Option<(Record, Duration)>, Failure> {
+    let (control, begun) = (method.control(like.setting), Instant::now());
+    let clock = || begun.elapsed();
+    let outcome = accuracy::measure_by(
+        &clock,
+        scene,
+        method,
+        control,
+        reference,
+        coordinates,
+        go_on,
+    )
+    .map_err(Failure::run)?;
+    let Some(Outcome {
+        errors,
+        work,
+        guarded,
+        lost,
+        time,
+    }) = outcome
+    else {
+        return Ok(None);
+    };
+    let Errors {
+        position,
+        state,
+        energy,
+        strain,
+        momentum,
+        phase,
+        penetration,
+        impact,
+    } = errors;
+    let (floor, still) = (reference.floor, reference.still);
+    let of = |error: f64| Some(error).filter(|_| lost.is_none());
+    let record = Record {
+        error_position: of(position),
+        error_energy: of(energy),
+        error_strain: of(strain),
+        error_momentum: of(momentum),
+        error_phase: of(phase),
+        error_penetration: of(penetration),
+        error_impact: of(impact),
+        error_state: of(state),
+        floor_position: floor.position,
+        floor_energy: floor.energy,
+        floor_strain: floor.strain,
+        floor_momentum: floor.momentum,
+        floor_phase: floor.phase,
+        floor_penetration: floor.penetration,
+        floor_impact: floor.impact,
+        floor_state: floor.state,
+        still_position: still.position,
+        still_strain: still.strain,
+        still_penetration: still.penetration,
+        still_impact: still.impact,
+        still_state: still.state,
+        lost_at: lost.map(|lost| lost.time),
+        guard_impulses: guarded.impulses,
+        guard_cuts: guarded.cuts,
+        guard_lost: guarded.lost,
+        work: work.total(),
+        evaluations: work.evaluations,
+        solves: work.solves,
+        iterations: work.iterations,
+        factorizations: work.factorizations,
+        rejections: work.rejections,
+        ..like
+    };
+    Ok(Some((record, time)))
+}
+
+/// Returns the precision of a reference for all errors that a chart may show. `motion` is the
+/// largest distance of the particles from where they start (m).
+pub fn precision(scene: &Scene, motion: f64) -> Precision {
+    Precision {
+        metric: Metric::of_motion(&scene.model),
+        uncertainty: UNCERTAINTY * motion,
+        max_work: MAX_REFERENCE_EVALUATIONS.max(MAX_REFERENCE_NUMBERS / scene.state.len() as f64),
+    }
+}
+
+/// Computes the reference of a scene from its start. `None` if `go_on` returned false.
+pub fn reference(
+    go_on: GoOn,
+    scene: &Scene,
+    frames: Frames,
+    scope: Scope,
+    precision: Precision,
+) -> Result<Option<Reference>, Failure> {
+    Reference::new(scene, frames, scope, precision, go_on)
+        .map_err(|e| Failure::run(format!("the reference could not be computed: {e}")))
+}
+
+/// Measures the computing time of a run: the shortest of several, including `before` if it is
+/// given. `None` if `go_on` returned false.
+pub fn time(
+    go_on: GoOn,
+    scene: &Scene,
+    method: &'static Method,
+    control: Control,
+    frames: &Frames,
+    before: Option<Duration>,
+) -> Result<Option<Duration>, Failure> {
+    let (mut best, mut sum) = (before.unwrap_or(Duration::MAX), before.unwrap_or_default());
+    for runs in u32::from(before.is_some())..MAX_TIMINGS {
+        if runs > 0 && sum > if runs == 1 { MAX_SINGLE } else { MAX_TOTAL } {
+            break;
+        }
+        let mut run = Simulation::new(scene.clone(), method, control).map_err(Failure::run)?;
+        let begun = Instant::now();
+        let end = accuracy::run(&mut run, frames, go_on, None);
+        let elapsed = begun.elapsed();
+        if end.map_err(Failure::run)?.is_none() {
+            return Ok(None);
+        }
+        best = best.min(elapsed);
+        sum += elapsed;
+    }
+    Ok(Some(best))
+}

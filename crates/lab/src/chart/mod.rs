@@ -1,0 +1,17 @@
+//! Charts: speed against accuracy, measured on the user's own scene.
+
+pub mod asked;
+pub mod data;
+pub mod each;
+pub mod measure;
+pub mod picture;
+pub mod record;
+pub mod table;
+pub mod value;
+pub mod words;
+
+pub use asked::{check_contact, check_methods, check_metric, check_scene, methods, scope};
+pub use record::Record;
+pub use value::{Chart, ChartOptions, chart};
+pub use value::{check_motion, look_ahead};
+pub use words::{Label, describe, unit};

@@ -1,0 +1,216 @@
+//! A run of a chart: its scene, its setting, its errors and its work. The names of the fields are
+//! the keys of data files.
+
+use a3_core::accuracy::{Errors, Metric};
+use serde::{Deserialize, Serialize};
+
+use a3_files::rows::Row;
+
+/// Run of a method on a scene, with its errors and its work.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Record {
+    /// Version of the program that measured the run.
+    pub version: String,
+    /// Name of the scene; for one from a file, with a hash of its files.
+    pub scene: String,
+    /// Number of rows of the first cloth; 0 without one.
+    pub rows: usize,
+    /// Number of columns of the first cloth; 0 without one.
+    pub cols: usize,
+    /// Whether `--wind` was given.
+    pub wind: bool,
+    /// Whether `--swing` was given.
+    pub swing: bool,
+    /// Whether `--self-collision` was given.
+    #[serde(default)]
+    pub self_collision: bool,
+    /// Stiffness of the springs, over that of the scene itself.
+    pub stiffness: f64,
+    /// Simulated time (s).
+    pub until: f64,
+    /// Name of the solver.
+    pub solver: String,
+    /// Step (s), or relative tolerance.
+    pub setting: f64,
+    /// Particles and times at which errors are taken, in words.
+    pub scope: String,
+    /// Error of the positions (m); none if the run blew up, like the other errors.
+    pub error_position: Option<f64>,
+    /// Error of the energy (J).
+    pub error_energy: Option<f64>,
+    /// Error of the springs' stretch.
+    pub error_strain: Option<f64>,
+    /// Error of the momentum (kg m/s).
+    pub error_momentum: Option<f64>,
+    /// Error of the phase (s).
+    pub error_phase: Option<f64>,
+    /// Error of the penetration, as a share of the thickness.
+    pub error_penetration: Option<f64>,
+    /// Error of the times of the first impact (s).
+    pub error_impact: Option<f64>,
+    /// Error of the numbers of a state without particles, in their unit; 0 with particles.
+    #[serde(default)]
+    pub error_state: Option<f64>,
+    /// Error of the reference itself: of the positions (m).
+    pub floor_position: f64,
+    /// Error of the reference itself: of the energy (J).
+    pub floor_energy: f64,
+    /// Error of the reference itself: of the springs' stretch.
+    pub floor_strain: f64,
+    /// Error of the reference itself: of the momentum (kg m/s).
+    pub floor_momentum: f64,
+    /// Error of the reference itself: of the phase (s).
+    pub floor_phase: f64,
+    /// Error of the reference itself: of the penetration.
+    pub floor_penetration: f64,
+    /// Error of the reference itself: of the first impact (s).
+    pub floor_impact: f64,
+    /// Error of the reference itself: of the numbers of a state without particles.
+    #[serde(default)]
+    pub floor_state: f64,
+    /// Error of a run in which nothing moves: of the positions (m).
+    pub still_position: f64,
+    /// Error of a run in which nothing moves: of the springs' stretch.
+    pub still_strain: f64,
+    /// Error of a run in which nothing moves: of the penetration.
+    pub still_penetration: f64,
+    /// Error of a run in which nothing moves: of the first impact (s).
+    pub still_impact: f64,
+    /// Error of a run in which nothing moves: of the numbers of a state without particles.
+    #[serde(default)]
+    pub still_state: f64,
+    /// Simulated time at which the run blew up (s).
+    pub lost_at: Option<f64>,
+    /// Number of impulses of the collision safeguard.
+    #[serde(default)]
+    pub guard_impulses: usize,
+    /// Number of times that the collision safeguard shortened the displacement of a vertex.
+    #[serde(default)]
+    pub guard_cuts: usize,
+    /// Momentum that was lost by this (N s).
+    #[serde(default)]
+    pub guard_lost: f64,
+    /// Computing time of the whole run (s), if it was measured.
+    pub seconds: Option<f64>,
+    /// Work of the whole run in evaluations, including linear algebra.
+    pub work: f64,
+    /// Number of evaluations of the forces.
+    pub evaluations: u64,
+    /// Number of linear systems that were solved.
+    pub solves: u64,
+    /// Number of iterations of conjugate gradients.
+    pub iterations: u64,
+    /// Number of factorisations.
+    pub factorizations: u64,
+    /// Number of steps that were rejected.
+    pub rejections: u64,
+    /// Observed order p from the errors of the positions, or of the state, in this run and the next
+    /// coarser one: their ratio is that of the steps or, for an adaptive method, of the
+    /// evaluations, to the power p.
+    #[serde(default)]
+    pub order: Option<f64>,
+    /// For a run of `--spread`: the tolerance whose spread of errors it shows. That of the run
+    /// itself is within 4 % of it.
+    #[serde(default)]
+    pub beside: Option<f64>,
+    /// Checksum of the file up to this run, as it was read.
+    #[serde(default, skip_serializing)]
+    pub check: String,
+}
+
+impl Row for Record {
+    fn is_same(&self, other: &Self) -> bool {
+        self.same_scene(other) && self.solver == other.solver && self.setting == other.setting
+    }
+
+    fn check(&mut self) -> &mut String {
+        &mut self.check
+    }
+}
+
+impl Record {
+    /// Returns whether both runs are of the same scene, by the same version.
+    #[must_use]
+    pub fn same_scene(&self, other: &Self) -> bool {
+        (&self.version, &self.scene, self.rows, self.cols)
+            == (&other.version, &other.scene, other.rows, other.cols)
+            && (self.wind, self.swing, self.self_collision)
+                == (other.wind, other.swing, other.self_collision)
+            && (self.stiffness, self.until, &self.scope)
+                == (other.stiffness, other.until, &other.scope)
+    }
+
+    /// Returns the observed order between a coarser run of the same method and this one.
+    #[must_use]
+    pub fn order_from(&self, coarser: &Self, is_adaptive: bool) -> Option<f64> {
+        let refined = if is_adaptive {
+            self.evaluations as f64 / coarser.evaluations as f64
+        } else {
+            coarser.setting / self.setting
+        };
+        let ratio = match (coarser.error_state, self.error_state) {
+            (Some(coarser), Some(own)) if own > 0.0 => coarser / own,
+            _ => coarser.error_position? / self.error_position?,
+        };
+        let order = ratio.ln() / refined.ln();
+        order.is_finite().then_some(order)
+    }
+
+    /// Returns whether the collision safeguard acted in the run.
+    #[must_use]
+    pub fn is_held(&self) -> bool {
+        self.guard_impulses + self.guard_cuts > 0
+    }
+
+    /// Returns the error of the run; infinite if it blew up.
+    #[must_use]
+    pub fn error(&self, metric: Metric) -> f64 {
+        let or_infinite = |error: Option<f64>| error.unwrap_or(f64::INFINITY);
+        metric.of(&Errors {
+            position: or_infinite(self.error_position),
+            state: or_infinite(self.error_state),
+            energy: or_infinite(self.error_energy),
+            strain: or_infinite(self.error_strain),
+            momentum: or_infinite(self.error_momentum),
+            phase: or_infinite(self.error_phase),
+            penetration: or_infinite(self.error_penetration),
+            impact: or_infinite(self.error_impact),
+        })
+    }
+
+    /// Returns the smallest error that the reference can tell from 0: ten times its own.
+    #[must_use]
+    pub fn resolved(&self, metric: Metric) -> f64 {
+        10.0 * self.floor(metric)
+    }
+
+    /// Returns the error of the reference itself.
+    #[must_use]
+    pub fn floor(&self, metric: Metric) -> f64 {
+        metric.of(&Errors {
+            position: self.floor_position,
+            state: self.floor_state,
+            energy: self.floor_energy,
+            strain: self.floor_strain,
+            momentum: self.floor_momentum,
+            phase: self.floor_phase,
+            penetration: self.floor_penetration,
+            impact: self.floor_impact,
+        })
+    }
+
+    /// Returns the error of a run in which nothing moves, beyond which an error says nothing;
+    /// infinite for the energy, the momentum and the phase.
+    #[must_use]
+    pub fn still(&self, metric: Metric) -> f64 {
+        match metric {
+            Metric::Position => self.still_position,
+            Metric::Strain => self.still_strain,
+            Metric::Penetration => self.still_penetration,
+            Metric::Impact => self.still_impact,
+            Metric::State => self.still_state,
+            Metric::Energy | Metric::Momentum | Metric::Phase => f64::INFINITY,
+        }
+    }
+}

@@ -1,0 +1,243 @@
+//! The chart as tables: the cost of each method for each error, and the cheapest method.
+
+use std::fmt::Write;
+
+use a3_core::accuracy::Metric;
+use a3_core::{Control, Method};
+use a3_files::report::Report;
+
+use super::data::Data;
+use super::measure::Study;
+use super::record::Record;
+use super::words::unit;
+
+/// Decimal digits of the errors in the table, which are 1e-2 to 1e-8.
+const DIGITS: std::ops::RangeInclusive<i32> = 2..=8;
+
+/// Uncertainty of a reference, over the motion, above which a shorter run is advised.
+const MAX_UNCERTAINTY: f64 = 1e-5;
+
+/// Shortest run that is advised, over the run that was made.
+const MIN_DURATION_RATIO: f64 = 0.02;
+
+/// Largest numerator of a step that is written as a fraction.
+const MAX_NUMERATOR: f64 = 9.0;
+
+/// Finds the cheapest run whose error is at most `error`.
+fn cheapest<'a>(
+    records: impl Iterator<Item = &'a Record>,
+    metric: Metric,
+    timed: bool,
+    error: f64,
+) -> Option<&'a Record> {
+    records
+        .filter(|r| r.lost_at.is_none() && r.error(metric) <= error && cost(r, timed).is_finite())
+        .min_by(|a, b| cost(a, timed).total_cmp(&cost(b, timed)))
+}
+
+/// Returns the cost of a run: its computing time (ms) if `timed`, or else its work in evaluations.
+fn cost(record: &Record, timed: bool) -> f64 {
+    if timed {
+        record.seconds.map_or(f64::INFINITY, |s| 1e3 * s)
+    } else {
+        record.work
+    }
+}
+
+/// Writes a cost to three digits.
+fn short(cost: f64) -> String {
+    if cost < 9.995 {
+        format!("{cost:.2}")
+    } else if cost < 99.95 {
+        format!("{cost:.1}")
+    } else {
+        format!("{cost:.0}")
+    }
+}
+
+/// Writes a step with its unit, or a tolerance.
+pub fn words(control: Control) -> String {
+    let step = match control {
+        Control::Tolerance(tolerance) => return format!("tolerance {tolerance:.0e}"),
+        Control::Step(step) => step,
+    };
+    let (unit, per_second) = if step < 1e-3 {
+        ("µs", 1e6)
+    } else {
+        ("ms", 1e3)
+    };
+    let rounded = (1e3 * per_second * step).round() / 1e3;
+    match fraction(step, MAX_NUMERATOR) {
+        Some(fraction) if (10.0 * rounded).fract() != 0.0 => format!("step {fraction} s"),
+        _ => format!("step {rounded} {unit}"),
+    }
+}
+
+/// Writes a step (s) as a fraction such as 1/97, with the smallest numerator up to `max_numerator`;
+/// `None` if there is none.
+pub fn fraction(step: f64, max_numerator: f64) -> Option<String> {
+    let part = (1..=100).map(f64::from).find(|part| {
+        let steps = part / step;
+        *part <= max_numerator && (steps - steps.round()).abs() < 1e-9 * steps
+    })?;
+    Some(format!("{part}/{}", (part / step).round()))
+}
+
+/// Advises an earlier end if the reference of a study becomes much worse from some time on. `None`
+/// if the reference is good enough, or was not computed.
+pub fn advice(study: &Study) -> Option<String> {
+    let reference = study.reference.as_ref()?;
+    let whole = reference.floor.position;
+    let (time, floor) = reference.clear_until()?;
+    let until = (1e2 * time).floor() / 1e2;
+    (whole > MAX_UNCERTAINTY * study.motion && until >= MIN_DURATION_RATIO * study.frames.until).then(|| {
+        format!(
+            "positions are known to {whole:.0e} m only, because of what happens after {time:.2} s, such as an \
+             impact: with --until {until} they are known to {floor:.0e} m\n"
+        )
+    })
+}
+
+/// Creates the table of each study, with its cheapest methods below it.
+pub fn reports(
+    studies: &[Study],
+    data: &Data,
+    methods: &[&'static Method],
+    metric: Metric,
+    timed: bool,
+) -> Vec<Report> {
+    // Plain numbers have no unit that is known.
+    let unit = match metric {
+        Metric::State => String::new(),
+        metric => format!(" {}", unit(metric)),
+    };
+    let unit = &unit;
+    let what = if timed {
+        "computing time (ms)"
+    } else {
+        "work (evaluations of the forces, linear algebra included)"
+    };
+    let reports = studies.iter().map(|study| {
+        let of = if studies.len() == 1 && study.stiffness() == 1.0 {
+            String::new()
+        } else {
+            format!(", stiffness x {}", study.stiffness())
+        };
+        let until = study.frames.until;
+        Report {
+            head: format!(
+                "\n{what} for {until} s of {}{of}, to keep the error within\n",
+                study.scene.name,
+            ),
+            rows: rows(study, data, methods, metric, timed, unit),
+            foot: winners(study, data, methods, metric, timed, unit),
+        }
+    });
+    reports.collect()
+}
+
+/// Returns the rows of a study's table: a heading, and the cost of each method for each error.
+fn rows(
+    study: &Study,
+    data: &Data,
+    methods: &[&'static Method],
+    metric: Metric,
+    timed: bool,
+    unit: &str,
+) -> Vec<Vec<String>> {
+    let heading = |digits: i32| format!(" 1e-{digits}{unit}");
+    let mut rows = vec![
+        ["solver".to_owned()]
+            .into_iter()
+            .chain(DIGITS.map(heading))
+            .collect::<Vec<_>>(),
+    ];
+    let resolved = resolved(study, data, metric);
+    for method in methods {
+        let of = |r: &&Record| r.solver == method.name;
+        let cell = |digits: i32| {
+            let error = 10f64.powi(-digits);
+            let own = cheapest(study.records(data).filter(of), metric, timed, error);
+            let all = cheapest(study.records(data), metric, timed, error);
+            own.map_or("-".to_owned(), |own| {
+                let is_best = all.is_some_and(|all| std::ptr::eq(all, own));
+                let mark = if is_best && error >= resolved {
+                    "*"
+                } else {
+                    ""
+                };
+                format!("{mark}{}", short(cost(own, timed)))
+            })
+        };
+        rows.push(
+            [method.name.to_owned()]
+                .into_iter()
+                .chain(DIGITS.map(cell))
+                .collect(),
+        );
+    }
+    rows
+}
+
+/// Returns the smallest error that the reference of a study can tell from 0.
+fn resolved(study: &Study, data: &Data, metric: Metric) -> f64 {
+    let of_runs = study.records(data).map(|r| r.resolved(metric));
+    of_runs.fold(0.0, f64::max)
+}
+
+/// Writes a line for each error with the cheapest method, below a note on the collision safeguard
+/// if it acted.
+fn winners(
+    study: &Study,
+    data: &Data,
+    methods: &[&'static Method],
+    metric: Metric,
+    timed: bool,
+    unit: &str,
+) -> String {
+    let resolved = resolved(study, data, metric);
+    let still = study
+        .records(data)
+        .map(|r| r.still(metric))
+        .fold(f64::INFINITY, f64::min);
+    let held = study.records(data).filter(|r| r.is_held()).count();
+    let mut text = String::new();
+    if held > 0 {
+        let all = study.records(data).count();
+        let _ = writeln!(
+            text,
+            "the collision safeguard acted in {held} of {all} runs, whose order is 1 there (half-filled \
+             markers)"
+        );
+    }
+    text.push_str("* cheapest:\n");
+    let line = |digits: i32| {
+        let error = 10f64.powi(-digits);
+        if error < resolved {
+            format!("the reference is exact enough for errors above {resolved:.0e}{unit} only")
+        } else if error > still {
+            format!("nothing moves further than {still:.0e}{unit}: such an error says nothing")
+        } else {
+            match cheapest(study.records(data), metric, timed, error) {
+                None => "no run was that accurate".to_owned(),
+                Some(r) => methods
+                    .iter()
+                    .find(|m| m.name == r.solver)
+                    .map_or(String::new(), |m| {
+                        format!("{}, {}", m.title, words(m.control(r.setting)))
+                    }),
+            }
+        }
+    };
+    let lines: Vec<_> = DIGITS.map(|digits| (digits, line(digits))).collect();
+    for same in lines.chunk_by(|a, b| a.1 == b.1) {
+        let (first, last) = (same[0].0, same[same.len() - 1].0);
+        let to = if first == last {
+            String::new()
+        } else {
+            format!(" to 1e-{last}")
+        };
+        let _ = writeln!(text, "  1e-{first}{to}{unit}  {}", same[0].1);
+    }
+    text
+}

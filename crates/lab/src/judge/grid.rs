@@ -1,0 +1,171 @@
+//! Grid of the times of a file: all times are multiples of its step.
+
+use a3_files::rounding::short;
+
+/// Largest error of a time, relative to it, by which programs that add up steps are off.
+const TOLERANCE: f64 = 1e-9;
+/// Largest number of grid points in the shortest distance between two times.
+const MAX_PARTS: u32 = 10;
+/// Largest error of a time over the step.
+const MAX_SHARE: f64 = 0.02;
+/// Largest number of grid points between two at which a step ends.
+pub const MAX_EVERY: u64 = 25;
+/// Least number of rows at the ends of steps if others lie between them, or of rows in single
+/// precision.
+pub const MIN_AT_STEPS: usize = 4;
+/// Largest multiple of the step.
+const MAX_MULTIPLE: f64 = 1e9;
+
+/// Times as multiples of a step.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Grid {
+    /// Step (s).
+    pub step: f64,
+    /// Number of steps up to each time.
+    pub numbers: Vec<u64>,
+}
+
+impl Grid {
+    /// Returns the grid of increasing times, which a file gives up to an error (s). `None` if they
+    /// are no multiples of a step.
+    pub fn of(times: &[f64], rounding: f64) -> Option<Self> {
+        let gaps = times.windows(2).map(|pair| pair[1] - pair[0]);
+        let gaps = gaps.chain(times.first().copied());
+        let shortest = gaps.filter(|gap| *gap > 0.0).reduce(f64::min)?;
+        // Times with few digits may be exact.
+        [0.0, rounding].into_iter().find_map(|rounding| {
+            let guesses = (1..=MAX_PARTS).map(|parts| shortest / f64::from(parts));
+            guesses
+                .into_iter()
+                .find_map(|guess| Self::near(times, rounding, guess))
+        })
+    }
+
+    /// Times as multiples of a known step (s).
+    pub fn of_step(times: &[f64], rounding: f64, step: f64) -> Option<Self> {
+        let known = [0.0, rounding].into_iter();
+        known
+            .into_iter()
+            .find_map(|rounding| Self::of_known(times, rounding, step))
+    }
+
+    fn of_known(times: &[f64], rounding: f64, step: f64) -> Option<Self> {
+        let within = |(t, n): (&f64, &u64)| (t - *n as f64 * step).abs() <= tolerance(*t, rounding);
+        let numbers: Vec<_> = times.iter().map(|t| (t / step).round() as u64).collect();
+        let fits =
+            tolerance(0.0, rounding) < MAX_SHARE * step && times.iter().zip(&numbers).all(within);
+        fits.then_some(Self { step, numbers })
+    }
+
+    /// Times as multiples of a step near `guess` (s).
+    fn near(times: &[f64], rounding: f64, guess: f64) -> Option<Self> {
+        let mut step = guess;
+        let (mut least, mut most) = (0.0, f64::INFINITY);
+        let mut numbers = vec![];
+        for t in times {
+            let number = (t / step).round();
+            let tolerance = tolerance(*t, rounding);
+            if number > MAX_MULTIPLE
+                || tolerance > MAX_SHARE * step
+                || (t - number * step).abs() > MAX_SHARE * step + tolerance
+            {
+                return None;
+            }
+            if number > 0.0 {
+                least = f64::max(least, (t - tolerance) / number);
+                most = f64::min(most, (t + tolerance) / number);
+                step = t / number;
+            }
+            numbers.push(number as u64);
+        }
+        let step = (least <= most && most.is_finite()).then(|| simplest(least, most))?;
+        Some(Self { step, numbers })
+    }
+
+    /// Returns the coarsest grid of the times with these indices.
+    pub fn of_some(&self, kept: &[usize]) -> Self {
+        let part = kept.iter().map(|k| self.numbers[*k]).fold(0, gcd).max(1);
+        Self {
+            step: self.step * part as f64,
+            numbers: kept.iter().map(|k| self.numbers[*k] / part).collect(),
+        }
+    }
+
+    /// Returns the least number of grid points that a whole number of steps (s) lasts, and that
+    /// number.
+    pub fn meeting(&self, step: f64) -> Option<[u64; 2]> {
+        (1..=MAX_EVERY).find_map(|every| {
+            let parts = every as f64 * self.step / step;
+            let is_whole = (parts - parts.round()).abs() <= TOLERANCE * parts;
+            (is_whole && parts > 0.5).then(|| [every, parts.round() as u64])
+        })
+    }
+
+    /// Returns whether enough times are multiples of a number of grid points.
+    pub fn meets(&self, points: u64) -> bool {
+        let meet = self.numbers.iter().filter(|n| **n % points == 0);
+        points == 1 || meet.count() >= MIN_AT_STEPS
+    }
+
+    /// Times of the grid points (s).
+    pub fn times(&self) -> impl Iterator<Item = f64> {
+        self.numbers.iter().map(|n| *n as f64 * self.step)
+    }
+}
+
+/// Returns the largest error of a time t (s) in a file that rounds it by up to `rounding` (s).
+fn tolerance(t: f64, rounding: f64) -> f64 {
+    1.01 * rounding + TOLERANCE * t
+}
+
+/// Returns the simplest number from `least` to `most`, both above 0: one with few digits, or a part
+/// of 1.
+fn simplest(least: f64, most: f64) -> f64 {
+    let middle = 0.5 * (least + most);
+    let fits = |number: &f64| (least..=most).contains(number);
+    let decimals = |digits: std::ops::RangeInclusive<usize>| digits.map(|n| short(middle, n));
+    let part = 1.0 / (1.0 / middle).round();
+    let all = decimals(1..=3).chain([part]).chain(decimals(4..=15));
+    all.into_iter().find(fits).unwrap_or(middle)
+}
+
+/// Returns the greatest common divisor.
+pub fn gcd(a: u64, b: u64) -> u64 {
+    if b == 0 { a } else { gcd(b, a % b) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn steps_are_found_in_rounded_and_summed_times() {
+        let sums = |h: f64, count: usize| {
+            let next = |t: &mut f64, _| {
+                *t += h;
+                Some(*t)
+            };
+            (0..count).scan(0.0, next).collect::<Vec<_>>()
+        };
+        let grid = Grid::of(&sums(0.1, 1000), 0.0).unwrap();
+        assert_eq!((grid.step, grid.numbers[999]), (0.1, 1000));
+        let sixtieth: Vec<_> = (0..500).map(|k| f64::from(k) / 60.0).collect();
+        let rounded: Vec<_> = sixtieth.iter().map(|t| (t * 1e6).round() / 1e6).collect();
+        for (times, rounding) in [(&sixtieth, 0.0), (&rounded, 5e-7)] {
+            let grid = Grid::of(times, rounding).unwrap();
+            assert_eq!((grid.step, grid.numbers[499]), (1.0 / 60.0, 499));
+        }
+        // Times of two digits, which would be rounded by up to half a step.
+        assert_eq!(Grid::of(&[0.01, 0.02, 0.03], 0.005).unwrap().step, 0.01);
+        let uneven = Grid::of(&[0.0, 0.1, 0.25, 0.6], 0.0).unwrap();
+        assert_eq!((uneven.step, uneven.numbers), (0.05, vec![0, 2, 5, 12]));
+        assert_eq!(Grid::of(&[0.0, 0.1, 0.1 + 0.1 * 2f64.sqrt()], 0.0), None);
+        assert_eq!(Grid::of(&[0.0], 0.0), None);
+        assert_eq!(Grid::of(&[0.25], 0.0).unwrap().numbers, [1]);
+        assert!(Grid::of_step(&sixtieth, 0.0, 0.01).is_none());
+        assert_eq!(Grid::of_step(&[0.3], 0.0, 0.1).unwrap().numbers, [3]);
+        let frames = Grid::of(&sixtieth, 0.0).unwrap();
+        assert_eq!(frames.meeting(0.01), Some([3, 5]));
+        assert_eq!(frames.meeting(0.01 + 1e-6), None);
+    }
+}

@@ -1,0 +1,388 @@
+//! Trials: a method, or a scheme with a mistake, against the rows of a file.
+
+use a3_core::integrators::METHODS;
+use a3_core::{Control, Method, Scene, Simulation};
+use a3_files::monitor::Monitor;
+
+use super::constant::Mistake;
+use super::pace::Pace;
+use super::plain::{Forces, Plain};
+use super::rows::{Rows, columns, distance};
+use super::scheme::{PlainRun, Scheme};
+
+/// Largest distance of rows that agree, over the distance moved until then.
+const AGREEMENT: f64 = 1e-9;
+/// Largest distance of rows that agree, over the size of the scene: its rounding errors.
+const ROUNDING: f64 = 1e-13;
+/// Largest distance of rows that agree, over the error of a coordinate by its digits.
+const DIGITS: f64 = 2.0;
+/// Largest distance of rows that agree in single precision, over the distance by which that
+/// precision changes a run.
+const SINGLE: f64 = 10.0;
+/// Largest such distance over that which the scene moves.
+const MAX_NOISE: f64 = 1e-3;
+/// Work of the beginning of a run by a solver, over an evaluation.
+const BEGINNING: f64 = 20.0;
+/// Largest work of a trial, in springs and particles that are visited.
+const MAX_WORK: f64 = 5e8;
+/// Work of a step of an implicit method, over an evaluation.
+const IMPLICIT_WORK: f64 = 25.0;
+
+/// Way to compute a step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Way {
+    /// Solver of a3.
+    Method(&'static Method),
+    /// Scheme on plain masses and springs.
+    Scheme(Scheme, Option<Mistake>),
+}
+
+impl Way {
+    /// Returns the name of the method.
+    pub fn title(self) -> &'static str {
+        match self {
+            Self::Method(method) => method.title,
+            Self::Scheme(scheme, _) => scheme.title(),
+        }
+    }
+
+    /// Returns the name of the solver of a3 with the same title, if there is one. Apart from a slip
+    /// or a mistake, this way takes the steps of that solver.
+    pub fn solver(self) -> Option<&'static str> {
+        let is_it = |method: &&Method| method.title == self.title();
+        METHODS.iter().find(is_it).map(|method| method.name)
+    }
+
+    /// Returns the mistake in the forces that it makes.
+    pub fn mistake(self) -> Option<Mistake> {
+        match self {
+            Self::Scheme(_, mistake) => mistake,
+            Self::Method(_) => None,
+        }
+    }
+
+    /// Returns the slip or the mistake that it makes, in words that follow "with".
+    pub fn slip(self) -> Option<String> {
+        match self {
+            Self::Scheme(_, Some(mistake)) => Some(mistake.words()),
+            Self::Scheme(scheme, None) => scheme.slip().map(String::from),
+            Self::Method(_) => None,
+        }
+    }
+
+    /// Returns the question to the author of a program that computes steps so.
+    pub fn question(self) -> Option<String> {
+        match self {
+            Self::Scheme(scheme, None) => scheme.question().map(String::from),
+            Self::Scheme(_, Some(mistake)) => Some(mistake.question()),
+            Self::Method(_) => None,
+        }
+    }
+}
+
+/// Where a trial begins, and which of its steps a row shows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Start {
+    /// At the start of the scene.
+    Scene,
+    /// At a row of the file, counted from 0, with the velocities of the file.
+    Row(usize),
+    /// At the start of the scene; each row shows the state a step later.
+    Ahead,
+    /// At the start of the scene; each row shows the state a step earlier.
+    Behind,
+}
+
+/// Trial of a method or a scheme. Its steps are equal, and a whole number of them lies between two
+/// grid points at which a step ends.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Trial {
+    pub way: Way,
+    /// Steps and grid points.
+    pub pace: Pace,
+    pub start: Start,
+}
+
+/// Result of a trial.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Compared {
+    /// Number of rows up to the first that differs by more than its bound.
+    pub rows: usize,
+    /// Number of these rows that are at the end of a step.
+    pub at_steps: usize,
+    /// Largest distance of these rows (m).
+    pub distance: f64,
+    /// Largest distance moved until then (m).
+    pub moved: f64,
+    /// Largest distance of the velocities of these rows, and their largest size, root mean square
+    /// over the particles (m/s), if the file has them.
+    pub velocities: Option<[f64; 2]>,
+}
+
+/// Scene and rows against which trials run.
+#[derive(Clone)]
+pub struct Judged<'a> {
+    /// Companion of the work, which may stop it.
+    pub monitor: &'a dyn Monitor,
+    pub scene: &'a Scene,
+    /// The scene as masses and springs, if it is that.
+    pub plain: Option<&'a Plain>,
+    pub rows: &'a Rows<'a>,
+    /// Largest distance that the scene moves until the last row (m).
+    pub motion: f64,
+    /// Step of the program (s), if it is known.
+    pub step: Option<f64>,
+    /// Number of particles and springs, which an evaluation visits.
+    pub size: f64,
+    /// Radius of the scene (m).
+    pub radius: f64,
+    /// Distance by which single precision changes a run until each row (m), if the program is
+    /// taken to have it. Rows are compared as far as that tells anything.
+    pub noise: Option<Vec<f64>>,
+}
+
+/// Returns the number of particles and springs of a scene.
+pub fn size(scene: &Scene) -> f64 {
+    let network = scene.model.network();
+    let springs = network.map_or(0, |network| network.all_springs().count());
+    (scene.model.particles() + springs) as f64
+}
+
+/// A run of a trial.
+enum Run<'a> {
+    Method(Box<Simulation>),
+    Plain(Box<PlainRun<'a>>),
+}
+
+impl Run<'_> {
+    /// Takes steps. Returns `false` if the run blew up.
+    fn advance(&mut self, steps: u64) -> bool {
+        match self {
+            Self::Method(run) => run.take_steps(steps).is_ok(),
+            Self::Plain(run) => {
+                (0..steps).for_each(|_| run.step());
+                run.positions().as_flattened().iter().all(|x| x.is_finite())
+            }
+        }
+    }
+
+    /// Returns the positions (m) and velocities (m/s), column-major.
+    fn motion(&self) -> [Vec<f64>; 2] {
+        match self {
+            Self::Method(run) => {
+                let positions = run.state()[..3 * run.particles()].to_vec();
+                [positions, run.velocities()]
+            }
+            Self::Plain(run) => [run.positions(), run.velocities()].map(columns),
+        }
+    }
+}
+
+impl Judged<'_> {
+    /// Returns the largest distance of row k (m) that agrees, after a distance moved (m).
+    pub fn tolerance(&self, k: usize, moved: f64) -> f64 {
+        let noise = self
+            .noise
+            .as_ref()
+            .map_or(0.0, |noise| noise.get(k).copied().unwrap_or(f64::INFINITY));
+        AGREEMENT * moved + self.rounding(k) + SINGLE * noise
+    }
+
+    /// Returns the number of rows that are compared.
+    pub fn last(&self) -> usize {
+        self.noise.as_ref().map_or(self.rows.len(), Vec::len)
+    }
+
+    /// Returns the positions at which a trial begins (m), column-major.
+    pub fn start(&self, trial: Trial) -> &[f64] {
+        match trial.start {
+            Start::Row(row) if row < self.rows.len() => self.rows.positions(row),
+            _ => &self.scene.state[..3 * self.scene.model.particles()],
+        }
+    }
+
+    /// Returns the distance by which single precision changes a run by a scheme until each row
+    /// (m), as far as it is much smaller than the motion.
+    pub fn noise(&self, scheme: Scheme, pace: Pace, work: &mut f64) -> Option<Vec<f64>> {
+        let trial = Trial {
+            way: Way::Scheme(scheme, None),
+            pace,
+            start: Start::Scene,
+        };
+        let mut double = vec![None; self.rows.len()];
+        self.follow(trial, false, self.rows.len(), work, &mut |k, [x, _]| {
+            double[k] = Some(x.clone());
+            true
+        })?;
+        let (mut noise, mut most) = (vec![], 0.0);
+        let passed = self.follow(trial, true, self.rows.len(), work, &mut |k, [x, _]| {
+            let Some(other) = &double[k] else {
+                return false;
+            };
+            noise.resize(k, most);
+            most = f64::max(most, distance(x, other));
+            noise.push(most);
+            SINGLE * most < MAX_NOISE * self.motion
+        })?;
+        if passed == self.rows.len() {
+            noise.resize(passed, most);
+        }
+        Some(noise)
+    }
+
+    /// Returns the distance of row k by rounding alone (m).
+    pub fn rounding(&self, k: usize) -> f64 {
+        ROUNDING * self.radius + DIGITS * self.rows.rounding(k)
+    }
+
+    /// Returns the work of a step of a way: springs and particles that are visited.
+    pub fn price(&self, way: Way) -> f64 {
+        self.size
+            * match way {
+                Way::Method(method) if method.is_implicit() || method.solves_linear_systems() => {
+                    IMPLICIT_WORK
+                }
+                Way::Method(method) => f64::from(method.evaluations.max(method.damped_evaluations)),
+                Way::Scheme(scheme, _) => scheme.evaluations(self.scene.model.particles()) as f64,
+            }
+    }
+
+    /// Runs a trial, in single precision if so, and shows each row before `end` that is at the end
+    /// of a step to `look`: its number, the positions (m) and the velocities (m/s). Ends where
+    /// that returns `false`, or the run blows up. Returns the number of rows until then; `None` if
+    /// the trial is not possible. `work` receives its price.
+    pub fn follow(
+        &self,
+        trial: Trial,
+        is_single: bool,
+        end: usize,
+        work: &mut f64,
+        look: &mut dyn FnMut(usize, &[Vec<f64>; 2]) -> bool,
+    ) -> Option<usize> {
+        let steps = self.rows.until() / self.step_of(trial)?;
+        if steps * self.price(trial.way) > MAX_WORK {
+            return None;
+        }
+        let (mut run, first, mut taken) = self.begin(trial, is_single)?;
+        if matches!(trial.way, Way::Method(_)) {
+            *work += BEGINNING * self.size;
+        }
+        for k in first..end {
+            let is_there = match (&self.rows.grid, &mut run) {
+                (Some(grid), run) => {
+                    let ahead = grid.numbers[k] * trial.pace.steps;
+                    if !ahead.is_multiple_of(trial.pace.points) {
+                        continue;
+                    }
+                    let steps = match (ahead / trial.pace.points, trial.start) {
+                        (steps, Start::Ahead) => steps + 1,
+                        (steps, Start::Behind) => steps.saturating_sub(1),
+                        (steps, _) => steps,
+                    };
+                    let more = steps - taken;
+                    taken = steps;
+                    *work += self.price(trial.way) * more as f64;
+                    run.advance(more)
+                }
+                (None, Run::Method(run)) => run.advance_to(self.rows.times[k]).is_ok(),
+                (None, Run::Plain(_)) => return None,
+            };
+            if !is_there || !self.monitor.go_on() || !look(k, &run.motion()) {
+                return Some(k);
+            }
+        }
+        Some(end)
+    }
+
+    /// Compares a trial with the rows until a row differs by more than `bound`, a function of its
+    /// number and of the distance moved (m). `None` if the trial is not possible. `work` receives
+    /// its price.
+    pub fn compare(
+        &self,
+        trial: Trial,
+        bound: &dyn Fn(usize, f64) -> f64,
+        work: &mut f64,
+    ) -> Option<Compared> {
+        let start = self.start(trial);
+        let mut compared = Compared {
+            rows: 0,
+            at_steps: 0,
+            distance: 0.0,
+            moved: 0.0,
+            velocities: self.rows.velocities(0).map(|_| [0.0; 2]),
+        };
+        let rows = self.follow(trial, false, self.last(), work, &mut |k, [x, v]| {
+            let apart = distance(x, self.rows.positions(k));
+            let moved = compared.moved.max(distance(x, start));
+            // A distance that is no number agrees with nothing.
+            if apart.is_nan() || apart > bound(k, moved) {
+                return false;
+            }
+            compared.at_steps += 1;
+            compared.moved = moved;
+            compared.distance = compared.distance.max(apart);
+            if let (Some([apart, speed]), Some(own)) =
+                (&mut compared.velocities, self.rows.velocities(k))
+            {
+                *apart = apart.max(distance(v, own));
+                *speed = speed.max(distance(v, &vec![0.0; v.len()]));
+            }
+            true
+        });
+        Some(Compared {
+            rows: rows?,
+            ..compared
+        })
+    }
+
+    /// Returns the step of a trial (s): a part of that between grid points or, without a grid, the
+    /// known one.
+    pub fn step_of(&self, trial: Trial) -> Option<f64> {
+        match &self.rows.grid {
+            Some(grid) => Some(trial.pace.points as f64 * grid.step / trial.pace.steps as f64),
+            None => self.step,
+        }
+    }
+
+    /// Returns the run of a trial, the first row that it shows, and the number of steps from the
+    /// start of the grid to its beginning.
+    fn begin(&self, trial: Trial, is_single: bool) -> Option<(Run<'_>, usize, u64)> {
+        let n = self.scene.model.particles();
+        let step = self.step_of(trial)?;
+        let (row, taken) = match trial.start {
+            Start::Row(row) if row < self.rows.len() && trial.pace.points == 1 => {
+                let grid = self.rows.grid.as_ref()?;
+                (Some(row), grid.numbers[row] * trial.pace.steps)
+            }
+            Start::Row(_) => return None,
+            _ => (None, 0),
+        };
+        // Only masses and springs alone do not depend on time, nor on more than positions and
+        // velocities.
+        let given = match row {
+            Some(row) => {
+                self.plain?;
+                Some([self.rows.positions(row), self.rows.velocities(row)?])
+            }
+            None => None,
+        };
+        let run = match trial.way {
+            Way::Method(method) => {
+                let mut scene = self.scene.clone();
+                if let Some(given) = given {
+                    scene.state = given.concat();
+                }
+                let run = Simulation::new(scene, method, Control::Step(step)).ok()?;
+                Run::Method(Box::new(run))
+            }
+            Way::Scheme(scheme, mistake) => {
+                let plain = self.plain?;
+                let rows = |x: &[f64]| (0..n).map(|i| [x[i], x[n + i], x[2 * n + i]]).collect();
+                let start = given.map_or_else(|| plain.start.clone(), |given| given.map(rows));
+                let forces = Forces::new(plain, mistake, is_single);
+                Run::Plain(Box::new(PlainRun::new(forces, scheme, step, start)))
+            }
+        };
+        Some((run, row.unwrap_or(0), taken))
+    }
+}

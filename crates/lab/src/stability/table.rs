@@ -1,0 +1,183 @@
+//! The limits of all methods as a table, in milliseconds.
+
+use std::fmt::Write;
+
+use a3_core::stability::{Limit, Mode, Observation};
+use a3_files::report::Report;
+
+use super::measure::{MethodLimits, Stability};
+
+/// Writes a step (s) in ms, to three digits.
+pub fn step(seconds: f64) -> String {
+    let ms = 1e3 * seconds;
+    match ms {
+        _ if ms.is_infinite() => "any".into(),
+        0.0 => "0".into(),
+        _ if ms < 0.009_95 => format!("{ms:.1e}"),
+        _ if ms < 0.999_5 => format!("{ms:.3}"),
+        _ if ms < 9.995 => format!("{ms:.2}"),
+        _ if ms < 99.95 => format!("{ms:.1}"),
+        _ => format!("{ms:.0}"),
+    }
+}
+
+/// Writes the largest step at which no mode grows (ms).
+fn bounded(limit: Option<Limit>) -> String {
+    match limit {
+        None => "-".into(),
+        Some(limit) if limit.bounded == 0.0 => "none".into(),
+        Some(limit) => step(limit.bounded),
+    }
+}
+
+/// Writes an observed limit (ms): a step, or the interval in which some steps hold and some fail.
+pub fn observation(seen: Option<Observation>) -> String {
+    seen.map_or("-".into(), |seen| {
+        if seen.is_open() {
+            return format!(">{}", step(seen.held));
+        }
+        match seen.interval().map(step) {
+            [low, high] if is_interval(&seen) && low != high => format!("{low}\u{2013}{high}"),
+            _ => step(seen.held),
+        }
+    })
+}
+
+/// Creates the table of all limits, below the fastest motion and above the meaning of the columns.
+pub fn report(found: &Stability) -> Report {
+    let rows = &found.limits;
+    let heading = [
+        "solver",
+        " at rest: bounded",
+        " tenfold",
+        " observed",
+        " moving: bounded",
+        " accurate",
+    ];
+    let mut cells = vec![heading.map(String::from).to_vec()];
+    for row in rows {
+        cells.push(vec![
+            row.method.name.to_owned(),
+            bounded(row.rest),
+            row.rest.map_or("-".into(), |limit| step(limit.step)),
+            observation(row.seen_at_rest),
+            observation(row.bounded),
+            row.accurate.map_or("-".into(), step),
+        ]);
+    }
+    let motion = |modes: &[Mode]| {
+        found.fastest(modes).map(|mode| {
+            let (frequency, damping) = (mode.frequency(), mode.damping_ratio());
+            format!("{frequency:.1} rad/s, damping ratio {damping:.3}")
+        })
+    };
+    let start = match motion(&found.at_start) {
+        Some(motion) => format!("fastest motion {motion}"),
+        None if found.at_start.is_empty() => "no motion known".into(),
+        None => "no motion back and forth".into(),
+    };
+    let mut head = format!("{}: {start} at the start", found.name);
+    if let Some(rest) = &found.at_rest {
+        let rest = motion(rest).unwrap_or("none".into());
+        let _ = write!(head, ", {rest} at rest");
+    }
+    if let Some(rate) = found.feedback {
+        let _ = write!(head, "; errors of constraints decay at {rate:.1} / s");
+    }
+    head += "\n\nlargest step (ms), that of the fixed step for adaptive solvers\n";
+    let mut foot = format!(
+        "bounded   nothing grows without end: at rest by all modes, moving as runs show\n\
+         tenfold   a disturbance at rest grows tenfold in 10 s, or in 1000 steps if that is longer\n\
+         accurate  errors stay below a hundredth of the motion in the first {:.2} s\n",
+        found.predictable,
+    );
+    if any_observed(rows, is_interval) {
+        let _ = writeln!(foot, "a\u{2013}b       {INTERVAL}");
+    }
+    if any_observed(rows, Observation::is_open) {
+        foot += ">         no longer step was tried\n";
+    }
+    let short: Vec<_> = rows.iter().filter(|row| row.is_short).collect();
+    if !short.is_empty() {
+        let names: Vec<_> = short.iter().map(|row| row.method.name).collect();
+        let _ = writeln!(
+            foot,
+            "short     the runs were shorter than 10 s, or too few to tell more, because they take long: {}",
+            names.join(", ")
+        );
+    }
+    Report {
+        head,
+        rows: cells,
+        foot,
+    }
+}
+
+/// Creates the table of the largest stable step of each method with its reason, and of the largest
+/// accurate one.
+pub fn reasons(found: &Stability) -> Report {
+    let heading = ["solver", " stable", " accurate", "with longer steps"];
+    let mut rows = vec![heading.map(String::from).to_vec()];
+    let modes = found.at_rest.as_deref().unwrap_or(&found.at_start);
+    for row in &found.limits {
+        let (stable, why) = reason(row, modes);
+        rows.push(vec![
+            row.method.name.into(),
+            stable,
+            row.accurate.map_or("-".into(), step),
+            why,
+        ]);
+    }
+    let Report { head, .. } = report(found);
+    let head = head.lines().next().unwrap_or_default();
+    Report {
+        head: format!("{head}\nlargest steps (ms), fixed ones also for adaptive solvers\n"),
+        rows,
+        foot: format!(
+            "stable: nothing grows without end; accurate: errors stay below a hundredth of the motion in the first {:.2} s\n",
+            found.predictable
+        ),
+    }
+}
+
+/// Returns the largest stable step of a method (ms), and what happens beyond it. `modes` are those
+/// by which its limit at rest was computed.
+fn reason(row: &MethodLimits, modes: &[Mode]) -> (String, String) {
+    let at_rest = row.rest.map_or(f64::INFINITY, |limit| limit.step);
+    let moving = row.bounded.filter(|seen| seen.held < at_rest);
+    if let Some(seen) = moving {
+        let why = if seen.is_open() {
+            "none was tried"
+        } else {
+            "it blows up in motion"
+        };
+        return (observation(row.bounded), why.into());
+    }
+    let Some(limit) = row.rest else {
+        return ("-".into(), "it was not measured".into());
+    };
+    let mode = modes.get(limit.mode).filter(|_| at_rest.is_finite());
+    let why = mode.map_or("nothing grows".into(), |mode| {
+        let (frequency, damping) = (mode.frequency(), mode.drag + mode.damping);
+        if damping > 2.0 * frequency {
+            format!("damping of {damping:.0} / s grows at rest")
+        } else {
+            format!("{frequency:.0} rad/s grows at rest")
+        }
+    });
+    (step(at_rest), why)
+}
+
+/// Meaning of an interval where the table shows one instead of a limit.
+pub const INTERVAL: &str = "not sharp: the shortest step that failed in trials down to half of it, and the longest that held; holding steps lie between failing ones";
+
+/// Returns whether any observed limit is of this kind.
+pub fn any_observed(rows: &[MethodLimits], is: fn(&Observation) -> bool) -> bool {
+    let observed = rows.iter().flat_map(|row| [row.seen_at_rest, row.bounded]);
+    observed.flatten().any(|seen| is(&seen))
+}
+
+/// Returns whether a limit is not sharp, and so shown as an interval.
+pub fn is_interval(seen: &Observation) -> bool {
+    !seen.is_open() && !seen.is_sharp()
+}

@@ -1,0 +1,134 @@
+//! Creation of exports, by the ending of the file.
+
+use std::path::Path;
+
+use a3_files::failure::Failure;
+use a3_files::frames::{FrameTimes, Sequence};
+use a3_files::output;
+use a3_files::setup::Run;
+
+use super::format::Export;
+use super::{csv, glb, json, npz, obj, pc2, usd};
+
+/// Default frames per second.
+const DEFAULT_RATE: f64 = 30.0;
+
+/// Largest sizes of files (GiB): in general, and in formats whose lengths have 32 bits.
+const MAX_SIZES: (f64, f64) = (16.0, 4.0);
+
+/// Endings of the files of all formats.
+const ENDINGS: &[&str] = &["json", "csv", "npz", "obj", "pc2", "glb", "usda"];
+
+/// Checks that the output is standard output or has the ending of a format.
+pub fn check_ending(path: &Path) -> Result<(), Failure> {
+    if path == Path::new("-") {
+        return Ok(());
+    }
+    output::check_ending(path, ENDINGS)
+}
+
+/// Creates the export of a run to a file, and the times of its frames, at this rate (1/s) if one is
+/// given. Impossible exports are refused here, before any work is done.
+pub fn begin(
+    path: &Path,
+    rate: Option<f64>,
+    run: &Run,
+) -> Result<(FrameTimes, Box<dyn Export>), Failure> {
+    let (simulation, presentation) = (&run.simulation, &run.presentation);
+    let surface = &presentation.surface;
+    let obj = |files| obj::Obj {
+        presentation: presentation.clone(),
+        files,
+    };
+    let until = run.until;
+    let last = FrameTimes::new(until, until, DEFAULT_RATE)?;
+    if path == Path::new("-") {
+        if rate.is_some() {
+            return Err(Failure::usage(
+                "--fps needs a file: standard output gets only the final state",
+            ));
+        }
+        return Ok((last, Box::new(json::Json::to_stdout())));
+    }
+    output::check(path, ENDINGS)?;
+    let ending = path.extension().unwrap_or_default().to_ascii_lowercase();
+    let sequence = Sequence::of(path);
+    let is_obj = ending == "obj" && sequence.is_none();
+    if is_obj && rate.is_some() {
+        return Err(Failure::usage(
+            "an .obj has one frame: leave out --fps, or write a sequence such as cloth-####.obj",
+        ));
+    }
+    if is_obj {
+        return Ok((last, Box::new(obj(obj::Files::One(path.into())))));
+    }
+    if ending == "json" && rate.is_none() {
+        return Ok((last, Box::new(json::Json::new(path, false)?)));
+    }
+    let all = FrameTimes::new(0.0, until, rate.unwrap_or(DEFAULT_RATE))?;
+    let several = all.since(simulation.time());
+    let particles = simulation.particles() as f64;
+    let check = |size: f64, largest: f64| check_size(size, largest).map(|()| several);
+    Ok(match (ending.to_str(), sequence) {
+        (Some("csv"), _) => {
+            let frames = check(
+                csv::ROW_SIZE * particles * several.count as f64,
+                MAX_SIZES.0,
+            )?;
+            (frames, Box::new(csv::Csv::new(path, frames.first)?))
+        }
+        (Some("npz"), _) => {
+            let frames = check(npz::size(particles, several), MAX_SIZES.1)?;
+            (frames, Box::new(npz::Npz::new(path, simulation, frames)?))
+        }
+        (Some("pc2"), _) => {
+            let frames = check(pc2::size(simulation, several), MAX_SIZES.0)?;
+            (
+                frames,
+                Box::new(pc2::Pc2::new(path, surface, simulation, frames)?),
+            )
+        }
+        (Some("glb"), _) => {
+            glb::check(several)?;
+            let frames = check(glb::size(surface, simulation, several), MAX_SIZES.1)?;
+            (
+                frames,
+                Box::new(glb::Glb::new(path, surface, simulation, frames)?),
+            )
+        }
+        (Some("usda"), _) => {
+            let frames = check(usd::size(simulation, several), MAX_SIZES.0)?;
+            (
+                frames,
+                Box::new(usd::Usd::new(path, surface, simulation, frames)?),
+            )
+        }
+        (Some("obj"), Some(sequence)) => {
+            sequence.check(all.count)?;
+            let frames = check(
+                obj::size(surface, simulation) * several.count as f64,
+                MAX_SIZES.0,
+            )?;
+            let files = obj::Files::Many(sequence, frames.first);
+            (frames, Box::new(obj(files)))
+        }
+        _ => {
+            let frames = check(
+                json::ROW_SIZE * particles * several.count as f64,
+                MAX_SIZES.0,
+            )?;
+            (frames, Box::new(json::Json::new(path, true)?))
+        }
+    })
+}
+
+/// Refuses a file of `bytes` bytes if they are more than `largest` (GiB).
+fn check_size(bytes: f64, largest: f64) -> Result<(), Failure> {
+    let size = bytes / 1024f64.powi(3);
+    if size <= largest {
+        return Ok(());
+    }
+    Err(Failure::usage(format!(
+        "the file would have {size:.1} GiB, and at most {largest} GiB are allowed: use a lower --fps or --until, or fewer particles"
+    )))
+}

@@ -1,0 +1,21 @@
+//! Runs as pictures, films, and files of other programs.
+
+#![forbid(unsafe_code)]
+// What is public here serves the crates of the program; the library `a3` exports what is for
+// others.
+#![allow(
+    missing_docs,
+    clippy::missing_errors_doc,
+    clippy::missing_panics_doc,
+    clippy::must_use_candidate
+)]
+
+#[cfg(not(target_arch = "wasm32"))]
+pub mod export;
+#[cfg(all(feature = "pictures", not(target_arch = "wasm32")))]
+pub mod film;
+#[cfg(all(feature = "pictures", not(target_arch = "wasm32")))]
+pub mod painter;
+#[cfg(feature = "pictures")]
+pub mod show;
+pub mod surfaces;

@@ -1,0 +1,225 @@
+//! What the chosen tool does to the scene where the mouse clicks.
+
+use a3_core::{Network, Vector3};
+use a3_files::rounding::short;
+use a3_media::show::Target;
+use a3_scenes::{ConstraintSpec, Edit, PartChange, PartSpec, RigidBody};
+
+use super::super::panel::{Turn, edit, of_one_body, turn_part};
+use crate::session::{Measure, Session, Tool, exchange};
+
+/// Coefficient of friction of bodies that are added.
+const FRICTION: f64 = 0.4;
+/// Coefficient of restitution of balls that are added.
+const RESTITUTION: f64 = 0.3;
+/// Damping ratio of springs that are added.
+const DAMPING_RATIO: f64 = 0.1;
+/// Distance of an added body from the surface on which it is put, over its size.
+const GAP: f64 = 0.05;
+/// Distance from the eye at which a throw begins, over the size of the body.
+const ARM: f64 = 2.0;
+/// Largest difference of the lengths that a rod would need, relative to its length.
+const ROD_TOLERANCE: f64 = 1e-3;
+
+/// What is under the pointer.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Aim {
+    /// Position of the eye (m).
+    pub eye: Vector3<f64>,
+    /// Point under the pointer: of a surface, an obstacle or the ground, or else one as far away as
+    /// the point that the camera looks at (m).
+    pub point: Vector3<f64>,
+    /// Normal of the surface in that point, if there is one.
+    pub normal: Option<Vector3<f64>>,
+    /// The particle or the obstacle under the pointer.
+    pub target: Option<Target>,
+    /// The particles that a spring, a rod or a rope under the pointer joins.
+    pub link: Option<[usize; 2]>,
+}
+
+/// Does what the chosen tool does by a click, and shows a message.
+pub fn click(session: &mut Session, aim: &Aim) {
+    let done = match session.panel.editor.tool {
+        Tool::ThrowBall | Tool::ThrowBox => throw(session, aim),
+        Tool::AddBall | Tool::AddBox => add_body(session, aim),
+        Tool::Particle => add_particle(session, aim),
+        Tool::Spring | Tool::Rod | Tool::Rope => {
+            Err("Drag from one particle to another to join them.".into())
+        }
+        Tool::Delete => delete(session, aim),
+    };
+    session.readings.say(done.unwrap_or_else(|why| why));
+}
+
+/// Joins two particles by a spring, a rod or a rope, and shows a message.
+pub fn join(session: &mut Session, ends: [usize; 2]) {
+    let done = joined(session, ends);
+    session.readings.say(done.unwrap_or_else(|why| why));
+}
+
+/// Makes the body of the chosen tool, and names it.
+fn body(session: &Session, at: Vector3<f64>, velocity: Vector3<f64>) -> (RigidBody, &'static str) {
+    let editor = &session.panel.editor;
+    let size = editor.value(Measure::Size);
+    let is_ball = matches!(editor.tool, Tool::ThrowBall | Tool::AddBall);
+    let part = PartSpec {
+        ball: is_ball.then_some(0.5 * size),
+        cuboid: (!is_ball).then_some([size; 3]),
+        ..PartSpec::default()
+    };
+    let body = RigidBody {
+        parts: vec![part],
+        mass: Some(editor.value(Measure::Mass)),
+        at: Some(at.into()),
+        velocity: Some(velocity.into()).filter(|v| *v != [0.0; 3]),
+        friction: FRICTION,
+        restitution: if is_ball { RESTITUTION } else { 0.0 },
+        ..RigidBody::default()
+    };
+    (body, if is_ball { "ball" } else { "box" })
+}
+
+/// Throws a body from the eye so that it falls on the point under the pointer.
+fn throw(session: &mut Session, aim: &Aim) -> Result<String, String> {
+    let editor = &session.panel.editor;
+    let (size, speed) = (editor.value(Measure::Size), editor.value(Measure::Speed));
+    let way = aim.point - aim.eye;
+    let mut start = aim.eye + way * (ARM * size / way.norm()).min(0.5);
+    let show = &session.runs.panes[0].show;
+    if let Some(ground) = show.ground() {
+        start.y = start.y.max(ground + size);
+    }
+    let network = session.runs.first().model().network();
+    let gravity = network.and_then(Network::gravity).unwrap_or_default();
+    let time = (aim.point - start).norm() / speed;
+    let velocity = (aim.point - start) / time - 0.5 * time * gravity;
+    let (body, name) = body(session, start, velocity);
+    edit(session, &Edit::AddBody(body), &format!("throw of a {name}"))?;
+    session.pulled = true;
+    Ok(format!("A {name} flies."))
+}
+
+/// Puts a body on the surface under the pointer.
+fn add_body(session: &mut Session, aim: &Aim) -> Result<String, String> {
+    let size = session.panel.editor.value(Measure::Size);
+    let reach = |normal: Vector3<f64>| match session.panel.editor.tool {
+        Tool::AddBox => 0.5 * size * normal.abs().sum(),
+        _ => 0.5 * size,
+    };
+    let offset = aim.normal.map(|n| n * (reach(n) + GAP * size));
+    let at = aim.point + offset.unwrap_or_default();
+    let (body, name) = body(session, at, Vector3::zeros());
+    edit(session, &Edit::AddBody(body), name)?;
+    Ok(format!("There is another {name} now."))
+}
+
+fn add_particle(session: &mut Session, aim: &Aim) -> Result<String, String> {
+    let add = Edit::AddParticle {
+        position: aim.point.into(),
+        mass: session.panel.editor.value(Measure::PointMass),
+    };
+    edit(session, &add, "particle")?;
+    Ok("There is another particle now.".into())
+}
+
+fn joined(session: &mut Session, [i, j]: [usize; 2]) -> Result<String, String> {
+    let editor = &session.panel.editor;
+    let run = session.runs.first();
+    let network = run.model().network().ok_or("There are no masses here.")?;
+    if of_one_body(network, [i, j]) {
+        return Err("Both ends are on the same rigid body.".into());
+    }
+    let distance = |y: &[f64]| {
+        let n = run.particles();
+        let along = (0..3).map(|axis| y[axis * n + i] - y[axis * n + j]);
+        along.map(|d| d * d).sum::<f64>().sqrt()
+    };
+    let now = distance(run.state());
+    let panes = session.runs.panes.iter();
+    let others = panes.map(|pane| distance(pane.simulation.state()));
+    let lengths: Vec<_> = others.chain([distance(&run.scene().state)]).collect();
+    let longest = lengths.iter().copied().fold(0.0, f64::max);
+    let (name, add) = match editor.tool {
+        Tool::Spring => {
+            let stiffness = editor.value(Measure::Stiffness);
+            let mass = network.masses()[i].min(network.masses()[j]);
+            let damping = 2.0 * DAMPING_RATIO * (stiffness * mass).sqrt();
+            let spring = (i, j, stiffness, now, short(damping, 3));
+            ("spring", Edit::AddSpring(spring))
+        }
+        Tool::Rope => (
+            "rope",
+            Edit::AddConstraint(ConstraintSpec {
+                rope: Some([i, j]),
+                length: Some(longest),
+                ..ConstraintSpec::default()
+            }),
+        ),
+        _ => {
+            let other = lengths
+                .iter()
+                .find(|it| (*it - now).abs() > ROD_TOLERANCE * now);
+            if let Some(other) = other {
+                let [now, other] = [now, *other].map(|length| short(length, 3));
+                return Err(format!(
+                    "A rod never changes its length, but its ends would be {now} m apart here and {other} m at the \
+                     start or in another pane: reset the scene (r) first, or take a spring or a rope."
+                ));
+            }
+            (
+                "rod",
+                Edit::AddConstraint(ConstraintSpec {
+                    rod: Some([i, j]),
+                    length: Some(now),
+                    ..ConstraintSpec::default()
+                }),
+            )
+        }
+    };
+    edit(session, &add, &format!("{name} between {i} and {j}"))?;
+    Ok(format!("A {name} joins the particles {i} and {j}."))
+}
+
+fn delete(session: &mut Session, aim: &Aim) -> Result<String, String> {
+    let network = session.runs.first().model().network();
+    let network = network.ok_or("There are no masses here.")?;
+    let body_of = |target: Target| network.body_of(target.particle()?);
+    let (edits, name) = match (aim.target, aim.link) {
+        (Some(Target::Obstacle(k)), _) => return leave_out_obstacle(session, k),
+        (Some(target), _) if body_of(target).is_some() => {
+            let k = body_of(target).unwrap_or_default();
+            (Edit::RemoveBody(k), format!("body {k}"))
+        }
+        (_, Some([i, j])) => {
+            let name = format!("what joined {i} and {j}");
+            (Edit::Disjoin([i, j]), name)
+        }
+        (Some(Target::Particle(i)), None) => (Edit::RemoveParticle(i), format!("particle {i}")),
+        (None, None) => return Err("There is nothing under the pointer to delete.".into()),
+    };
+    let count = network.particles();
+    edit(session, &edits, &format!("removal of {name}"))?;
+    let stays = session.runs.first().particles() == count;
+    Ok(match edits {
+        Edit::RemoveParticle(i) if stays => {
+            format!(
+                "Particle {i} is torn out of its body, which keeps all its particles: it is loose now."
+            )
+        }
+        _ => format!("Removed: {name}."),
+    })
+}
+
+/// Leaves out an obstacle, as the panel's page of parts does.
+fn leave_out_obstacle(session: &mut Session, k: usize) -> Result<String, String> {
+    let network = session.runs.first().model().network();
+    let ids = network.map(|network| exchange::obstacle_ids(network, &session.tuning.changes()));
+    let mut ids = ids.into_iter().flatten();
+    let id = ids.find(|(number, _)| *number == k).map(|(_, id)| id);
+    let change = id.map(|(kind, own)| PartChange::Obstacle(kind, own));
+    let mut parts = session.tuning.parts.iter();
+    let part = parts.position(|part| Some(part.change) == change);
+    let part = part.ok_or("This obstacle cannot be deleted.")?;
+    turn_part(session, part, Turn::To(0.0));
+    Ok(session.readings.message.clone().unwrap_or_default())
+}

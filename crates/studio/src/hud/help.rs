@@ -1,0 +1,241 @@
+//! The help: all that a user can do, by its purpose. A click on a row does it.
+
+use a3_core::integrators;
+use egui::{
+    Align2, Area, Color32, Context, CursorIcon, FontId, Id, ScrollArea, Sense, Ui, pos2, vec2,
+};
+
+use super::list::pressed_at;
+use super::panel::Request;
+use super::style::{MARGIN, TEXT, sheet, title};
+use crate::session::{Action, Binding, GROUPS, Group, MOUSE, RunAction, WindowAction};
+
+/// Width of a window above which the help has three columns (points).
+const THREE_COLUMN_WIDTH: f32 = 900.0;
+/// Colour of keys and gestures.
+const KEY: Color32 = Color32::from_rgb(38, 84, 132);
+/// Height of a row (points).
+const ROW_HEIGHT: f32 = 21.0;
+/// Widths of a key, of a gesture of the mouse, and of what follows (points).
+const WIDTHS: [f32; 3] = [58.0, 128.0, 190.0];
+
+/// Shows the help, for one pane or `several`, and returns the request of the mouse. In a small
+/// window it scrolls by the wheel.
+pub fn help(ctx: &Context, several: bool) -> Option<Request> {
+    let window = ctx.content_rect().shrink(MARGIN);
+    let mut request = None;
+    let area = Area::new(Id::unique("help"))
+        .anchor(Align2::CENTER_CENTER, [0.0, 0.0])
+        .show(ctx, |ui| {
+            ui.style_mut().interaction.selectable_labels = false;
+            sheet(ui, |ui| {
+                // The window less the margins of the sheet.
+                let room = window.size() - vec2(24.0, 18.0);
+                ScrollArea::vertical()
+                    .max_width(room.x)
+                    .max_height(room.y.max(40.0))
+                    .min_scrolled_height(room.y.max(40.0))
+                    .show(ui, |ui| {
+                        request = columns(ui, several, window.width() > THREE_COLUMN_WIDTH);
+                    });
+            });
+        });
+    // A click beside the help closes it, except on the bar.
+    let pressed = pressed_at(ctx).is_some_and(|at| ctx.content_rect().contains(at));
+    if pressed && !area.response.contains_pointer() {
+        request = Some(Request::Act(Action::Run(RunAction::Help)));
+    }
+    request
+}
+
+/// Writes all groups in three columns, or below one another in a narrow window. Returns the request
+/// of the mouse.
+fn columns(ui: &mut Ui, several: bool, wide: bool) -> Option<Request> {
+    let [running, choose, change, show, look, measure, keep, window] = &GROUPS;
+    let mut request = None;
+    let mut column = |ui: &mut Ui, groups: &[&Group], mouse: bool, numbered: bool| {
+        ui.vertical(|ui| {
+            ui.spacing_mut().item_spacing.y = 0.0;
+            if mouse {
+                gestures(ui);
+            }
+            for group in groups {
+                request = bindings(ui, group).or(request);
+            }
+            if numbered {
+                request = solvers(ui, several).or(request);
+            }
+        });
+    };
+    if !wide {
+        let all: Vec<_> = GROUPS.iter().collect();
+        column(ui, &all, true, true);
+        return request;
+    }
+    ui.horizontal_top(|ui| {
+        ui.spacing_mut().item_spacing.x = 26.0;
+        column(ui, &[change, choose, show], true, false);
+        column(ui, &[running, look, measure, window], false, false);
+        column(ui, &[keep], false, true);
+    });
+    request
+}
+
+/// Writes a heading.
+fn heading(ui: &mut Ui, words: &str) {
+    ui.add_space(4.0);
+    ui.label(title(words).size(15.0));
+    ui.add_space(2.0);
+}
+
+/// Writes what the mouse does.
+fn gestures(ui: &mut Ui) {
+    heading(ui, "Mouse");
+    for (gesture, does) in MOUSE {
+        row(ui, [gesture, does], WIDTHS[1], None);
+    }
+}
+
+/// Writes the keys of a purpose, and returns the request of the mouse.
+fn bindings(ui: &mut Ui, group: &Group) -> Option<Request> {
+    heading(ui, group.purpose);
+    let mut request = None;
+    for Binding { keys, action, help } in group.bindings {
+        // A click cannot point at a particle too.
+        let clicked = Some(*action).filter(|it| *it != Action::Window(WindowAction::Follow));
+        request = row(ui, [&keys.join("  "), help], WIDTHS[0], clicked).or(request);
+    }
+    request
+}
+
+/// Writes the solvers that digits choose, and returns the request of the mouse.
+fn solvers(ui: &mut Ui, several: bool) -> Option<Request> {
+    heading(
+        ui,
+        if several {
+            "Solvers, under the pointer"
+        } else {
+            "Solvers"
+        },
+    );
+    let mut request = None;
+    for (i, method) in integrators::METHODS.iter().enumerate().take(10) {
+        let key = ((i + 1) % 10).to_string();
+        let action = Action::Run(RunAction::Solver(i));
+        request = row(ui, [&key, method.title], WIDTHS[0], Some(action)).or(request);
+    }
+    request
+}
+
+/// Writes a key and its effect, and returns its action if the row was clicked.
+fn row(ui: &mut Ui, words: [&str; 2], width: f32, action: Option<Action>) -> Option<Request> {
+    let sense = if action.is_some() {
+        Sense::click()
+    } else {
+        Sense::hover()
+    };
+    let size = vec2(width + WIDTHS[2], ROW_HEIGHT);
+    let (rect, response) = ui.allocate_exact_size(size, sense);
+    if action.is_some() && response.hovered() {
+        let place = rect.expand2(vec2(6.0, 0.0));
+        ui.painter()
+            .rect_filled(place, 4.0, TEXT.gamma_multiply(0.1));
+        ui.set_cursor_icon(CursorIcon::PointingHand);
+    }
+    let y = rect.center().y;
+    for (words, x, colour) in [(words[0], 0.0, KEY), (words[1], width, TEXT)] {
+        let at = pos2(rect.left() + x, y);
+        let font = FontId::proportional(13.0);
+        ui.painter()
+            .text(at, Align2::LEFT_CENTER, words, font, colour);
+    }
+    action.filter(|_| response.clicked()).map(Request::Act)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::hud::{pane, read};
+    use crate::session::{Readings, bindings};
+
+    #[test]
+    fn the_help_lists_every_key() {
+        let readings = Readings {
+            help: true,
+            ..Readings::default()
+        };
+        let (words, sheets) = read(&[pane("chain", "r", 0.01)], &readings, [1280.0, 720.0]);
+        for binding in bindings() {
+            assert!(
+                words.contains(binding.help) && words.contains(&binding.keys.join("  ")),
+                "{words}"
+            );
+        }
+        for method in &integrators::METHODS[..10] {
+            assert!(words.contains(method.title));
+        }
+        assert!(
+            sheets[0].height() < 690.0 && sheets[0].width() < 900.0,
+            "{sheets:?}"
+        );
+    }
+
+    /// In a small window the help has one column, stays within the window, and scrolls.
+    #[test]
+    fn the_help_fits_into_small_windows() {
+        for size in [[320.0, 240.0], [640.0, 360.0], [1000.0, 300.0]] {
+            let ctx = crate::hud::style::context();
+            let screen = egui::Rect::from_min_size(egui::Pos2::ZERO, size.into());
+            let seen = |scroll: f32| {
+                let mut words = String::new();
+                for _ in 0..3 {
+                    let mut events = vec![egui::Event::PointerMoved(screen.center())];
+                    events.push(egui::Event::MouseWheel {
+                        unit: egui::MouseWheelUnit::Point,
+                        delta: vec2(0.0, scroll),
+                        phase: egui::TouchPhase::Move,
+                        source: egui::MouseWheelSource::Wheel,
+                        modifiers: egui::Modifiers::default(),
+                    });
+                    let input = egui::RawInput {
+                        screen_rect: Some(screen),
+                        events,
+                        ..Default::default()
+                    };
+                    let mut output = ctx.run_ui(input, |ui| {
+                        let _ = help(ui.ctx(), false);
+                    });
+                    output.textures_delta.set.clear();
+                    output.textures_delta.free.clear();
+                    words.clear();
+                    for clipped in &output.shapes {
+                        let egui::Shape::Text(text) = &clipped.shape else {
+                            continue;
+                        };
+                        let rect = text.visual_bounding_rect();
+                        assert!(screen.x_range().contains(rect.right()), "{size:?}");
+                        if clipped.clip_rect.contains_rect(rect) {
+                            words.extend([text.galley.text(), "\n"]);
+                        }
+                    }
+                }
+                words
+            };
+            let last = integrators::METHODS[9].title;
+            let first = "pull or push";
+            let above = seen(0.0);
+            assert!(
+                above.contains(first) && !above.contains(last),
+                "{size:?} {above}"
+            );
+            for _ in 0..60 {
+                seen(-200.0);
+            }
+            let below = seen(0.0);
+            assert!(
+                below.contains(last) && !below.contains(first),
+                "{size:?} {below}"
+            );
+        }
+    }
+}

@@ -1,0 +1,120 @@
+//! Drawing of the lessons: their sheet, the heading, and what scrolls below it.
+
+use egui::{
+    Align2, Context, CursorIcon, FontId, Id, Rect, ScrollArea, Sense, Stroke, Ui, UiBuilder, pos2,
+    vec2,
+};
+
+use super::super::docked::docked;
+use super::super::panel::INK;
+use super::super::style::{FAINT, TEXT};
+use super::button::button;
+use super::place::{PLACE, is_shown};
+use super::request::{next, previous};
+use super::{contents, step};
+use crate::session::{LessonRequest, Session};
+
+/// Distance of the text from the edges of the sheet (points).
+const MARGIN: f32 = 16.0;
+/// Height of the heading (points).
+const HEADING_HEIGHT: f32 = 44.0;
+/// Height of the buttons and of their margins, with the mouse and with fingers (points).
+const BUTTONS_HEIGHTS: [f32; 2] = [48.0, 58.0];
+
+/// Draws the lessons, if they are visible, and returns the request of the mouse.
+pub fn show(ctx: &Context, session: &Session) -> Option<LessonRequest> {
+    if !is_shown(session) {
+        return None;
+    }
+    let rect = PLACE.rect(ctx);
+    let lessons = &session.panel.lessons;
+    docked(ctx, "lessons", rect, |ui| {
+        let inner = rect.shrink2(vec2(MARGIN, 0.0));
+        let mut request = heading(ui, inner, session);
+        let shown = lessons.shown();
+        let foot = match shown {
+            Some(_) => BUTTONS_HEIGHTS[usize::from(session.panel.touch)],
+            None => 8.0,
+        };
+        let body = Rect::from_min_max(
+            pos2(inner.left(), inner.top() + HEADING_HEIGHT),
+            pos2(inner.right() + MARGIN - 4.0, inner.bottom() - foot),
+        );
+        let salt = shown.map(|_| (lessons.chosen, lessons.step));
+        let scrolled = ui.scope_builder(UiBuilder::new().max_rect(body), |ui| {
+            ScrollArea::vertical()
+                .id_salt(("lessons", salt))
+                .auto_shrink([false, false])
+                .show(ui, |ui| {
+                    ui.set_width(inner.width());
+                    ui.spacing_mut().item_spacing = vec2(0.0, 0.0);
+                    match shown {
+                        Some((lesson, step)) => step::show(ui, session, lesson, step),
+                        None => contents::show(ui, lessons),
+                    }
+                })
+                .inner
+        });
+        request = scrolled.inner.or(request);
+        if shown.is_some() {
+            let row = inner.with_min_y(inner.bottom() - foot);
+            request = buttons(ui, row.shrink2(vec2(0.0, 8.0)), session).or(request);
+        }
+        request
+    })
+}
+
+/// Draws the title: of the list, or of the lesson, with the way back to the list. Returns the
+/// request of the mouse.
+fn heading(ui: &Ui, inner: Rect, session: &Session) -> Option<LessonRequest> {
+    let lessons = &session.panel.lessons;
+    let line = inner.top() + 21.0;
+    let write = |x: f32, words: &str, size, colour| {
+        let (at, font) = (pos2(x, line), FontId::proportional(size));
+        let painter = ui.painter();
+        painter.text(at, Align2::LEFT_CENTER, words, font, colour)
+    };
+    let at = pos2(inner.right(), line);
+    let font = FontId::proportional(12.5);
+    ui.painter()
+        .text(at, Align2::RIGHT_CENTER, "F1", font, FAINT);
+    let Some((lesson, _)) = lessons.shown() else {
+        write(inner.left(), "Lessons", 17.0, TEXT);
+        return None;
+    };
+    let arrow = Rect::from_center_size(pos2(inner.left() + 5.0, line), vec2(34.0, 34.0));
+    let title = write(inner.left() + 18.0, &lesson.title, 17.0, TEXT);
+    let id = Id::unique("back to the lessons");
+    let response = ui.interact(arrow.union(title), id, Sense::click());
+    let stroke = Stroke::new(1.8, if response.hovered() { TEXT } else { INK });
+    let corner = |x: f32, y: f32| pos2(inner.left() + x, line + y);
+    let points = vec![corner(7.0, -5.5), corner(1.5, 0.0), corner(7.0, 5.5)];
+    ui.painter().add(egui::Shape::line(points, stroke));
+    let response = response
+        .on_hover_cursor(CursorIcon::PointingHand)
+        .on_hover_text("All lessons");
+    response.clicked().then_some(LessonRequest::Contents)
+}
+
+/// Draws the buttons that go back, run the step again, and go on. Returns the request of the mouse.
+fn buttons(ui: &Ui, row: Rect, session: &Session) -> Option<LessonRequest> {
+    let done = session.panel.lessons.given().done;
+    let gap = 6.0;
+    let width = (row.width() - 2.0 * gap) / 3.0;
+    let mut request = None;
+    let all = [
+        ("Back", previous(session), false),
+        ("Run again", LessonRequest::Again, false),
+        ("Next", next(session), done),
+    ];
+    for (k, (words, wish, is_due)) in all.into_iter().enumerate() {
+        let left = row.left() + k as f32 * (width + gap);
+        let place = Rect::from_min_size(pos2(left, row.top()), vec2(width, row.height()));
+        let response = ui.interact(place, Id::unique(("lesson button", k)), Sense::click());
+        button(ui, place, &response, words, is_due);
+        if response.clicked() {
+            request = Some(wish);
+        }
+    }
+    request
+}

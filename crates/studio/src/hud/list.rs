@@ -1,0 +1,271 @@
+//! The open list, drawn over the picture.
+
+use std::collections::HashMap;
+
+use egui::text::LayoutJob;
+use egui::{
+    Align, Align2, Area, Color32, Context, CornerRadius, FontId, Frame, Id, Margin, Order, Pos2,
+    Rect, ScrollArea, Sense, TextureId, Ui, vec2,
+};
+
+use super::panel::PanelRequest;
+use super::style::{FAINT, MARGIN, PAPER, TEXT, faint, text, title};
+use crate::session::{Entry, Session, Topic};
+
+/// Largest width of the list (points).
+const MAX_WIDTH: f32 = 560.0;
+/// Largest width of the list of scenes (points), which has two columns if it is wide.
+const MAX_SCENES_WIDTH: f32 = 780.0;
+/// Width above which the list of scenes has two columns (points).
+const TWO_COLUMN_WIDTH: f32 = 560.0;
+/// Heights of an entry, and of one with a picture (points).
+const ENTRY_HEIGHTS: [f32; 2] = [22.0, 62.0];
+/// Width and height of a picture (points).
+const PICTURE_SIZE: [f32; 2] = [88.0, 55.0];
+/// Smallest width of the names (points).
+const NAME_WIDTH: f32 = 136.0;
+
+/// Draws the open list, with `pictures` of scenes by their names, and returns the request of the
+/// mouse.
+pub fn show(
+    ctx: &Context,
+    session: &Session,
+    pictures: &HashMap<String, TextureId>,
+) -> Option<PanelRequest> {
+    let list = session.list.as_ref()?;
+    let window = ctx.content_rect().shrink(MARGIN);
+    let mut request = None;
+    let (heading, scenes) = match list.topic {
+        Topic::Scenes => ("Scenes", true),
+        Topic::Solvers { .. } => ("Solvers", false),
+        Topic::Beside { .. } => ("Compare with", false),
+    };
+    let largest = if scenes { MAX_SCENES_WIDTH } else { MAX_WIDTH };
+    let width = largest.min(window.width() - 24.0);
+    let columns = if scenes && width > TWO_COLUMN_WIDTH {
+        2
+    } else {
+        1
+    };
+    let area = Area::new(Id::unique("list"))
+        .order(Order::Foreground)
+        .anchor(Align2::CENTER_CENTER, vec2(0.0, 0.0))
+        .show(ctx, |ui| {
+            let sheet = Frame::new()
+                .fill(PAPER.to_opaque())
+                .corner_radius(7)
+                .inner_margin(Margin::symmetric(12, 10));
+            ui.style_mut().interaction.selectable_labels = false;
+            sheet.show(ui, |ui| {
+                ui.set_width(width);
+                ui.horizontal(|ui| {
+                    ui.label(title(heading));
+                    ui.with_layout(egui::Layout::right_to_left(Align::Center), |ui| {
+                        ui.label(faint("Esc"));
+                    });
+                });
+                let typed = if list.filter.is_empty() {
+                    faint("type to search; choose by arrows and Enter, or by a click")
+                } else {
+                    text(format!("{}_", list.filter))
+                };
+                ui.label(typed);
+                ui.add_space(4.0);
+                ui.spacing_mut().item_spacing = vec2(8.0, 0.0);
+                let entries: Vec<_> = list.entries().enumerate().collect();
+                let rows = entries.len().div_ceil(columns).max(1);
+                let row_height = ENTRY_HEIGHTS[usize::from(scenes)];
+                let room = (window.height() - 90.0).max(row_height);
+                ScrollArea::vertical()
+                    .max_height(room)
+                    .min_scrolled_height(room.min(row_height * rows as f32))
+                    .show(ui, |ui| {
+                        if entries.is_empty() {
+                            ui.label(faint("no entry has these words"));
+                        }
+                        let side =
+                            (ui.available_width() - 8.0 * (columns - 1) as f32) / columns as f32;
+                        ui.horizontal_top(|ui| {
+                            for column in entries.chunks(rows) {
+                                ui.vertical(|ui| {
+                                    ui.set_width(side);
+                                    for (k, entry) in column {
+                                        let picture = pictures.get(&entry.name).copied();
+                                        let dark = session.runs.panes[0].show.dark;
+                                        if row(
+                                            ui,
+                                            entry,
+                                            *k == list.chosen,
+                                            (scenes, picture),
+                                            dark,
+                                        ) {
+                                            request = Some(PanelRequest::TakeEntry(entry.number));
+                                        }
+                                    }
+                                });
+                            }
+                        });
+                    });
+            });
+        });
+    // A click beside the list closes it, except on the bar, which may open another.
+    let outside = pressed_at(ctx).is_some_and(|at| ctx.content_rect().contains(at));
+    if request.is_none() && outside && !area.response.contains_pointer() {
+        request = Some(PanelRequest::CloseList);
+    }
+    request
+}
+
+/// Returns the place of the pointer, if a button was pressed just now.
+pub fn pressed_at(ctx: &Context) -> Option<Pos2> {
+    ctx.input(|input| {
+        let pressed = input.pointer.any_pressed();
+        input.pointer.latest_pos().filter(|_| pressed)
+    })
+}
+
+/// Draws an entry, and returns whether it was clicked. One of the `scenes` has room for its
+/// `picture`, which may be missing.
+fn row(
+    ui: &mut Ui,
+    entry: &Entry,
+    chosen: bool,
+    (scenes, picture): (bool, Option<TextureId>),
+    dark: bool,
+) -> bool {
+    let height = ENTRY_HEIGHTS[usize::from(scenes)];
+    let (rect, response) =
+        ui.allocate_exact_size(vec2(ui.available_width(), height), Sense::click());
+    // Scroll to the chosen entry only when it changes, so that the wheel can scroll.
+    let was = Id::unique("chosen entry");
+    if chosen && ui.data(|data| data.get_temp(was)) != Some(entry.number) {
+        ui.data_mut(|data| data.insert_temp(was, entry.number));
+        response.scroll_to_me(None);
+    }
+    if chosen || response.hovered() {
+        let alpha = if chosen { 0.16 } else { 0.07 };
+        let colour = TEXT.gamma_multiply(alpha);
+        ui.painter()
+            .rect_filled(rect, CornerRadius::same(5), colour);
+    }
+    if scenes {
+        card(ui, rect, entry, picture, dark);
+    } else {
+        line(ui, rect, entry);
+    }
+    response.clicked()
+}
+
+/// Draws an entry of one line.
+fn line(ui: &Ui, rect: Rect, entry: &Entry) {
+    if entry.current {
+        let at = rect.left_center() + vec2(12.0, 0.0);
+        ui.painter().circle_filled(at, 3.5, TEXT);
+    }
+    let mark = if entry.current { "" } else { &entry.key };
+    let write = |x: f32, words: &str, size, colour| {
+        let room = rect.with_min_x(rect.left() + x);
+        let at = room.left_center();
+        let font = FontId::proportional(size);
+        let painter = ui.painter().with_clip_rect(room.intersect(ui.clip_rect()));
+        painter.text(at, Align2::LEFT_CENTER, words, font, colour)
+    };
+    write(8.0, mark, 11.0, FAINT);
+    let name = write(26.0, &entry.name, 13.5, TEXT);
+    let about = (name.right() - rect.left() + 14.0).max(26.0 + NAME_WIDTH);
+    write(about, &entry.about, 12.5, FAINT);
+}
+
+/// Draws an entry with its picture, and its description below its name.
+fn card(ui: &Ui, rect: Rect, entry: &Entry, picture: Option<TextureId>, dark: bool) {
+    let [width, height] = PICTURE_SIZE;
+    let place = Rect::from_min_size(rect.min + vec2(4.0, 3.5), vec2(width, height));
+    let painter = ui.painter().with_clip_rect(rect.intersect(ui.clip_rect()));
+    match picture {
+        Some(id) => {
+            // The dark theme inverts every colour, but the picture is dark already.
+            let tint = if dark { Color32::BLACK } else { Color32::WHITE };
+            let whole = Rect::from_min_max(Pos2::ZERO, Pos2::new(1.0, 1.0));
+            painter.image(id, place, whole, tint);
+        }
+        None => {
+            painter.rect_filled(place, 4.0, TEXT.gamma_multiply(0.06));
+        }
+    }
+    let at = place.right_top() + vec2(10.0, 3.0);
+    let font = FontId::proportional(14.0);
+    let name = painter.text(at, Align2::LEFT_TOP, &entry.name, font, TEXT);
+    if entry.current {
+        let at = name.right_center() + vec2(10.0, 1.0);
+        painter.circle_filled(at, 3.5, TEXT);
+    }
+    let font = FontId::proportional(12.0);
+    let room = rect.right() - at.x - 6.0;
+    let about = LayoutJob::simple(entry.about.clone(), font, FAINT, room);
+    let about = painter.layout_job(about);
+    painter.galley(Pos2::new(at.x, name.bottom() + 1.0), about, FAINT);
+}
+
+#[cfg(test)]
+mod tests {
+    use egui::{Event, Modifiers, PointerButton, Pos2, RawInput, Rect};
+
+    use super::*;
+    use crate::hud::panel;
+    use crate::session::{RunAction, session};
+
+    /// Draws the list, with the pointer at a position, and a button pressed or released there.
+    fn draw(
+        ctx: &Context,
+        session: &Session,
+        at: Pos2,
+        pressed: Option<bool>,
+    ) -> Option<PanelRequest> {
+        let mut events = vec![Event::PointerMoved(at)];
+        events.extend(pressed.map(|pressed| Event::PointerButton {
+            pos: at,
+            button: PointerButton::Primary,
+            pressed,
+            modifiers: Modifiers::default(),
+        }));
+        let input = RawInput {
+            screen_rect: Some(Rect::from_min_size(Pos2::ZERO, vec2(640.0, 360.0))),
+            events,
+            ..RawInput::default()
+        };
+        let mut request = None;
+        let mut output = ctx.run_ui(input, |ui| {
+            request = show(ui.ctx(), session, &HashMap::new()).or(request);
+        });
+        output.textures_delta.set.clear();
+        output.textures_delta.free.clear();
+        request
+    }
+
+    #[test]
+    fn a_click_takes_an_entry_and_a_click_elsewhere_closes_the_list() {
+        let mut session = session(&["v", "0.005"]);
+        session.act(RunAction::Scenes, 0);
+        let ctx = crate::hud::style::context();
+        let middle = Pos2::new(200.0, 180.0);
+        for _ in 0..3 {
+            assert_eq!(draw(&ctx, &session, middle, None), None);
+        }
+        draw(&ctx, &session, middle, Some(true));
+        let request = draw(&ctx, &session, middle, Some(false));
+        let Some(PanelRequest::TakeEntry(number)) = request else {
+            panic!("{request:?}");
+        };
+        assert!(panel::apply(&mut session, PanelRequest::TakeEntry(number)));
+        let name = a3_scenes::SCENES[number].name;
+        assert_eq!(session.runs.first().scene().name, name);
+        session.act(RunAction::Scenes, 0);
+        let corner = Pos2::new(4.0, 4.0);
+        for _ in 0..2 {
+            assert_eq!(draw(&ctx, &session, corner, None), None);
+        }
+        let request = draw(&ctx, &session, corner, Some(true));
+        assert_eq!(request, Some(PanelRequest::CloseList));
+        assert!(!panel::apply(&mut session, PanelRequest::CloseList) && session.list.is_none());
+    }
+}

@@ -1,0 +1,242 @@
+//! The pane of questions: a button for each, what it is asked about, and its answer.
+
+use egui::{Align2, Color32, Context, FontId, Id, Rect, Sense, Ui, pos2, vec2};
+
+use super::super::docked::docked;
+use super::super::panel::{PanelRequest, Request, button};
+use super::super::style::{FAINT, TEXT};
+use super::answer;
+use super::chip::{INK, chip};
+use crate::session::{MeasureRequest, Progress, Question, Session};
+
+/// Smallest and largest width of the pane (points), and its share of the window's width between
+/// them.
+const WIDTH: (f32, f32, f32) = (420.0, 860.0, 0.46);
+/// Smallest width of a window with the pane beside the picture (points). In a narrower one, the
+/// pane covers the picture.
+const MIN_WIDTH_BESIDE: f32 = 700.0;
+/// Distance of the contents from the edges (points).
+const MARGIN: f32 = 16.0;
+/// Height of the title, of a row of buttons, and distance between rows (points).
+const HEIGHTS: [f32; 3] = [38.0, 28.0, 7.0];
+/// Width of the pane above which the questions are in one row (points).
+const ONE_ROW_WIDTH: f32 = 640.0;
+/// Colour of the track of a progress.
+const TRACK: Color32 = Color32::from_rgb(200, 202, 207);
+
+/// Returns whether the pane is visible: it is open, and the help does not hide it.
+pub fn is_shown(session: &Session) -> bool {
+    session.measuring.open && !session.readings.help
+}
+
+/// Returns the width of the pane in a window of a width (points).
+fn width(window: f32) -> f32 {
+    let (least, most, share) = WIDTH;
+    if window < MIN_WIDTH_BESIDE {
+        window
+    } else {
+        (share * window).round().clamp(least, most)
+    }
+}
+
+/// Returns the size (px) of the picture beside the pane, in a window of `size` (px) at `scale`
+/// pixels per point.
+pub fn picture_size(size: (u32, u32), scale: f32) -> (u32, u32) {
+    let window = size.0 as f32 / scale;
+    if window < MIN_WIDTH_BESIDE {
+        return size;
+    }
+    let taken = (width(window) * scale).round() as u32;
+    (size.0.saturating_sub(taken).max(1), size.1)
+}
+
+/// Draws the pane, if it is visible, and returns the request of the mouse.
+pub fn show(ctx: &Context, session: &Session) -> Option<Request> {
+    if !is_shown(session) {
+        return None;
+    }
+    let window = ctx.viewport_rect();
+    let rect = Rect::from_min_max(
+        pos2(window.right() - width(window.width()), window.top()),
+        window.right_bottom(),
+    );
+    let request = docked(ctx, "measure", rect, |ui| {
+        ui.set_clip_rect(rect);
+        contents(ui, rect.shrink2(vec2(MARGIN, 0.0)), session)
+    });
+    request.map(|request| Request::Change(PanelRequest::Measure(request)))
+}
+
+/// Draws all rows from the top of a room. Returns the request of the mouse.
+fn contents(ui: &mut Ui, room: Rect, session: &Session) -> Option<MeasureRequest> {
+    let [heading, row, gap] = HEIGHTS;
+    let mut top = room.top();
+    let mut next = |height: f32| {
+        let place = Rect::from_min_size(pos2(room.left(), top), vec2(room.width(), height));
+        top += height + gap;
+        place
+    };
+    let mut request = head(ui, next(heading - gap));
+    let columns = if room.width() > ONE_ROW_WIDTH { 4 } else { 2 };
+    for questions in Question::ALL.chunks(columns) {
+        request = tabs(ui, next(row), session, questions).or(request);
+    }
+    request = settings(ui, next(row), session).or(request);
+    let measuring = &session.measuring;
+    let going = measuring.progress();
+    if let Some((question, progress, stopping)) = &going {
+        bar(ui, next(row), *question, progress, *stopping);
+    }
+    let known = measuring.known();
+    if let Some(known) = known {
+        let line = next(14.0);
+        let font = FontId::proportional(12.5);
+        let at = line.left_center();
+        let painter = ui.painter().with_clip_rect(line.expand(4.0));
+        painter.text(at, Align2::LEFT_CENTER, &known.of, font, FAINT);
+    }
+    let below = pos2(room.right(), room.bottom() - 10.0);
+    let room = Rect::from_min_max(pos2(room.left(), top), below);
+    match known.map(|known| &known.answer) {
+        Some(Ok(found)) => {
+            let panes = session.runs.panes.iter().map(|pane| &pane.simulation);
+            let shown: Vec<_> = panes.map(|run| (run.method(), run.control())).collect();
+            request = answer::show(ui, room, found, &shown).or(request);
+        }
+        Some(Err(why)) => answer::say(ui, room, why),
+        None => answer::say(ui, room, measuring.question.about()),
+    }
+    request
+}
+
+/// Draws the title, and a button that hides the pane.
+fn head(ui: &Ui, rect: Rect) -> Option<MeasureRequest> {
+    let painter = ui.painter();
+    let font = FontId::proportional(17.0);
+    painter.text(
+        rect.left_center() + vec2(0.0, 2.0),
+        Align2::LEFT_CENTER,
+        "Measure",
+        font,
+        TEXT,
+    );
+    let place = Rect::from_center_size(rect.right_center() + vec2(-8.0, 2.0), vec2(24.0, 24.0));
+    let response = ui.interact(place, Id::unique("hide measure"), Sense::click());
+    let colour = if response.hovered() { TEXT } else { FAINT };
+    let at = place.center();
+    let font = FontId::proportional(14.0);
+    painter.text(at, Align2::CENTER_CENTER, "✖", font, colour);
+    let at = place.left_center() - vec2(8.0, 0.0);
+    let font = FontId::proportional(12.5);
+    painter.text(at, Align2::RIGHT_CENTER, "q", font, FAINT);
+    response.clicked().then_some(MeasureRequest::Close)
+}
+
+/// Draws a row of questions. Returns the request of the mouse.
+fn tabs(ui: &Ui, rect: Rect, session: &Session, of: &[Question]) -> Option<MeasureRequest> {
+    let gap = 6.0;
+    let width = (rect.width() - gap * (of.len() - 1) as f32) / of.len() as f32;
+    let mut request = None;
+    for (k, question) in of.iter().enumerate() {
+        let left = rect.left() + k as f32 * (width + gap);
+        let place = Rect::from_min_size(pos2(left, rect.top()), vec2(width, rect.height()));
+        let chosen = session.measuring.question == *question;
+        if choice(ui, place, question.words(), chosen) {
+            request = Some(MeasureRequest::Ask(*question));
+        }
+    }
+    request
+}
+
+/// Draws a button that is chosen or not, and returns whether it was clicked.
+fn choice(ui: &Ui, rect: Rect, words: &str, chosen: bool) -> bool {
+    let response = ui.interact(rect, Id::unique(("choice", words)), Sense::click());
+    chip(ui, rect, &response, words, chosen);
+    response.clicked()
+}
+
+/// Draws what the question depends on, and the button that measures or stops.
+fn settings(ui: &Ui, rect: Rect, session: &Session) -> Option<MeasureRequest> {
+    let measuring = &session.measuring;
+    let mut request = None;
+    let mut left = rect.left();
+    let mut place = |width: f32| {
+        let place = Rect::from_min_size(pos2(left, rect.top()), vec2(width, rect.height()));
+        left += width;
+        place
+    };
+    for (words, on) in [("from now", false), ("the start", true)] {
+        if choice(
+            ui,
+            place(78.0).shrink(1.0),
+            words,
+            measuring.from_start == on,
+        ) {
+            request = Some(MeasureRequest::FromStart(on));
+        }
+    }
+    place(10.0);
+    match measuring.question {
+        Question::Chart => {
+            for (words, on) in [("work", false), ("time", true)] {
+                if choice(ui, place(54.0).shrink(1.0), words, measuring.timed == on) {
+                    request = Some(MeasureRequest::Timed(on));
+                }
+            }
+        }
+        Question::Choose | Question::Simplify => {
+            for (words, finer) in [("−", true), ("+", false)] {
+                if finer {
+                    let at = place(42.0).left_center() + vec2(2.0, 0.0);
+                    let font = FontId::proportional(13.0);
+                    ui.painter()
+                        .text(at, Align2::LEFT_CENTER, "error", font, FAINT);
+                }
+                if choice(ui, place(26.0).shrink(1.0), words, false) {
+                    request = Some(MeasureRequest::Error { finer });
+                }
+                if finer {
+                    let at = place(62.0).center();
+                    let font = FontId::proportional(13.0);
+                    let words = format!("1e-{} m", measuring.digits);
+                    ui.painter()
+                        .text(at, Align2::CENTER_CENTER, words, font, TEXT);
+                }
+            }
+        }
+        Question::Stability => {}
+    }
+    let width = (rect.right() - place(0.0).left()).clamp(92.0, 108.0);
+    let place = Rect::from_min_max(pos2(rect.right() - width, rect.top()), rect.max);
+    let response = ui.interact(place, Id::unique("measure it"), Sense::click());
+    let words = match (measuring.progress(), measuring.known()) {
+        (Some(_), _) => "stop",
+        (None, Some(_)) => "again",
+        (None, None) => "measure",
+    };
+    button(ui, place, &response, words, "Enter");
+    response
+        .clicked()
+        .then_some(MeasureRequest::Toggle)
+        .or(request)
+}
+
+/// Draws the progress of a measurement.
+fn bar(ui: &Ui, rect: Rect, question: Question, progress: &Progress, stopping: bool) {
+    let painter = ui.painter();
+    let track = Rect::from_min_max(pos2(rect.left(), rect.bottom() - 7.0), rect.max);
+    painter.rect_filled(track, 3.5, TRACK);
+    let right = track.left() + progress.share() * track.width();
+    painter.rect_filled(track.with_max_x(right), 3.5, INK);
+    let stage = if stopping {
+        "stopping"
+    } else {
+        &progress.stage
+    };
+    let words = format!("{}  {stage}", question.words());
+    let font = FontId::proportional(12.5);
+    painter.text(rect.left_top(), Align2::LEFT_TOP, words, font, TEXT);
+    let percent = format!("{:.0} %", 100.0 * progress.share());
+    let font = FontId::proportional(12.5);
+    painter.text(rect.right_top(), Align2::RIGHT_TOP, percent, font, FAINT);
+}

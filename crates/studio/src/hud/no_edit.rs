@@ -1,0 +1,11 @@
+//! The tools that edit the scene, in the page: there are none, because it has to stay small.
+
+use egui::Context;
+
+use super::panel::PanelRequest;
+use crate::session::Session;
+
+/// Draws nothing.
+pub fn show(_: &Context, _: &Session) -> Option<PanelRequest> {
+    None
+}

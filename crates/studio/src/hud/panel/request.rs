@@ -1,0 +1,248 @@
+//! Requests of keys and mouse to the panel and to the open list.
+
+use super::dial::{Dial, Turn};
+use super::knobs::{KNOBS, Knob, is_left_out};
+use super::values::pane;
+use super::{measure, parts};
+use crate::session::{
+    Action, LessonRequest, Measure, MeasureRequest, PlotRequest, Session, TextKey, Tool, Topic,
+    asking, panes,
+};
+
+/// A request of the mouse.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Request {
+    /// Perform the action of a key.
+    Act(Action),
+    /// Change the panel, a knob, the open list, or the moment.
+    Change(PanelRequest),
+    /// Go on in a lesson.
+    Learn(LessonRequest),
+    /// Change the plots.
+    Plot(PlotRequest),
+}
+
+/// A request of the mouse to the panel, the open list or the timeline.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum PanelRequest {
+    /// Choose a row, by its number in the table of knobs.
+    ChooseRow(usize),
+    /// Start to type a value for the knob of a number.
+    Type(usize),
+    /// Turn the knob of a number.
+    Turn(usize, Turn),
+    /// Accept the entry of a number in the open list.
+    TakeEntry(usize),
+    /// Close the list.
+    CloseList,
+    /// Go to a share of the timeline.
+    GoTo(f32),
+    /// Ask something about the scene, or use an answer.
+    Measure(MeasureRequest),
+    /// Choose a solver for another pane beside that of a number.
+    AddPane(usize),
+    /// Remove the pane of a number.
+    RemovePane(usize),
+    /// Choose a tool.
+    #[cfg_attr(
+        target_arch = "wasm32",
+        allow(dead_code, reason = "the page has no tools")
+    )]
+    Tool(Tool),
+    /// Set a quantity of what the tools add.
+    #[cfg_attr(
+        target_arch = "wasm32",
+        allow(dead_code, reason = "the page has no tools")
+    )]
+    SetMeasure(Measure, f64),
+}
+
+/// A key of the panel.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PanelKey {
+    /// Chooses the row above.
+    Up,
+    /// Chooses the row below.
+    Down,
+    /// Turns the knob down.
+    Left,
+    /// Turns the knob up.
+    Right,
+    /// Toggles a switch; turns another knob to the scene's own value.
+    Toggle,
+}
+
+/// Returns whether the panel is visible: it is open, and the help does not hide it.
+pub fn is_shown(session: &Session) -> bool {
+    session.panel.open && !session.readings.help
+}
+
+/// Returns the knobs that apply to the panel's pane, with their numbers in the table.
+pub fn rows(session: &Session) -> Vec<(usize, &'static Knob, Dial)> {
+    let at = pane(session);
+    let rows = KNOBS.iter().enumerate();
+    rows.filter_map(|(k, knob)| {
+        let mut dial = (knob.read)(session, at)?;
+        if is_left_out(session, knob.name) {
+            dial.words = "left out".into();
+        }
+        Some((k, knob, dial))
+    })
+    .collect()
+}
+
+/// Returns whether the parts of a scene can be measured: that needs threads.
+pub fn can_measure() -> bool {
+    !cfg!(target_arch = "wasm32")
+}
+
+/// Returns the number of the row that measures the parts, after those of the knobs.
+pub fn measuring_row() -> usize {
+    KNOBS.len()
+}
+
+/// Returns the number of the row of a part.
+pub fn part_row(part: usize) -> usize {
+    measuring_row() + 1 + part
+}
+
+/// Returns whether the panel shows the parts of the scene: the chosen row is among them.
+pub fn shows_parts(session: &Session) -> bool {
+    session.panel.row >= measuring_row() && !session.tuning.parts.is_empty()
+}
+
+/// Returns the numbers of all rows: of the knobs that apply, then of the parts.
+pub fn numbers(session: &Session) -> Vec<usize> {
+    let knobs = rows(session).into_iter().map(|(k, ..)| k);
+    let count = session.tuning.parts.len();
+    let measuring = (count > 0 && can_measure()).then(measuring_row);
+    let parts = (0..count).map(part_row);
+    knobs.chain(measuring).chain(parts).collect()
+}
+
+/// Handles a key, and returns whether the panel or the questions take it. With `other`, a knob
+/// turns by the other step of its scale.
+pub fn press(session: &mut Session, key: PanelKey, other: bool) -> bool {
+    if session.measuring.open && key != PanelKey::Up && key != PanelKey::Down {
+        let request = match key {
+            PanelKey::Left => MeasureRequest::Ask(session.measuring.question.neighbour(-1)),
+            PanelKey::Right => MeasureRequest::Ask(session.measuring.question.neighbour(1)),
+            _ => MeasureRequest::Toggle,
+        };
+        apply(session, PanelRequest::Measure(request));
+        return true;
+    }
+    if !is_shown(session) {
+        return false;
+    }
+    let rows = numbers(session);
+    // If the present scene lacks the chosen row, use the nearest one above it.
+    let chosen = session.panel.row;
+    let at = rows.iter().rposition(|k| *k <= chosen).unwrap_or(0);
+    let turn = match key {
+        PanelKey::Up => {
+            // From the first row, to the last of the same page.
+            let knobs = self::rows(session).len();
+            session.panel.row = rows[at.checked_sub(1).unwrap_or(knobs.saturating_sub(1))];
+            return true;
+        }
+        PanelKey::Down => {
+            session.panel.row = rows[(at + 1) % rows.len()];
+            return true;
+        }
+        PanelKey::Left => Turn::By { up: false, other },
+        PanelKey::Right => Turn::By { up: true, other },
+        PanelKey::Toggle => Turn::Toggle,
+    };
+    apply(session, PanelRequest::Turn(rows[at], turn));
+    true
+}
+
+/// Carries out a request, and returns whether that changed the scene.
+pub fn apply(session: &mut Session, request: PanelRequest) -> bool {
+    let at = pane(session);
+    // Discard a value that was typed but not accepted.
+    session.panel.typed = None;
+    match request {
+        PanelRequest::Type(row) => {
+            session.panel.row = row;
+            session.panel.typed = Some(String::new());
+        }
+        PanelRequest::ChooseRow(row) => session.panel.row = row,
+        PanelRequest::Turn(row, turn) => {
+            session.panel.row = row;
+            turn_row(session, at, row, turn);
+        }
+        PanelRequest::TakeEntry(number) => return session.take_entry(number),
+        PanelRequest::CloseList => session.list = None,
+        PanelRequest::GoTo(share) => session.scrub_to(share),
+        PanelRequest::Measure(request) => return asking::apply(session, request, at),
+        PanelRequest::AddPane(pane) => session.toggle_list(Topic::Beside { pane }),
+        PanelRequest::RemovePane(pane) => return panes::remove(session, pane),
+        PanelRequest::Tool(tool) => session.panel.editor.tool = tool,
+        PanelRequest::SetMeasure(measure, value) => session.panel.editor.set(measure, value),
+    }
+    false
+}
+
+/// Turns the knob or the switch of a row.
+fn turn_row(session: &mut Session, at: usize, row: usize, turn: Turn) {
+    if let Some(knob) = KNOBS.get(row) {
+        return knob.turn(session, at, turn);
+    }
+    let Some(part) = row.checked_sub(part_row(0)) else {
+        return measure::toggle(session);
+    };
+    let was_measured = session.effects.time().is_some();
+    let before = parts::is_in(session, part);
+    parts::turn(session, part, turn);
+    if was_measured && parts::is_in(session, part) != before {
+        measure::begin(session);
+    }
+}
+
+/// Handles a key while a value is typed for the chosen row, and returns whether one is.
+pub fn press_text(session: &mut Session, key: TextKey) -> bool {
+    if !is_shown(session) {
+        session.panel.typed = None;
+    }
+    let Some(typed) = &mut session.panel.typed else {
+        return false;
+    };
+    match key {
+        TextKey::Type(letter) => typed.push(letter),
+        TextKey::Erase => drop(typed.pop()),
+        TextKey::Cancel => session.panel.typed = None,
+        TextKey::Move(_) => {}
+        TextKey::Accept => {
+            let (typed, row) = (typed.clone(), session.panel.row);
+            match value(session, row, &typed) {
+                Ok(value) => {
+                    apply(session, PanelRequest::Turn(row, Turn::Exactly(value)));
+                }
+                Err(why) => session.readings.say(format!("{}: {why}", KNOBS[row].name)),
+            }
+        }
+    }
+    true
+}
+
+/// Parses a typed value: a number, or a fraction such as 1/60. Fails if it is neither, or outside
+/// the scale.
+fn value(session: &Session, row: usize, typed: &str) -> Result<f64, String> {
+    let dial = (KNOBS[row].read)(session, pane(session));
+    let [from, to] = dial
+        .and_then(|dial| dial.scale.ends())
+        .ok_or("this scene has no such value")?;
+    if typed.contains(',') {
+        let point = typed.replace(',', ".");
+        return Err(format!("use a decimal point: {point}"));
+    }
+    let number = |text: &str| text.trim().parse::<f64>().ok();
+    let value = match typed.split_once('/') {
+        Some((above, below)) => number(above).zip(number(below)).map(|(a, b)| a / b),
+        None => number(typed),
+    };
+    let value = value.filter(|value| (from..=to).contains(value));
+    value.ok_or_else(|| format!("must be a number from {from} to {to}"))
+}

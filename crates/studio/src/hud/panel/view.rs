@@ -1,0 +1,194 @@
+//! Drawing of the panel: a row for each knob, plots if they fit, and buttons.
+
+use egui::{Align2, Context, FontId, Id, Rect, Sense, Stroke, pos2, vec2};
+
+use super::super::docked::docked;
+use super::super::style::{FAINT, TEXT};
+use super::request::{self, PanelRequest, Request, is_shown, rows};
+use super::row::{self, Row};
+use super::values::pane;
+use super::{part_rows, plots};
+use crate::session::{Action, RunAction, Session, WindowAction};
+
+/// Smallest and largest width of the panel (points), and its share of the window's width between
+/// them.
+const WIDTH: (f32, f32, f32) = (304.0, 460.0, 0.2);
+/// Smallest width of a window with the panel beside the picture (points). In a narrower one, the
+/// panel covers the picture.
+const MIN_WIDTH_BESIDE: f32 = 480.0;
+/// Distance of the rows from the edges of the panel (points).
+pub(super) const MARGIN: f32 = 14.0;
+/// Height of the title (points).
+const TITLE_HEIGHT: f32 = 36.0;
+/// Distance between the titles (points).
+const TITLE_GAP: f32 = 18.0;
+/// Height of the buttons and their margins (points).
+const BUTTONS_HEIGHT: f32 = 46.0;
+/// Distance between groups of rows (points).
+const GROUP_GAP: f32 = 7.0;
+
+/// Returns the width of the panel in a window of a width (points).
+pub(super) fn width(window: f32) -> f32 {
+    let (least, most, share) = WIDTH;
+    if window < MIN_WIDTH_BESIDE {
+        window
+    } else {
+        (share * window).round().clamp(least, most)
+    }
+}
+
+/// Returns the size (px) of the picture beside the panel, in a window of `size` (px) at `scale`
+/// pixels per point.
+pub fn picture_size(session: &Session, size: (u32, u32), scale: f32) -> (u32, u32) {
+    if !is_shown(session) {
+        return size;
+    }
+    let window = size.0 as f32 / scale;
+    if window < MIN_WIDTH_BESIDE {
+        return size;
+    }
+    let taken = (width(window) * scale).round() as u32;
+    (size.0.saturating_sub(taken).max(1), size.1)
+}
+
+/// Draws the panel, if it is visible, and returns the request of the mouse.
+pub fn show(ctx: &Context, session: &Session) -> Option<Request> {
+    if !is_shown(session) {
+        return None;
+    }
+    let window = ctx.viewport_rect();
+    let rect = Rect::from_min_max(
+        pos2(window.right() - width(window.width()), window.top()),
+        window.right_bottom(),
+    );
+    docked(ctx, "panel", rect, |ui| {
+        let inner = rect.shrink2(vec2(MARGIN, 0.0));
+        let request = title(ui, inner, session).map(Request::Change);
+        let room = Rect::from_min_max(
+            pos2(inner.left(), inner.top() + TITLE_HEIGHT),
+            pos2(inner.right(), inner.bottom() - BUTTONS_HEIGHT),
+        );
+        let (top, turned) = if request::shows_parts(session) {
+            part_rows::show(ui, room, session)
+        } else {
+            knobs(ui, room, session)
+        };
+        let request = turned.map(Request::Change).or(request);
+        let request = buttons(ui, inner, session).or(request);
+        let room = Rect::from_min_max(
+            pos2(inner.left(), top + 12.0),
+            pos2(inner.right(), inner.bottom() - BUTTONS_HEIGHT),
+        );
+        let pane = &session.runs.panes[pane(session)];
+        let pointer = ui.ctx().pointer_latest_pos();
+        plots::draw(ui.painter(), room, &pane.samples, pointer);
+        request
+    })
+}
+
+/// Draws the rows of the knobs from the top of a room. Returns the bottom of the last row, and the
+/// request of the mouse.
+fn knobs(ui: &egui::Ui, room: Rect, session: &Session) -> (f32, Option<PanelRequest>) {
+    let mut request = None;
+    let rows = rows(session);
+    let chosen = rows.iter().rposition(|(k, ..)| *k <= session.panel.row);
+    let chosen = chosen.unwrap_or(0);
+    // In a low window, draw as many rows as fit, including the chosen one.
+    let fit = ((room.height() / row::HEIGHT) as usize).max(1);
+    let gap = if fit > rows.len() { GROUP_GAP } else { 0.0 };
+    let first = (chosen + 1).saturating_sub(fit);
+    let mut top = room.top();
+    for (n, (k, knob, dial)) in rows.iter().enumerate().skip(first).take(fit) {
+        if knob.starts_group && n > first {
+            top += gap;
+        }
+        let place = Rect::from_min_size(pos2(room.left(), top), vec2(room.width(), row::HEIGHT));
+        let row = Row {
+            number: *k,
+            knob,
+            dial,
+            chosen: n == chosen,
+            typed: session.panel.typed.as_deref().filter(|_| n == chosen),
+        };
+        request = row.show(ui, place).or(request);
+        top += row::HEIGHT;
+    }
+    (top, request)
+}
+
+/// Draws the titles of the knobs and of the parts, between which a click changes. Returns the
+/// request of the mouse.
+fn title(ui: &egui::Ui, inner: Rect, session: &Session) -> Option<PanelRequest> {
+    let painter = ui.painter();
+    let line = inner.top() + 19.0;
+    let named = match session.runs.panes.len() {
+        1 => String::new(),
+        count => format!("  pane {} of {count}", pane(session) + 1),
+    };
+    let on_parts = request::shows_parts(session);
+    let mut titles = vec![("Tuning", !on_parts, 0)];
+    if !session.tuning.parts.is_empty() {
+        let first = request::numbers(session).into_iter();
+        let first = first.filter(|row| *row >= request::measuring_row()).min();
+        titles.push(("Parts", on_parts, first.unwrap_or(0)));
+    }
+    let (mut left, mut request) = (inner.left(), None);
+    for (name, shown, first) in titles {
+        let words = format!("{name}{}", if shown { &named } else { "" });
+        let font = FontId::proportional(17.0);
+        let galley = painter.layout_no_wrap(words, font, if shown { TEXT } else { FAINT });
+        let rect = Align2::LEFT_CENTER.anchor_size(pos2(left, line), galley.size());
+        let response = ui.interact(rect, Id::unique(("title", name)), Sense::click());
+        painter.galley(rect.min, galley, TEXT);
+        if shown {
+            let line = rect.bottom() + 1.0;
+            painter.hline(rect.x_range(), line, Stroke::new(1.6, row::INK));
+        } else if response
+            .on_hover_cursor(egui::CursorIcon::PointingHand)
+            .clicked()
+        {
+            request = Some(PanelRequest::ChooseRow(first));
+        }
+        left = rect.right() + TITLE_GAP;
+    }
+    let at = pos2(inner.right(), line);
+    painter.text(
+        at,
+        Align2::RIGHT_CENTER,
+        "Tab",
+        FontId::proportional(12.5),
+        FAINT,
+    );
+    request
+}
+
+/// Draws the buttons: write a scene file, write the plots, start or stop a live film, and film the
+/// last seconds.
+fn buttons(ui: &egui::Ui, inner: Rect, session: &Session) -> Option<Request> {
+    let last = format!("last {} s", session.panel.film_seconds);
+    let live = session.readings.film.as_ref().is_some_and(|film| film.live);
+    let record = if live { "stop" } else { "film" };
+    let buttons = [
+        ("scene", "f", Action::Run(RunAction::WriteScene)),
+        ("plots", "u", Action::Window(WindowAction::WritePlots)),
+        (record, "m", Action::Window(WindowAction::Record)),
+        (&last, "n", Action::Window(WindowAction::FilmLast)),
+    ];
+    let gap = 5.0;
+    let width = (inner.width() - 3.0 * gap) / 4.0;
+    let mut request = None;
+    for (k, (words, key, action)) in buttons.into_iter().enumerate() {
+        let left = inner.left() + k as f32 * (width + gap);
+        let rect = Rect::from_min_max(
+            pos2(left, inner.bottom() - BUTTONS_HEIGHT + 8.0),
+            pos2(left + width, inner.bottom() - 10.0),
+        );
+        let response = ui.interact(rect, Id::unique(("button", k)), Sense::click());
+        row::button(ui, rect, &response, words, key);
+        request = response
+            .clicked()
+            .then_some(Request::Act(action))
+            .or(request);
+    }
+    request
+}

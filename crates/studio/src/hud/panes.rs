@@ -1,0 +1,331 @@
+//! The text over several panes: a bar with their common readings, and a sheet for each pane.
+
+use egui::{Area, Context, Frame, Id, Margin, Pos2, Rect, Ui};
+
+use super::blow_up::explain;
+use super::layout;
+use super::legend::legend;
+use super::style::{PAPER, faint, sheet, text, title};
+use super::words::{self, digits, energy, frames, scene, speed, states, time};
+use crate::session::{Pane, Readings};
+
+/// Distance of a sheet from the edge of its pane (points).
+const MARGIN: f32 = 8.0;
+
+/// Draws the bar, and a sheet in each pane unless the help is shown.
+pub fn show(ctx: &Context, panes: &[Pane], readings: &Readings) {
+    let scale = ctx.pixels_per_point();
+    let window = ctx.content_rect();
+    let size = window.size() * scale;
+    let size = (size.x.round() as u32, size.y.round() as u32);
+    let tiles = layout::tiles(panes.len(), size, scale).into_iter();
+    let rects: Vec<_> = tiles
+        .map(|tile| {
+            let [x, y, width, height] =
+                [tile.x, tile.y, tile.width, tile.height].map(|side| side as f32 / scale);
+            Rect::from_min_size(Pos2::new(x, y), egui::vec2(width, height))
+        })
+        .collect();
+    let above = Rect::from_min_max(window.min, Pos2::new(window.right(), rects[0].top()));
+    within(ctx, "bar", above, |ui| bar(ui, panes, readings));
+    if readings.help {
+        return;
+    }
+    for (k, (pane, rect)) in panes.iter().zip(rects).enumerate() {
+        within(ctx, &format!("pane {k}"), rect, |ui| {
+            let low = layout::is_low(rect.height());
+            // A narrow sheet hides little of the picture, but in a low pane the text needs a wide
+            // one.
+            let narrow = layout::caption_width(rect.width());
+            ui.set_max_width(if low { rect.width() } else { narrow });
+            Frame::new()
+                .outer_margin(MARGIN)
+                .show(ui, |ui| sheet(ui, |ui| caption(ui, pane, readings, low)));
+        });
+    }
+}
+
+/// Draws `contents` clipped to a rectangle, without taking clicks.
+fn within(ctx: &Context, name: &str, rect: Rect, contents: impl FnOnce(&mut Ui)) {
+    Area::new(Id::unique(name))
+        .fixed_pos(rect.min)
+        .constrain(false)
+        .interactable(false)
+        .show(ctx, |ui| {
+            ui.shrink_clip_rect(rect);
+            ui.set_max_width(rect.width());
+            contents(ui);
+        });
+}
+
+/// Draws the bar: scene and message, or the common readings of all panes.
+fn bar(ui: &mut Ui, panes: &[Pane], readings: &Readings) {
+    let run = &panes[0].simulation;
+    let (rect, width) = (ui.clip_rect(), ui.max_rect().width());
+    ui.painter().rect_filled(rect, 0.0, PAPER);
+    Frame::new()
+        .inner_margin(Margin::symmetric(12, 5))
+        .show(ui, |ui| {
+            ui.set_width(width - 24.0);
+            ui.horizontal_wrapped(|ui| {
+                ui.spacing_mut().item_spacing = egui::vec2(14.0, 1.0);
+                if let Some(film) = &readings.film {
+                    words::film(ui, film);
+                }
+                // Wrap between readings, not within them.
+                let mut say = |words| ui.add(egui::Label::new(words).extend());
+                say(title(scene(run)).size(15.0));
+                if let Some(message) = &readings.message {
+                    ui.label(text(message));
+                    return;
+                }
+                // The latest time: some runs may have diverged.
+                let latest = panes
+                    .iter()
+                    .map(|pane| &pane.simulation)
+                    .max_by(|a, b| a.time().total_cmp(&b.time()));
+                say(text(time(latest.unwrap_or(run))));
+                // In a wide bar, the states below include the pause.
+                let stands = readings.paused && width > 600.0;
+                if let Some(speed) = speed(readings).filter(|_| !stands) {
+                    say(text(speed));
+                }
+                if let Some(slow) = words::slow_motion(readings) {
+                    say(faint(format!("slow  {slow}")));
+                }
+                if let Some([frames, each]) = frames(readings).filter(|_| width > 900.0) {
+                    say(text(format!("{frames},  {each}")));
+                }
+                if width > 600.0 {
+                    say(states(run, readings));
+                }
+                if let Some(without) = words::without(readings) {
+                    say(text(without));
+                }
+                if readings.in_window {
+                    say(faint("h  help"));
+                }
+            });
+        });
+}
+
+/// Writes the readings of a pane, a line for each. In a low pane, writes only the most important
+/// ones, some of them side by side.
+fn caption(ui: &mut Ui, pane: &Pane, readings: &Readings, low: bool) {
+    let run = &pane.simulation;
+    ui.label(title(run.method().title).size(14.0));
+    if let Some(blow_up) = run.blow_up() {
+        return explain(ui, pane, &blow_up);
+    }
+    let cost = pane.cost.map_or("-".into(), |cost| {
+        format!(
+            "{:.0} evaluations, {} ms per simulated s",
+            cost.evaluations,
+            digits(cost.computing)
+        )
+    });
+    let step = match words::steps(run) {
+        Some(steps) => ("steps", text(format!("{},  {steps}", run.control()))),
+        None => (
+            "step",
+            text(format!("{} s", words::seconds(run.control().value()))),
+        ),
+    };
+    let limit = words::limit(pane).map(|(words, mark)| ("limit", mark.text(&words)));
+    let time = ("time", text(time(run)));
+    let error = ("error", text(error(pane, readings)));
+    let (name, value) = energy(pane);
+    let energy = (name, text(value));
+    let gained = words::gained(run).map(|words| ("gained", words));
+    let broken = words::worst_constraint(run).map(|words| ("constraint", words));
+    let contact = words::contact(run).map(|words| ("contact", text(words)));
+    let cost = ("cost", text(cost));
+    let lines = if low {
+        vec![vec![step, time], vec![error], vec![cost]]
+    } else {
+        vec![
+            vec![step],
+            limit.into_iter().collect(),
+            vec![time],
+            vec![error],
+            vec![energy],
+            gained.into_iter().collect(),
+            broken.into_iter().collect(),
+            contact.into_iter().collect(),
+            vec![cost],
+        ]
+    };
+    for line in lines.iter().filter(|line| !line.is_empty()) {
+        let mut job = egui::text::LayoutJob::default();
+        for (k, (name, value)) in line.iter().enumerate() {
+            let gap = if k > 0 { "    " } else { "" };
+            for words in [faint(format!("{gap}{name}  ")), value.clone()] {
+                words.append_to(
+                    &mut job,
+                    ui.style(),
+                    egui::FontSelection::Default,
+                    egui::Align::BOTTOM,
+                );
+            }
+        }
+        ui.label(job);
+    }
+    if !low {
+        legend(ui, &pane.show);
+    }
+}
+
+/// Returns the distance from the reference, or the reason why it is unknown.
+fn error(pane: &Pane, readings: &Readings) -> String {
+    let time = pane.simulation.time();
+    let past = readings.predictable.filter(|until| time > *until);
+    match (pane.error, readings.no_error) {
+        (Some(error), _) => {
+            let past = past.map(|until| format!("  (past {} s it says little)", digits(until)));
+            format!("{} m{}", digits(error), past.unwrap_or_default())
+        }
+        (None, Some(why)) => format!("-  ({why})"),
+        (None, None) => "-".into(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::hud::{pane, read};
+    use crate::session::Cost;
+
+    const SIZES: [[f32; 2]; 7] = [
+        [1280.0, 720.0],
+        [800.0, 600.0],
+        [640.0, 480.0],
+        [500.0, 400.0],
+        [400.0, 500.0],
+        [260.0, 860.0],
+        [720.0, 1280.0],
+    ];
+
+    fn panes(count: usize) -> Vec<Pane> {
+        let methods = [("t", 0.0025), ("e", 0.0002), ("s", 0.00125), ("v", 0.005)];
+        let mut panes: Vec<_> = methods[..count]
+            .iter()
+            .map(|(method, step)| pane("mit-sphere", method, *step))
+            .collect();
+        for pane in &mut panes {
+            pane.simulation.take_steps(10).unwrap();
+            (pane.energy, pane.error) = (Some(-12345.6789), Some(0.000_123_4));
+            pane.cost = Some(Cost {
+                evaluations: 10000.0,
+                computing: 123.4,
+            });
+        }
+        panes
+    }
+
+    fn check(panes: &[Pane], readings: &Readings) -> Vec<String> {
+        SIZES
+            .map(|size| {
+                let (words, sheets) = read(panes, readings, size);
+                let tiles = layout::tiles(panes.len(), (size[0] as u32, size[1] as u32), 1.0);
+                assert_eq!(sheets.len(), 1 + panes.len(), "a bar and a sheet each");
+                for (k, a) in sheets.iter().enumerate() {
+                    assert!(
+                        a.right() <= size[0] && a.bottom() <= size[1],
+                        "{a:?} in {size:?}"
+                    );
+                    assert!(
+                        sheets[..k].iter().all(|b| !a.intersects(*b)),
+                        "{sheets:?} in {size:?}"
+                    );
+                }
+                for (tile, sheet) in tiles.iter().zip(&sheets[1..]) {
+                    let end = ((tile.x + tile.width) as f32, (tile.y + tile.height) as f32);
+                    assert!(
+                        sheet.left() >= tile.x as f32
+                            && sheet.top() >= tile.y as f32
+                            && sheet.right() <= end.0
+                            && sheet.bottom() <= end.1,
+                        "{sheet:?} in {tile:?} of {size:?}"
+                    );
+                }
+                words
+            })
+            .to_vec()
+    }
+
+    #[test]
+    fn every_pane_shows_its_own_readings_and_nothing_overlaps() {
+        let readings = Readings {
+            rate: 59.6,
+            factor: 0.98,
+            in_window: true,
+            ..Readings::default()
+        };
+        let (words, _) = read(&panes(4), &readings, SIZES[0]);
+        assert!(words.contains("energy  -12345.679 J"), "{words}");
+        for count in 2..=4 {
+            for words in check(&panes(count), &readings) {
+                let words = words.replace('\n', " ");
+                for said in [
+                    "mit-sphere  15 × 15",
+                    "0.98 × real time",
+                    "h  help",
+                    "explicit trapezoid (Heun)",
+                    "step  0.0025 s",
+                    "h  help",
+                    "explicit Euler",
+                    "step  0.0002 s",
+                    "time  0.025 s",
+                    "time  0.0020 s",
+                    "error  1.23e-4 m",
+                    "cost  10000 evaluations, 123 ms per simulated s",
+                ] {
+                    assert!(words.contains(said), "{said} in {words}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn an_error_past_the_horizon_has_a_warning() {
+        let mut panes = panes(2);
+        let until = panes[0].simulation.time();
+        let later = &mut panes[1].simulation;
+        later.advance_to(until + 0.1).unwrap();
+        let readings = Readings {
+            predictable: Some(until),
+            ..Readings::default()
+        };
+        for words in check(&panes, &readings) {
+            assert_eq!(words.matches("it says little").count(), 1, "{words}");
+        }
+    }
+
+    #[test]
+    fn a_pane_that_blew_up_says_so_and_the_others_are_unchanged() {
+        let mut panes = panes(4);
+        panes[1]
+            .simulation
+            .set_control(a3_core::Control::Step(0.05))
+            .unwrap();
+        while panes[1].simulation.take_steps(1).is_ok() {}
+        let readings = Readings {
+            message: Some("There is nothing to swing here.".into()),
+            no_error: Some("the reference is too slow"),
+            ..Readings::default()
+        };
+        panes[0].error = None;
+        for words in check(&panes, &readings) {
+            let words = words.replace('\n', " ");
+            for said in [
+                "It blew up at step",
+                "A step of 0.05 s was too long for explicit Euler",
+                "nothing to swing",
+                "error  -  (the reference is too slow)",
+            ] {
+                assert!(words.contains(said), "{said} in {words}");
+            }
+            assert_eq!(words.matches("cost").count(), 3);
+        }
+    }
+}

@@ -1,0 +1,227 @@
+//! What is plotted, as a chart.
+
+use a3_plot::{CurveStyle, Line, LineChart, LinePanel, Marker};
+
+use super::super::words::{self, signed};
+use crate::session::{Kind, Mode, Pane, Pick, Row, Session, Trigger, Variable};
+
+/// Colours of picks or, in a comparison, of panes, that every kind of colour vision tells apart
+/// (Okabe and Ito, Tol).
+const COLOURS: [&str; 6] = [
+    "#0072b2", "#d55e00", "#009e73", "#332288", "#cc79a7", "#000000",
+];
+/// Dashes of picks in a comparison, in widths of the line.
+const DASHES: [&[f64]; 6] = [
+    &[],
+    &[5.0, 2.5],
+    &[1.5, 1.8],
+    &[7.0, 2.0, 1.5, 2.0],
+    &[3.0, 3.0],
+    &[9.0, 2.0, 1.5, 2.0, 1.5, 2.0],
+];
+
+/// A chart, with where its curves come from.
+pub struct Plotted {
+    pub chart: LineChart,
+    /// The variables on the axes of each panel; `None` for time.
+    pub variables: Vec<[Option<Variable>; 2]>,
+    /// The pane and the pick of each curve of each panel.
+    pub sources: Vec<Vec<[usize; 2]>>,
+}
+
+/// Returns the style of a pick in a pane.
+pub fn style(session: &Session, [pane, pick]: [usize; 2]) -> CurveStyle {
+    let is_alone = session.runs.panes.len() == 1;
+    let of = |k: usize| k % COLOURS.len();
+    CurveStyle {
+        colour: COLOURS[of(if is_alone { pick } else { pane })],
+        dash: if is_alone { &[] } else { DASHES[of(pick)] },
+        marker: Marker::Polygon(8, 0.0),
+    }
+}
+
+/// Returns the name of the run of a pane: its method and its step or tolerance.
+pub fn run_name(pane: &Pane) -> String {
+    let run = &pane.simulation;
+    format!("{} {}", run.method().name, run.control().value())
+}
+
+/// Returns the kinds of the picked particles, bodies and springs.
+pub fn kinds(session: &Session) -> Vec<Kind> {
+    let traces = &session.runs.panes[0].traces;
+    traces.iter().map(|(pick, _)| pick.kind()).collect()
+}
+
+/// Returns whether anything that is plotted has a variable.
+pub fn has(session: &Session, variable: Variable) -> bool {
+    kinds(session).into_iter().any(|kind| variable.is_of(kind))
+}
+
+/// Returns the variables that are on the axes of the panels; `None` for time.
+pub fn variables(session: &Session) -> Vec<[Option<Variable>; 2]> {
+    let settings = &session.panel.plotting;
+    if settings.mode != Mode::Time {
+        return vec![settings.axes.map(Some)];
+    }
+    let all = Variable::ALL.into_iter();
+    let shown = all.filter(|it| settings.shown.contains(it) && has(session, *it));
+    shown.map(|variable| [None, Some(variable)]).collect()
+}
+
+/// Returns the time (s) at the end of the plots: the latest of any pane.
+fn latest(session: &Session) -> f64 {
+    let series = session
+        .runs
+        .panes
+        .iter()
+        .flat_map(|pane| pane.traces.iter());
+    let last = series.filter_map(|(_, series)| series.rows().next_back());
+    last.map(|row| row.time).fold(0.0, f64::max)
+}
+
+/// Returns the rows of a pick in a pane that are shown: those of the section, or of the last
+/// seconds.
+pub fn rows(session: &Session, [pane, pick]: [usize; 2]) -> Vec<&Row> {
+    let settings = &session.panel.plotting;
+    let from = latest(session) - settings.span;
+    let Some((_, series)) = session.runs.panes[pane].traces.iter().nth(pick) else {
+        return vec![];
+    };
+    match settings.mode {
+        Mode::Section => series.section().collect(),
+        _ => series.rows().filter(|row| row.time >= from).collect(),
+    }
+}
+
+/// Returns the place of a row in a panel.
+pub fn place(variables: [Option<Variable>; 2], row: &Row) -> [f64; 2] {
+    variables.map(|variable| variable.map_or(row.time, |it| it.of(row)))
+}
+
+/// Returns the chart of all picks, with about `detail` points on a curve.
+pub fn plotted(session: &Session, detail: usize) -> Plotted {
+    let (settings, panes) = (&session.panel.plotting, &session.runs.panes);
+    let variables = variables(session);
+    let picks: Vec<Pick> = panes[0].traces.iter().map(|(pick, _)| *pick).collect();
+    let sources = variables.iter().map(|axes| {
+        let all = (0..panes.len()).flat_map(|pane| (0..picks.len()).map(move |pick| [pane, pick]));
+        let has = |[_, pick]: &[usize; 2]| {
+            let mut both = axes.iter().flatten();
+            both.all(|variable| variable.is_of(picks[*pick].kind()))
+        };
+        all.filter(has).collect::<Vec<_>>()
+    });
+    let sources: Vec<_> = sources.collect();
+    let to = latest(session).max(settings.span);
+    let label = |variable: Option<Variable>| variable.map_or("time (s)".into(), Variable::label);
+    let panels = variables.iter().zip(&sources).map(|(axes, sources)| {
+        let line = |source: &[usize; 2]| Line {
+            name: name(session, *source, &picks),
+            style: style(session, *source),
+            pieces: pieces(session, *axes, *source, detail),
+            dots: settings.mode == Mode::Section,
+        };
+        LinePanel {
+            x_label: label(axes[0]),
+            y_label: label(axes[1]),
+            ends: (settings.mode == Mode::Time).then_some([to - settings.span, to]),
+            lines: sources.iter().map(line).collect(),
+        }
+    });
+    let first = &panes[0].simulation;
+    let chart = LineChart {
+        title: first.scene().name.clone(),
+        subtitle: match panes.len() {
+            1 => words::method(first),
+            _ => String::new(),
+        },
+        panels: panels.collect(),
+        foot: foot(session),
+    };
+    Plotted {
+        chart,
+        variables,
+        sources,
+    }
+}
+
+/// Returns the name of a curve.
+fn name(session: &Session, [pane, pick]: [usize; 2], picks: &[Pick]) -> String {
+    let panes = &session.runs.panes;
+    match (panes.len(), picks.len()) {
+        (1, _) => picks[pick].name(),
+        (_, 1) => run_name(&panes[pane]),
+        _ => format!("{}: {}", run_name(&panes[pane]), picks[pick].name()),
+    }
+}
+
+/// Returns what the chart shows, in a line below it.
+fn foot(session: &Session) -> String {
+    let picks = session.runs.panes[0].traces.iter();
+    let names: Vec<_> = picks.map(|(pick, _)| pick.name()).collect();
+    let what = names.join(", ");
+    match session.panel.plotting.mode {
+        Mode::Section => format!("{what}, {}", when(session)),
+        _ => what,
+    }
+}
+
+/// Says when points of the section are taken.
+fn when(session: &Session) -> String {
+    match session.runs.panes[0].traces.trigger() {
+        Trigger::Off => String::new(),
+        Trigger::Period(period) => format!("once in {} s", signed(period)),
+        Trigger::Rises(variable, value) => {
+            let [name, unit] = [variable.name(), variable.unit()];
+            format!("whenever {name} rises through {} {unit}", signed(value))
+        }
+    }
+}
+
+/// Returns the points of a curve, with a gap where a value is not known. Of many points, those are
+/// left out that could not be told apart: in each of `detail` parts of the time, the lowest and the
+/// highest stay, or in a phase plane the first four.
+fn pieces(
+    session: &Session,
+    axes: [Option<Variable>; 2],
+    source: [usize; 2],
+    detail: usize,
+) -> Vec<Vec<[f64; 2]>> {
+    let settings = &session.panel.plotting;
+    let width = settings.span / detail as f64;
+    let mut pieces = vec![vec![]];
+    let rows = rows(session, source);
+    let places: Vec<_> = rows
+        .iter()
+        .map(|row| (row.time, place(axes, row)))
+        .collect();
+    let part = |time: f64| match settings.mode {
+        Mode::Section => time,
+        Mode::Time => (time / width).floor(),
+        Mode::Phase => (4.0 * time / width).floor(),
+    };
+    for near in places.chunk_by(|a, b| part(a.0) == part(b.0)) {
+        let by_height = |a: &&(f64, [f64; 2]), b: &&(f64, [f64; 2])| a.1[1].total_cmp(&b.1[1]);
+        let lowest = near.iter().min_by(by_height);
+        let highest = near.iter().max_by(by_height);
+        let mut ends = match settings.mode {
+            Mode::Time => [lowest, highest],
+            _ => [near.first(), None],
+        };
+        if let [Some(low), Some(high)] = ends {
+            if low.0 > high.0 {
+                ends.swap(0, 1);
+            } else if low.0 == high.0 {
+                ends[1] = None;
+            }
+        }
+        for (_, point) in ends.into_iter().flatten() {
+            if point.iter().all(|part| part.is_finite()) {
+                pieces.last_mut().into_iter().for_each(|it| it.push(*point));
+            } else if pieces.last().is_some_and(|it| !it.is_empty()) {
+                pieces.push(vec![]);
+            }
+        }
+    }
+    pieces
+}

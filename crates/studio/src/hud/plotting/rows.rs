@@ -1,0 +1,273 @@
+//! The rows above the chart: the picks, their variables, and the times of points of a section,
+//! side by side in as many lines as they need.
+
+use a3_media::show;
+use egui::{Align2, CursorIcon, FontId, Id, Pos2, Rect, Sense, Stroke, Ui, pos2, vec2};
+
+use super::super::axes;
+use super::super::charts::{colour, dashes};
+use super::super::measure::chip;
+use super::super::style::{FAINT, TEXT};
+use super::super::words::signed;
+use super::chart::{has, run_name, style};
+use crate::session::plotting::{drive, first_trigger};
+use crate::session::{Mode, Pick, PlotRequest, Session, Trigger, Variable};
+
+/// Width of the sample of a curve (points).
+const SAMPLE: f32 = 18.0;
+/// Largest number of springs that are offered.
+const MAX_SPRINGS: usize = 24;
+/// Steps between the least and the greatest value of a variable that a section may pass.
+const STEPS: f64 = 20.0;
+
+/// Rows that are drawn below one another.
+pub struct Rows<'a> {
+    pub ui: &'a Ui,
+    pub session: &'a Session,
+    /// The room that is left.
+    pub room: Rect,
+    /// The request of the mouse.
+    pub request: Option<PlotRequest>,
+}
+
+impl Rows<'_> {
+    /// Draws a button in a flow.
+    fn button(&mut self, flow: &mut Flow, words: &str, chosen: bool, wish: PlotRequest) {
+        let place = flow.words(self.ui, words, 8.0);
+        let id = Id::unique(("plot", words, place.left() as i32, place.top() as i32));
+        let response = self.ui.interact(place, id, Sense::click());
+        chip(self.ui, place, &response, words, chosen);
+        if response.clicked() {
+            self.request = Some(wish);
+        }
+    }
+
+    /// Writes words in a flow.
+    fn say(&self, flow: &mut Flow, words: &str) {
+        let at = flow.words(self.ui, words, 2.0).left_center();
+        let font = FontId::proportional(13.0);
+        let painter = self.ui.painter();
+        painter.text(at, Align2::LEFT_CENTER, words, font, FAINT);
+    }
+
+    /// Goes on below a flow.
+    fn end(&mut self, flow: &Flow) {
+        self.room.min.y = flow.bottom();
+    }
+
+    /// Draws what is plotted, each with its colour and a cross that ends it. In a comparison, the
+    /// colours are those of the panes.
+    pub fn picks(&mut self) {
+        let (session, panes) = (self.session, &self.session.runs.panes);
+        let mut flow = Flow::new(self.room);
+        let picks: Vec<Pick> = panes[0].traces.iter().map(|(pick, _)| *pick).collect();
+        if picks.is_empty() {
+            self.say(
+                &mut flow,
+                "Double click on a particle or a body to plot it.",
+            );
+        }
+        for (k, pick) in picks.into_iter().enumerate() {
+            let name = pick.name();
+            let place = flow.words(self.ui, &name, 0.5 * SAMPLE + 17.0);
+            self.pick(place, &name, [0, k], panes.len() > 1, pick);
+        }
+        self.end(&flow);
+        if panes.len() > 1 {
+            let mut flow = Flow::new(self.room);
+            for (k, pane) in panes.iter().enumerate() {
+                let name = run_name(pane);
+                let place = flow.words(self.ui, &name, 0.5 * SAMPLE + 8.0);
+                let at = place.left_center();
+                let stroke = Stroke::new(2.2, colour(style(session, [k, 0])));
+                let ends = [at + vec2(2.0, 0.0), at + vec2(2.0 + SAMPLE, 0.0)];
+                self.ui.painter().line_segment(ends, stroke);
+                let (at, font) = (at + vec2(SAMPLE + 8.0, 0.0), FontId::proportional(13.0));
+                let painter = self.ui.painter();
+                painter.text(at, Align2::LEFT_CENTER, name, font, TEXT);
+            }
+            self.end(&flow);
+        }
+        self.springs();
+    }
+
+    /// Draws one thing that is plotted.
+    fn pick(&mut self, place: Rect, name: &str, source: [usize; 2], grey: bool, pick: Pick) {
+        let (ui, look) = (self.ui, style(self.session, source));
+        let id = Id::unique(("plotted", name));
+        let response = ui.interact(place, id, Sense::click());
+        chip(ui, place, &response, "", false);
+        let painter = ui.painter();
+        let ink = if grey { TEXT } else { colour(look) };
+        let at = place.left_center() + vec2(8.0, 0.0);
+        let ends = vec![at, at + vec2(SAMPLE, 0.0)];
+        axes::line(painter, ends, Stroke::new(2.2, ink), &dashes(look, 2.2));
+        let (at, font) = (at + vec2(SAMPLE + 6.0, 0.0), FontId::proportional(13.0));
+        painter.text(at, Align2::LEFT_CENTER, name, font, TEXT);
+        let at = pos2(place.right() - 9.0, at.y);
+        let ink = if response.hovered() { TEXT } else { FAINT };
+        let font = FontId::proportional(10.0);
+        painter.text(at, Align2::CENTER_CENTER, "✖", font, ink);
+        let response = response.on_hover_cursor(CursorIcon::PointingHand);
+        if response.on_hover_text("Plot it no longer").clicked() {
+            self.request = Some(PlotRequest::Toggle(pick));
+        }
+    }
+
+    /// Offers the springs of the particle whose springs are listed.
+    fn springs(&mut self) {
+        let first = &self.session.runs.panes[0];
+        let Some(i) = first.show.springs_of else {
+            return;
+        };
+        let springs = show::springs_of(&first.simulation, i);
+        if springs.is_empty() {
+            return;
+        }
+        let mut flow = Flow::new(self.room);
+        self.say(&mut flow, &format!("springs of particle {i} to"));
+        for spring in springs.iter().take(MAX_SPRINGS) {
+            let pick = Pick::Spring(spring.i, spring.j);
+            let other = (spring.i + spring.j - i).to_string();
+            let chosen = first.traces.has(pick);
+            self.button(&mut flow, &other, chosen, PlotRequest::Toggle(pick));
+        }
+        self.end(&flow);
+    }
+
+    /// Draws the variables over time, or those on both axes.
+    pub fn variables(&mut self) {
+        let settings = &self.session.panel.plotting;
+        if settings.mode == Mode::Time {
+            let mut flow = Flow::new(self.room);
+            for variable in self.all_variables() {
+                let chosen = settings.shown.contains(&variable);
+                let wish = PlotRequest::Show(variable);
+                self.button(&mut flow, variable.name(), chosen, wish);
+            }
+            return self.end(&flow);
+        }
+        for (axis, words) in ["across", "up"].into_iter().enumerate() {
+            let mut flow = Flow::new(self.room);
+            self.say(&mut flow, words);
+            for variable in self.all_variables() {
+                let chosen = settings.axes[axis] == variable;
+                let wish = PlotRequest::Axis(axis, variable);
+                self.button(&mut flow, variable.name(), chosen, wish);
+            }
+            self.end(&flow);
+        }
+        if settings.mode == Mode::Section {
+            self.trigger();
+        }
+    }
+
+    /// Returns the variables of anything that is plotted.
+    fn all_variables(&self) -> Vec<Variable> {
+        let all = Variable::ALL.into_iter();
+        all.filter(|it| has(self.session, *it)).collect()
+    }
+
+    /// Draws when points of the section are taken.
+    fn trigger(&mut self) {
+        let session = self.session;
+        let trigger = session.runs.panes[0].traces.trigger();
+        let run = &session.runs.panes[0].simulation;
+        let mut flow = Flow::new(self.room);
+        self.say(&mut flow, "when");
+        if let Some(period) = drive(run) {
+            let chosen = matches!(trigger, Trigger::Period(_));
+            let wish = PlotRequest::Trigger(Trigger::Period(period));
+            self.button(&mut flow, "a period of the drive ends", chosen, wish);
+        }
+        let of = match trigger {
+            Trigger::Rises(variable, _) => Some(variable),
+            _ => None,
+        };
+        for variable in self.all_variables() {
+            let wish = PlotRequest::Trigger(Trigger::Rises(variable, 0.0));
+            self.button(&mut flow, variable.name(), of == Some(variable), wish);
+        }
+        if let Trigger::Rises(variable, value) = trigger {
+            self.say(&mut flow, "rises through");
+            let step = step(session, variable);
+            for (words, by) in [("−", -step), ("+", step)] {
+                let next = step * ((value + by) / step).round();
+                let wish = PlotRequest::Trigger(Trigger::Rises(variable, next));
+                self.button(&mut flow, words, false, wish);
+                if by < 0.0 {
+                    let words = format!("{} {}", signed(value), variable.unit());
+                    self.say(&mut flow, &words);
+                }
+            }
+        } else if trigger == Trigger::Off {
+            self.request = Some(PlotRequest::Trigger(first_trigger(run, Variable::X)));
+        }
+        self.end(&flow);
+    }
+}
+
+/// Returns the step by which the value of a variable that a section passes is changed: a round part
+/// of its range.
+fn step(session: &Session, variable: Variable) -> f64 {
+    let traces = session
+        .runs
+        .panes
+        .iter()
+        .flat_map(|pane| pane.traces.iter());
+    let of_kind = traces.filter(|(pick, _)| variable.is_of(pick.kind()));
+    let values = of_kind.flat_map(|(_, series)| series.rows().map(|row| variable.of(row)));
+    let [low, high] = values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], value| {
+        [low.min(value), high.max(value)]
+    });
+    let part = (high - low) / STEPS;
+    if !(part > 0.0 && part.is_finite()) {
+        return 0.1;
+    }
+    let power = 10_f64.powf(part.log10().floor());
+    let rounds = [1.0, 2.0, 5.0, 10.0].map(|by| by * power);
+    rounds.into_iter().find(|it| *it >= part).unwrap_or(power)
+}
+
+/// Height of a line, and distance between its parts and between lines (points).
+pub const HEIGHT: f32 = 24.0;
+const GAP: f32 = 4.0;
+
+/// Places from the left to the right of a room, line by line.
+pub struct Flow {
+    room: Rect,
+    next: Pos2,
+}
+
+impl Flow {
+    /// Begins at the top of a room.
+    pub fn new(room: Rect) -> Self {
+        Self {
+            room,
+            next: room.min,
+        }
+    }
+
+    /// Returns the place of a part of a width (points).
+    pub fn place(&mut self, width: f32) -> Rect {
+        let is_full = self.next.x + width > self.room.right() && self.next.x > self.room.left();
+        if is_full {
+            self.next = pos2(self.room.left(), self.next.y + HEIGHT + GAP);
+        }
+        let place = Rect::from_min_size(self.next, vec2(width, HEIGHT));
+        self.next.x += width + GAP;
+        place
+    }
+
+    /// Returns the place of words with a margin (points) on either side.
+    pub fn words(&mut self, ui: &Ui, words: &str, margin: f32) -> Rect {
+        let font = FontId::proportional(13.0);
+        let galley = ui.painter().layout_no_wrap(words.into(), font, TEXT);
+        self.place(galley.size().x + 2.0 * margin)
+    }
+
+    /// Returns the height (points) below the last line.
+    pub fn bottom(&self) -> f32 {
+        self.next.y + HEIGHT + GAP
+    }
+}

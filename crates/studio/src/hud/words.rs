@@ -1,0 +1,361 @@
+//! The readings of a run in words.
+
+use a3_core::{Control, Simulation};
+use egui::{RichText, Sense, Ui, vec2};
+
+use super::style::{ALARM, Mark, SAFE, WARNING, faint, text};
+use crate::session::{FilmProgress, Pane, Readings};
+
+/// A day (s).
+const DAY: f64 = 86_400.0;
+
+/// Formats a number that is not negative with three significant digits; without a fraction from 100
+/// on.
+pub fn digits(number: f64) -> String {
+    match number {
+        0.0 => "0".into(),
+        small if small < 1e-3 => format!("{small:.2e}"),
+        large if large >= 100.0 => format!("{large:.0}"),
+        middling => {
+            let places = (2.0 - middling.log10().floor()).clamp(0.0, 5.0) as usize;
+            format!("{middling:.places$}")
+        }
+    }
+}
+
+/// Formats any number as [`digits`] does.
+pub fn signed(number: f64) -> String {
+    let sign = if number < 0.0 { "-" } else { "" };
+    format!("{sign}{}", digits(number.abs()))
+}
+
+/// Returns the scene's name, and its grid if it has one.
+pub fn scene(simulation: &Simulation) -> String {
+    let scene = simulation.scene();
+    let grid = scene.grid().map_or(String::new(), |grid| {
+        format!("  {} × {}", grid.rows(), grid.cols())
+    });
+    format!("{}{grid}", scene.name)
+}
+
+/// Returns the method, and its step or tolerance.
+pub fn method(simulation: &Simulation) -> String {
+    let control = match simulation.control() {
+        Control::Step(step) => format!("step {} s", seconds(step)),
+        control @ Control::Tolerance(_) => control.to_string(),
+    };
+    format!("{},  {control}", simulation.method().title)
+}
+
+/// Formats a step (s) as a user would type it: 1/60 instead of all its digits.
+pub fn seconds(step: f64) -> String {
+    let (decimal, rate) = (step.to_string(), 1.0 / step);
+    if decimal.len() > 10 && (rate - rate.round()).abs() < 1e-9 * rate {
+        return format!("1/{}", rate.round());
+    }
+    decimal
+}
+
+/// Returns the present step of an adaptive method, and the number of rejected ones.
+pub fn steps(simulation: &Simulation) -> Option<String> {
+    let step = simulation.step_size()?;
+    let rejections = simulation.work().rejections;
+    simulation
+        .control()
+        .tolerance()
+        .map(|_| format!("{} ms, {rejections} rejected", digits(1e3 * step)))
+}
+
+/// Returns the largest stable step, and the present step as a share of it. The mark is safe up to
+/// 80 %, a warning near the limit and where motion grows slowly, and an alarm where it grows fast.
+pub fn limit(pane: &Pane) -> Option<(String, Mark)> {
+    let limit = pane.limit.limit()?;
+    // With constraints or rigid bodies, modes show only which steps are too long, not which are
+    // stable.
+    let network = pane.simulation.model().network();
+    let modes_tell_all =
+        network.is_none_or(|n| n.constraints().is_empty() && n.bodies().is_empty());
+    if limit.step.is_infinite() {
+        return modes_tell_all.then(|| ("none: every step is stable".into(), SAFE));
+    }
+    let step = pane.simulation.step_size()?;
+    let mark = match step {
+        fast if fast > limit.step => ALARM,
+        near if near > 0.8 * limit.bounded => WARNING,
+        _ if modes_tell_all => SAFE,
+        _ => return None,
+    };
+    let largest = if limit.is_sharp() {
+        limit.step
+    } else {
+        limit.bounded
+    };
+    let share = |largest: f64| {
+        let percent = 100.0 * step / largest;
+        format!("{} ms (step at {percent:.0} %)", digits(1e3 * largest))
+    };
+    let time = pane.limit.tenfold_time(pane.simulation.method(), step);
+    let tenfold = match time.filter(|time| *time < DAY) {
+        Some(time) => format!("tenfold in {} s", digits(time)),
+        None => "too slowly to see".into(),
+    };
+    let words = if largest == 0.0 {
+        format!("every step makes motion grow; this one, {tenfold}")
+    } else if step > largest {
+        format!("{}; motion grows {tenfold}", share(largest))
+    } else {
+        share(largest)
+    };
+    Some((words, mark))
+}
+
+/// Returns the work of the collision safeguard since the start, if there was any: its impulses, the
+/// number of motions that it truncated, and the momentum that this removed.
+pub fn contact(simulation: &Simulation) -> Option<String> {
+    let guarded = simulation.guarded();
+    let count = |n: usize, what: &str| match n {
+        1 => format!("1 {what}"),
+        n => format!("{n} {what}s"),
+    };
+    let impulses = count(guarded.impulses, "impulse");
+    let cuts = count(guarded.cuts, "cut");
+    match (guarded.impulses, guarded.cuts) {
+        (0, 0) => None,
+        (_, 0) => Some(impulses),
+        _ => Some(format!(
+            "{impulses}, {cuts} ({} N s lost)",
+            digits(guarded.lost)
+        )),
+    }
+}
+
+/// Returns the parts that are left out: their names, or, if they are many, how many.
+pub fn without(readings: &Readings) -> Option<String> {
+    match &readings.left_out[..] {
+        [] => None,
+        few if few.len() <= 3 => Some(format!("without {}", few.join(", "))),
+        many => Some(format!("without {} parts", many.len())),
+    }
+}
+
+/// Returns the simulated time, with enough digits to tell consecutive steps apart.
+pub fn time(simulation: &Simulation) -> String {
+    let step = simulation.control().step().unwrap_or(1e-3);
+    let digits = (-step.log10()).ceil().clamp(2.0, 7.0) as usize;
+    format!("{:.digits$} s", simulation.time())
+}
+
+/// Returns the name and value of the reading that shows best whether the run is accurate: the
+/// energy, with its change if the forces conserve it, or else the radius of the circle.
+pub fn energy(pane: &Pane) -> (&'static str, String) {
+    match pane.energy {
+        Some(energy) => {
+            let change = pane.simulation.energy_change().unwrap_or_default();
+            let percent = format!("{:+.2}", 100.0 * change);
+            let is_kept = percent.trim_start_matches(['+', '-']) == "0.00";
+            let said = if is_kept {
+                String::new()
+            } else {
+                format!(" ({percent} %)")
+            };
+            ("energy", format!("{energy:.3} J{said}"))
+        }
+        None => (
+            "radius",
+            format!("{:.6} m", pane.simulation.position(0).norm()),
+        ),
+    }
+}
+
+/// Returns the spurious gain of energy, if it is large.
+pub fn gained(simulation: &Simulation) -> Option<RichText> {
+    let gain = simulation.gained()?;
+    let words = format!("{} J from nowhere: shorten the step", digits(gain.energy));
+    Some(WARNING.text(&words))
+}
+
+/// Returns the largest violation of a constraint so far, if it is visible.
+pub fn worst_constraint(simulation: &Simulation) -> Option<RichText> {
+    let unmet = simulation.worst_constraint()?;
+    let words = format!(
+        "{} was off by {:.1} %",
+        unmet.constraint,
+        100.0 * unmet.share
+    );
+    unmet.is_visible().then(|| WARNING.text(&words))
+}
+
+/// Returns the frame rate and the time per frame, while frames are measured.
+pub fn frames(readings: &Readings) -> Option<[String; 2]> {
+    let (simulating, drawing) = (readings.simulating, readings.drawing);
+    (!readings.paused && readings.rate > 0.0).then(|| {
+        [
+            format!("{:.0} per second", readings.rate),
+            format!("{simulating:.1} ms steps + {drawing:.1} ms drawing"),
+        ]
+    })
+}
+
+/// Draws the progress of a film, after a red dot.
+pub fn film(ui: &mut Ui, film: &FilmProgress) {
+    ui.horizontal(|ui| {
+        let (rect, _) = ui.allocate_exact_size(vec2(10.0, 10.0), Sense::hover());
+        ui.painter().circle_filled(rect.center(), 4.5, ALARM.colour);
+        ui.label(text(&film.said));
+    });
+}
+
+/// Returns the states that are on: paused, wind, swing, pulling.
+pub fn states(simulation: &Simulation, readings: &Readings) -> RichText {
+    let states = [
+        (readings.paused, "paused"),
+        (simulation.windy(), "wind"),
+        (simulation.swinging(), "swing"),
+        (
+            simulation.grabbed().is_some() || simulation.grabbed_obstacle().is_some(),
+            "pulling",
+        ),
+    ];
+    let on: Vec<_> = states
+        .iter()
+        .filter(|(on, _)| *on)
+        .map(|(_, name)| *name)
+        .collect();
+    if on.is_empty() {
+        faint("no wind, no swing")
+    } else {
+        text(on.join("   ")).strong()
+    }
+}
+
+/// Returns simulated time over real time, once it was measured.
+pub fn speed(readings: &Readings) -> Option<String> {
+    match readings.factor {
+        _ if readings.paused => Some("paused".into()),
+        0.0 => None,
+        slow if slow < 0.01 => Some(format!("{slow:.1e} × real time")),
+        factor => Some(format!("{factor:.2} × real time")),
+    }
+}
+
+/// Returns the chosen slow motion, if it is on.
+pub fn slow_motion(readings: &Readings) -> Option<String> {
+    let slowness = Some(readings.slowness).filter(|slowness| *slowness > 0)?;
+    Some(format!("1/{} of real time", 1 << slowness))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::hud::{pane, read};
+
+    #[test]
+    fn steps_are_written_as_one_would_type_them() {
+        for (step, words) in [
+            (0.005, "0.005"),
+            (1.0 / 60.0, "1/60"),
+            (0.016_666_666_666_666_7, "1/60"),
+            (0.001_234_567_890_123, "0.001234567890123"),
+            (1e-7, "0.0000001"),
+        ] {
+            assert_eq!(seconds(step), words);
+        }
+    }
+
+    #[test]
+    fn three_digits() {
+        for (number, words) in [
+            (0.0, "0"),
+            (1.234e-7, "1.23e-7"),
+            (0.012_34, "0.0123"),
+            (1.234, "1.23"),
+            (99.99, "100.0"),
+            (12345.6, "12346"),
+        ] {
+            assert_eq!(digits(number), words);
+        }
+    }
+
+    #[test]
+    fn impulses_of_contact_are_shown_where_there_are_any() {
+        let said = |steps| {
+            let mut pane = pane("jelly", "t", 0.005);
+            pane.simulation.set_touching(true).unwrap();
+            pane.simulation.take_steps(steps).unwrap();
+            let guarded = pane.simulation.guarded();
+            (
+                read(&[pane], &Readings::default(), [1280.0, 720.0]).0,
+                guarded,
+            )
+        };
+        let (words, guarded) = said(20);
+        assert!(
+            guarded.impulses == 0 && !words.contains("contact"),
+            "{words}"
+        );
+        let (words, guarded) = said(200);
+        let held = format!("contact\n{} impulses\n", guarded.impulses);
+        assert!(guarded.impulses > 1 && words.contains(&held), "{words}");
+    }
+
+    #[test]
+    fn no_step_is_called_safe_where_modes_do_not_decide() {
+        for (method, value) in [("t", 0.1), ("t", 0.3), ("r", 0.005), ("r", 0.05)] {
+            let mut pane = pane("double-pendulum", method, value);
+            pane.simulation.take_steps(1).unwrap();
+            pane.read_state();
+            assert!(limit(&pane).is_none_or(|(_, mark)| mark != SAFE));
+        }
+    }
+
+    #[test]
+    fn the_limit_is_shown_with_its_mark() {
+        let said = |scene: &str, method: &str, value: f64| {
+            let mut pane = pane(scene, method, value);
+            pane.simulation.take_steps(1).unwrap();
+            pane.read_state();
+            let mark = limit(&pane).unwrap().1;
+            let (words, _) = read(&[pane], &Readings::default(), [1280.0, 720.0]);
+            (words.replace('\n', " "), mark)
+        };
+        for (step, mark) in [(0.01, SAFE), (0.032, WARNING), (0.04, ALARM)] {
+            let (words, found) = said("mit", "r", step);
+            // Within 1 % of 34.9 ms.
+            let share = format!("35.2 ms (step at {:.0} %)", step / 0.0352 * 100.0);
+            let share = mark.text(&share).text().to_owned();
+            assert!(words.contains(&share), "{share} in {words}");
+            assert_eq!(found, mark);
+        }
+        assert!(
+            said("mit", "i", 0.1)
+                .0
+                .contains("none: every step is stable")
+        );
+        for (step, mark, time) in [(0.01, WARNING, "461"), (0.1, ALARM, "46.3")] {
+            let (words, found) = said("simple", "e", step);
+            // A step multiplies the radius by (1 + h^2)^1/2.
+            let tenfold = step * 10f64.ln() / (0.5 * (1.0 + step * step).ln());
+            assert_eq!(digits(tenfold), time);
+            let grows = format!("every step makes motion grow; this one, tenfold in {time} s");
+            assert!(words.contains(&grows), "{words}");
+            assert_eq!(found, mark);
+        }
+        // With drag, the motion of the cloth grows for steps above 0.37 ms, slowly at first.
+        for (step, mark) in [(0.000_2, SAFE), (0.000_4, WARNING), (0.000_6, ALARM)] {
+            let (words, found) = said("mit", "e", step);
+            assert!(words.contains("0.37"), "{words}");
+            assert_eq!(
+                words.contains("; motion grows tenfold in"),
+                mark != SAFE,
+                "{words}"
+            );
+            assert_eq!(found, mark);
+        }
+        let (words, _) = said("cloth", "a", 1e-4);
+        assert!(words.contains("tolerance 1e-4"), "{words}");
+        assert!(
+            words.contains("rejected") && words.contains("limit"),
+            "{words}"
+        );
+    }
+}

@@ -1,0 +1,37 @@
+//! The window and the page: sessions, the text over their pictures, and the input of the user.
+
+#![forbid(unsafe_code)]
+// What is public here serves the crates of the program; the library `a3` exports what is for
+// others.
+#![allow(
+    missing_docs,
+    clippy::missing_errors_doc,
+    clippy::missing_panics_doc,
+    clippy::must_use_candidate
+)]
+// Functions that cannot fail on a page have the signatures of the native ones, which can.
+#![cfg_attr(
+    target_arch = "wasm32",
+    allow(clippy::unused_self, clippy::unnecessary_wraps)
+)]
+
+#[cfg(any(target_arch = "wasm32", test))]
+pub mod address;
+pub mod app;
+pub mod begin;
+pub mod command_line;
+#[cfg(not(target_arch = "wasm32"))]
+pub mod compare;
+#[cfg(not(target_arch = "wasm32"))]
+mod headless;
+pub mod hud;
+mod keep;
+#[cfg(not(target_arch = "wasm32"))]
+mod open;
+#[cfg(not(target_arch = "wasm32"))]
+mod recorder;
+pub mod session;
+pub mod settings;
+
+#[cfg(not(target_arch = "wasm32"))]
+pub use open::open;

@@ -1,0 +1,590 @@
+//! Actions of the user on a session, by keys, mouse and lists: what opens beside the picture, one
+//! sheet at a time, and surfaces that cross, which come apart if the user wants that.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use a3_core::{Checkpoint, Network, Simulation, integrators};
+use a3_media::show;
+use a3_scenes::Setup;
+
+use super::history::Change;
+use super::keys::RunAction;
+use super::list::{List, TextKey, Topic, solvers};
+use super::pane::Pane;
+#[cfg(not(target_arch = "wasm32"))]
+use super::plotting;
+use super::runs::KEY_BUDGET;
+use super::state::Session;
+use super::tuning::Tuning;
+use super::{looks, panes, save};
+
+/// Largest slowness: motion at 1 / 2^6 of real time.
+const MAX_SLOWNESS: i32 = 6;
+
+impl Session {
+    /// Performs an action, and returns whether it changed the scene. Solvers and scene files are
+    /// those of pane `at`; all other actions apply to every pane.
+    pub fn act(&mut self, action: RunAction, at: usize) -> bool {
+        if let Some(why) = self.panel.hidden.refusal(action) {
+            self.readings.say(why);
+            return false;
+        }
+        match action {
+            RunAction::NextScene | RunAction::PreviousScene => {
+                let is_next = action == RunAction::NextScene;
+                let number = self.scenes.neighbour(if is_next { 1 } else { -1 });
+                self.show_scene(number);
+                return true;
+            }
+            RunAction::Scenes => self.toggle_list(Topic::Scenes),
+            RunAction::Solvers => self.toggle_list(Topic::Solvers { pane: at }),
+            RunAction::Reset => self.reset(),
+            RunAction::Swing if self.runs.first().scene().swing.is_none() => {
+                self.readings.say("There is nothing to swing here.");
+            }
+            RunAction::Swing => {
+                let on = !self.runs.first().swinging();
+                self.runs.align();
+                self.runs.all_mut().for_each(|run| run.set_swinging(on));
+            }
+            RunAction::Wind if self.runs.first().scene().wind.is_none() => {
+                self.readings.say("There is no wind here.");
+            }
+            RunAction::Wind => {
+                let on = !self.runs.first().windy();
+                self.runs.align();
+                self.runs.all_mut().for_each(|run| run.set_wind(on));
+            }
+            RunAction::Touch => toggle_touch(self),
+            RunAction::Wireframe => looks::next_style(&mut self.runs.panes),
+            RunAction::Colour => self.readings.say(looks::next_colour(&mut self.runs.panes)),
+            RunAction::Arrows => self.readings.say(looks::next_arrows(&mut self.runs.panes)),
+            RunAction::Pause => {
+                self.readings.paused = !self.readings.paused;
+                self.restart_measuring();
+            }
+            RunAction::Step if self.readings.rewound() => self.scrub(1),
+            RunAction::Scrub(by) => self.scrub(by),
+            RunAction::Slower => {
+                self.readings.slowness = (self.readings.slowness + 1).min(MAX_SLOWNESS);
+            }
+            RunAction::Faster => self.readings.slowness = (self.readings.slowness - 1).max(0),
+            RunAction::Step => self.step(),
+            RunAction::Solver(i) => match integrators::METHODS.get(i) {
+                Some(method) => {
+                    let done = self.runs.set_method(method, at, &self.tuning.defaults);
+                    self.report(done);
+                }
+                None => self
+                    .readings
+                    .say(format!("There are {} solvers.", integrators::METHODS.len())),
+            },
+            RunAction::LongerStep | RunAction::ShorterStep => {
+                let done = self.runs.set_steps(action == RunAction::LongerStep);
+                self.report(done);
+            }
+            RunAction::Camera => {
+                self.view.set_camera(self.runs.panes[0].show.camera());
+                self.view.stop_following();
+            }
+            RunAction::FreeAll => {
+                let all: Vec<_> = (0..self.runs.first().particles()).collect();
+                self.pin_all(&all, false);
+            }
+            RunAction::Projection => self.readings.say(self.view.toggle_projection()),
+            RunAction::SeeAll => self.view.see_all(&self.runs.panes),
+            RunAction::NextView => self.readings.say(self.view.next_view()),
+            RunAction::Panel | RunAction::Measure | RunAction::Lessons | RunAction::Plots => {
+                toggle(self, action);
+            }
+            RunAction::Edit if cfg!(target_arch = "wasm32") => {
+                self.readings.say("Only the program edits scenes.");
+            }
+            RunAction::Edit if self.runs.first().model().network().is_none() => {
+                let why = "Only scenes of masses can be edited.";
+                self.readings.say(why);
+            }
+            RunAction::Edit => {
+                self.panel.editor.toggle(&self.runs);
+                self.readings.help = false;
+                self.list = None;
+            }
+            RunAction::WriteScene => {
+                let pane = &self.runs.panes[at.min(self.runs.panes.len() - 1)];
+                let said = match save::write_scene(self, &pane.simulation) {
+                    Ok(name) => format!("Wrote {name}."),
+                    Err(why) => why,
+                };
+                self.readings.say(said);
+            }
+            RunAction::Help => self.readings.help = !self.readings.help,
+        }
+        false
+    }
+
+    /// Resets all runs to the initial state of their scene.
+    fn reset(&mut self) {
+        let touching = self.runs.first().touching();
+        self.runs.reset();
+        self.effects.forget();
+        if touching && !self.runs.first().touching() {
+            let why = "Surfaces cross in the initial state, so self-collision is off again";
+            self.readings.offer(why);
+        }
+        self.readings.read_reference(self.runs.reference.as_ref());
+        self.begin_new_run();
+    }
+
+    /// Pauses, and advances all runs by the longest step among them.
+    fn step(&mut self) {
+        self.readings.paused = true;
+        self.runs.drop_due_steps();
+        self.advance(self.runs.longest_step(), KEY_BUDGET, KEY_BUDGET);
+    }
+
+    /// Shows the error of a refused request.
+    fn report(&mut self, done: Result<(), impl ToString>) {
+        if let Err(why) = done {
+            self.readings.say(why.to_string());
+        }
+    }
+
+    /// Sets the step (s) or the tolerance of one pane, or shows why that is refused.
+    pub fn set_step_of(&mut self, at: usize, value: f64) {
+        let done = self.runs.set_step_of(at, value);
+        self.report(done);
+    }
+
+    /// Changes the model of every run; a reset keeps the change. If self-collision is on and
+    /// surfaces would cross, changes nothing and shows which would.
+    pub fn adjust(&mut self, change: impl Fn(&mut Network)) {
+        let done = self.runs.adjust(change);
+        self.report(done);
+    }
+
+    /// Releases the grabbed particle or sphere.
+    pub fn release(&mut self) {
+        if let Some(push) = self.runs.release() {
+            self.history.record(push);
+        }
+    }
+
+    /// Pins particle i at its position in every run, or frees it if it is pinned in the first run.
+    pub fn toggle_pin(&mut self, i: usize) {
+        let pinned = !self.runs.is_pinned(i);
+        if self.pin(&[i], pinned) > 0 {
+            let now = if pinned { "pinned" } else { "free" };
+            self.readings.say(format!("Particle {i} is {now} now."));
+        }
+    }
+
+    /// Pins particles at their positions in every run, or frees them, and shows how many.
+    pub fn pin_all(&mut self, particles: &[usize], pinned: bool) {
+        let count = self.pin(particles, pinned);
+        self.readings.say(match (count, pinned) {
+            (0, true) => "There is nothing here that could be pinned.".into(),
+            (0, false) => "There are no pins here.".into(),
+            (1, true) => "1 particle is pinned now.".into(),
+            (1, false) => "1 particle is free now.".into(),
+            (n, true) => format!("{n} particles are pinned now."),
+            (n, false) => format!("{n} particles are free now."),
+        });
+    }
+
+    /// Pins or frees particles, records the change in the history, and returns how many particles
+    /// changed in the first run.
+    fn pin(&mut self, particles: &[usize], pinned: bool) -> usize {
+        self.runs.align();
+        let moments = self
+            .runs
+            .all()
+            .map(|run| run.blow_up().is_none().then(|| run.moment()));
+        let before = (!pinned).then(|| moments.collect());
+        let particles = self.runs.pin(particles, pinned);
+        let count = particles.len();
+        if count > 0 {
+            self.history.record(Change::Pins {
+                particles,
+                pinned,
+                before,
+            });
+        }
+        count
+    }
+
+    /// Opens a list, or closes the one that is open.
+    pub fn toggle_list(&mut self, topic: Topic) {
+        if self.list.take().is_some_and(|list| list.topic == topic) {
+            return;
+        }
+        if let Some(why) = self.panel.hidden.refusal_of_list(topic) {
+            return self.readings.say(why);
+        }
+        let panes = &self.runs.panes;
+        let entries = match topic {
+            Topic::Scenes => self.scenes.entries(),
+            Topic::Solvers { pane } | Topic::Beside { pane } => {
+                solvers(&panes[pane.min(panes.len() - 1)].simulation)
+            }
+        };
+        self.readings.help = false;
+        self.list = Some(List::new(topic, entries));
+    }
+
+    /// Passes a key to the open list, and returns whether that changed the scene.
+    pub fn press_list(&mut self, key: TextKey) -> bool {
+        let Some(list) = &mut self.list else {
+            return false;
+        };
+        if key == TextKey::Cancel {
+            self.list = None;
+            return false;
+        }
+        list.press(key)
+            .is_some_and(|number| self.take_entry(number))
+    }
+
+    /// Applies an entry by its number, closes the list, and returns whether that changed the scene.
+    pub fn take_entry(&mut self, number: usize) -> bool {
+        match self.list.take().map(|list| list.topic) {
+            Some(Topic::Scenes) => {
+                if let Some(file) = self.scenes.earlier_file(number) {
+                    return self.open(&file);
+                }
+                self.show_scene(number);
+                true
+            }
+            Some(Topic::Solvers { pane }) => self.act(RunAction::Solver(number), pane),
+            Some(Topic::Beside { pane }) => {
+                let method = &integrators::METHODS[number];
+                let pane = pane.min(self.runs.panes.len() - 1);
+                let control = self.runs.panes[pane].control_of(method, &self.tuning.defaults);
+                let added = panes::add(self, pane, (method, control));
+                let is_new = added.is_ok();
+                self.report(added);
+                is_new
+            }
+            None => false,
+        }
+    }
+
+    /// Shows the scene of this number, or a message that says why it cannot be built.
+    fn show_scene(&mut self, number: usize) {
+        match self.scenes.show(number) {
+            Ok(setup) => {
+                self.reset_camera(&setup);
+                self.set_scene(&setup);
+            }
+            Err(error) => self.readings.warn(error.to_string()),
+        }
+    }
+
+    /// Shows the scene of a file, and keeps solvers and steps that can integrate it. If the file
+    /// cannot be opened, shows why and returns false; the runs continue.
+    pub fn open(&mut self, file: &Path) -> bool {
+        if file.is_dir() {
+            let folder = file.display();
+            let why = format!("{folder} is a folder: drop the scene file or the mesh in it.");
+            self.readings.warn(why);
+            return false;
+        }
+        if self.scenes.leaves_out(file) {
+            let why = "This page has its own scenes alone: o lists them.";
+            self.readings.warn(why);
+            return false;
+        }
+        match self.scenes.open(file) {
+            Ok(setup) => {
+                let source = &self.scenes.shown.source;
+                let summary = source.description.summary.as_deref();
+                let what = summary.map_or(String::new(), |what| format!(": {what}"));
+                self.readings.say(format!("Opened {}{what}.", source.typed));
+                self.reset_camera(&setup);
+                self.set_scene(&setup);
+                true
+            }
+            Err(error) => {
+                self.readings.warn(error.to_string());
+                false
+            }
+        }
+    }
+
+    /// Reloads the scene from its file. Camera, solvers and steps change only if the file's did. If
+    /// the file cannot be loaded, shows why and returns false; the runs continue.
+    pub fn reload(&mut self) -> bool {
+        let reloaded = match self.scenes.reload() {
+            Ok(Some(reloaded)) => reloaded,
+            Ok(None) => return false,
+            Err(error) => {
+                self.readings.warn(error.to_string());
+                return false;
+            }
+        };
+        let setup = &reloaded.setup;
+        if reloaded.camera {
+            self.reset_camera(setup);
+        }
+        let typed = &self.scenes.shown.source.typed;
+        self.readings.say(format!("Loaded {typed} again."));
+        let disturbances = self.runs.first().disturbances();
+        self.set_scene(setup);
+        for run in self.runs.all_mut() {
+            // If surfaces cross in the new file, its own setting of self-collision stays.
+            let _ = run.set_disturbances(disturbances);
+        }
+        if let Some(method) = reloaded.method {
+            let control = setup.defaults.control_of(method);
+            for pane in &mut self.runs.panes {
+                if let Err(why) = pane.simulation.set_method(method, control) {
+                    self.readings.say(why.to_string());
+                }
+                pane.wanted = method;
+            }
+            self.runs.adapt_reference();
+        }
+        true
+    }
+
+    /// Moves the camera to its initial position in a scene.
+    fn reset_camera(&mut self, setup: &Setup) {
+        self.view.set_camera(show::camera(&setup.presentation));
+    }
+
+    /// Starts another scene, and keeps solvers and steps that can integrate it.
+    pub(super) fn set_scene(&mut self, setup: &Setup) {
+        let said = match self.runs.set_scene(setup) {
+            Ok(said) => {
+                self.tuning = Tuning::of(&self.scenes.shown, setup);
+                self.effects.forget();
+                self.measuring.forget();
+                self.readings.left_out.clear();
+                self.panel.editor.forget(&self.runs);
+                self.view.stop_following();
+                self.history.clear();
+                self.readings.read_reference(self.runs.reference.as_ref());
+                self.begin_new_run();
+                said
+            }
+            Err(why) => Some(why.to_string()),
+        };
+        if let Some(said) = said {
+            self.readings.say(said);
+        }
+        offer_at_start(self);
+    }
+}
+
+/// If the surfaces of the scene begin crossed, pauses, says so, and offers to bring them apart.
+pub fn offer_at_start(session: &mut Session) {
+    if session.scenes.shown.crossed {
+        let name = &session.runs.first().scene().name;
+        session.readings.offer(format!(
+            "The surfaces of the scene {name} begin crossed, so they do not touch yet: key x brings them apart, and \
+             Space plays."
+        ));
+        session.readings.paused = true;
+    }
+}
+
+/// Turns self-collision on or off. If surfaces cross, says which, and offers to bring them apart;
+/// does so if that was offered.
+pub fn toggle_touch(session: &mut Session) {
+    let is_page = cfg!(target_arch = "wasm32");
+    if session.readings.offers_apart && !is_page {
+        return bring_apart(session);
+    }
+    let Err(why) = session.runs.toggle_touch() else {
+        return;
+    };
+    let crosses = |run: &Simulation| {
+        run.model().network().is_some_and(|network| {
+            let (x, _) = network.halves(run.state());
+            !network.crossed(run.time(), x).is_empty()
+        })
+    };
+    if !is_page && session.runs.all().any(crosses) {
+        session.readings.offer(why);
+    } else {
+        session.readings.say(why);
+    }
+}
+
+/// Brings the surfaces of all runs apart and lets them touch, as one change that can be undone.
+fn bring_apart(session: &mut Session) {
+    if !session.runs.panes.iter().all(Pane::alive) {
+        let why = "A run has blown up: reset it (key r) before its surfaces come apart.";
+        return session.readings.say(why);
+    }
+    session.release();
+    session.runs.align();
+    let before: Arc<[_]> = session.runs.all().map(|run| Some(run.moment())).collect();
+    let runs = session.runs.all();
+    let after: Result<Arc<[_]>, String> = runs.map(|run| apart(session, run).map(Some)).collect();
+    match after {
+        Ok(after) => {
+            go_to(session, &after);
+            session.history.record(Change::Apart { before, after });
+            let plays = if session.readings.paused {
+                ", Space plays"
+            } else {
+                ""
+            };
+            session.readings.say(format!(
+                "The surfaces are apart now, and touch: key z undoes that{plays}."
+            ));
+        }
+        Err(why) => session.readings.warn(why),
+    }
+}
+
+/// Goes to states in which surfaces touch, or to those before they came apart. If these are
+/// forgotten, turns self-collision off alone.
+pub fn go_to(session: &mut Session, moments: &[Option<Checkpoint>]) {
+    session.return_to(moments);
+    for run in session.runs.all_mut() {
+        if moments.is_empty() {
+            // Turning self-collision off does not fail.
+            let _ = run.set_touching(false);
+        } else {
+            // The energy that comes from elsewhere is no gain of the solver, which fits the run.
+            let _ = run.set_method(run.method(), run.control());
+        }
+    }
+}
+
+/// Returns the state of a run with its surfaces apart, in which they touch.
+fn apart(session: &Session, run: &Simulation) -> Result<Checkpoint, String> {
+    let mut description = save::description(session, run);
+    (description.self_collision, description.untangle) = (true, true);
+    let source = session.scenes.shown.source.described(description);
+    let setup = source.build(None).map_err(|error| error.to_string())?;
+    let mut moment = run.moment();
+    let (time, state) = (moment.time(), &mut moment.run);
+    (state.since, state.taken, state.shown) = (time, 0, None);
+    state.y = setup.scene.state;
+    moment.touching = true;
+    Ok(moment)
+}
+
+/// Opens the panel, the measurements, the lessons or the plots beside the picture, or closes
+/// it; the others are closed then.
+pub fn toggle(session: &mut Session, action: RunAction) {
+    if action == RunAction::Measure && session.measuring.answerer.is_none() {
+        let why = "Only the program measures: key y copies the command line for it.";
+        return session.readings.say(why);
+    }
+    let panes = [
+        (RunAction::Panel, &mut session.panel.open),
+        (RunAction::Measure, &mut session.measuring.open),
+        (RunAction::Lessons, &mut session.panel.lessons.open),
+        (RunAction::Plots, &mut session.panel.plotting.open),
+    ];
+    for (own, open) in panes {
+        *open = own == action && !*open;
+    }
+    #[cfg(not(target_arch = "wasm32"))]
+    if session.panel.plotting.open {
+        plotting::pick_first(&mut session.runs.panes);
+    }
+    if action != RunAction::Panel {
+        session.readings.help = false;
+        session.list = None;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::hud::panel;
+    use crate::session::{RunAction, frames, session};
+
+    /// Returns whether surfaces cross in any run.
+    fn crosses(session: &Session) -> bool {
+        let runs = session.runs.all();
+        runs.map(|run| (run, run.model().network().unwrap()))
+            .any(|(run, network)| {
+                let (x, _) = network.halves(run.state());
+                !network.crossed(run.time(), x).is_empty()
+            })
+    }
+
+    /// Returns the places (m) of all particles of the first run.
+    fn places(session: &Session) -> Vec<f64> {
+        let run = session.runs.first();
+        run.state()[..3 * run.particles()].to_vec()
+    }
+
+    /// A file whose surfaces begin crossed opens all the same, and key x brings them apart, which
+    /// can be undone and done again.
+    #[test]
+    fn a_tangled_scene_opens_and_comes_apart() {
+        let folder = tempfile::tempdir().unwrap();
+        let tangled = concat!(
+            env!("CARGO_MANIFEST_DIR"),
+            "/../../docs/scenes/tangled.toml"
+        );
+        let text = std::fs::read_to_string(tangled).unwrap();
+        let text = text.replace("untangle = true\n", "");
+        let path = folder.path().join("crossed.toml");
+        std::fs::write(&path, &text).unwrap();
+        let first = session(&["--scene", path.to_str().unwrap()]);
+        let mut dropped = session(&["--scene", "flag"]);
+        assert!(dropped.open(&path));
+        for mut session in [first, dropped] {
+            session.readings.in_window = true;
+            assert!(session.readings.offers_apart && !session.runs.first().touching());
+            assert_eq!(session.tuning.defaults.duration, Some(1.0));
+            assert!(session.readings.paused);
+            session.act(RunAction::Pause, 0);
+            frames(&mut session, 0.05);
+            let before = places(&session);
+            assert!(crosses(&session));
+            session.act(RunAction::Touch, 0);
+            let after = places(&session);
+            assert!(session.runs.first().touching() && !crosses(&session));
+            assert!(!session.readings.offers_apart);
+            // A particle moves by half an edge at most, and velocities stay.
+            let moved = after.iter().zip(&before).map(|(a, b)| (a - b).abs());
+            let farthest = moved.fold(0.0, f64::max);
+            assert!(farthest > 0.01 && farthest < 0.5, "{farthest} m");
+            panel::undo(&mut session, false);
+            assert_eq!(places(&session), before);
+            assert!(!session.runs.first().touching());
+            panel::undo(&mut session, true);
+            assert_eq!(places(&session), after);
+            frames(&mut session, 0.1);
+            let run = session.runs.first();
+            let lost = run.blow_up().map(|lost| lost.to_string());
+            assert!(run.touching() && !crosses(&session), "{lost:?}");
+        }
+    }
+
+    /// Surfaces that crossed while they did not touch are offered to come apart in every run.
+    #[test]
+    fn what_crossed_in_motion_comes_apart_in_every_run() {
+        let mut session = crate::session::compared(&["r", "v", "--scene", "mit"], 0.1);
+        // An edge at a corner comes to stand in the middle of the cloth.
+        let (n, mut moment) = (225, session.runs.first().moment());
+        for (i, up) in [(n - 1, 0.3), (n - 2, -0.3)] {
+            for (axis, by) in [-1.1, up, -1.2].into_iter().enumerate() {
+                moment.run.y[axis * n + i] += by;
+            }
+        }
+        session.return_to(&[Some(moment.clone()), Some(moment.clone()), Some(moment)]);
+        assert!(crosses(&session));
+        session.act(RunAction::Touch, 0);
+        let said = session.readings.message.clone().unwrap();
+        assert!(said.starts_with("Surfaces that cross cannot"), "{said}");
+        session.act(RunAction::Touch, 0);
+        let said = session.readings.message.clone().unwrap();
+        assert!(!crosses(&session), "{said}");
+        assert!(session.runs.all().all(Simulation::touching));
+        // After a reset, the states are another run's: only self-collision is undone.
+        session.act(RunAction::Reset, 0);
+        panel::undo(&mut session, false);
+        assert_eq!(session.runs.first().time(), 0.0);
+        assert!(!session.runs.all().any(Simulation::touching));
+    }
+}

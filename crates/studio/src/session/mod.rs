@@ -1,0 +1,111 @@
+//! A session, independent of a window: one run or several side by side in real time, the
+//! interaction with them, their reference, the timeline, and the actions of keys.
+
+mod acts;
+pub mod asking;
+mod continued;
+mod effects;
+pub mod exchange;
+mod hands;
+mod history;
+mod keys;
+mod lessons;
+mod list;
+pub mod looks;
+mod measuring;
+mod opening;
+mod origin;
+mod pane;
+pub mod panes;
+mod passage;
+#[cfg(not(target_arch = "wasm32"))]
+pub mod plotting;
+mod question;
+mod reference;
+mod replace;
+mod runs;
+mod samples;
+mod save;
+mod scenes;
+mod state;
+mod timeline;
+#[cfg_attr(target_arch = "wasm32", path = "no_traces.rs")]
+mod traces;
+mod tuning;
+mod view;
+#[cfg(test)]
+mod words;
+
+pub use acts::{go_to, offer_at_start};
+pub use asking::MeasureRequest;
+pub use continued::continue_from;
+pub use effects::{Deviation, Effect, Job, Situation};
+pub use history::{Change, EditChange};
+pub use keys::{Action, RunAction, WindowAction};
+pub use keys::{Binding, GROUPS, Group, MOUSE, action};
+pub use lessons::{Given, LessonRequest, Lessons};
+pub use list::{Entry, TextKey, Topic};
+pub use measuring::Progress;
+pub use opening::{Opening, Reader};
+pub use origin::{Origin, begins_crossed};
+pub use pane::Pane;
+pub use passage::Passage;
+pub use question::{Answer, Answerer, Diagram, MethodSetting, Question, Task};
+pub use replace::{replace, show_edited};
+pub use samples::{SPAN, Sample, Samples};
+pub use save::write_scene;
+pub use state::{Beginning, Session};
+pub use state::{FilmProgress, Readings, Selection};
+pub use timeline::TimelinePosition;
+#[cfg(not(target_arch = "wasm32"))]
+pub use traces::{Kind, Mode, Pick, PlotFile, Row, SPANS, Trigger, Variable};
+pub use traces::{PlotRequest, RulerEnd};
+#[cfg(any(target_arch = "wasm32", test))]
+pub use tuning::Hidden;
+pub use tuning::{DEFAULT_FILM_SECONDS, Tuning};
+pub use tuning::{Measure, Tool};
+
+#[cfg(test)]
+pub use keys::bindings;
+#[cfg(test)]
+pub use pane::Cost;
+#[cfg(test)]
+pub use tests::{compared, frames, session, times};
+#[cfg(test)]
+pub use words::read;
+
+#[cfg(test)]
+mod tests {
+    //! Sessions for tests.
+
+    use super::{Session, words};
+    use crate::begin;
+
+    /// Creates the session of a command line.
+    pub fn session(words: &[&str]) -> Session {
+        let owned: Vec<_> = words.iter().map(|word| (*word).to_owned()).collect();
+        let mut session = begin::session(&words::read(&owned).unwrap()).unwrap();
+        session.scenes.reader = Some(words::read);
+        session
+    }
+
+    /// Creates a comparison, advanced to a time (s) in frames of 60 Hz.
+    pub fn compared(words: &[&str], time: f64) -> Session {
+        let mut session = session(&[&["compare"], words].concat());
+        frames(&mut session, time);
+        session
+    }
+
+    /// Advances a session by a time (s) in frames of 60 Hz.
+    pub fn frames(session: &mut Session, time: f64) {
+        for _ in 0..(60.0 * time).round() as u32 {
+            session.tick(1.0 / 60.0);
+        }
+    }
+
+    /// Returns the simulated time of each run (s).
+    pub fn times(session: &Session) -> Vec<f64> {
+        let times = session.runs.panes.iter().map(|pane| pane.simulation.time());
+        times.collect()
+    }
+}

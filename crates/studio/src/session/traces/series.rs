@@ -1,0 +1,258 @@
+//! Values of what is plotted over the last minute of a run.
+
+use std::collections::VecDeque;
+
+use a3_core::Simulation;
+use a3_scenes::Splice;
+
+use super::pick::Pick;
+use super::section::Trigger;
+use super::variable::Row;
+
+/// Simulated time that values cover (s).
+pub const KEPT: f64 = 60.0;
+/// Largest number of things that are plotted.
+pub const MAX_PICKS: usize = 6;
+/// Largest number of rows of a series, and of points of its section.
+const MAX_ROWS: [usize; 2] = [30_000, 10_000];
+
+/// Values of one pick, in the order of their times.
+#[derive(Default)]
+pub struct Series {
+    rows: VecDeque<Row>,
+    section: VecDeque<Row>,
+    /// Time (s) up to which points of the section were searched for.
+    searched: f64,
+}
+
+impl Series {
+    /// Returns the values, the oldest first.
+    pub fn rows(&self) -> impl ExactSizeIterator<Item = &Row> + DoubleEndedIterator + Clone {
+        self.rows.iter()
+    }
+
+    /// Returns the points of the section, the oldest first.
+    pub fn section(&self) -> impl ExactSizeIterator<Item = &Row> {
+        self.section.iter()
+    }
+
+    /// Returns the row nearest to a time (s).
+    pub fn nearest(&self, time: f64) -> Option<&Row> {
+        let k = self.rows.partition_point(|row| row.time < time);
+        let near = [k.checked_sub(1), Some(k)].into_iter().flatten();
+        let near = near.filter_map(|k| self.rows.get(k));
+        near.min_by(|a, b| (a.time - time).abs().total_cmp(&(b.time - time).abs()))
+    }
+
+    /// Adds a row, and finds the points of the section that it completes. Rows and points of later
+    /// times are dropped first, because time may go back.
+    fn push(&mut self, row: Row, trigger: Trigger) {
+        while self.rows.back().is_some_and(|last| last.time > row.time) {
+            self.rows.pop_back();
+        }
+        let last = self.rows.back().map_or(f64::NEG_INFINITY, |last| last.time);
+        while self.section.back().is_some_and(|point| point.time > last) {
+            self.section.pop_back();
+        }
+        self.searched = self.searched.min(last);
+        if last == row.time {
+            return;
+        }
+        self.rows.push_back(row);
+        self.search(trigger, self.rows.len().saturating_sub(3));
+        let is_old = |first: &Row| first.time < row.time - KEPT;
+        while self.rows.len() > MAX_ROWS[0] || self.rows.front().is_some_and(is_old) {
+            self.rows.pop_front();
+        }
+    }
+
+    /// Searches the intervals from row `first` on that were not searched and have a row after them.
+    fn search(&mut self, trigger: Trigger, first: usize) {
+        for k in first..self.rows.len().saturating_sub(2) {
+            if trigger == Trigger::Off || self.rows[k].time < self.searched {
+                continue;
+            }
+            let near = k.saturating_sub(1)..k + 3;
+            let near: Vec<_> = self.rows.range(near).copied().collect();
+            self.section.extend(trigger.within(&near, k.min(1)));
+            self.searched = self.rows[k + 1].time;
+            if self.section.len() > MAX_ROWS[1] {
+                self.section.pop_front();
+            }
+        }
+    }
+
+    /// Finds the points of another section among the rows.
+    fn search_again(&mut self, trigger: Trigger) {
+        self.section.clear();
+        self.searched = f64::NEG_INFINITY;
+        self.search(trigger, 0);
+    }
+}
+
+/// What is plotted of a run.
+#[derive(Default)]
+pub struct Traces {
+    all: Vec<(Pick, Series)>,
+    trigger: Trigger,
+}
+
+impl Traces {
+    /// Returns whether nothing is plotted.
+    pub fn is_empty(&self) -> bool {
+        self.all.is_empty()
+    }
+
+    /// Returns the number of things that are plotted.
+    pub fn len(&self) -> usize {
+        self.all.len()
+    }
+
+    /// Returns what is plotted, with its values.
+    pub fn iter(&self) -> std::slice::Iter<'_, (Pick, Series)> {
+        self.all.iter()
+    }
+
+    /// Returns whether something is plotted.
+    pub fn has(&self, pick: Pick) -> bool {
+        self.all.iter().any(|(own, _)| *own == pick)
+    }
+
+    /// Returns what takes the points of sections.
+    pub fn trigger(&self) -> Trigger {
+        self.trigger
+    }
+
+    /// Returns the same picks and the same trigger without values, for another run.
+    pub fn without_values(&self) -> Self {
+        let all = self.all.iter().map(|(pick, _)| (*pick, Series::default()));
+        Self {
+            all: all.collect(),
+            trigger: self.trigger,
+        }
+    }
+
+    /// Plots something from now on, or no longer.
+    pub fn toggle(&mut self, pick: Pick, run: &Simulation) {
+        let before = self.all.len();
+        self.all.retain(|(own, _)| *own != pick);
+        if self.all.len() == before && before < MAX_PICKS {
+            let mut series = Series::default();
+            series.push(pick.read(run), self.trigger.of(pick.kind()));
+            self.all.push((pick, series));
+        }
+    }
+
+    /// Takes the points of sections at other events, also of the values so far.
+    pub fn set_trigger(&mut self, trigger: Trigger) {
+        self.trigger = trigger;
+        for (pick, series) in &mut self.all {
+            series.search_again(trigger.of(pick.kind()));
+        }
+    }
+
+    /// Follows the same things by the numbers that particles and rigid bodies have since an edit.
+    /// What was removed is plotted no longer.
+    pub fn renumber(&mut self, numbers: [Splice; 2]) {
+        self.all.retain_mut(|(pick, _)| {
+            let now = pick.renumbered(numbers);
+            *pick = now.unwrap_or(*pick);
+            now.is_some()
+        });
+    }
+
+    /// Plots those springs no longer that an edit of a run removed, but not their particles.
+    pub fn drop_removed(&mut self, before: &Simulation, now: &Simulation, particles: Splice) {
+        let back = [particles.back(), Splice::default()];
+        let was_there = |pick: Pick| pick.renumbered(back).is_some_and(|it| it.is_in(before));
+        self.all
+            .retain(|(pick, _)| pick.is_in(now) || !was_there(*pick));
+    }
+
+    /// Adds the values of the present state of a run.
+    pub fn take(&mut self, run: &Simulation) {
+        for (pick, series) in &mut self.all {
+            series.push(pick.read(run), self.trigger.of(pick.kind()));
+        }
+    }
+
+    /// Forgets all values.
+    pub fn forget(&mut self) {
+        *self = self.without_values();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::TAU;
+
+    use super::*;
+    use crate::session::Variable;
+
+    /// Returns a row of the motion x = sin(3 t).
+    fn row(time: f64) -> Row {
+        let mut values = [0.0; _];
+        (values[0], values[3]) = ((3.0 * time).sin(), 3.0 * (3.0 * time).cos());
+        Row { time, values }
+    }
+
+    #[test]
+    fn crossings_are_found_once_and_between_the_samples() {
+        let mut series = Series::default();
+        let trigger = Trigger::Rises(Variable::X, 0.5);
+        let times = (0..2000).map(|k| 0.01 * f64::from(k) + 0.002 * f64::from(k % 3));
+        let times: Vec<_> = times.collect();
+        for t in &times {
+            series.push(row(*t), trigger);
+        }
+        let right = |k: u32| (0.5_f64.asin() + TAU * f64::from(k)) / 3.0;
+        let check = |series: &Series, count: usize| {
+            let found: Vec<_> = series.section().collect();
+            assert_eq!(found.len(), count);
+            for (k, point) in (0..).zip(found) {
+                assert!((point.time - right(k)).abs() < 1e-6, "{k}: {}", point.time);
+                assert!((point.values[0] - 0.5).abs() < 1e-12);
+                assert!((point.values[3] - 3.0 * 0.75_f64.sqrt()).abs() < 1e-5);
+            }
+        };
+        check(&series, 10);
+        // Time goes back, and the same motion comes again: no point is there twice.
+        let back = times.iter().position(|t| *t > right(4) + 0.005).unwrap();
+        for t in &times[back..] {
+            series.push(row(*t), trigger);
+        }
+        check(&series, 10);
+        assert!(series.rows().is_sorted_by(|a, b| a.time < b.time));
+        // Going back before a crossing drops it.
+        series.push(row(right(2)), trigger);
+        check(&series, 2);
+        // The same points are found among the values afterwards, and those of a period.
+        for t in &times {
+            series.push(row(*t), Trigger::Off);
+        }
+        series.search_again(trigger);
+        check(&series, 10);
+        series.search_again(Trigger::Period(0.7));
+        let phases: Vec<_> = series.section().map(|point| point.time / 0.7).collect();
+        assert_eq!(phases.len(), 28);
+        for (k, phase) in (1..).zip(phases) {
+            assert!((phase - f64::from(k)).abs() < 1e-9, "{phase}");
+        }
+    }
+
+    #[test]
+    fn a_minute_is_kept_and_no_more() {
+        let mut series = Series::default();
+        for k in 0..40_000 {
+            series.push(row(f64::from(k) / 240.0), Trigger::Off);
+        }
+        let count = series.rows().len();
+        assert!(count.abs_diff(240 * KEPT as usize) <= 1, "{count}");
+        let last = series.nearest(1e9).unwrap().time;
+        assert_eq!(
+            series.nearest(last - 0.998).unwrap().time,
+            last - 239.0 / 240.0 - 1.0 / 240.0
+        );
+        assert!(Series::default().nearest(1.0).is_none());
+    }
+}

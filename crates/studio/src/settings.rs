@@ -1,0 +1,268 @@
+//! Settings of the window that are saved between sessions.
+
+use std::path::{Path, PathBuf};
+#[cfg(not(target_arch = "wasm32"))]
+use std::{env, fs, io};
+
+#[cfg(target_arch = "wasm32")]
+use a3_files::browser;
+use a3_files::ending::Ending;
+use a3_files::failure::Failure;
+#[cfg(not(target_arch = "wasm32"))]
+use a3_files::{output, terminal};
+use serde::{Deserialize, Serialize};
+
+use crate::session::{DEFAULT_FILM_SECONDS, SPAN};
+
+/// Largest size of a settings file (bytes).
+#[cfg(not(target_arch = "wasm32"))]
+const MAX_FILE_SIZE: u64 = 1 << 20;
+/// Largest number of recent files.
+const MAX_RECENT_FILES: usize = 12;
+/// Scale factors that text and panel can have.
+pub const SCALES: [f32; 8] = [0.75, 0.9, 1.0, 1.15, 1.3, 1.5, 1.75, 2.0];
+
+/// The settings that do not belong to a scene.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+#[expect(
+    clippy::struct_excessive_bools,
+    reason = "each is a setting of its own"
+)]
+pub struct Settings {
+    /// Scale factor of text and panel, on top of the screen's own.
+    pub interface_scale: f32,
+    /// Whether the window fills the screen.
+    pub full_screen: bool,
+    /// Whether the dark theme is on.
+    pub dark: bool,
+    /// Whether the panel is open.
+    pub panel: bool,
+    /// Whether the user has pulled something, and needs no hint.
+    pub pulled: bool,
+    /// Largest frame rate (1/s), or 0 for that of the screen.
+    pub frame_limit: u32,
+    /// The format of films.
+    pub film: Ending,
+    /// Simulated time that a film of the last seconds covers (s).
+    pub film_seconds: f64,
+    /// Scene files, the most recently opened first.
+    pub recent: Vec<PathBuf>,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self {
+            interface_scale: 1.0,
+            full_screen: false,
+            dark: false,
+            panel: false,
+            pulled: false,
+            frame_limit: 0,
+            film: Ending::default(),
+            film_seconds: DEFAULT_FILM_SECONDS,
+            recent: vec![],
+        }
+    }
+}
+
+impl Settings {
+    /// Reads the settings from the user's folder; returns the defaults if there are none. Fails if
+    /// they cannot be read or are not valid.
+    pub fn read() -> Result<Self, String> {
+        Self::read_from(&file())
+    }
+
+    fn read_from(path: &Path) -> Result<Self, String> {
+        let place = path.display();
+        let Some(text) = text_of(path)? else {
+            return Ok(Self::default());
+        };
+        let read: Self = toml::from_str(&text).map_err(|why| {
+            let line = why
+                .span()
+                .map_or(1, |span| 1 + text[..span.start].matches('\n').count());
+            format!("{place}:{line}: this is not a setting of a3")
+        })?;
+        let [least, .., most] = SCALES;
+        let limit = f64::from(read.frame_limit);
+        for (name, value, low, high) in [
+            (
+                "interface_scale",
+                f64::from(read.interface_scale),
+                least.into(),
+                most.into(),
+            ),
+            ("film_seconds", read.film_seconds, 1.0, SPAN),
+            ("frame_limit", limit, 0.0, 1000.0),
+        ] {
+            if !(low..=high).contains(&value) {
+                return Err(format!("{place}: {name} must be from {low} to {high}"));
+            }
+        }
+        Ok(read)
+    }
+
+    /// Writes the settings to the user's folder. Fails if that is not possible.
+    pub fn write(&self) -> Result<(), Failure> {
+        self.write_to(&file())
+    }
+
+    fn write_to(&self, path: &Path) -> Result<(), Failure> {
+        let text = toml::to_string(self).map_err(Failure::run)?;
+        store(path, &text)
+    }
+
+    /// Puts `files`, the most recent first, before the recent files.
+    pub fn remember(&mut self, files: impl Iterator<Item = PathBuf>) {
+        let mut all: Vec<PathBuf> = files.chain(std::mem::take(&mut self.recent)).collect();
+        let mut seen = std::collections::HashSet::new();
+        all.retain(|file| seen.insert(file.clone()));
+        all.truncate(MAX_RECENT_FILES);
+        self.recent = all;
+    }
+}
+
+/// Reads the text of a file, `None` if it does not exist. Fails if it is not a regular file, too
+/// large, or unreadable.
+#[cfg(not(target_arch = "wasm32"))]
+fn text_of(path: &Path) -> Result<Option<String>, String> {
+    let place = path.display();
+    match fs::metadata(path) {
+        Ok(there) if there.is_file() && there.len() <= MAX_FILE_SIZE => {}
+        Ok(_) => {
+            return Err(format!(
+                "{place}: this is not a regular file of at most 1 MiB: the settings are neither read nor saved"
+            ));
+        }
+        Err(why) if why.kind() == io::ErrorKind::NotFound => return Ok(None),
+        Err(why) => return Err(format!("{place}: {}", terminal::reason(&why))),
+    }
+    let text = fs::read_to_string(path);
+    text.map(Some)
+        .map_err(|why| format!("{place}: {}", terminal::reason(&why)))
+}
+
+/// Writes a file, and creates its folder if need be. Fails if that is not possible.
+#[cfg(not(target_arch = "wasm32"))]
+fn store(path: &Path, text: &str) -> Result<(), Failure> {
+    if let Some(folder) = path.parent() {
+        fs::create_dir_all(folder)
+            .map_err(|why| Failure::run(format!("{}: {why}", folder.display())))?;
+    }
+    output::write(path, text.as_bytes())
+}
+
+/// Reads the text that the browser stores under a name.
+#[cfg(target_arch = "wasm32")]
+fn text_of(path: &Path) -> Result<Option<String>, String> {
+    let storage = browser::storage();
+    Ok(storage.and_then(|it| it.get_item(&path.to_string_lossy()).ok().flatten()))
+}
+
+/// Stores a text in the browser under a name, if the browser allows it.
+#[cfg(target_arch = "wasm32")]
+fn store(path: &Path, text: &str) -> Result<(), Failure> {
+    if let Some(storage) = browser::storage() {
+        let _ = storage.set_item(&path.to_string_lossy(), text);
+    }
+    Ok(())
+}
+
+/// Returns the name under which the browser stores the settings.
+#[cfg(target_arch = "wasm32")]
+fn file() -> PathBuf {
+    "a3 settings".into()
+}
+
+/// Returns the path of the settings file.
+#[cfg(not(target_arch = "wasm32"))]
+fn file() -> PathBuf {
+    let named = |name| {
+        env::var_os(name)
+            .map(PathBuf::from)
+            .filter(|path| path.is_absolute())
+    };
+    let home = |below: &str| env::home_dir().map(|home| home.join(below));
+    let folder = if cfg!(windows) {
+        named("APPDATA")
+    } else if cfg!(target_os = "macos") {
+        home("Library/Application Support")
+    } else {
+        named("XDG_CONFIG_HOME").or_else(|| home(".config"))
+    };
+    folder
+        .unwrap_or_else(env::temp_dir)
+        .join("a3")
+        .join("settings.toml")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn written_settings_are_read_back() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a3").join("settings.toml");
+        assert_eq!(Settings::read_from(&path), Ok(Settings::default()));
+        let mut settings = Settings {
+            interface_scale: 1.5,
+            panel: true,
+            film: Ending::Mp4,
+            ..Settings::default()
+        };
+        let files = ["/b.toml", "/a.toml", "/b.toml"].map(PathBuf::from);
+        settings.remember(files.into_iter());
+        settings.remember(std::iter::once(PathBuf::from("/c.toml")));
+        let names: Vec<_> = settings
+            .recent
+            .iter()
+            .map(|p| p.to_str().unwrap())
+            .collect();
+        assert_eq!(names, ["/c.toml", "/b.toml", "/a.toml"]);
+        assert!(settings.write_to(&path).is_ok());
+        assert_eq!(Settings::read_from(&path), Ok(settings));
+    }
+
+    /// Devices and pipes are refused without blocking, and large files without reading them.
+    #[test]
+    fn only_small_regular_files_are_read() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("settings.toml");
+        let refused = |path: &Path| {
+            let why = Settings::read_from(path).unwrap_err();
+            assert!(why.contains("not a regular file of at most 1 MiB"), "{why}");
+        };
+        refused(folder.path());
+        fs::write(&path, vec![b'#'; (1 << 20) + 1]).unwrap();
+        refused(&path);
+        #[cfg(unix)]
+        {
+            refused(Path::new("/dev/zero"));
+            fs::remove_file(&path).unwrap();
+            let made = std::process::Command::new("mkfifo").arg(&path).status();
+            assert!(made.unwrap().success());
+            refused(&path);
+        }
+    }
+
+    #[test]
+    fn invalid_settings_are_refused_with_their_line() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("settings.toml");
+        for (text, line) in [
+            ("panel = true\nscale = 2\n", ":2: "),
+            ("panel = 3\n", ":1: "),
+            (
+                "interface_scale = 1e9\n",
+                ": interface_scale must be from 0.75 to 2",
+            ),
+            ("\u{0}", ":1: "),
+        ] {
+            fs::write(&path, text).unwrap();
+            let why = Settings::read_from(&path).unwrap_err();
+            assert!(why.contains(line) && !why.contains('\n'), "{why}");
+        }
+    }
+}
