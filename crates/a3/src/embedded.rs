@@ -246,7 +246,7 @@ pub fn picture(
     check_drawing(run, manner, false)?;
     let mut show = Show::new(presentation.clone(), manner);
     show.transparent = look.transparent;
-    let caption = a3_studio::hud::caption(&show, size);
+    let caption = a3_studio::caption(&show, size);
     let mut painter = Painter::new(&show, run, size, caption)?;
     let pixels = painter.draw(&mut show, run)?;
     output::png(&pixels, size)

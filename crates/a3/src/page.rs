@@ -11,11 +11,8 @@ use a3_files::failure::Failure;
 use a3_files::progress;
 use a3_files::scene_file::Hash;
 use a3_studio::address::Address;
-use a3_studio::app;
-use a3_studio::begin;
-use a3_studio::hud::lessons;
 use a3_studio::session::LessonRequest;
-use a3_studio::settings::Settings;
+use a3_studio::{Event, Settings, begin, follow_lesson, send, spawn};
 use web_time::Instant;
 
 use crate::cli;
@@ -47,9 +44,9 @@ fn begin() -> Result<(), Failure> {
     }
     if let Some((lesson, step)) = address.lesson {
         session.panel.lessons.open = true;
-        lessons::apply(&mut session, LessonRequest::Open(lesson, step));
+        follow_lesson(&mut session, LessonRequest::Open(lesson, step));
     }
-    app::spawn(session, &opening, settings)
+    spawn(session, &opening, settings)
 }
 
 /// Takes steps of the run that a command line describes, as fast as possible. Returns a hash
@@ -89,7 +86,7 @@ pub fn run_steps(words: &str, steps: u32) -> String {
 
 /// Shows a message of the page.
 pub fn say(words: &str) {
-    app::send(app::Event::Say(words.into()));
+    send(Event::Say(words.into()));
 }
 
 /// Stores a file that the scenes of the page may name.
@@ -100,5 +97,5 @@ pub fn keep_file(name: &str, bytes: &[u8]) {
 /// Opens a file that was dropped on the page.
 pub fn open_file(name: &str, bytes: &[u8]) {
     files::keep(Path::new(name), bytes);
-    app::send(app::Event::Open(name.into()));
+    send(Event::Open(name.into()));
 }

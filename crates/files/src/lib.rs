@@ -8,7 +8,8 @@
     missing_docs,
     clippy::missing_errors_doc,
     clippy::missing_panics_doc,
-    clippy::must_use_candidate
+    clippy::must_use_candidate,
+    clippy::return_self_not_must_use
 )]
 // Functions that cannot fail on a page have the signatures of the native ones, which can.
 #![cfg_attr(

@@ -7,7 +7,8 @@
     missing_docs,
     clippy::missing_errors_doc,
     clippy::missing_panics_doc,
-    clippy::must_use_candidate
+    clippy::must_use_candidate,
+    clippy::return_self_not_must_use
 )]
 
 #[cfg(not(target_arch = "wasm32"))]

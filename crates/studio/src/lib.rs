@@ -7,7 +7,8 @@
     missing_docs,
     clippy::missing_errors_doc,
     clippy::missing_panics_doc,
-    clippy::must_use_candidate
+    clippy::must_use_candidate,
+    clippy::return_self_not_must_use
 )]
 // Functions that cannot fail on a page have the signatures of the native ones, which can.
 #![cfg_attr(
@@ -17,21 +18,29 @@
 
 #[cfg(any(target_arch = "wasm32", test))]
 pub mod address;
-pub mod app;
+mod app;
 pub mod begin;
-pub mod command_line;
+mod command_line;
 #[cfg(not(target_arch = "wasm32"))]
 pub mod compare;
 #[cfg(not(target_arch = "wasm32"))]
 mod headless;
-pub mod hud;
+mod hud;
 mod keep;
 #[cfg(not(target_arch = "wasm32"))]
 mod open;
 #[cfg(not(target_arch = "wasm32"))]
 mod recorder;
 pub mod session;
-pub mod settings;
+mod settings;
 
+#[cfg(target_arch = "wasm32")]
+pub use app::{Event, send, spawn};
+#[cfg(not(target_arch = "wasm32"))]
+pub use hud::caption;
+#[cfg(target_arch = "wasm32")]
+pub use hud::lessons::apply as follow_lesson;
 #[cfg(not(target_arch = "wasm32"))]
 pub use open::open;
+#[cfg(target_arch = "wasm32")]
+pub use settings::Settings;

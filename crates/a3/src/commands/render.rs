@@ -7,7 +7,7 @@ use a3_files::{progress, terminal, verdict};
 use a3_media::film::{self, FilmOptions};
 use a3_media::painter::Painter;
 use a3_media::show::{self, Show, check_drawing, check_particle};
-use a3_studio::hud;
+use a3_studio::caption;
 
 use crate::cli::Render;
 
@@ -42,7 +42,7 @@ pub fn run(options: &Render) -> Result<(), Failure> {
     )?;
     let mut show = Show::new(presentation, manner);
     show.transparent = options.transparent;
-    let caption = hud::caption(&show, size);
+    let caption = caption(&show, size);
     let mut painter = Painter::new(&show, &simulation, size, caption)?;
     if let Some(i) = options.springs_of {
         terminal::say(&show::list_springs_of(&simulation, i))?;

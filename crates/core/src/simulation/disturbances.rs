@@ -25,7 +25,7 @@ impl Scene {
             fit(network, 0.0, y, Least::AT_START);
         }
         if on.contact && self.touch.is_some() && !touches_itself(network) {
-            *network = Box::new(touching(network, &self, (0.0, y))?);
+            **network = touching(network, &self, (0.0, y))?;
         }
         Ok(disturbed)
     }
