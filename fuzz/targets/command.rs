@@ -2,8 +2,6 @@
 #![no_main]
 #![allow(dead_code, missing_docs, unused_imports)]
 
-#[path = "../../crates/a3/src/base/mod.rs"]
-mod base;
 #[path = "../../crates/a3/src/cli/mod.rs"]
 mod cli;
 

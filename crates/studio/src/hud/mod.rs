@@ -26,6 +26,7 @@ mod overlay;
 mod pane_buttons;
 pub mod panel;
 mod panes;
+#[cfg(not(target_arch = "wasm32"))]
 mod picture;
 #[cfg_attr(target_arch = "wasm32", path = "no_plotting.rs")]
 pub mod plotting;
@@ -43,7 +44,9 @@ pub use all::show_all;
 #[cfg(not(target_arch = "wasm32"))]
 pub use caption::caption;
 pub use overlay::Overlay;
+#[cfg(not(target_arch = "wasm32"))]
 pub use picture::Studio;
+#[cfg(not(target_arch = "wasm32"))]
 pub use words::digits;
 
 #[cfg(test)]

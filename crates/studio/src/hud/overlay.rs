@@ -109,6 +109,7 @@ impl Overlay {
 
     /// Lays out and draws `contents` without a window, on a view of `size` (px) at `scale` pixels
     /// per point. Returns the commands to submit before those of the encoder.
+    #[cfg(not(target_arch = "wasm32"))]
     pub fn write(
         &mut self,
         gpu: &Gpu,
