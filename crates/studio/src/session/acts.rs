@@ -133,6 +133,7 @@ impl Session {
             self.readings.offer(why);
         }
         self.readings.read_reference(self.runs.reference.as_ref());
+        self.history.begin_again();
         self.begin_new_run();
     }
 
@@ -166,7 +167,7 @@ impl Session {
     /// Releases the grabbed particle or sphere.
     pub fn release(&mut self) {
         if let Some(push) = self.runs.release() {
-            self.history.record(push);
+            self.history.record(push, None);
         }
     }
 
@@ -196,19 +197,12 @@ impl Session {
     /// changed in the first run.
     fn pin(&mut self, particles: &[usize], pinned: bool) -> usize {
         self.runs.align();
-        let moments = self
-            .runs
-            .all()
-            .map(|run| run.blow_up().is_none().then(|| run.moment()));
-        let before = (!pinned).then(|| moments.collect());
+        let before = (!pinned).then(|| self.runs.moments());
         let particles = self.runs.pin(particles, pinned);
         let count = particles.len();
         if count > 0 {
-            self.history.record(Change::Pins {
-                particles,
-                pinned,
-                before,
-            });
+            let change = Change::Pins { particles, pinned };
+            self.history.record(change, before);
         }
         count
     }
@@ -419,13 +413,13 @@ fn bring_apart(session: &mut Session) {
     }
     session.release();
     session.runs.align();
-    let before: Arc<[_]> = session.runs.all().map(|run| Some(run.moment())).collect();
+    let before = session.runs.moments();
     let runs = session.runs.all();
     let after: Result<Arc<[_]>, String> = runs.map(|run| apart(session, run).map(Some)).collect();
     match after {
         Ok(after) => {
             go_to(session, &after);
-            session.history.record(Change::Apart { before, after });
+            session.history.record(Change::Apart, Some(before));
             let plays = if session.readings.paused {
                 ", Space plays"
             } else {

@@ -43,7 +43,7 @@ pub fn edit(
     session: &mut Session,
     origin: Origin,
     passage: &Passage,
-    then: &[Checkpoint],
+    then: &[Option<Checkpoint>],
 ) -> Result<Former, String> {
     let whole = origin.build().map_err(|error| error.to_string())?;
     let parts = origin.parts(&whole.scene);
@@ -66,7 +66,7 @@ fn go_on(
     session: &mut Session,
     origin: Origin,
     (parts, left_out): (Vec<Part>, Vec<usize>),
-    (passage, then): (&Passage, &[Checkpoint]),
+    (passage, then): (&Passage, &[Option<Checkpoint>]),
 ) -> Result<Former, String> {
     if !session.runs.panes.iter().all(Pane::alive) {
         return Err("A run has blown up: reset it (key r) before you change its parts.".into());
@@ -92,7 +92,7 @@ fn go_on(
     let changes = [tuning.changes(), next.changes()];
     let runs = session.runs.all().enumerate();
     let runs = runs.map(|(k, run)| {
-        let then = then.get(k).or(then.last());
+        let then = then.get(k).or(then.last()).and_then(Option::as_ref);
         continued(run, &setup.scene, &changes, (passage, then))
     });
     let simulations: Result<Vec<_>, String> = runs.collect();

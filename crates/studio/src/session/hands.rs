@@ -3,7 +3,7 @@
 
 use a3_core::{Network, Path, Simulation, Vector3};
 
-use super::history::Change;
+use super::history::{Change, States};
 use super::reference::ReferenceRun;
 use super::runs::{KEY_BUDGET, Runs};
 
@@ -57,6 +57,13 @@ impl Runs {
         }
         self.change_all(apply);
         Ok(())
+    }
+
+    /// Returns the present states of all runs.
+    pub fn moments(&self) -> States {
+        let runs = self.all();
+        runs.map(|run| run.blow_up().is_none().then(|| run.moment()))
+            .collect()
     }
 
     /// Advances several panes to exactly the same time, by a shortened step if need be, so that an

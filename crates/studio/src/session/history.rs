@@ -15,16 +15,14 @@ const MAX_STATES: usize = 8;
 /// Longest time between two turns of a knob by keys that count as one change.
 const MERGE_TIME: Duration = Duration::from_millis(800);
 
+/// States of all runs at one time; `None` for a run that has blown up.
+pub type States = Arc<[Option<Checkpoint>]>;
+
 /// A change that can be undone.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Change {
-    /// Particles were pinned or freed. If they were freed, `before` are the states of all runs at
-    /// that time, while they are kept.
-    Pins {
-        particles: Vec<usize>,
-        pinned: bool,
-        before: Option<Arc<[Option<Checkpoint>]>>,
-    },
+    /// Particles were pinned or freed.
+    Pins { particles: Vec<usize>, pinned: bool },
     /// An obstacle was pushed: its paths before and after.
     Push {
         obstacle: usize,
@@ -39,18 +37,28 @@ pub enum Change {
     },
     /// A part of the scene was left out, or brought back: its index, and whether it is in since.
     Part { part: usize, is_in: bool },
-    /// Surfaces came apart to touch: the states of all runs before and after that, while they are
-    /// kept.
-    Apart {
-        before: Arc<[Option<Checkpoint>]>,
-        after: Arc<[Option<Checkpoint>]>,
-    },
-    /// The scene was edited. If something was deleted, `before` are the states of all runs at that
-    /// time, while they are kept.
-    Edit {
-        edit: Arc<EditChange>,
-        before: Option<Arc<[Checkpoint]>>,
-    },
+    /// Surfaces came apart to touch.
+    Apart,
+    /// The scene was edited.
+    Edit(Arc<EditChange>),
+}
+
+/// A change in the history, with the states from which the runs go on.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Recorded {
+    pub change: Change,
+    /// The states before the change, to which undoing it goes back, and those in which it was
+    /// undone, to which redoing it goes back; `None` where the runs go on as they are, or these
+    /// states are forgotten.
+    pub states: [Option<States>; 2],
+}
+
+impl Recorded {
+    /// Returns whether redoing the change goes back to the states in which it was undone: what it
+    /// had added has moved since, or undoing it went back in time.
+    pub fn returns(&self) -> bool {
+        self.states[0].is_some() || matches!(self.change, Change::Edit(_))
+    }
 }
 
 /// An edit of the scene, as a change that can be undone.
@@ -78,8 +86,8 @@ impl std::fmt::Debug for EditChange {
 /// Changes that were made, and those that were undone, the latest last.
 #[derive(Default)]
 pub struct History {
-    done: Vec<Change>,
-    undone: Vec<Change>,
+    done: Vec<Recorded>,
+    undone: Vec<Recorded>,
     /// Time of the last change, `None` after a button was pressed or a change undone.
     last: Option<Instant>,
     /// Whether a mouse button is pressed.
@@ -87,9 +95,10 @@ pub struct History {
 }
 
 impl History {
-    /// Records a change, and drops the undone ones. A turn of a knob extends the last change if it
-    /// follows soon, or in the same drag.
-    pub fn record(&mut self, change: Change) {
+    /// Records a change with the states before it, if undoing it goes back to them, and drops the
+    /// undone changes. A turn of a knob extends the last change if it follows soon, or in the same
+    /// drag.
+    pub fn record(&mut self, change: Change, before: Option<States>) {
         let soon = self
             .last
             .is_some_and(|last| self.held || last.elapsed() < MERGE_TIME);
@@ -101,16 +110,18 @@ impl History {
                 pane: last_pane,
                 to: last_to,
                 ..
-            }) = self.done.last_mut()
+            }) = self.done.last_mut().map(|last| &mut last.change)
             && soon
             && (*last_row, *last_pane) == (row, pane)
         {
             *last_to = to;
             return;
         }
-        self.done.push(change);
-        self.forget_states(MAX_STATES);
-        self.forget_deletions();
+        self.done.push(Recorded {
+            change,
+            states: [before, None],
+        });
+        self.forget_states(MAX_STATES, |_| true);
         if self.done.len() > MAX_CHANGES {
             self.done.remove(0);
         }
@@ -126,42 +137,44 @@ impl History {
     }
 
     /// Returns the change to undo, or with `redo` the change to redo.
-    pub fn step(&mut self, redo: bool) -> Option<Change> {
+    pub fn next(&self, redo: bool) -> Option<&Recorded> {
+        if redo { &self.undone } else { &self.done }.last()
+    }
+
+    /// Records that the next change was undone, from states `now` if redoing it goes back to them,
+    /// or with `redo` was redone.
+    pub fn step(&mut self, redo: bool, now: Option<States>) {
         let (from, to) = if redo {
             (&mut self.undone, &mut self.done)
         } else {
             (&mut self.done, &mut self.undone)
         };
-        let change = from.pop()?;
-        to.push(change.clone());
-        self.last = None;
-        Some(change)
-    }
-
-    /// Forgets the states before all but the last `latest` changes: undoing the others changes pins
-    /// alone.
-    pub fn forget_states(&mut self, latest: usize) {
-        let changes = self.undone.iter_mut().chain(self.done.iter_mut().rev());
-        for change in changes.skip(latest) {
-            match change {
-                Change::Pins { before, .. } => *before = None,
-                Change::Apart { before, after } => (*before, *after) = Default::default(),
-                _ => {}
+        if let Some(mut recorded) = from.pop() {
+            if !redo {
+                recorded.states[1] = now;
             }
+            to.push(recorded);
         }
+        self.last = None;
+        self.forget_states(MAX_STATES, |_| true);
     }
 
-    /// Forgets the states before all but the latest deletions.
-    fn forget_deletions(&mut self) {
-        let states = self
-            .done
-            .iter_mut()
-            .rev()
-            .filter_map(|change| match change {
-                Change::Edit { before, .. } => before.is_some().then_some(before),
-                _ => None,
-            });
-        states.skip(MAX_STATES).for_each(|before| *before = None);
+    /// Forgets the states of all but the `latest` of some changes: undoing or redoing the others
+    /// leaves the runs in their states.
+    fn forget_states(&mut self, latest: usize, which: impl Fn(&Change) -> bool) {
+        let all = self.done.iter_mut().rev().chain(self.undone.iter_mut());
+        let with = all.filter(|it| it.states.iter().any(Option::is_some) && which(&it.change));
+        with.skip(latest).for_each(|it| it.states = [None, None]);
+    }
+
+    /// Forgets the states of the present scene, because a new run of it begins.
+    pub fn begin_new_run(&mut self) {
+        self.forget_states(0, |change| !matches!(change, Change::Edit(_)));
+    }
+
+    /// Forgets all states, because the runs begin again.
+    pub fn begin_again(&mut self) {
+        self.forget_states(0, |_| true);
     }
 
     /// Clears the history.
@@ -184,29 +197,34 @@ mod tests {
             from,
             to,
         };
+        let step = |history: &mut History, redo| {
+            let next = history.next(redo).map(|it| it.change.clone());
+            history.step(redo, None);
+            next
+        };
         let mut history = History::default();
         for (from, to) in [(1.0, 2.0), (2.0, 3.0), (3.0, 4.0)] {
-            history.record(knob(5, from, to));
+            history.record(knob(5, from, to), None);
         }
         // Another drag of the same knob is another change, even right after the first.
         history.set_button_held(true);
-        history.record(knob(5, 4.0, 5.0));
-        history.record(knob(5, 5.0, 6.0));
+        history.record(knob(5, 4.0, 5.0), None);
+        history.record(knob(5, 5.0, 6.0), None);
         history.set_button_held(false);
-        assert_eq!(history.step(false), Some(knob(5, 4.0, 6.0)));
-        history.record(knob(6, 0.0, 1.0));
-        assert_eq!(history.step(false), Some(knob(6, 0.0, 1.0)));
-        assert_eq!(history.step(false), Some(knob(5, 1.0, 4.0)));
-        assert_eq!(history.step(false), None);
-        assert_eq!(history.step(true), Some(knob(5, 1.0, 4.0)));
-        history.record(knob(7, 0.0, 1.0));
-        assert_eq!(history.step(true), None);
+        assert_eq!(step(&mut history, false), Some(knob(5, 4.0, 6.0)));
+        history.record(knob(6, 0.0, 1.0), None);
+        assert_eq!(step(&mut history, false), Some(knob(6, 0.0, 1.0)));
+        assert_eq!(step(&mut history, false), Some(knob(5, 1.0, 4.0)));
+        assert_eq!(step(&mut history, false), None);
+        assert_eq!(step(&mut history, true), Some(knob(5, 1.0, 4.0)));
+        history.record(knob(7, 0.0, 1.0), None);
+        assert_eq!(step(&mut history, true), None);
         for k in 0..300 {
-            history.record(Change::Pins {
+            let change = Change::Pins {
                 particles: vec![k],
                 pinned: true,
-                before: None,
-            });
+            };
+            history.record(change, None);
         }
         assert_eq!(history.done.len(), MAX_CHANGES);
     }

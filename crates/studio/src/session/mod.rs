@@ -40,7 +40,7 @@ pub use acts::{go_to, offer_at_start};
 pub use asking::MeasureRequest;
 pub use continued::continue_from;
 pub use effects::{Deviation, Effect, Job, Situation};
-pub use history::{Change, EditChange};
+pub use history::{Change, EditChange, Recorded};
 pub use keys::{Action, RunAction, WindowAction};
 pub use keys::{Binding, GROUPS, Group, MOUSE, action};
 pub use lessons::{Given, LessonRequest, Lessons};

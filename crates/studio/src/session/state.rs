@@ -312,7 +312,7 @@ impl Session {
     pub(super) fn begin_new_run(&mut self) {
         self.timeline.clear();
         self.taken_again = None;
-        self.history.forget_states(0);
+        self.history.begin_new_run();
         self.readings.timeline = None;
         self.runs.hide_hand();
         self.restart_measuring();

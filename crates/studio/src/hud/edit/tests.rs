@@ -169,8 +169,10 @@ fn every_edit_keeps_the_rest_and_can_be_undone() {
         frames(&mut session, 0.05);
         let blown = session.runs.first().blow_up();
         assert!(blown.is_none(), "{name}: {blown:?}");
+        let there = rows(session.runs.first());
         panel::undo(&mut session, false);
         let run = session.runs.first();
+        let back = rows(run);
         assert_eq!(session.scenes.shown.source.description, own, "{name}");
         assert_eq!((run.particles(), session.scenes.shown.edited), (n, false));
         let torn = run.model().network().unwrap().torn();
@@ -179,10 +181,19 @@ fn every_edit_keeps_the_rest_and_can_be_undone() {
             // A deletion goes back to the states before it.
             assert_eq!(rows(run), before, "{name}");
         }
+        // Redoing goes back to where it was undone, and undoing again to what came of that.
+        frames(&mut session, 0.05);
         panel::undo(&mut session, true);
         assert_eq!(session.scenes.shown.source.description, edited, "{name}");
+        assert_eq!(rows(session.runs.first()), there, "{name}");
         panel::undo(&mut session, false);
-        frames(&mut session, 0.05);
+        assert_eq!(rows(session.runs.first()), back, "{name}");
+        // After a reset, an edit is redone in the state that there is.
+        session.act(RunAction::Reset, 0);
+        panel::undo(&mut session, true);
+        assert_eq!(session.runs.first().time(), 0.0, "{name}");
+        panel::undo(&mut session, false);
+        frames(&mut session, 0.2);
     }
     // An obstacle is left out, as on the page of parts.
     let said = delete(&mut session, Target::Obstacle(0));

@@ -361,12 +361,13 @@ impl Knob {
         };
         if to != dial.value {
             (self.set)(session, at, to);
-            session.history.record(Change::Knob {
+            let change = Change::Knob {
                 row: row_of(self.name),
                 pane: at,
                 from: dial.value,
                 to,
-            });
+            };
+            session.history.record(change, None);
         }
     }
 }

@@ -76,7 +76,7 @@ pub fn turn(session: &mut Session, part: usize, turn: Turn) {
     }
     let done = set(session, part, to).map(|()| {
         let change = Change::Part { part, is_in: to };
-        session.history.record(change);
+        session.history.record(change, None);
         name(session, part)
     });
     session.readings.say(done.unwrap_or_else(|why| why));

@@ -8,29 +8,48 @@
 
 use std::sync::Arc;
 
-use a3_core::{Checkpoint, Network, Simulation};
+use a3_core::{Checkpoint, Network};
 use a3_scenes::Edit;
 
 use super::knobs::KNOBS;
 use super::parts;
 use super::tune::go_on;
-use crate::session::{Change, EditChange, Passage, Session, exchange, go_to};
+use crate::session::{Change, EditChange, Passage, Recorded, Session, exchange, go_to};
 
 /// Undoes the last change, or with `redo` redoes the one undone last, and shows a message.
 pub fn undo(session: &mut Session, redo: bool) {
-    let Some(change) = session.history.step(redo) else {
+    if session.runs.first().grabbed_obstacle().is_some() {
+        // This push is a change, too.
+        session.release();
+    }
+    let Some(recorded) = session.history.next(redo).cloned() else {
         let what = if redo { "redo" } else { "undo" };
         return session.readings.say(format!("There is nothing to {what}."));
     };
-    let what = match change {
-        Change::Pins {
-            particles,
-            pinned,
-            before,
-        } => {
-            session.runs.set_pins(&particles, pinned == redo);
-            if let (Some(before), false) = (before, redo) {
-                session.return_to(&before);
+    let now = (!redo && recorded.returns()).then(|| {
+        session.release();
+        session.runs.align();
+        session.runs.moments()
+    });
+    let said = match apply(session, &recorded, redo) {
+        Ok(what) => {
+            session.history.step(redo, now);
+            format!("{}: {what}.", if redo { "Redone" } else { "Undone" })
+        }
+        Err(why) => why,
+    };
+    session.readings.say(said);
+}
+
+/// Undoes a change, or with `redo` makes it again, and goes back to its states if they are kept.
+/// Returns the name of the change. Fails, and changes nothing, if the scene does not allow it.
+fn apply(session: &mut Session, recorded: &Recorded, redo: bool) -> Result<String, String> {
+    let states = recorded.states[usize::from(redo)].as_deref();
+    Ok(match &recorded.change {
+        Change::Pins { particles, pinned } => {
+            session.runs.set_pins(particles, *pinned == redo);
+            if let Some(states) = states {
+                session.return_to(states);
             }
             match (particles.len(), pinned) {
                 (1, true) => format!("pin of particle {}", particles[0]),
@@ -41,29 +60,20 @@ pub fn undo(session: &mut Session, redo: bool) {
         }
         Change::Push { obstacle, paths } => {
             // If surfaces would cross, the obstacle does not move.
-            if let Err(why) = session
-                .runs
-                .set_obstacle_path(obstacle, paths[usize::from(redo)])
-            {
-                return session.readings.say(why);
-            }
+            let path = paths[usize::from(redo)];
+            session.runs.set_obstacle_path(*obstacle, path)?;
             "push".into()
         }
         Change::Part { part, is_in } => {
-            if let Err(why) = parts::set(session, part, is_in == redo) {
-                return session.readings.say(why);
-            }
-            parts::name(session, part)
+            parts::set(session, *part, *is_in == redo)?;
+            parts::name(session, *part)
         }
-        Change::Apart { before, after } => {
-            go_to(session, if redo { &after } else { &before });
+        Change::Apart => {
+            go_to(session, states.unwrap_or_default());
             "surfaces come apart".into()
         }
-        Change::Edit { edit, before } => {
-            if let Err(why) = super::undo::repeat(session, &edit, before.as_deref(), redo) {
-                session.history.step(!redo);
-                return session.readings.say(why);
-            }
+        Change::Edit(edit) => {
+            repeat(session, edit, states.unwrap_or_default(), redo)?;
             edit.name.clone()
         }
         Change::Knob {
@@ -72,7 +82,8 @@ pub fn undo(session: &mut Session, redo: bool) {
             from,
             to,
         } => {
-            let value = if redo { to } else { from };
+            let (row, pane) = (*row, *pane);
+            let value = if redo { *to } else { *from };
             let now = (KNOBS[row].read)(session, pane);
             // A key may have changed the value in the meantime.
             if now.is_some_and(|dial| dial.value != value) {
@@ -82,9 +93,7 @@ pub fn undo(session: &mut Session, redo: bool) {
             let words = now.map_or(String::new(), |dial| dial.words);
             format!("{} {words}", KNOBS[row].name)
         }
-    };
-    let did = if redo { "Redone" } else { "Undone" };
-    session.readings.say(format!("{did}: {what}."));
+    })
 }
 
 /// Edits the scene while the motion goes on, and records that as a change of this name. Fails, and
@@ -115,7 +124,7 @@ pub fn edit(session: &mut Session, edit: &Edit, name: &str) -> Result<(), String
         Edit::Disjoin(_) | Edit::RemoveParticle(_) | Edit::RemoveBody(_)
     );
     session.runs.align();
-    let before = deletes.then(|| session.runs.all().map(Simulation::moment).collect());
+    let before = deletes.then(|| session.runs.moments());
     go_on(session, touching, &mut |session| {
         exchange::edit(session, after.clone(), &there, &[])
     })?;
@@ -125,21 +134,20 @@ pub fn edit(session: &mut Session, edit: &Edit, name: &str) -> Result<(), String
         origins: [origin, after],
         passages: [back, there],
     });
-    session.history.record(Change::Edit { edit, before });
+    session.history.record(Change::Edit(edit), before);
     Ok(())
 }
 
-/// Undoes an edit, or with `redo` does it again. Undoing a deletion goes back to the states
-/// `before` it. Fails, and changes nothing, if surfaces touch and would cross.
-pub fn repeat(
+/// Undoes an edit, or with `redo` makes it again, and goes on from `then` if there are such states.
+/// Fails, and changes nothing, if surfaces touch and would cross.
+fn repeat(
     session: &mut Session,
     change: &EditChange,
-    before: Option<&[Checkpoint]>,
+    then: &[Option<Checkpoint>],
     redo: bool,
 ) -> Result<(), String> {
     let k = usize::from(redo);
     let (origin, passage) = (&change.origins[k], &change.passages[k]);
-    let then = before.filter(|_| !redo).unwrap_or_default();
     go_on(session, passage.touching, &mut |session| {
         exchange::edit(session, origin.clone(), passage, then)
     })?;
