@@ -4,8 +4,7 @@
 
 use a3_core::accuracy::{Frames, Reference, measure};
 use a3_core::{
-    Control, Error, Model, Network, Path, Scene, Spring, SpringKind, SpringLaw, Vector3,
-    integrators,
+    Control, Error, Network, Path, Scene, Spring, SpringKind, SpringLaw, Vector3, integrators,
 };
 
 /// A particle of 1 kg on a spring below a pin, pulled aside.
@@ -24,11 +23,7 @@ fn pendulum() -> Result<Scene, Error> {
     // All x, all y, all z of the two positions, and then of the velocities.
     let positions = [0.0, 1.0, 0.0, 0.0, 0.0, 0.0];
     let state = [positions, [0.0; 6]].concat();
-    Ok(Scene::new(
-        "pendulum",
-        Model::Network(Box::new(network)),
-        state,
-    ))
+    Ok(Scene::new("pendulum", network, state))
 }
 
 fn main() -> Result<(), Error> {

@@ -3,8 +3,8 @@
 //! `cargo run -p a3-core --example pendulum`
 
 use a3_core::{
-    Control, Error, Model, Network, Path, Scene, Simulation, Spring, SpringKind, SpringLaw,
-    Vector3, integrators,
+    Control, Error, Network, Path, Scene, Simulation, Spring, SpringKind, SpringLaw, Vector3,
+    integrators,
 };
 
 /// Number of particles.
@@ -33,7 +33,7 @@ fn main() -> Result<(), Error> {
         *x = SPACING * i as f64;
     }
 
-    let scene = Scene::new("pendulum", Model::Network(Box::new(network)), state);
+    let scene = Scene::new("pendulum", network, state);
     let Some(rk4) = integrators::find("rk4") else {
         return Err(Error::Invalid("there is no method rk4".into()));
     };

@@ -8,6 +8,15 @@ use serde::{Deserialize, Serialize};
 ///
 /// Every method takes steps of a fixed length. A tolerance is for adaptive methods, which estimate
 /// their error.
+///
+/// ```
+/// use a3_core::{Control, integrators};
+///
+/// let (rk4, dopri5) = (integrators::find("rk4").unwrap(), integrators::find("dopri5").unwrap());
+/// assert!(rk4.check_control(Control::Step(0.01)).is_ok());
+/// assert!(rk4.check_control(Control::Tolerance(1e-6)).is_err());
+/// assert!(dopri5.check_control(Control::Tolerance(1e-6)).is_ok());
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Control {

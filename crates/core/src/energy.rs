@@ -3,6 +3,11 @@
 use std::ops::AddAssign;
 
 /// Energy of a state by kind (J). The gravitational energy is zero at the origin.
+///
+/// ```
+/// let energy = a3_core::Energy { kinetic: 2.0, gravitational: -3.0, ..Default::default() };
+/// assert_eq!(energy.total(), -1.0);
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Energy {
     /// Kinetic energy, m v2 / 2 (J).

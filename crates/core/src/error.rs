@@ -54,6 +54,19 @@ pub enum Error {
 }
 
 /// Blow-up of a run: the method, the time and the cause.
+///
+/// ```
+/// use a3_core::{Control, Error, Ode, Scene, Simulation, integrators};
+///
+/// // Explicit Euler on y' = -50 y is stable up to a step of 0.04 s.
+/// let decay = Ode::new(1, |_t, y, dydt| dydt[0] = -50.0 * y[0])?;
+/// let euler = integrators::find("euler").unwrap();
+/// let scene = Scene::new("decay", decay, vec![1.0]);
+/// let mut run = Simulation::new(scene, euler, Control::Step(0.1))?;
+/// let Err(Error::BlowUp(lost)) = run.advance_to(100.0) else { panic!("it holds") };
+/// assert!(lost.step > 10 && run.blow_up() == Some(lost));
+/// # Ok::<(), a3_core::Error>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BlowUp {
     /// Full title of the method.

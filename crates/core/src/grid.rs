@@ -6,6 +6,14 @@ use crate::error::Error;
 pub const MAX_PARTICLES: usize = 2048 * 2048;
 
 /// Grid of rows x cols particles, numbered row by row.
+///
+/// ```
+/// let grid = a3_core::Grid::new(3, 4)?;
+/// assert_eq!((grid.particles(), grid.index_of(2, 1)), (12, 9));
+/// assert_eq!(grid.triangles().count(), 12);
+/// assert!(a3_core::Grid::new(1, 4).is_err());
+/// # Ok::<(), a3_core::Error>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Grid {
     rows: usize,

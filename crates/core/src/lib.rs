@@ -18,7 +18,7 @@
 //! ```
 //! use a3_core::accuracy::{Frames, Reference, measure};
 //! use a3_core::{
-//!     Control, Model, Network, Path, Scene, Simulation, Spring, SpringKind, SpringLaw, Vector3,
+//!     Control, Network, Path, Scene, Simulation, Spring, SpringKind, SpringLaw, Vector3,
 //!     integrators,
 //! };
 //!
@@ -30,7 +30,7 @@
 //! network.set_gravity(Vector3::new(0.0, -9.81, 0.0));
 //! // The state holds all x, all y and all z (m), and then the velocities (m/s) in the same order.
 //! let state = vec![0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
-//! let scene = Scene::new("pendulum", Model::Network(Box::new(network)), state);
+//! let scene = Scene::new("pendulum", network, state);
 //!
 //! let rk4 = integrators::find("rk4").unwrap();
 //! let mut run = Simulation::new(scene.clone(), rk4, Control::Step(0.01))?;

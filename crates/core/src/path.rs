@@ -28,6 +28,15 @@ impl Place {
 
 /// Uniform turn about an axis between two times; at rest before and after. It turns anticlockwise
 /// to someone who looks against the axis.
+///
+/// ```
+/// use a3_core::{Turn, Vector3};
+///
+/// let turn = Turn { axis: Vector3::z(), rate: 0.5, start: 1.0, end: Some(3.0) };
+/// assert_eq!(turn.at(0.0), (0.0, 0.0));
+/// assert_eq!(turn.at(2.0), (0.5, 0.5));
+/// assert_eq!(turn.at(9.0), (1.0, 0.0));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Turn {
     /// Direction of the axis: a unit vector.
@@ -149,6 +158,19 @@ impl Pose {
 }
 
 /// Path of a pin or of an obstacle.
+///
+/// ```
+/// use a3_core::{Path, Vector3};
+///
+/// let lift = Path::Line {
+///     from: Vector3::zeros(),
+///     to: Vector3::new(0.0, 3.0, 0.0),
+///     start: 1.0,
+///     end: 2.5,
+/// };
+/// assert_eq!(lift.at(0.5).velocity.y, 0.0);
+/// assert_eq!((lift.at(2.0).position.y, lift.at(2.0).velocity.y), (2.0, 2.0));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Path {

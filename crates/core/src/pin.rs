@@ -5,6 +5,16 @@ use serde::{Deserialize, Serialize};
 use crate::path::{Path, Place};
 
 /// A pinned particle, its path, and the time at which it is let go.
+///
+/// ```
+/// use a3_core::{Network, Path, Pin, Vector3};
+///
+/// let mut network = Network::new(vec![1.0; 2])?;
+/// let path = Path::Still(Vector3::zeros());
+/// network.pin_all(vec![Pin { until: Some(2.0), ..Pin::new(0, path) }])?;
+/// assert!(network.all_pins().all(|pin| pin.holds_at(1.9) && !pin.holds_at(2.0)));
+/// # Ok::<(), a3_core::Error>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Pin {
     /// Number of the particle.

@@ -38,6 +38,12 @@ pub enum Model {
     Network(Box<Network>),
 }
 
+impl From<Network> for Model {
+    fn from(network: Network) -> Self {
+        Self::Network(Box::new(network))
+    }
+}
+
 impl Model {
     /// Returns the model as the system that an integrator steps.
     #[must_use]
@@ -125,6 +131,16 @@ pub struct Swing {
 }
 
 /// Disturbances of a scene, each on or off.
+///
+/// ```
+/// use a3_core::{Disturbances, Network, Scene, Vector3, elements::Wind};
+///
+/// let mut scene = Scene::new("leaf", Network::new(vec![0.01])?, vec![0.0; 6]);
+/// scene.wind = Some(Wind::new(1, Vector3::new(0.1, 0.0, 0.0)));
+/// let on = Disturbances { wind: true, ..Disturbances::default() };
+/// assert!(scene.disturbed(on)?.model.network().unwrap().wind().is_some());
+/// # Ok::<(), a3_core::Error>(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Disturbances {
     /// Whether the scene's wind blows.

@@ -16,6 +16,16 @@ pub enum SpringKind {
 
 /// Force law of a spring of length L (m) and rate of stretch L' (m/s): it pulls its ends together
 /// with the force k (L - r) + c L' (N).
+///
+/// ```
+/// use a3_core::SpringLaw;
+///
+/// let law = SpringLaw::new(50.0, 1.0, 0.1)?;
+/// // Stretched to 1.2 m, it pulls by 10 N.
+/// assert!((law.stiffness * (1.2 - law.rest_length) - 10.0).abs() < 1e-12);
+/// assert!(SpringLaw::new(-50.0, 1.0, 0.1).is_err());
+/// # Ok::<(), a3_core::Error>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SpringLaw {
     /// Stiffness k (N/m).

@@ -9,6 +9,31 @@ use crate::paint::Paint;
 use crate::style::{CurveStyle, Filling};
 
 /// A chart of lines.
+///
+/// ```
+/// use a3_plot::{CurveStyle, Line, LineChart, LinePanel};
+///
+/// let wave = |k: u32| [0.1 * f64::from(k), (0.1 * f64::from(k)).sin()];
+/// let chart = LineChart {
+///     title: "A sine".into(),
+///     panels: vec![LinePanel {
+///         x_label: "time (s)".into(),
+///         y_label: "x (m)".into(),
+///         lines: vec![Line {
+///             name: "x".into(),
+///             style: CurveStyle::default(),
+///             pieces: vec![(0..100).map(wave).collect()],
+///             dots: false,
+///         }],
+///         ..LinePanel::default()
+///     }],
+///     ..LineChart::default()
+/// };
+/// assert!(chart.draw(600.0, 400.0)?.svg().contains("time (s)"));
+/// // A sheet that is too small is an error that says how large it has to be.
+/// assert!(chart.draw(60.0, 40.0).is_err());
+/// # Ok::<(), a3_plot::Error>(())
+/// ```
 #[derive(Clone, Debug, Default)]
 pub struct LineChart {
     /// The title.

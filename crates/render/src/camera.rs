@@ -15,6 +15,18 @@ const MAX_TARGET_DISTANCE: f32 = 1e6;
 
 /// A camera that looks at its target from a distance, turned by a yaw around the vertical and
 /// raised by a pitch.
+///
+/// ```
+/// use a3_render::Camera;
+///
+/// let mut camera = Camera::look_at([0.0, 1.0, 3.0], [0.0; 3]);
+/// // What it looks at is in the middle of the picture, 3.16 m away.
+/// let ([x, y], distance) = camera.project([0.0; 3], 1.5).unwrap();
+/// let near = |a: f32, b: f32| (a - b).abs() < 1e-4;
+/// assert!(near(x, 0.5) && near(y, 0.5) && near(distance, 10f32.sqrt()));
+/// camera.orbit(0.5, 0.0);
+/// assert!(near(camera.eye().coords.norm(), 10f32.sqrt()));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {
     /// Target (m).

@@ -221,6 +221,12 @@ impl Picture<'_> {
 }
 
 /// A non-empty rectangular part of the target.
+///
+/// ```
+/// let tile = a3_render::Tile::whole((1280, 720));
+/// assert_eq!(tile.aspect(), 16.0 / 9.0);
+/// assert!(tile.contains([1000.0, 700.0]) && !tile.contains([1000.0, 721.0]));
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Tile {
     /// Distance from the left (px).

@@ -15,6 +15,11 @@ pub(crate) const RAMP: [[f32; 3]; 8] = [
 
 /// Returns the colour of a value from 0 to 1, as linear red, green and blue, then 1. Values beyond
 /// the ends have the colours of the ends.
+///
+/// ```
+/// let [low, high] = [0.0, 1.0].map(a3_render::ramp);
+/// assert!(low != high && low[3] == 1.0);
+/// ```
 #[must_use]
 pub fn ramp(value: f32) -> [f32; 4] {
     let last = RAMP.len() - 1;

@@ -35,6 +35,17 @@ pub enum Edit {
 }
 
 /// An edited scene, and the numbers of its particles and rigid bodies.
+///
+/// ```
+/// use a3_scenes::Edit;
+///
+/// let entry = a3_scenes::find("chain").unwrap();
+/// let (chain, scene) = (entry.description()?, entry.build(None)?.scene);
+/// let add = Edit::AddParticle { position: [0.0, 2.0, 0.0], mass: 0.1 };
+/// let edited = add.apply(&chain, scene.model.network().unwrap())?;
+/// assert_eq!(edited.particles.added, 1);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Edited {
     /// The scene.

@@ -9,6 +9,11 @@ use crate::wording::{brief, of_json, of_toml};
 const MAX_CHARACTERS: usize = 1000;
 
 /// Fault in a description, with its place in the text.
+///
+/// ```
+/// let fault = a3_scenes::parse_toml("gravity = [0, 1]\n").err().unwrap();
+/// assert_eq!((fault.line, &*fault.key), (Some(1), "gravity"));
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fault {
     /// Line of the text, counted from 1, if it is known.

@@ -10,6 +10,11 @@ const MIN_PREFIX: usize = 3;
 
 /// Finds the name that is most similar to a word, if one is similar enough. Two neighbouring
 /// letters in the wrong order count as one error, and small and capital letters as equal.
+///
+/// ```
+/// assert_eq!(a3_scenes::nearest("pendulm", ["chain", "pendulum"]), Some("pendulum"));
+/// assert_eq!(a3_scenes::nearest("teapot", ["chain", "pendulum"]), None);
+/// ```
 #[must_use]
 pub fn nearest<'a>(word: &str, names: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     if word.len() >= TOO_LONG {

@@ -10,6 +10,15 @@ const STATED: [&str; 4] = ["springs", "spring damping", "gravity", "drag"];
 
 /// Network of masses and springs, with its state at the start. Its text is JSON that
 /// [`parse_json`](crate::parse_json) reads.
+///
+/// ```
+/// let scene = a3_scenes::find("pendulum").unwrap().build(None)?.scene;
+/// let list = a3_scenes::List::of(&scene)?;
+/// let (description, _) = a3_scenes::parse_json(&list.text()?)?;
+/// let no_files = &mut |_: &str| Err("there are no files here".into());
+/// assert_eq!(description.build(None, no_files)?.scene.state, scene.state);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct List {
     /// Name of the scene.

@@ -81,6 +81,14 @@ pub fn parts(scene: &Description) -> Vec<Part> {
 }
 
 /// Returns the scene without some of its [`parts`].
+///
+/// ```
+/// let scene = a3_scenes::find("cloth").unwrap().description()?;
+/// let parts = a3_scenes::parts(&scene);
+/// let gravity = parts.iter().find(|part| part.name == "gravity").unwrap();
+/// assert!(scene.gravity.is_some() && a3_scenes::without(&scene, [gravity]).gravity.is_none());
+/// # Ok::<(), a3_core::Error>(())
+/// ```
 #[must_use]
 pub fn without<'a>(scene: &Description, parts: impl IntoIterator<Item = &'a Part>) -> Description {
     let mut changed = scene.clone();

@@ -93,6 +93,17 @@ pub fn surroundings(
 }
 
 /// Defaults of the runs of a scene.
+///
+/// ```
+/// use a3_core::integrators;
+///
+/// let defaults = a3_scenes::find("cloth").unwrap().build(None)?.defaults;
+/// let rk4 = integrators::find("rk4").unwrap();
+/// assert!(defaults.control_of(rk4).step().is_some());
+/// let dopri5 = integrators::find("dopri5").unwrap();
+/// assert!(defaults.control_of(dopri5).tolerance().is_some());
+/// # Ok::<(), a3_core::Error>(())
+/// ```
 #[derive(Clone, Copy, Debug)]
 pub struct Defaults {
     /// Method that the scene names, if it does.

@@ -1,6 +1,12 @@
 //! Lists from which items were removed, and to which others were added.
 
 /// Places of a list from which an edit removed items, and to which it added others.
+///
+/// ```
+/// let gap = a3_scenes::Splice { at: 3, removed: 1, added: 0 };
+/// assert_eq!([2, 3, 4].map(|i| gap.number(i)), [Some(2), None, Some(3)]);
+/// assert_eq!(gap.back().number(3), Some(4));
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Splice {
     /// Number of the first of these items.

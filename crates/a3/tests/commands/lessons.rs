@@ -7,7 +7,7 @@ use std::path::Path;
 use super::common::{a3, gpu_is_missing, text};
 use super::refused;
 
-const LESSONS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/lessons");
+const LESSONS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../files/lessons");
 const COUNT: usize = 8;
 
 /// Returns the code blocks of a page: their languages and their texts.

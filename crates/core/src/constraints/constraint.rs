@@ -27,6 +27,23 @@ pub(crate) enum Projected {
 }
 
 /// A constraint on the positions of one or two particles.
+///
+/// ```
+/// use a3_core::{Constraint, Control, Network, Path, Scene, Simulation, Vector3, integrators};
+///
+/// // A pendulum on a rod of 1 m, which falls from the horizontal.
+/// let mut network = Network::new(vec![1.0; 2])?;
+/// network.pin(0, Path::Still(Vector3::zeros()))?;
+/// network.set_gravity(Vector3::new(0.0, -9.81, 0.0));
+/// network.add_constraint(Constraint::Rod { i: 0, j: 1, length: 1.0 })?;
+/// let mut state = vec![0.0; 12];
+/// state[1] = 1.0;
+/// let rk4 = integrators::find("rk4").unwrap();
+/// let mut run = Simulation::new(Scene::new("rod", network, state), rk4, Control::Step(0.001))?;
+/// run.advance_to(1.0)?;
+/// assert!((run.position(1).norm() - 1.0).abs() < 1e-6);
+/// # Ok::<(), a3_core::Error>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Constraint {
     /// A particle stays at a point.

@@ -66,6 +66,21 @@ const MAX_PLANES_OF_PART: usize = 16;
 /// Edges and triangles may be degenerate. The distance of a [`PairKind::VertexFloor`] is the signed
 /// height of the vertex above the floor; if it begins below the gap, it is hit if the vertex sinks.
 /// Numbers that are not finite are a hit.
+///
+/// ```
+/// use a3_core::Vector3;
+/// use a3_core::contact::{PairKind, time_of_impact};
+///
+/// // A vertex falls by 2 m from 1 m above a triangle.
+/// let at = |x, y, z| Vector3::new(x, y, z);
+/// let from = [at(0.2, 1.0, 0.2), at(0.0, 0.0, 0.0), at(0.0, 0.0, 1.0), at(1.0, 0.0, 0.0)];
+/// let fall = at(0.0, -2.0, 0.0);
+/// let moves = [fall, Vector3::zeros(), Vector3::zeros(), Vector3::zeros()];
+/// let time = time_of_impact(PairKind::VertexTriangle, &from, &moves, 0.0, 0.01).unwrap();
+/// assert!(time < 0.5 && time > 0.49);
+/// let away = moves.map(|it| -it);
+/// assert!(time_of_impact(PairKind::VertexTriangle, &from, &away, 0.0, 0.01).is_none());
+/// ```
 #[must_use]
 pub fn time_of_impact(
     kind: PairKind,

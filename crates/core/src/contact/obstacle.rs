@@ -9,6 +9,18 @@ use crate::geometry::Shape;
 use crate::path::{Path, Pose, Turn};
 
 /// Body that particles stay out of, still or moving.
+///
+/// ```
+/// use a3_core::contact::{Obstacle, Shape};
+/// use a3_core::{Path, Vector3};
+///
+/// let ball = Obstacle {
+///     friction: 0.5,
+///     ..Obstacle::smooth(Shape::Sphere { radius: 1.0 }, Path::Still(Vector3::zeros()))
+/// };
+/// assert_eq!(ball.depth(0.0, Vector3::new(0.0, 0.75, 0.0)), 0.25);
+/// assert_eq!(ball.depth(0.0, Vector3::new(0.0, 3.0, 0.0)), -2.0);
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Obstacle {
     /// Shape in the obstacle's own frame, before it turned.

@@ -17,6 +17,16 @@ use serde::{Deserialize, Serialize};
 use crate::error::{Error, at_least};
 
 /// Air that exerts drag and lift.
+///
+/// ```
+/// use a3_core::{Vector3, elements::{Air, Wind}};
+///
+/// // A wind of 3 m/s that blows on the triangles of a cloth.
+/// let air = Air::new(1.2, 1.2, 0.3)?;
+/// let wind = Wind::on_triangles(1, Vector3::new(3.0, 0.0, 0.0), air);
+/// assert_eq!(wind.air(), Some(air));
+/// # Ok::<(), a3_core::Error>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Air {
     /// Density rho (kg/m3).

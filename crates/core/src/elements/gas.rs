@@ -27,6 +27,19 @@ pub enum GasLaw {
 }
 
 /// Gas in a closed surface.
+///
+/// ```
+/// use a3_core::elements::{ATMOSPHERE, Gas, GasLaw};
+///
+/// // A tetrahedron of 1/6 m3, with gas that takes twice as much in the open.
+/// let triangles = vec![[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]];
+/// let gas = Gas::new(GasLaw::Amount(2.0 / 6.0), triangles)?;
+/// let x = [0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0];
+/// assert!((gas.volume(&x) - 1.0 / 6.0).abs() < 1e-15);
+/// let [above_outside, _] = gas.pressure(1.0 / 6.0);
+/// assert!((above_outside / ATMOSPHERE - 1.0).abs() < 1e-12);
+/// # Ok::<(), a3_core::Error>(())
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Gas {
     law: GasLaw,

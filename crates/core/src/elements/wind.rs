@@ -35,6 +35,14 @@ pub(super) const BLOCK: usize = 32;
 pub(super) type Each = [f64; BLOCK];
 
 /// A breeze and four waves: forces on particles, or the velocity of the air.
+///
+/// ```
+/// use a3_core::{Vector3, elements::Wind};
+///
+/// let gusty = Wind::new(7, Vector3::new(0.2, 0.0, 0.0));
+/// assert!(gusty.at(0.0, [0.0; 3]) != gusty.at(1.0, [0.0; 3]));
+/// assert_eq!(gusty.steady().at(1.0, [0.0; 3]), Vector3::new(0.2, 0.0, 0.0));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Wind {
     #[serde(with = "crate::serial")]

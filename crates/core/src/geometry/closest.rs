@@ -71,6 +71,17 @@ pub fn weighted(weights: &[f64; 4], vectors: &[Vector3<f64>; 4]) -> Vector3<f64>
 }
 
 /// Finds the closest points of the pair of that kind with those points (m).
+///
+/// ```
+/// use a3_core::Vector3;
+/// use a3_core::contact::{PairKind, closest};
+///
+/// // Two edges that cross at right angles, 2 m apart.
+/// let at = |x, y, z| Vector3::new(x, y, z);
+/// let points = [at(-1.0, 0.0, 0.0), at(1.0, 0.0, 0.0), at(0.0, -1.0, 2.0), at(0.0, 1.0, 2.0)];
+/// let found = closest(PairKind::EdgeEdge, &points);
+/// assert_eq!((found.offset.norm(), found.weights), (2.0, [0.5, 0.5, -0.5, -0.5]));
+/// ```
 #[must_use]
 pub fn closest(kind: PairKind, points: &[Vector3<f64>; 4]) -> Closest {
     match kind {

@@ -14,6 +14,29 @@ use crate::path::{Orientation, Place, Pose};
 const ROUNDING: f64 = 1e-9;
 
 /// Rigid body of a network.
+///
+/// ```
+/// use a3_core::contact::Shape;
+/// use a3_core::rigid::{Body, MassProperties, Part, ROTATION, Rotation};
+/// use a3_core::{Control, Network, Scene, Simulation, Vector3, integrators};
+///
+/// // A ball that spins in space: a particle at its centre, one at its only point, and a rotation.
+/// let ball = Shape::Sphere { radius: 0.5 };
+/// let properties = MassProperties::of(&ball, 1000.0)?;
+/// let mut network = Network::new(vec![properties.mass, properties.mass])?;
+/// let part = Part { shape: ball, at: Vector3::zeros() };
+/// network.add_body(Body::new(0, 1, properties.inertia.diagonal(), vec![part])?)?;
+/// let mut state = vec![0.0; 12 + ROTATION];
+/// let still = Rotation::about(Vector3::zeros());
+/// Rotation { momentum: Vector3::z(), ..still }.write(&mut state[12..]);
+/// let verlet = integrators::find("verlet").unwrap();
+/// let scene = Scene::new("spin", network, state);
+/// let mut run = Simulation::new(scene, verlet, Control::Step(0.01))?;
+/// let before = run.energy().unwrap().kinetic;
+/// run.advance_to(1.0)?;
+/// assert!((run.energy().unwrap().kinetic / before - 1.0).abs() < 1e-9);
+/// # Ok::<(), a3_core::Error>(())
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Body {
     center: usize,

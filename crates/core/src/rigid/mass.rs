@@ -14,6 +14,17 @@ use crate::geometry::{Shape, normals};
 const ALIGNED_SHARE: f64 = 1e-12;
 
 /// Mass, centre and moments of inertia of a body.
+///
+/// ```
+/// use a3_core::contact::Shape;
+/// use a3_core::rigid::MassProperties;
+///
+/// let ball = MassProperties::of(&Shape::Sphere { radius: 0.5 }, 1000.0)?;
+/// // 4/3 pi r^3 rho, and 2/5 m r^2 about any axis.
+/// assert!((ball.mass - 523.6).abs() < 0.1);
+/// assert!((ball.inertia[(0, 0)] - 0.4 * ball.mass * 0.25).abs() < 1e-9);
+/// # Ok::<(), a3_core::Error>(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct MassProperties {
     /// Mass (kg).

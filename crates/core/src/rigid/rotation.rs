@@ -6,6 +6,13 @@ use nalgebra::{Matrix3, Quaternion, Vector3};
 pub const ROTATION: usize = 7;
 
 /// Rotation and angular momentum of a body.
+///
+/// ```
+/// use a3_core::{Vector3, rigid::Rotation};
+///
+/// let quarter = Rotation::about(Vector3::z() * std::f64::consts::FRAC_PI_2);
+/// assert!((quarter.matrix() * Vector3::x() - Vector3::y()).norm() < 1e-15);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rotation {
     /// Quaternion from the principal axes to the world, of any length but 0.

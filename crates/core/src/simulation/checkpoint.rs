@@ -27,6 +27,23 @@ const LEAST_RADIUS: f64 = 1.0;
 /// changed stiffness of springs: restore it in a run of the same scene, adjusted alike. It contains
 /// the last step of an adaptive method if [`checkpoint`](crate::Simulation::checkpoint) made it,
 /// but not if [`record`](crate::Simulation::record) did.
+///
+/// ```
+/// use a3_core::{Control, Ode, Scene, Simulation, integrators};
+///
+/// let growth = Ode::new(1, |_t, y, dydt| dydt[0] = y[0] * (1.0 - y[0]))?;
+/// let scene = Scene::new("growth", growth, vec![0.1]);
+/// let dopri5 = integrators::find("dopri5").unwrap();
+/// let mut run = Simulation::new(scene, dopri5, Control::Tolerance(1e-8))?;
+/// run.advance_to(1.0)?;
+/// let kept = run.checkpoint();
+/// run.advance_to(2.0)?;
+/// let end = run.state().to_vec();
+/// run.restore(&kept)?;
+/// run.advance_to(2.0)?;
+/// assert_eq!(run.state(), end);
+/// # Ok::<(), a3_core::Error>(())
+/// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Checkpoint {
     /// State of the run.

@@ -21,7 +21,7 @@ use crate::scene::{Model, Scene};
 /// hangs at rest, 0.1 m below:
 ///
 /// ```
-/// # use a3_core::{Control, Model, Network, Path, Scene, Simulation, integrators};
+/// # use a3_core::{Control, Network, Path, Scene, Simulation, integrators};
 /// # use a3_core::{Spring, SpringKind, SpringLaw, Vector3};
 /// # let mut network = Network::new(vec![1.0; 2])?;
 /// # let law = SpringLaw::new(98.1, 1.0, 0.0)?;
@@ -30,7 +30,7 @@ use crate::scene::{Model, Scene};
 /// # network.set_gravity(Vector3::new(0.0, -9.81, 0.0));
 /// # let mut state = vec![0.0; 12];
 /// # state[3] = -1.0;
-/// # let scene = Scene::new("weight", Model::Network(Box::new(network)), state);
+/// # let scene = Scene::new("weight", network, state);
 /// let verlet = integrators::find("verlet").unwrap();
 /// let mut run = Simulation::new(scene, verlet, Control::Step(0.001))?;
 /// let before = run.energy().unwrap().total();

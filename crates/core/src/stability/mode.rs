@@ -12,6 +12,15 @@ const ROUNDING: f64 = 1e-6;
 const FEEDBACK_SHARES: [f64; 2] = [0.05, 0.6];
 
 /// Mode of motion x'' = -stiffness x - (drag + damping) x'.
+///
+/// ```
+/// use a3_core::stability::Mode;
+///
+/// // A mass on a spring of 4 N/m/kg with a quarter of the critical damping.
+/// let mode = Mode { stiffness: 4.0, damping: 1.0, ..Mode::default() };
+/// assert_eq!((mode.frequency(), mode.damping_ratio()), (2.0, 0.25));
+/// assert_eq!(mode.eigenvalues()[0][0], -0.5);
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Mode {
     /// Stiffness over mass, the angular frequency squared (1/s2).

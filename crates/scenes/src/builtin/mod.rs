@@ -63,6 +63,15 @@ pub static SCENES: &[SceneEntry] = &[
 ];
 
 /// Finds the scene with this name.
+///
+/// ```
+/// use a3_core::Grid;
+///
+/// let entry = a3_scenes::find("cloth").unwrap();
+/// let setup = entry.build(Some(Grid::new(5, 6)?))?;
+/// assert_eq!(setup.scene.model.particles(), 30);
+/// # Ok::<(), a3_core::Error>(())
+/// ```
 #[must_use]
 pub fn find(name: &str) -> Option<&'static SceneEntry> {
     SCENES.iter().find(|scene| scene.name == name)

@@ -11,6 +11,17 @@ use crate::spring::{Spring, SpringKind, SpringLaw};
 
 /// A grid of particles and its springs: structural to the next particle, shear across each cell,
 /// bend to the next but one. Its particles are numbered row by row, from a first one on.
+///
+/// ```
+/// use a3_core::{Grid, Network, Sheet};
+///
+/// let sheet = Sheet::new(Grid::new(3, 3)?, 0.1, [100.0, 50.0, 10.0], 0.0)?;
+/// // 12 structural springs, 8 across the cells and 6 to the next but one.
+/// assert_eq!(sheet.len(), 26);
+/// let mut network = Network::new(vec![0.01; 9])?;
+/// network.add(sheet)?;
+/// # Ok::<(), a3_core::Error>(())
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sheet {
     first: usize,

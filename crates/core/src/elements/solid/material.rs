@@ -32,6 +32,15 @@ pub enum Hyperelastic {
 }
 
 /// Elastic material with viscosity.
+///
+/// ```
+/// use a3_core::elements::{Hyperelastic, Material};
+///
+/// let model = Hyperelastic::StVenantKirchhoff;
+/// let rubber = Material { model, young: 1e6, poisson: 0.45, damping: 0.0 };
+/// // mu = E / (2 (1 + nu)).
+/// assert!(rubber.lame().iter().any(|it| (it / (1e6 / 2.9) - 1.0).abs() < 1e-12));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Material {
     /// Energy of the deformation.
