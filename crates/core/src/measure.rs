@@ -3,8 +3,10 @@
 /// Quantity that numbers of a state stand for. Errors of different quantities are not compared.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Measure {
-    /// Numbers of any unit.
+    /// Numbers of any units and sizes, each with its own.
     Plain,
+    /// Numbers of one unit and one size, such as the coordinates of points.
+    Alike,
     /// Positions (m).
     Position,
     /// Velocities (m/s).

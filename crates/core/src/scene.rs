@@ -21,6 +21,14 @@ const CONTACT_COST: f64 = 100.0;
 /// with springs alone.
 const FLUID_COST: f64 = 10.0;
 
+/// Absolute tolerance of plain numbers over the relative one and the largest number at the start:
+/// numbers that much smaller do not count. It separates a patient from a population of 10^9.
+const PLAIN_SHARE: f64 = 1e-9;
+
+/// Least absolute tolerance of plain numbers over the largest number at the start: a few rounding
+/// errors, of which a number that others cancel in consists.
+const PLAIN_ROUNDING: f64 = 1e-15;
+
 /// First-order system, shared among runs.
 pub type FirstOrder = Arc<dyn ParticleSystem + Send + Sync>;
 
@@ -330,7 +338,14 @@ impl Scene {
     /// # Errors
     /// The tolerance, or the scene's absolute one, is not a finite number above 0.
     pub fn tolerance(&self, relative: f64) -> Result<Tolerance, Error> {
-        let absolute = self.limits.absolute.unwrap_or(relative * self.extent().1);
+        let own = || {
+            let size = self.extent().1;
+            match self.model.particles() {
+                0 => (PLAIN_SHARE * relative).max(PLAIN_ROUNDING) * size,
+                _ => relative * size,
+            }
+        };
+        let absolute = self.limits.absolute.unwrap_or_else(own);
         Tolerance::with_absolute(relative, absolute)
     }
 }

@@ -92,6 +92,12 @@ pub trait ParticleSystem {
     fn measures(&self, visit: &mut dyn FnMut(Range<usize>, Measure)) {
         visit(0..self.dim(), Measure::Plain);
     }
+
+    /// Returns the least size of each [plain](Measure::Plain) number to which errors are relative;
+    /// empty if a tolerance is to derive them.
+    fn scales(&self) -> &[f64] {
+        &[]
+    }
 }
 
 /// A second-order system M x'' = F(t, x, v). With the state y = [x | v], it is a

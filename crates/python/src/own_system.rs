@@ -31,7 +31,13 @@ pub fn scene(system: &Bound<PyAny>, raised: &Raised) -> PyResult<Scene> {
         let made = Ode::new(state.len(), move |t, y, dydt: &mut [f64]| {
             f.of_state(t, y, dydt)
         });
-        made.map_err(failed)?.into()
+        let scales: Vec<f64> = system.getattr("_scales")?.extract()?;
+        let made = made.map_err(failed)?;
+        if scales.is_empty() {
+            made.into()
+        } else {
+            made.with_scales(scales).map_err(failed)?.into()
+        }
     };
     Ok(Scene::new(name, model, state))
 }

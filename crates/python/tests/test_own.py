@@ -320,3 +320,18 @@ def test_a_run_of_a_system_is_pickled():
     for each in (run, again):
         each.advance_to(2.0)
     assert np.array_equal(run.state, again.state)
+
+
+def test_numbers_of_mixed_size_have_errors_of_their_own():
+    def pair(t, y):
+        return np.array([y[1], -y[0], 4 * y[3], -4 * y[2]])
+
+    for scale, most in [(None, 1e-8), ([1, 1, 1e-6, 1e-6], 1e-8), (1.0, 1.0)]:
+        system = a3.System(pair, [1.0, 0.0, 1e-6, 0.0], scale=scale)
+        run = a3.Simulation(system, "dopri5", tolerance=1e-6)
+        run.advance_to(20.0)
+        off = abs(run.state[2] - 1e-6 * math.cos(80))
+        assert off < most and (scale != 1.0 or off > 1e-8)
+    for wrong in [[1, 1, 1], 0.0, [1, 1, 1, -1], "small"]:
+        with pytest.raises(a3.InputError, match="scale"):
+            a3.System(pair, [1.0, 0.0, 1e-6, 0.0], scale=wrong)

@@ -18,6 +18,10 @@ use crate::scene::Model;
 use crate::spring::SpringKind;
 use crate::system::Mechanics;
 
+/// Size of a plain number over the largest one, up to which it is the rounding errors of others, and
+/// its errors are over the size of these.
+const ROUNDING: f64 = 1e-12;
+
 /// Quantities of a state that are compared.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Snapshot {
@@ -27,6 +31,8 @@ pub(super) struct Snapshot {
     positions: Vec<f64>,
     /// Velocities (m/s): the rates of change of these.
     velocities: Vec<f64>,
+    /// The largest size of each number so far; empty with particles.
+    sizes: Vec<f64>,
     /// Total energy (J); 0 for a first-order scene.
     energy: f64,
     /// Momentum of the particles that are not pinned (kg m/s); 0 for a first-order scene.
@@ -44,10 +50,16 @@ impl Snapshot {
     pub fn of(model: &Model, t: f64, y: &[f64]) -> Self {
         let Some(network) = model.network() else {
             let (positions, velocities) = model.motion(t, y);
+            let plain = if model.particles() == 0 {
+                positions
+            } else {
+                &[]
+            };
             return Self {
                 particles: model.particles(),
                 positions: positions.to_vec(),
                 velocities: velocities.into_owned(),
+                sizes: plain.iter().map(|y| y.abs()).collect(),
                 ..Self::default()
             };
         };
@@ -131,6 +143,7 @@ impl Snapshot {
                 particles: model.particles(),
                 positions: x.to_vec(),
                 velocities: v.to_vec(),
+                sizes: known[known.len() - 1].1.sizes.clone(),
                 ..Self::default()
             },
         };
@@ -144,6 +157,9 @@ impl Snapshot {
     /// Creates the next snapshot of a run after this one, of the state y of a model at time t (s).
     pub fn next(&self, model: &Model, t: f64, y: &[f64]) -> Self {
         let mut next = Self::of(model, t, y);
+        for (size, before) in next.sizes.iter_mut().zip(&self.sizes) {
+            *size = size.max(*before);
+        }
         if let Some(layer) = model.network().and_then(Network::contact_layer) {
             let ends = [self, &next].map(|s| [&*s.positions, &*s.velocities]);
             let touch = [self, &next].map(|s| s.penetration > 0.0);
@@ -183,10 +199,21 @@ impl Snapshot {
             pairs.map(|(own, other)| other - own)
         };
         let along = moved().zip(&self.velocities).map(|(d, v)| d * v);
-        let distance = self.mean(scope, moved().map(|d| d * d)).sqrt();
         let (position, state) = match self.particles {
-            0 => (0.0, distance),
-            _ => (distance, 0.0),
+            0 => {
+                let largest = self
+                    .sizes
+                    .iter()
+                    .fold(0.0, |most: f64, size| most.max(*size));
+                let over = |size: f64| match size {
+                    size if size > ROUNDING * largest => size,
+                    _ if largest > 0.0 => largest,
+                    _ => 1.0,
+                };
+                let relative = moved().zip(&self.sizes).map(|(d, size)| d / over(*size));
+                (0.0, self.mean(scope, relative.map(|d| d * d)).sqrt())
+            }
+            _ => (self.mean(scope, moved().map(|d| d * d)).sqrt(), 0.0),
         };
         Errors {
             position,
@@ -232,6 +259,7 @@ impl Snapshot {
             energy: both(&coarse.energy, &fine.energy),
             momentum: fine.momentum + (fine.momentum - coarse.momentum) * share,
             strains: all(&coarse.strains, &fine.strains),
+            sizes: fine.sizes.clone(),
             penetration: both(&coarse.penetration, &fine.penetration),
             impact: Impact::extrapolate(&coarse.impact, &fine.impact, both),
         }
@@ -361,8 +389,8 @@ pub struct Errors {
     /// Root mean square over the particles of the distance from their reference positions (m); 0
     /// without particles.
     pub position: f64,
-    /// Root mean square over the numbers of the state of their errors, where it has no particles; 0
-    /// otherwise.
+    /// Root mean square over the numbers of a state without particles of their errors, each over the
+    /// largest size that the number has had in the reference; 0 with particles.
     pub state: f64,
     /// Absolute error of the total energy (J); 0 for a first-order scene.
     pub energy: f64,
@@ -428,7 +456,7 @@ pub enum Metric {
     /// Error of the positions (m).
     #[default]
     Position,
-    /// Error of the numbers of a state without particles, in their unit.
+    /// Error of the numbers of a state without particles, over their sizes.
     State,
     /// Error of the total energy (J).
     Energy,

@@ -10,6 +10,7 @@ use super::integrator::check_dim;
 use super::sweep::scaled_sum;
 use super::trial::{LastStep, Trial};
 use crate::error::{Error, at_least};
+use crate::measure::Measure;
 use crate::sums::{OnBlock, add_up};
 use crate::system::{ParticleSystem, rigid_of};
 use crate::threads::{Columns, copy, threads};
@@ -41,6 +42,8 @@ pub struct AdaptiveState {
     /// Length to try next (s); 0 before the first step.
     next: f64,
     last: Taken,
+    /// The largest size of each number so far, if any is plain.
+    sizes: Vec<f64>,
     /// The last step, if the next one can start from its end.
     step: Option<LastStep>,
 }
@@ -55,6 +58,9 @@ impl AdaptiveState {
             return Err(Error::Invalid(format!(
                 "a step must be 0 or a positive number of seconds, not {h:e}"
             )));
+        }
+        for size in &self.sizes {
+            at_least(0.0, "the size of a number so far", *size)?;
         }
         at_least(f64::MIN, "the beginning of the last step", t)
     }
@@ -93,6 +99,8 @@ pub struct Adaptive {
     /// The length to try next (s); 0 before the first step.
     next: f64,
     last: Taken,
+    /// The largest size of each number so far; empty if none is plain.
+    sizes: Vec<f64>,
     /// Whether the next step can start from the end of the last one.
     can_continue: bool,
     /// Scratch of the first step: f, a state, and f there.
@@ -134,6 +142,7 @@ impl Adaptive {
             tolerance,
             next: 0.0,
             last: Taken::default(),
+            sizes: vec![],
             can_continue: false,
             first,
         }
@@ -152,6 +161,7 @@ impl Adaptive {
         AdaptiveState {
             next: self.next,
             last: self.last,
+            sizes: self.sizes.clone(),
             step: (stages && self.can_continue).then(|| self.trial.last()),
         }
     }
@@ -163,10 +173,14 @@ impl Adaptive {
     /// impossible; nothing changes then.
     pub fn resume(&mut self, state: &AdaptiveState) -> Result<(), Error> {
         state.check()?;
+        if ![0, self.trial.dim()].contains(&state.sizes.len()) {
+            return Err(Error::Invalid("the sizes are of another system".into()));
+        }
         if let Some(step) = &state.step {
             self.trial.resume(step)?;
         }
         (self.next, self.last) = (state.next, state.last);
+        self.sizes.clone_from(&state.sizes);
         self.can_continue = state.step.is_some();
         Ok(())
     }
@@ -212,9 +226,39 @@ impl Adaptive {
             work += self.trial.begin_again(system, t, y);
         }
         self.can_continue = false;
+        self.see(system, y);
+        let sizes = std::mem::take(&mut self.sizes);
+        let taken = self.within(system, (t, longest), y, (&sizes, work));
+        self.sizes = sizes;
+        taken
+    }
+
+    /// Remembers the sizes of plain numbers in a state.
+    fn see(&mut self, system: &dyn ParticleSystem, y: &[f64]) {
+        let sizes = &mut self.sizes;
+        system.measures(&mut |numbers, measure| {
+            if measure == Measure::Plain {
+                sizes.resize(y.len(), 0.0);
+                for k in numbers {
+                    sizes[k] = sizes[k].max(y[k].abs());
+                }
+            }
+        });
+    }
+
+    /// Advances y from t by one step of at most `longest` (s) that was begun, where numbers have
+    /// had these sizes.
+    fn within(
+        &mut self,
+        system: &dyn ParticleSystem,
+        (t, longest): (f64, f64),
+        y: &mut [f64],
+        (sizes, mut work): (&[f64], Work),
+    ) -> Result<Taken, Error> {
         let mut norm = ErrorNorm {
             system,
             tolerance: self.tolerance,
+            sizes,
             h: self.next,
         };
         if norm.h == 0.0 {

@@ -53,6 +53,10 @@ pub(super) const BLOCK: usize = 2048;
 /// Norm of the error of a step: the root mean square of the error of each quantity in the state,
 /// over the allowed one; of these, the largest.
 ///
+/// Plain numbers have sizes of their own. Each may be wrong by the relative tolerance times the
+/// largest size that it has had, and besides by the absolute tolerance or, where the system says
+/// its least [size](ParticleSystem::scales), at least by that times the relative tolerance.
+///
 /// Positions may be wrong by the absolute tolerance, wherever the origin is. Any other quantity may
 /// be wrong by the relative tolerance times its own root mean square: velocities, the rotations of
 /// bodies as lengths at their radius, and their angular momenta as speeds there. The norm depends
@@ -61,6 +65,8 @@ pub(super) const BLOCK: usize = 2048;
 pub(super) struct ErrorNorm<'a> {
     pub system: &'a dyn ParticleSystem,
     pub tolerance: Tolerance,
+    /// The largest size of each number so far; empty if no number is plain.
+    pub sizes: &'a [f64],
     /// Length of the step (s).
     pub h: f64,
 }
@@ -75,7 +81,9 @@ struct Sums {
 }
 
 /// Number of quantities.
-const QUANTITIES: usize = 5;
+const QUANTITIES: usize = 6;
+/// Place of plain numbers among the quantities, whose errors are over the allowed ones already.
+const PLAIN: usize = 5;
 
 /// Allowed error of a quantity in a step of h: `fixed + rate / h`.
 struct Tolerated {
@@ -110,7 +118,12 @@ impl ErrorNorm<'_> {
     /// derivative of y of order 1 or 2; infinite if nothing changes. It does not depend on h.
     pub fn time_scale(&self, y: &[f64], derivative: &[f64], order: i32) -> f64 {
         let root = |a: f64, order: i32| libm::pow(a, 1.0 / f64::from(order));
-        let sums = squares([y, y, derivative]);
+        // A plain number that vanishes has no size yet in which a change could be seen.
+        let mut seen = derivative.to_vec();
+        for (seen, size) in seen.iter_mut().zip(self.sizes) {
+            *seen = if *size == 0.0 { 0.0 } else { *seen };
+        }
+        let sums = squares([y, y, &seen]);
         let times = self.quantities(sums).map(|([change, _], tolerated)| {
             if change == 0.0 {
                 return f64::INFINITY;
@@ -136,10 +149,13 @@ impl ErrorNorm<'_> {
     ) -> impl Iterator<Item = ([f64; 2], Tolerated)> {
         let mut all = [Sums::default(); QUANTITIES];
         self.system.measures(&mut |numbers, measure| {
+            if measure == Measure::Plain {
+                return self.add_plain(numbers, &mut sums, &mut all[PLAIN]);
+            }
             let length = numbers.len() as f64;
             let [mut y0, mut y1, errors @ ..] = sums(numbers);
             let (quantity, count, factor) = match measure {
-                Measure::Plain => (0, length, 1.0),
+                Measure::Plain | Measure::Alike => (0, length, 1.0),
                 Measure::Position => (1, length / 3.0, 1.0),
                 Measure::Velocity => (2, length / 3.0, 1.0),
                 Measure::Rotation { radius } => {
@@ -167,6 +183,7 @@ impl ErrorNorm<'_> {
                 let (fixed, rate) = match quantity {
                     1 => (absolute, 0.0),
                     2 | 4 => (own, FLOOR_SHARE * absolute),
+                    PLAIN => (1.0, 0.0),
                     _ => (own + FLOOR_SHARE * absolute, 0.0),
                 };
                 (sums.errors.map(mean), Tolerated { fixed, rate })
@@ -174,10 +191,40 @@ impl ErrorNorm<'_> {
     }
 }
 
+impl ErrorNorm<'_> {
+    /// Adds the squares of the errors of plain numbers, each over its allowed error.
+    fn add_plain(
+        &self,
+        numbers: Range<usize>,
+        sums: &mut impl FnMut(Range<usize>) -> [f64; 4],
+        all: &mut Sums,
+    ) {
+        let (Tolerance { relative, absolute }, scales) = (self.tolerance, self.system.scales());
+        for k in numbers {
+            let [y0, y1, errors @ ..] = sums(k..k + 1);
+            let size = self.sizes[k].max(y0.max(y1).sqrt());
+            let allowed = match scales.get(k) {
+                Some(scale) => relative * size.max(*scale),
+                None => relative * size + absolute,
+            };
+            all.count += 1.0;
+            for (sum, error) in all.errors.iter_mut().zip(errors) {
+                *sum += error / (allowed * allowed);
+            }
+        }
+    }
+}
+
 /// Returns a function that sums squares over ranges of numbers of three states.
 fn squares(states: [&[f64]; 3]) -> impl FnMut(Range<usize>) -> [f64; 4] {
     let bands = threads(states[0].len() / 6);
-    move |numbers| add_up(bands, numbers, BLOCK, [], &Squares(states))
+    move |numbers| match numbers.len() {
+        1 => {
+            let [y0, y1, error] = states.map(|a| a[numbers.start] * a[numbers.start]);
+            [y0, y1, error, 0.0]
+        }
+        _ => add_up(bands, numbers, BLOCK, [], &Squares(states)),
+    }
 }
 
 /// Sums of squares.

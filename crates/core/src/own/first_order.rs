@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::error::Error;
+use crate::error::{Error, positive};
 use crate::failure::{Failure, Outcome};
 use crate::scene::Model;
 use crate::system::ParticleSystem;
@@ -40,6 +40,7 @@ pub struct Ode {
     dim: usize,
     f: Box<Function>,
     jacobian: Option<Box<Function>>,
+    scales: Vec<f64>,
     failure: Failure,
 }
 
@@ -60,6 +61,7 @@ impl Ode {
             dim,
             f: Box::new(move |t, y, dydt| f(t, y, dydt).outcome()),
             jacobian: None,
+            scales: vec![],
             failure: Failure::default(),
         })
     }
@@ -75,6 +77,26 @@ impl Ode {
             jacobian: Some(Box::new(move |t, y, out| jacobian(t, y, out).outcome())),
             ..self
         }
+    }
+
+    /// Sets the least size of each number to which errors are relative. By default, adaptive
+    /// methods allow a number an error relative to the largest size that it has had, and a tiny
+    /// absolute one besides.
+    ///
+    /// # Errors
+    /// There are not as many sizes as numbers, or one is not a finite number above 0.
+    pub fn with_scales(self, scales: Vec<f64>) -> Result<Self, Error> {
+        if scales.len() != self.dim {
+            return Err(Error::Invalid(format!(
+                "there are {} scales for {} numbers: give one for each",
+                scales.len(),
+                self.dim
+            )));
+        }
+        for scale in &scales {
+            positive("a scale", *scale)?;
+        }
+        Ok(Self { scales, ..self })
     }
 }
 
@@ -93,6 +115,10 @@ impl ParticleSystem for Ode {
         };
         self.failure.guard(out, |out| jacobian(t, y, out));
         true
+    }
+
+    fn scales(&self) -> &[f64] {
+        &self.scales
     }
 
     fn take_failure(&self) -> Option<Error> {

@@ -216,7 +216,7 @@ fn lengths(system: &dyn ParticleSystem, h: f64) -> Vec<f64> {
     let mut lengths = vec![0.0; system.dim()];
     system.measures(&mut |numbers, measure| {
         lengths[numbers].fill(match measure {
-            Measure::Plain | Measure::Position => 1.0,
+            Measure::Plain | Measure::Alike | Measure::Position => 1.0,
             Measure::Velocity => h,
             Measure::Rotation { radius } => radius,
             Measure::Momentum { speed } => speed * h,

@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 
 use crate::common::{distance, integrate, method, scene, simulation, size};
 use a3_core::integrators::{Taken, Tolerance};
-use a3_core::{Cause, Control, Error, Method, ParticleSystem, Simulation, integrators};
+use a3_core::{Cause, Control, Error, Method, Ode, ParticleSystem, Scene, Simulation, integrators};
 
 /// Largest error at the ends of the steps, and number of steps, for ten revolutions on the circle.
 fn circle(name: &str, relative: f64) -> (f64, usize) {
@@ -340,4 +340,70 @@ fn fixed_steps_of_bdf_alone_are_those_of_another_method() {
             assert_eq!(same, [b.name, a.name] == ["tr-bdf2", "bdf"], "{}", a.name);
         }
     }
+}
+
+/// Numbers of mixed size: an epidemic that one patient brings to ten million, and an oscillator of
+/// a millionth beside one of 1, which it is not to disturb.
+#[test]
+fn each_number_of_a_plain_system_has_its_own_size() {
+    let serving = |m: &&Method| m.is_adaptive() && !m.needs_mechanics();
+    for m in integrators::METHODS.iter().filter(serving) {
+        let epidemic = Ode::new(3, |_t, y, dydt| {
+            let (infections, recoveries) = (0.5 * y[0] * y[1] / 1e7, 0.1 * y[1]);
+            dydt.copy_from_slice(&[-infections, infections - recoveries, recoveries]);
+        });
+        let scene = Scene::new("epidemic", epidemic.unwrap(), vec![1e7 - 1.0, 1.0, 0.0]);
+        let mut run = Simulation::new(scene, m, m.default_control).unwrap();
+        // By RK4 with steps of 2 ms.
+        for (time, ill) in [
+            (20.0, 2979.57136),
+            (40.0, 3_600_335.65),
+            (100.0, 34_358.842_8),
+        ] {
+            run.advance_to(time).unwrap();
+            let off = run.state()[1] / ill - 1.0;
+            assert!(off.abs() < 0.02, "{} at {time} s: {off:.1e}", m.name);
+        }
+        let pair = Ode::new(4, |_t, y, dydt| {
+            dydt.copy_from_slice(&[y[1], -y[0], 4.0 * y[3], -4.0 * y[2]]);
+        });
+        let scene = Scene::new("pair", pair.unwrap(), vec![1.0, 0.0, 1e-6, 0.0]);
+        let mut run = Simulation::new(scene, m, Control::Tolerance(1e-6)).unwrap();
+        run.advance_to(20.0).unwrap();
+        let y = run.state();
+        let off = (y[2] - 1e-6 * 80f64.cos()).hypot(y[3] + 1e-6 * 80f64.sin());
+        assert!(off < 1e-8, "{}: {off:.1e}", m.name);
+    }
+}
+
+/// A number that others cancel in is rounding, and one below its scale does not count.
+#[test]
+fn numbers_that_do_not_count_cost_nothing() {
+    let steps = |epsilon: f64, scales: Option<Vec<f64>>| {
+        // The third number is a difference of two equal ones, the fourth a fast, tiny oscillation.
+        let system = Ode::new(5, move |_t, y, dydt| {
+            let cancelled = (y[0] + 0.1) - y[0] - 0.1;
+            let fast = [100.0 * y[4], -100.0 * y[3]];
+            dydt.copy_from_slice(&[y[1], -y[0], cancelled, fast[0], fast[1]]);
+        });
+        let system = system.unwrap();
+        let system = match scales {
+            Some(scales) => system.with_scales(scales).unwrap(),
+            None => system,
+        };
+        let scene = Scene::new("mixed", system, vec![1.0, 0.0, 0.0, epsilon, 0.0]);
+        let tolerance = Control::Tolerance(1e-8);
+        let mut run = Simulation::new(scene, method("dopri5"), tolerance).unwrap();
+        run.advance_to(10.0).unwrap();
+        run.steps()
+    };
+    let alone = steps(0.0, None);
+    assert!(steps(1e-6, None) > 20 * alone);
+    assert!(steps(1e-6, Some(vec![1.0; 5])) < 4 * alone);
+    assert!(
+        Ode::new(1, |_t, _y, _dydt| ())
+            .unwrap()
+            .with_scales(vec![0.0])
+            .is_err()
+    );
 }

@@ -7,7 +7,7 @@ use a3_core::{Disturbances, Scene};
 pub fn unit(metric: Metric) -> &'static str {
     match metric {
         Metric::Position => "m",
-        Metric::State => "in its unit",
+        Metric::State => "of its size",
         Metric::Energy => "J",
         Metric::Strain => "of length",
         Metric::Momentum => "kg m/s",

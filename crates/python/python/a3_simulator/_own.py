@@ -28,6 +28,9 @@ class System:
             t and y alone.
         y0: state at t = 0, (n,).
         name: name, for charts and errors; by default that of f.
+        scale: least size to which the errors of adaptive methods are relative, one for all numbers or (n,). By default
+            an error is relative to the largest size that its number has had, and a billionth of that of the largest
+            number of y0 is allowed besides.
 
     Where a scene is expected, a system can stand. Arrays that f gets are its own: it may keep or change them.
     """
@@ -36,14 +39,28 @@ class System:
     masses: Optional[Floats] = None
     #: Whether forces depend on positions and time alone.
     positional = False
+    #: Least size of each number to which errors are relative; empty where it is derived.
+    _scales: Sequence[float] = ()
 
-    def __init__(self, f: Derivative, y0: npt.ArrayLike, *, name: Optional[str] = None) -> None:
+    def __init__(
+        self,
+        f: Derivative,
+        y0: npt.ArrayLike,
+        *,
+        name: Optional[str] = None,
+        scale: Optional[npt.ArrayLike] = None,
+    ) -> None:
         self.f: Union[Derivative, Forces] = f
         self.y0 = _numbers("y0", y0, (-1,))
         if self.y0.size == 0:
             raise InputError("y0: a system has at least one number")
         self.name = name or _name(f, "system")
         self._state = self.y0
+        if scale is not None:
+            same = np.broadcast_to(scale, self.y0.shape) if np.ndim(scale) == 0 else scale
+            self._scales = _numbers("scale", same, self.y0.shape)
+            if not (self._scales > 0).all():
+                raise InputError("scale: a size is a number above 0")
 
     @classmethod
     def of_particles(

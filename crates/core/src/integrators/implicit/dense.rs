@@ -126,7 +126,7 @@ impl Dense {
                 Measure::Rotation { .. } => dot(&y[numbers.clone()], &y[numbers.clone()]).sqrt(),
                 Measure::Velocity => speed,
                 Measure::Momentum { speed: own } => speed / own,
-                Measure::Plain => 0.0,
+                Measure::Plain | Measure::Alike => 0.0,
             };
             let difference = match measure {
                 Measure::Position | Measure::Rotation { .. } => DIFFERENCE_SHARE * unit,
