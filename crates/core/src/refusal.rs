@@ -19,6 +19,8 @@ pub enum Refusal {
     LacksSprings,
     /// Forces depend on the velocity, other than by drag.
     ReadsVelocity,
+    /// Masses and springs, or rigid bodies, have a Jacobian that is no small matrix.
+    NotPlain,
     /// The system is too large for the Jacobian of its f.
     TooLarge {
         /// Numbers of its state.
@@ -59,6 +61,10 @@ impl fmt::Display for Refusal {
             Self::ReadsVelocity => write!(
                 f,
                 "supports no forces that depend on the velocity, except drag: {USE_ANOTHER}"
+            ),
+            Self::NotPlain => f.write_str(
+                "serves systems y' = f(t, y) of plain numbers, neither networks nor rigid bodies: use \
+                 bdf",
             ),
             Self::TooLarge { numbers, most } => write!(
                 f,

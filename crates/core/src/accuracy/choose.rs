@@ -28,6 +28,9 @@ const MAX_COST_RATIO: f64 = 2.0;
 const SMALL_MAX_COST_RATIO: f64 = 5.0;
 /// [Work](crate::Model::work) of an evaluation below which a scene is small.
 const SMALL_WORK: f64 = 100.0;
+/// Largest average of the steps that a method chooses in a stiff system, over the limit of
+/// stability at the start: its modes may become slower.
+const MAX_AVERAGE_RATIO: f64 = 2.0;
 /// Error with a longer step, over the one that the method's order predicts from a shorter step,
 /// above which the longer step counts as unstable.
 const MIN_UNSTABLE_RATIO: f64 = 10.0;
@@ -127,12 +130,12 @@ pub fn choose_among(
     metric: Metric,
     error: f64,
     go_on: GoOn,
-    begin: impl FnMut(&'static Method),
+    mut begin: impl FnMut(&'static Method),
 ) -> Result<Option<Vec<Candidate>>, Error> {
     metric.check(&scene.model)?;
     // The reference's own uncertainty is part of the error that is allowed.
     let error = error - metric.of(&reference.floor);
-    let measure = |method, control| {
+    let measure = |method, control| -> Result<_, Error> {
         let outcome = measure(scene, method, control, reference, go_on)?;
         Ok(outcome.map(|outcome| Trial {
             error: match outcome.lost {
@@ -150,11 +153,48 @@ pub fn choose_among(
         MAX_COST_RATIO
     };
     let max_cost = |found: &[Candidate]| found.get(1).map(|second| max_ratio * second.work);
-    // Methods of high order come first: their cost limits the runs of methods of low order.
+    // Methods of high order come first: their cost limits the runs of methods of low order. In a
+    // stiff system, so do implicit ones, above all those that choose their steps.
     let mut methods = methods.to_vec();
-    methods.sort_by_key(|method| std::cmp::Reverse(method.order));
+    methods.sort_by_key(|method| {
+        let is_late = |fits: bool| reference.is_stiff && !fits;
+        let order = std::cmp::Reverse(method.order);
+        (
+            is_late(method.is_implicit()),
+            is_late(method.is_adaptive()),
+            order,
+        )
+    });
     let frames = &reference.frames;
-    choose_by(&methods, scene, frames, error, max_cost, measure, begin)
+    let would_stall =
+        |method: &Method| reference.is_stiff && method.is_adaptive() && !method.is_implicit();
+    let (late, early): (Vec<_>, Vec<_>) = methods.into_iter().partition(|m| would_stall(m));
+    let found = choose_by(&early, scene, frames, error, max_cost, measure, &mut begin)?;
+    let Some(mut found) = found else {
+        return Ok(None);
+    };
+    if late.is_empty() {
+        return Ok(Some(found));
+    }
+    // An explicit method that chooses its steps chooses those that stability allows.
+    let most = max_cost(&found).unwrap_or(f64::INFINITY);
+    let modes = spectrum(scene.model.system(), 0.0, &scene.state);
+    let mut affordable = vec![];
+    for method in late {
+        let limit = largest_step(method, &modes)?.filter(|limit| limit.step > 0.0);
+        let longest = limit.map_or(f64::INFINITY, |limit| MAX_AVERAGE_RATIO * limit.step);
+        if frames.until / longest * f64::from(method.evaluations) <= most {
+            affordable.push(method);
+        }
+    }
+    let limit = |_: &[Candidate]| Some(most);
+    let more = choose_by(&affordable, scene, frames, error, limit, measure, begin)?;
+    let Some(more) = more else {
+        return Ok(None);
+    };
+    found.extend(more);
+    found.sort_by(|a, b| a.work.total_cmp(&b.work));
+    Ok(Some(found))
 }
 
 /// Does what [`choose`] does, for errors that the caller measures. `measure` runs the scene, or a
@@ -363,8 +403,10 @@ pub(super) const MIN_STEPS: u64 = 4;
 /// rounded.
 const MIN_ROUNDED_UNITS: f64 = 3.0;
 /// Exponents of the largest and the smallest tolerance of adaptive methods, in half powers of ten:
-/// from 10^-1 to 10^-12, or to 10^-8 for implicit methods, whose orders are low.
+/// from 10^-1 to 10^-12, or to 10^-8 for methods of low order.
 const TOLERANCES: (i32, [i32; 2]) = (-2, [-24, -16]);
+/// Least order that is high.
+const MIN_HIGH_ORDER: u32 = 5;
 
 /// Lists steps that divide the time of all frames, from just beyond the method's stability limit on
 /// the scene's `modes` down, or, for an adaptive method, tolerances from 0.1 down.
@@ -380,7 +422,7 @@ pub fn ladder(
     most: u64,
 ) -> Result<Vec<Control>, Error> {
     if method.is_adaptive() {
-        let least = TOLERANCES.1[usize::from(method.is_implicit())];
+        let least = TOLERANCES.1[usize::from(method.order < MIN_HIGH_ORDER)];
         return Ok((least..=TOLERANCES.0)
             .rev()
             .map(|half| {

@@ -3,6 +3,7 @@
 use nalgebra::{Matrix3, Vector3};
 
 use super::frames::GoOn;
+use super::stiffness::is_stiff;
 use crate::control::Control;
 use crate::error::Error;
 use crate::failure::succeeded;
@@ -30,6 +31,8 @@ const MAX_HALVINGS: u32 = 6;
 const MIN_CALMING: f64 = 1.5;
 /// Largest displacement of a coordinate between the two runs at the start, over the scene's radius.
 const SEPARATION: f64 = 1e-8;
+/// Tolerance of the runs of a stiff system, over the separation: their errors part them by less.
+const TOLERANCE_SHARE: f64 = 1e-2;
 /// Number of comparisons of both runs between one round time and the next.
 const CHECKS_PER_ROUND: u32 = 10;
 /// Horizons to choose from: round numbers (s).
@@ -61,7 +64,8 @@ pub struct Horizon {
 ///
 /// Both runs take the same fixed steps, so that their distance is that of the motion and not of two
 /// sequences of steps. The steps are shorter where a hundred of them separate the runs, and where
-/// shorter steps in contact separate them less.
+/// shorter steps in contact separate them less. In a stiff system, implicit runs at a tight
+/// tolerance replace them.
 ///
 /// # Errors
 /// The scene cannot be run.
@@ -84,7 +88,15 @@ pub fn horizon(scene: &Scene, until: f64, go_on: GoOn) -> Result<Option<Horizon>
     let mut step = (MAX_STEP_SHARE * limit).min(longest / MIN_STEPS);
     let longest = longest.min(until);
     let touches = scene.model.network().is_some_and(Network::can_touch);
-    let mut found = TwoRuns::start(scene, method, step, longest, go_on)?;
+    let Some((is_stiff, _)) = is_stiff(scene, longest, go_on)? else {
+        return Ok(None);
+    };
+    if let Some(radau) = find("radau").filter(|_| is_stiff) {
+        let control = Control::Tolerance(TOLERANCE_SHARE * SEPARATION);
+        let found = TwoRuns::start(scene, radau, control, longest, go_on)?;
+        return Ok(found.map(|runs| runs.horizon));
+    }
+    let mut found = TwoRuns::start(scene, method, Control::Step(step), longest, go_on)?;
     for _ in 0..MAX_HALVINGS {
         let Some(runs) = &found else { break };
         let is_early = |time| time <= MIN_RESOLVED_STEPS * step;
@@ -95,7 +107,7 @@ pub fn horizon(scene: &Scene, until: f64, go_on: GoOn) -> Result<Option<Horizon>
         }
         let before = runs.horizon.lyapunov;
         step *= 0.5;
-        found = TwoRuns::start(scene, method, step, longest, go_on)?;
+        found = TwoRuns::start(scene, method, Control::Step(step), longest, go_on)?;
         let lyapunov = found.as_ref().map(|runs| runs.horizon.lyapunov);
         if is_mild && lyapunov.is_some_and(|now| now < MIN_CALMING * before) {
             break;
@@ -112,16 +124,15 @@ struct TwoRuns {
 }
 
 impl TwoRuns {
-    /// Runs a scene twice in steps of that length (s), for up to `longest` (s). `None` if `go_on`
+    /// Runs a scene twice by a method with this control, for up to `longest` (s). `None` if `go_on`
     /// returned false.
     fn start(
         scene: &Scene,
         method: &'static Method,
-        step: f64,
+        control: Control,
         longest: f64,
         go_on: GoOn,
     ) -> Result<Option<Self>, Error> {
-        let control = Control::Step(step);
         let mut run = Simulation::new(scene.clone(), method, control)?;
         let n = run.model().coordinates();
         let mut random = SplitMix(2);

@@ -7,13 +7,15 @@
 //! forces depend on the velocity; where particles rest and slide on obstacles, it is Verner's pair
 //! at smaller and smaller tolerances, since fixed steps are too long for the onset of friction. Its
 //! disagreement with the reference is the uncertainty: two tolerances of one method may share an
-//! error, two families do not.
+//! error, two families do not. For a stiff system, the reference is a run of Radau IIA, and the
+//! other method is BDF at smaller and smaller tolerances.
 
 use std::borrow::Cow;
 
 use super::frames::{Frames, GoOn};
 use super::run::{EnclosingStep, FrameState, run};
 use super::snapshot::{Errors, Metric, Scope, Snapshot};
+use super::stiffness::is_stiff;
 use super::trajectory::Trajectory;
 use crate::control::Control;
 use crate::error::Error;
@@ -81,6 +83,8 @@ pub struct Reference {
     pub still: Errors,
     /// Work of all runs that make the reference.
     pub work: Work,
+    /// Whether the system is stiff, so that implicit methods make the reference.
+    pub is_stiff: bool,
     /// State from which all runs start.
     pub(super) start: Snapshot,
     pub(super) scope: Scope,
@@ -118,16 +122,20 @@ impl Reference {
     ) -> Result<Option<Self>, Error> {
         precision.metric.check(&scene.model)?;
         scope.check(scene.model.particles())?;
+        let Some((is_stiff, work)) = is_stiff(scene, frames.until, go_on)? else {
+            return Ok(None);
+        };
         let mut making = Making {
             scene,
             precision,
             go_on,
-            work: Work::default(),
+            work,
             reference: Self {
                 frames,
                 floor: Errors::default(),
                 still: Errors::default(),
                 work: Work::default(),
+                is_stiff,
                 start: Snapshot::of(&scene.model, 0.0, &scene.state),
                 scope,
                 trajectory: Trajectory::new(vec![], f64::INFINITY, scope),
@@ -255,10 +263,16 @@ impl Making<'_> {
         self.precision.metric.of(errors) <= self.precision.uncertainty
     }
 
-    /// Finds the reference by DOP853 at smaller and smaller tolerances. Returns the disagreement of
-    /// the last two, and the share of it below which that with the other method is meaningless.
+    /// Finds the reference by DOP853, or by Radau if the system is stiff, at smaller and smaller
+    /// tolerances. Returns the disagreement of the last two, and the share of it below which that
+    /// with the other method is meaningless.
     fn by_tolerances(&mut self) -> Result<Option<(Errors, f64)>, Error> {
-        let method = find("dop853").ok_or_else(missing)?;
+        let name = if self.reference.is_stiff {
+            "radau"
+        } else {
+            "dop853"
+        };
+        let method = find(name).ok_or_else(missing)?;
         let (loosest, tightest) = TOLERANCES;
         let mut tolerance = if self.precision.max_work.is_finite() {
             loosest
@@ -315,6 +329,10 @@ impl Making<'_> {
     /// of forces that depend on the velocity, and does not support first-order systems.
     fn other(&self) -> Result<(&'static Method, Control), Error> {
         let model = &self.scene.model;
+        if self.reference.is_stiff {
+            let method = find("bdf").ok_or_else(missing)?;
+            return Ok((method, Control::Tolerance(TOLERANCES.0)));
+        }
         if model.network().is_some_and(may_rest) {
             let method = find("verner65").ok_or_else(missing)?;
             return Ok((method, Control::Tolerance(TOLERANCES.0)));

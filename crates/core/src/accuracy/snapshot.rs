@@ -18,8 +18,8 @@ use crate::scene::Model;
 use crate::spring::SpringKind;
 use crate::system::Mechanics;
 
-/// Size of a plain number over the largest one, up to which it is the rounding errors of others, and
-/// its errors are over the size of these.
+/// Size of a plain number over the largest one, up to which it is the rounding errors of others,
+/// and its errors are over the size of these.
 const ROUNDING: f64 = 1e-12;
 
 /// Quantities of a state that are compared.
@@ -389,8 +389,8 @@ pub struct Errors {
     /// Root mean square over the particles of the distance from their reference positions (m); 0
     /// without particles.
     pub position: f64,
-    /// Root mean square over the numbers of a state without particles of their errors, each over the
-    /// largest size that the number has had in the reference; 0 with particles.
+    /// Root mean square over the numbers of a state without particles of their errors, each over
+    /// the largest size that the number has had in the reference; 0 with particles.
     pub state: f64,
     /// Absolute error of the total energy (J); 0 for a first-order scene.
     pub energy: f64,

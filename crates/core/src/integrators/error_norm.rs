@@ -118,12 +118,12 @@ impl ErrorNorm<'_> {
     /// derivative of y of order 1 or 2; infinite if nothing changes. It does not depend on h.
     pub fn time_scale(&self, y: &[f64], derivative: &[f64], order: i32) -> f64 {
         let root = |a: f64, order: i32| libm::pow(a, 1.0 / f64::from(order));
+        let mut all = squares([y, y, derivative]);
         // A plain number that vanishes has no size yet in which a change could be seen.
-        let mut seen = derivative.to_vec();
-        for (seen, size) in seen.iter_mut().zip(self.sizes) {
-            *seen = if *size == 0.0 { 0.0 } else { *seen };
-        }
-        let sums = squares([y, y, &seen]);
+        let sums = |numbers: Range<usize>| match self.sizes.get(numbers.start) {
+            Some(0.0) => [0.0; 4],
+            _ => all(numbers),
+        };
         let times = self.quantities(sums).map(|([change, _], tolerated)| {
             if change == 0.0 {
                 return f64::INFINITY;
@@ -202,7 +202,8 @@ impl ErrorNorm<'_> {
         let (Tolerance { relative, absolute }, scales) = (self.tolerance, self.system.scales());
         for k in numbers {
             let [y0, y1, errors @ ..] = sums(k..k + 1);
-            let size = self.sizes[k].max(y0.max(y1).sqrt());
+            let before = self.sizes.get(k).copied().unwrap_or_default();
+            let size = before.max(y0.max(y1).sqrt());
             let allowed = match scales.get(k) {
                 Some(scale) => relative * size.max(*scale),
                 None => relative * size + absolute,

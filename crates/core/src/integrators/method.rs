@@ -71,6 +71,8 @@ pub enum View {
     Derivative,
     /// The derivative and its change with the state: a step solves equations.
     Tangent,
+    /// The derivative and its whole Jacobian, as a matrix of plain numbers.
+    Jacobian,
     /// Kicks of the velocities by forces, and drifts of the positions.
     Kicks,
     /// Kicks and drifts, and the change of the forces with the velocities: a kick solves equations.
@@ -119,14 +121,14 @@ impl Method {
     /// length.
     #[must_use]
     pub fn is_implicit(&self) -> bool {
-        matches!(self.view, View::Tangent | View::Springs)
+        matches!(self.view, View::Tangent | View::Jacobian | View::Springs)
     }
 
     /// Returns whether a step solves linear systems in addition to the evaluations, if any force
     /// depends on the velocity.
     #[must_use]
     pub fn solves_linear_systems(&self) -> bool {
-        matches!(self.view, View::Tangent | View::Damping)
+        matches!(self.view, View::Tangent | View::Jacobian | View::Damping)
     }
 
     /// Returns whether another method of the table takes the same steps on a system: implicit
@@ -139,7 +141,7 @@ impl Method {
     /// Returns whether the method needs forces and masses, instead of an arbitrary f(t, y).
     #[must_use]
     pub fn needs_mechanics(&self) -> bool {
-        !matches!(self.view, View::Derivative | View::Tangent)
+        !matches!(self.view, View::Derivative | View::Tangent | View::Jacobian)
     }
 
     /// Returns whether the method supports only forces that depend on positions and time, apart
@@ -147,6 +149,13 @@ impl Method {
     #[must_use]
     pub fn positions_only(&self) -> bool {
         self.view == View::Accelerations
+    }
+
+    /// Returns whether the method supports only systems whose Jacobian is a small matrix: neither
+    /// networks nor rigid bodies.
+    #[must_use]
+    pub fn plain_only(&self) -> bool {
+        self.view == View::Jacobian
     }
 
     /// Returns whether the method solves spring by spring, and supports no other forces between
@@ -176,7 +185,8 @@ impl Method {
         let Some(mechanics) = system.mechanics() else {
             return match self.view {
                 View::Derivative => None,
-                View::Tangent => refusal_by_size(system),
+                View::Jacobian if system.rigid().is_some() => Some(Refusal::NotPlain),
+                View::Tangent | View::Jacobian => refusal_by_size(system),
                 View::Kicks if system.rigid().is_some() => None,
                 View::Damping if system.rigid().is_some() => refusal_by_size(system),
                 _ if system.rigid().is_some() => Some(Refusal::Rotates),
@@ -189,6 +199,9 @@ impl Method {
         let lists_all_couplings = linearized.is_none_or(Linearized::lists_all_couplings);
         let is_joined = linearized.is_some_and(|linearized| linearized.held().is_some());
         match self.view {
+            View::Jacobian if linearized.is_some() || system.rigid().is_some() => {
+                Some(Refusal::NotPlain)
+            }
             View::Springs if holds_constraints => Some(Refusal::HoldsConstraints),
             View::Tangent if holds_constraints && !is_joined => Some(refusal_of_joints(linearized)),
             View::Tangent | View::Springs if !lists_all_couplings => Some(Refusal::HidesCouplings),
@@ -197,7 +210,9 @@ impl Method {
             View::Accelerations if self.is_adaptive() && mechanics.is_rough() => {
                 Some(Refusal::ReadsVelocity)
             }
-            View::Tangent | View::Damping if linearized.is_none() => refusal_by_size(system),
+            View::Tangent | View::Jacobian | View::Damping if linearized.is_none() => {
+                refusal_by_size(system)
+            }
             View::Damping if holds_constraints => refusal_by_size(system),
             _ => None,
         }

@@ -29,6 +29,7 @@ pub static METHODS: &[Method] = &[
     xpbd::TEN,
     vbd::METHOD,
     implicit_damping::METHOD,
+    implicit::RADAU,
 ];
 
 /// Finds the method with this letter, name or alias: one of the table or, failing that, an own

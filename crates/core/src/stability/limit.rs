@@ -180,7 +180,10 @@ impl Growth {
     /// # Errors
     /// The method does not support damped springs, which damp the mode.
     pub fn new(method: &Method, mode: Mode) -> Result<Self, Error> {
-        let system = Tied(mode);
+        let system = Tied {
+            mode,
+            is_linearized: !method.plain_only(),
+        };
         let integrator = method.integrator(&system)?;
         Ok(Self {
             system,
@@ -203,7 +206,7 @@ impl Growth {
         let mut y = [0.0; 18];
         // Particle 0 starts with x = 1, particle 1 with v = `unit`: v is scaled by the frequency,
         // so that x and v have similar magnitudes.
-        let unit = self.system.0.frequency().max(1e-3);
+        let unit = self.system.mode.frequency().max(1e-3);
         (y[0], y[10]) = (1.0, unit);
         let stepped = self.integrator.step(&self.system, 0.0, h, &mut y);
         let stepped = succeeded(stepped).unwrap_or_else(|failure| {
@@ -252,8 +255,8 @@ impl Growth {
         }
         let half = 0.5 * (c - b).abs();
         let root = (half * half - determinant).max(0.0).sqrt();
-        let Mode { drag, damping, .. } = self.system.0;
-        let ratio = 0.5 * (drag + damping) / self.system.0.frequency();
+        let Mode { drag, damping, .. } = self.system.mode;
+        let ratio = 0.5 * (drag + damping) / self.system.mode.frequency();
         let own = ((1.0 + ratio) / (1.0 - ratio)).max(1.0);
         ((half + root) / (half - root) / own).max(1.0)
     }
@@ -261,7 +264,11 @@ impl Growth {
 
 /// Mode as a mechanical system along one axis: particles 0 and 1, of unit mass, are each tied to
 /// particle 2, which is pinned at the origin.
-struct Tied(pub Mode);
+struct Tied {
+    mode: Mode,
+    /// Whether it offers the differential of its forces.
+    is_linearized: bool,
+}
 
 impl Mechanics for Tied {
     fn inverse_masses(&self) -> &[f64] {
@@ -271,12 +278,12 @@ impl Mechanics for Tied {
     fn forces(&self, t: f64, x: &[f64], v: &[f64], f: &mut [f64]) {
         self.kick_forces(t, x, v, f);
         for (f, v) in f.iter_mut().zip(v) {
-            *f -= self.0.drag * v;
+            *f -= self.mode.drag * v;
         }
     }
 
     fn drag_coefficient(&self) -> f64 {
-        self.0.drag
+        self.mode.drag
     }
 
     fn pins(&self, _t: f64, visit: &mut dyn FnMut(usize, Place)) {
@@ -288,7 +295,7 @@ impl Mechanics for Tied {
     }
 
     fn linearized(&self) -> Option<&dyn Linearized> {
-        Some(self)
+        self.is_linearized.then_some(self as &dyn Linearized)
     }
 
     fn compliant(&self) -> Option<&dyn Compliant> {
@@ -299,9 +306,9 @@ impl Mechanics for Tied {
 impl Compliant for Tied {
     fn springs(&self, visit: &mut dyn FnMut([usize; 2], SpringLaw)) {
         let law = SpringLaw {
-            stiffness: self.0.stiffness,
+            stiffness: self.mode.stiffness,
             rest_length: 0.0,
-            damping: self.0.damping,
+            damping: self.mode.damping,
         };
         visit([0, 2], law);
         visit([1, 2], law);
@@ -315,16 +322,16 @@ impl Compliant for Tied {
 impl Splitting for Tied {
     fn kick_forces(&self, _t: f64, x: &[f64], v: &[f64], f: &mut [f64]) {
         for ((f, x), v) in f.iter_mut().zip(x).zip(v) {
-            *f = -self.0.stiffness * x - self.0.damping * v;
+            *f = -self.mode.stiffness * x - self.mode.damping * v;
         }
     }
 
     fn kick_reads_velocity(&self) -> bool {
-        self.0.reads_velocity || self.0.damping != 0.0
+        self.mode.reads_velocity || self.mode.damping != 0.0
     }
 
     fn drift(&self, t: f64, h: f64, x: &mut [f64], v: &mut [f64]) {
-        let flow = Flow::new(self.0.drag, Vector3::zeros(), 1.0, h);
+        let flow = Flow::new(self.mode.drag, Vector3::zeros(), 1.0, h);
         flow.apply(columns_mut(x), columns_mut(v));
         place_pins(self, t + h, x, v);
     }
@@ -349,9 +356,9 @@ impl Linearized for Tied {
                 i,
                 j: 2,
                 direction: [1.0, 0.0, 0.0],
-                along: self.0.stiffness,
-                across: self.0.stiffness,
-                damping: self.0.damping,
+                along: self.mode.stiffness,
+                across: self.mode.stiffness,
+                damping: self.mode.damping,
             }));
         }
     }

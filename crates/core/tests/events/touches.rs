@@ -14,7 +14,9 @@ fn after(toml: &str, method: &'static Method, value: f64, until: f64) -> Simulat
 }
 
 fn adaptive() -> impl Iterator<Item = &'static Method> {
-    METHODS.iter().filter(|method| method.is_adaptive())
+    METHODS
+        .iter()
+        .filter(|method| method.is_adaptive() && !method.plain_only())
 }
 
 const SLOPE: &str = "

@@ -135,7 +135,7 @@ fn orders_hold_for_rotations() {
 fn angular_momentum_keeps_its_bits() {
     for method in METHODS
         .iter()
-        .filter(|m| !m.positions_only() && !m.needs_springs())
+        .filter(|m| !m.positions_only() && !m.needs_springs() && !m.plain_only())
     {
         let scene = body(INERTIA, START, Vector3::new(1.0, 2.0, 3.0));
         let rotation = |run: &Simulation| {
@@ -157,7 +157,7 @@ fn methods_for_positions_alone_refuse_bodies() {
     for method in METHODS {
         let scene = body(INERTIA, START, Vector3::zeros());
         let made = Simulation::new(scene, method, method.default_control);
-        let serves = !method.positions_only() && !method.needs_springs();
+        let serves = !method.positions_only() && !method.needs_springs() && !method.plain_only();
         assert_eq!(made.is_ok(), serves, "{}", method.name);
         if let Err(error) = made {
             assert!(format!("{error}").contains("rigid bodies"), "{error}");

@@ -147,7 +147,10 @@ fn what_is_torn_stays_torn() {
         pin = [{ at = ['left'] }, { at = ['right'], shift = { by = [0.9, 0, 0], start = 0, end = 0.1 } }]",
     );
     let acts: &[Act] = &[|_| (), |_| (), |run| run.set_wind(false), |_| (), |_| ()];
-    for method in METHODS.iter().filter(|m| !m.positions_only()) {
+    for method in METHODS
+        .iter()
+        .filter(|m| !m.positions_only() && !m.plain_only())
+    {
         let control = method.control(if method.is_adaptive() { 1e-5 } else { 0.005 });
         check(&scene, method, control, acts);
         let mut run = Simulation::new(scene.clone(), method, control).unwrap();

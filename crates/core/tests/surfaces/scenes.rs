@@ -185,7 +185,8 @@ fn nothing_crosses_in_any_documented_scene_by_any_method() {
             let scene = scenes.iter().find(serves);
             let Some(scene) = scene else {
                 // With a tolerance and without velocities, they refuse friction.
-                let refuses = method.positions_only() && method.is_adaptive();
+                let refuses =
+                    method.plain_only() || method.positions_only() && method.is_adaptive();
                 assert!(refuses, "{} does not run {name}", method.name);
                 continue;
             };

@@ -112,8 +112,8 @@ pub fn keep_best(chart: &mut WorkPrecision, methods: &[&'static Method], scene: 
 
 /// Explains below the chart how errors are measured, and which methods soften the springs.
 pub fn foot(methods: &[&'static Method]) -> String {
-    let errors = "Errors are true ones, against DOP853 at two tolerances and a method of another \
-                  family. Those below ten times their disagreement are shaded.";
+    let errors = "Errors are true ones, against DOP853, or Radau where the system is stiff, at two \
+                  tolerances and a method of another family. Those below ten times their disagreement are shaded.";
     if methods.iter().any(|method| method.needs_springs()) {
         format!(
             "{errors} Methods with a number of iterations stop before implicit Euler is solved: \
@@ -348,6 +348,7 @@ fn of(letter: char) -> CurveStyle {
         'b' => ("#009e73", IMPLICIT, Cross(0.125)),
         'n' => ("#117733", IMPLICIT, Polygon(6, 0.0)),
         'o' => ("#5a7f1e", IMPLICIT, Star(3, 0.4)),
+        'w' => ("#2f6b8f", IMPLICIT, Star(4, 0.3)),
         'c' => ("#b3703c", ITERATED, Polygon(8, 0.0)),
         'j' => ("#7a4419", ITERATED, Polygon(8, 0.0625)),
         'h' => ("#1f4fa8", SYMPLECTIC, Polygon(6, 0.5)),

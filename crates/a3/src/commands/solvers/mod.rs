@@ -95,6 +95,8 @@ fn all() -> String {
                 "springs"
             } else if m.needs_mechanics() {
                 "masses"
+            } else if m.plain_only() {
+                "plain numbers"
             } else {
                 "any system"
             }

@@ -1,0 +1,266 @@
+//! Radau IIA: published end values of stiff systems (Mazzia, Magherini, *Test set for initial value
+//! problem solvers*, 2008), orders, dense output, and stiff motion that dies out.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use crate::common::{method, scene};
+use a3_core::accuracy::{Frames, Metric, Reference, choose};
+use a3_core::integrators::Tolerance;
+use a3_core::{Ode, Scene, Simulation};
+
+/// A stiff system: f, the start, the end (s), and the published state there.
+struct Problem {
+    system: Ode,
+    start: Vec<f64>,
+    until: f64,
+    end: Vec<f64>,
+    /// Number of evaluations.
+    calls: Arc<AtomicU64>,
+}
+
+impl Problem {
+    fn scene(self) -> Scene {
+        Scene::new("stiff", self.system, self.start)
+    }
+}
+
+fn problem(
+    f: impl Fn(&[f64], &mut [f64]) + Send + Sync + 'static,
+    start: &[f64],
+    until: f64,
+    end: &[f64],
+) -> Problem {
+    let calls = Arc::new(AtomicU64::new(0));
+    let counter = calls.clone();
+    let counted = move |_: f64, y: &[f64], dydt: &mut [f64]| {
+        counter.fetch_add(1, Ordering::Relaxed);
+        f(y, dydt);
+    };
+    Problem {
+        system: Ode::new(start.len(), counted).unwrap(),
+        start: start.to_vec(),
+        until,
+        end: end.to_vec(),
+        calls,
+    }
+}
+
+/// Van der Pol's oscillator with epsilon = 1e-6.
+fn van_der_pol() -> Problem {
+    let f = |y: &[f64], dydt: &mut [f64]| {
+        dydt[0] = y[1];
+        dydt[1] = ((1.0 - y[0] * y[0]) * y[1] - y[0]) / 1e-6;
+    };
+    let end = [1.706_167_732_170_48, -0.892_809_701_024_798];
+    problem(f, &[2.0, 0.0], 2.0, &end)
+}
+
+fn hires() -> Problem {
+    let f = |y: &[f64], dydt: &mut [f64]| {
+        dydt[0] = -1.71 * y[0] + 0.43 * y[1] + 8.32 * y[2] + 0.0007;
+        dydt[1] = 1.71 * y[0] - 8.75 * y[1];
+        dydt[2] = -10.03 * y[2] + 0.43 * y[3] + 0.035 * y[4];
+        dydt[3] = 8.32 * y[1] + 1.71 * y[2] - 1.12 * y[3];
+        dydt[4] = -1.745 * y[4] + 0.43 * (y[5] + y[6]);
+        dydt[5] = -280.0 * y[5] * y[7] + 0.69 * y[3] + 1.71 * y[4] - 0.43 * y[5] + 0.69 * y[6];
+        dydt[6] = 280.0 * y[5] * y[7] - 1.81 * y[6];
+        dydt[7] = -dydt[6];
+    };
+    let end = [
+        7.371_312_573_325_668e-4,
+        1.442_485_726_316_185e-4,
+        5.888_729_740_967_575e-5,
+        1.175_651_343_283_149e-3,
+        2.386_356_198_831_331e-3,
+        6.238_968_252_742_796e-3,
+        2.849_998_395_185_769e-3,
+        2.850_001_604_814_231e-3,
+    ];
+    let start = [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0057];
+    problem(f, &start, 321.8122, &end)
+}
+
+fn oregonator() -> Problem {
+    let f = |y: &[f64], dydt: &mut [f64]| {
+        dydt[0] = 77.27 * (y[1] + y[0] * (1.0 - 8.375e-6 * y[0] - y[1]));
+        dydt[1] = (y[2] - (1.0 + y[0]) * y[1]) / 77.27;
+        dydt[2] = 0.161 * (y[0] - y[2]);
+    };
+    let end = [
+        1.000_814_870_318_523,
+        1.228_178_521_549_917e3,
+        1.320_554_942_846_706e2,
+    ];
+    problem(f, &[1.0, 2.0, 3.0], 360.0, &end)
+}
+
+fn robertson() -> Problem {
+    let f = |y: &[f64], dydt: &mut [f64]| {
+        let [slow, fast] = [0.04 * y[0], 1e4 * y[1] * y[2]];
+        dydt[0] = fast - slow;
+        dydt[2] = 3e7 * y[1] * y[1];
+        dydt[1] = slow - fast - dydt[2];
+    };
+    let end = [
+        2.083_340_149_701_255e-8,
+        8.333_360_770_334_713e-14,
+        0.999_999_979_166_505,
+    ];
+    problem(f, &[1.0, 0.0, 0.0], 1e11, &end)
+}
+
+/// Runs an adaptive method to the end. Returns the state there, the number of steps and the number
+/// of evaluations.
+fn run(name: &str, problem: &Problem, relative: f64) -> (Vec<f64>, u32, u64) {
+    let tolerance = Tolerance::new(relative).unwrap();
+    let system = &problem.system;
+    let mut adaptive = method(name).adaptive(system, tolerance).unwrap();
+    let (mut t, mut y, mut steps, mut work) = (0.0, problem.start.clone(), 0, 0);
+    while t < problem.until {
+        let taken = adaptive
+            .advance(system, t, problem.until - t, &mut y)
+            .unwrap();
+        (t, steps, work) = (t + taken.h, steps + 1, work + taken.work.evaluations);
+    }
+    (y, steps, work)
+}
+
+/// Largest error of a number over the largest number.
+fn relative_error(found: &[f64], exact: &[f64]) -> f64 {
+    let size = exact.iter().fold(0.0, |most: f64, y| most.max(y.abs()));
+    let apart = found.iter().zip(exact).map(|(a, b)| (a - b).abs() / size);
+    apart.fold(0.0, f64::max)
+}
+
+/// Radau to 1e-9 meets the published values to 1e-10, where all numbers count alike.
+#[test]
+fn published_values_are_met() {
+    let problems = [
+        ("van der Pol", van_der_pol(), 50_000),
+        ("HIRES", hires(), 10_000),
+        ("Oregonator", oregonator(), 50_000),
+        ("Robertson", robertson(), 10_000),
+    ];
+    for (what, problem, most) in problems {
+        let (y, steps, work) = run("radau", &problem, 1e-9);
+        let error = relative_error(&y, &problem.end);
+        println!("{what}: {error:.1e}, {steps} steps, {work} evaluations");
+        assert!(error < 1e-10, "{what}: {error:e}");
+        assert!(work < most, "{what}: {work}");
+    }
+}
+
+/// A tenth of the tolerance makes errors at least five times as small, with at most
+/// 10^(1/4) = 1.8 times the steps, the estimate being of order 3.
+#[test]
+fn errors_follow_the_tolerance() {
+    let problem = oregonator();
+    let runs = [1e-5, 1e-6, 1e-7, 1e-8].map(|tolerance| {
+        let (y, steps, _) = run("radau", &problem, tolerance);
+        (relative_error(&y, &problem.end), f64::from(steps))
+    });
+    println!("{runs:?}");
+    for pair in runs.windows(2) {
+        assert!(pair[1].0 < 0.2 * pair[0].0 && pair[1].1 < 2.0 * pair[0].1);
+    }
+}
+
+/// The growth of a step on y' = -y is the Pade approximation of exp(-h) with degrees 2 and 3.
+#[test]
+fn a_step_on_a_decay_is_a_pade_approximation() {
+    let decay = Ode::new(1, |_: f64, y: &[f64], dydt: &mut [f64]| dydt[0] = -y[0]).unwrap();
+    for h in [0.01, 0.1, 1.0, 10.0, 1e6] {
+        let mut radau = method("radau").integrator(&decay).unwrap();
+        let mut y = [1.0];
+        radau.step(&decay, 0.0, h, &mut y).unwrap();
+        let above = 1.0 - 0.4 * h + h * h / 20.0;
+        let below = 1.0 + 0.6 * h + 0.15 * h * h + h * h * h / 60.0;
+        assert!((y[0] - above / below).abs() < 1e-12, "{h}: {}", y[0]);
+    }
+}
+
+/// The polynomial of a step is exact for a cubic, which is in the space of collocation.
+#[test]
+fn states_within_a_step_are_on_the_polynomial() {
+    let cubic = Ode::new(1, |t: f64, _: &[f64], dydt: &mut [f64]| {
+        dydt[0] = 3.0 * t * t;
+    })
+    .unwrap();
+    let tolerance = Tolerance::new(1e-3).unwrap();
+    let mut radau = method("radau").adaptive(&cubic, tolerance).unwrap();
+    let (mut t, mut y) = (0.0, [0.0]);
+    while t < 2.0 {
+        t += radau.advance(&cubic, t, 2.0 - t, &mut y).unwrap().h;
+        let time = t - 0.3 * radau.last().h;
+        let mut within = [0.0];
+        let _ = radau.interpolate(&cubic, time, &mut within);
+        assert!((within[0] - time.powi(3)).abs() < 1e-13 * t.powi(3).max(1.0));
+    }
+}
+
+#[test]
+fn networks_are_refused_in_one_line() {
+    let refused = method("radau").check(scene("chain").model.system());
+    let words = refused.unwrap_err().to_string();
+    assert!(words.contains("bdf") && !words.contains('\n'), "{words}");
+}
+
+/// The reference of a stiff system, checked by another implicit family, costs few calls, and its
+/// distance from the published state is at most ten times its floor.
+#[test]
+fn references_of_stiff_systems_are_true_and_cheap() {
+    for (what, problem) in [
+        ("van der Pol", van_der_pol()),
+        ("HIRES", hires()),
+        ("Oregonator", oregonator()),
+    ] {
+        let (until, end) = (problem.until, problem.end.clone());
+        let calls = problem.calls.clone();
+        let scene = problem.scene();
+        let frames = Frames { until, count: 60 };
+        let reference = Reference::finest(&scene, frames, &|| true)
+            .unwrap()
+            .unwrap();
+        let [y, _] = reference.motion(&scene.model, until);
+        let squares = y.iter().zip(&end).map(|(a, b)| (a - b).powi(2));
+        let error = (squares.sum::<f64>() / end.len() as f64).sqrt();
+        let (floor, calls) = (reference.floor.state, calls.load(Ordering::Relaxed));
+        println!("{what}: error {error:.1e}, floor {floor:.1e}, {calls} calls");
+        assert!(reference.is_stiff && error <= 10.0 * floor, "{what}");
+        assert!(calls < 3_000_000, "{what}: {calls}");
+    }
+}
+
+/// The cheapest method for a solution that stiffness k does not change is an implicit one, and the
+/// search costs no more at larger k.
+#[test]
+fn a_choice_on_a_stiff_system_costs_no_more_the_stiffer_it_is() {
+    for k in [1e3, 1e5, 1e8] {
+        let calls = Arc::new(AtomicU64::new(0));
+        let counter = calls.clone();
+        let system = Ode::new(1, move |t: f64, y: &[f64], dydt: &mut [f64]| {
+            counter.fetch_add(1, Ordering::Relaxed);
+            dydt[0] = -k * (y[0] - t.cos());
+        });
+        let scene = Scene::new("follower", system.unwrap(), vec![1.0]);
+        let frames = Frames {
+            until: 2.0,
+            count: 60,
+        };
+        let reference = Reference::finest(&scene, frames, &|| true).unwrap();
+        let reference = reference.unwrap();
+        let found = choose(&scene, &reference, Metric::State, 1e-4, &|| true, |_| {});
+        let best = found.unwrap().unwrap()[0];
+        // y = (k^2 cos t + k sin t) / (1 + k^2), but for what decays at once.
+        let exact = (k * k * 2f64.cos() + k * 2f64.sin()) / (1.0 + k * k);
+        let mut run = Simulation::new(scene, best.method, best.control).unwrap();
+        run.advance_to(2.0).unwrap();
+        let (off, count) = (run.state()[0] - exact, calls.load(Ordering::Relaxed));
+        println!(
+            "{k:e}: {} {}, {off:.1e}, {count} calls",
+            best.method.name, best.control
+        );
+        assert!(best.method.is_implicit() && off.abs() < 1e-4 && count < 100_000);
+    }
+}
