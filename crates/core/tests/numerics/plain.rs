@@ -138,7 +138,9 @@ fn a_planar_orbit_closes() {
         };
         let own = rms(&over(run.state()), &over(&start));
         let found = outcome.unwrap().unwrap().errors.state;
-        assert_relative_eq!(found, own, epsilon = 2.0 * reference.floor.state);
+        // The sizes are as exact as the run that they are seen in.
+        let close = 2.0 * reference.floor.state;
+        assert_relative_eq!(found, own, epsilon = close, max_relative = 1e-5);
         assert!(own > 100.0 * reference.floor.state);
     }
 }
