@@ -140,7 +140,7 @@ fn a_planar_orbit_closes() {
         let found = outcome.unwrap().unwrap().errors.state;
         // The sizes are as exact as the run that they are seen in.
         let close = 2.0 * reference.floor.state;
-        assert_relative_eq!(found, own, epsilon = close, max_relative = 1e-5);
+        assert_relative_eq!(found, own, epsilon = close, max_relative = 1e-3);
         assert!(own > 100.0 * reference.floor.state);
     }
 }

@@ -79,7 +79,7 @@ pub(super) struct Collocation {
     /// Time (s) and state at which the Jacobian was formed.
     pub formed: (f64, Vec<f64>),
     /// Step (s) for which the matrices were factorised; 0 for none.
-    factored: f64,
+    pub factored: f64,
     pub real: Lu<f64>,
     complex: Lu<Complex<f64>>,
     /// Displacements of the stages, by stage and in the basis of the eigenvectors.
@@ -129,11 +129,15 @@ impl Collocation {
         self.jacobian.form(system, t, h, y)
     }
 
-    /// Forms the Jacobian again where it was formed before, which was counted as work then.
+    /// Forms and factorises the Jacobian again where it was formed before, which was counted as
+    /// work then.
     pub fn form_again(&mut self, system: &dyn ParticleSystem, h: f64) {
         let (t, at) = &self.formed;
         let _ = self.jacobian.form(system, *t, h, at);
-        self.factored = 0.0;
+        let factored = std::mem::take(&mut self.factored);
+        if factored > 0.0 {
+            let _ = self.factorise(factored);
+        }
     }
 
     /// Factorises the matrices of a step of h (s), unless they are. Returns the cost, and whether

@@ -339,12 +339,18 @@ impl Trial for Radau {
         let mut step = self.step.clone();
         step.k[FORMED].copy_from_slice(&self.equations.formed.1);
         step.counts = [has_jacobian, renews, has_past].map(usize::from).to_vec();
-        step.numbers = vec![self.equations.formed.0, self.equations.remaining, error];
+        let Collocation {
+            formed,
+            remaining,
+            factored,
+            ..
+        } = &self.equations;
+        step.numbers = vec![formed.0, *remaining, error, *factored];
         step
     }
 
     fn resume(&mut self, step: &LastStep) -> Result<(), Error> {
-        let (&[has_jacobian, renews, has_past], &[t, remaining, error]) =
+        let (&[has_jacobian, renews, has_past], &[t, remaining, error, factored]) =
             (&*step.counts, &*step.numbers)
         else {
             return Err(Error::Invalid("the last step is of another method".into()));
@@ -353,11 +359,12 @@ impl Trial for Radau {
         let Collocation {
             formed,
             remaining: own,
+            factored: step_of_factors,
             ..
         } = &mut self.equations;
         formed.0 = t;
         formed.1.copy_from_slice(&step.k[FORMED]);
-        *own = remaining;
+        (*own, *step_of_factors) = (remaining, factored);
         let [has_jacobian, renews, has_past] =
             [has_jacobian, renews, has_past].map(|flag| flag != 0);
         self.memory = Memory {
