@@ -50,7 +50,9 @@ pub fn run(
 ) -> Result<Ended, String> {
     let mut made = None;
     for _ in 0..TRIES {
-        let method = &METHODS[chance.below(METHODS.len())];
+        // One that serves networks, if it does not refuse this one.
+        let methods: Vec<_> = METHODS.iter().filter(|m| !m.plain_only()).collect();
+        let method = methods[chance.below(methods.len())];
         let control = match method.default_control {
             Control::Step(h) => Control::Step(h * chance.within((0.01, 3.0, true))),
             Control::Tolerance(_) => Control::Tolerance(chance.within((1e-9, 1e-2, true))),
