@@ -355,7 +355,7 @@ fn each_number_of_a_plain_system_has_its_own_size() {
         let scene = Scene::new("epidemic", epidemic.unwrap(), vec![1e7 - 1.0, 1.0, 0.0]);
         let mut run = Simulation::new(scene, m, m.default_control).unwrap();
         // By RK4 with steps of 2 ms.
-        for (time, ill) in [(20.0, 2979.571_36), (40.0, 3_600_335.65)] {
+        for (time, ill) in [(20.0, 2_979.571_36), (40.0, 3_600_335.65)] {
             run.advance_to(time).unwrap();
             let off = run.state()[1] / ill - 1.0;
             assert!(off.abs() < 0.02, "{} at {time} s: {off:.1e}", m.name);
