@@ -50,9 +50,13 @@ fn soak(method: &'static Method, steps: u64) -> Option<usize> {
         // Friction makes the steps of such a method rough.
         (true, true) => SCENE.replace("friction = 0.2", "friction = 0"),
     };
-    let setup = Description::parse(&text)
-        .and_then(|scene| scene.build(None, &mut |_| unreachable!("no file is named")))
-        .expect("the scene of this benchmark");
+    let entry = a3_scenes::find("simple").filter(|_| method.plain_only());
+    let setup = match entry {
+        Some(plain) => plain.build(None),
+        None => Description::parse(&text)
+            .and_then(|scene| scene.build(None, &mut |_| unreachable!("no file is named"))),
+    };
+    let setup = setup.expect("the scene of this benchmark");
     let control = setup.defaults.control_of(method);
     let mut run = Simulation::new(setup.scene, method, control).expect("a method that serves it");
     run.set_wind(true);

@@ -19,7 +19,8 @@ use crate::spring::SpringKind;
 use crate::system::Mechanics;
 
 /// Size of a plain number over the largest one, up to which it is the rounding errors of others,
-/// and its errors are over the size of these.
+/// and its errors are over the size of these: thousands of steps, each of which leaves a few units
+/// in the last place.
 const ROUNDING: f64 = 1e-12;
 
 /// Quantities of a state that are compared.
@@ -59,7 +60,7 @@ impl Snapshot {
                 particles: model.particles(),
                 positions: positions.to_vec(),
                 velocities: velocities.into_owned(),
-                sizes: plain.iter().map(|y| y.abs()).collect(),
+                sizes: sizes(plain, model.system().scales()),
                 ..Self::default()
             };
         };
@@ -264,6 +265,13 @@ impl Snapshot {
             impact: Impact::extrapolate(&coarse.impact, &fine.impact, both),
         }
     }
+}
+
+/// Returns the sizes of plain numbers, at least these scales where the system has some.
+fn sizes(numbers: &[f64], scales: &[f64]) -> Vec<f64> {
+    let least = scales.iter().copied().chain(std::iter::repeat(0.0));
+    let pairs = numbers.iter().zip(least);
+    pairs.map(|(y, least)| y.abs().max(least)).collect()
 }
 
 /// Lists the structural springs of a network whose rest length is above 0.
