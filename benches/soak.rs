@@ -52,11 +52,11 @@ fn soak(method: &'static Method, steps: u64) -> Option<usize> {
     };
     let entry = a3_scenes::find("simple").filter(|_| method.plain_only());
     let setup = match entry {
-        Some(plain) => plain.build(None),
+        Some(plain) => plain.build(None).expect("a scene that is built in"),
         None => Description::parse(&text)
-            .and_then(|scene| scene.build(None, &mut |_| unreachable!("no file is named"))),
+            .and_then(|scene| scene.build(None, &mut |_| unreachable!("no file is named")))
+            .expect("the scene of this benchmark"),
     };
-    let setup = setup.expect("the scene of this benchmark");
     let control = setup.defaults.control_of(method);
     let mut run = Simulation::new(setup.scene, method, control).expect("a method that serves it");
     run.set_wind(true);
