@@ -26,7 +26,7 @@ const FLUID_COST: f64 = 10.0;
 const PLAIN_SHARE: f64 = 1e-9;
 
 /// Least absolute tolerance of plain numbers over the largest number at the start: a few rounding
-/// errors, of which a number that others cancel in consists.
+/// errors. A number that is a difference of equal numbers is no more than these.
 const PLAIN_ROUNDING: f64 = 1e-15;
 
 /// First-order system, shared among runs.

@@ -2,8 +2,8 @@
 //! the terminal, signals, progress of long runs, and the ranges of options.
 
 #![forbid(unsafe_code)]
-// What is public here serves the crates of the program; the library `a3` exports what is for
-// others.
+// Public items here serve the other crates of the program. The library `a3` exports those that are
+// documented for everyone.
 #![allow(
     missing_docs,
     clippy::missing_errors_doc,

@@ -1,8 +1,8 @@
 //! Runs as pictures, films, and files of other programs.
 
 #![forbid(unsafe_code)]
-// What is public here serves the crates of the program; the library `a3` exports what is for
-// others.
+// Public items here serve the other crates of the program. The library `a3` exports those that are
+// documented for everyone.
 #![allow(
     missing_docs,
     clippy::missing_errors_doc,

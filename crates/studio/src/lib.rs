@@ -1,8 +1,8 @@
 //! The window and the page: sessions, the text over their pictures, and the input of the user.
 
 #![forbid(unsafe_code)]
-// What is public here serves the crates of the program; the library `a3` exports what is for
-// others.
+// Public items here serve the other crates of the program. The library `a3` exports those that are
+// documented for everyone.
 #![allow(
     missing_docs,
     clippy::missing_errors_doc,

@@ -39,7 +39,7 @@ pub struct ErrorScope {
 }
 
 impl ErrorScope {
-    /// Returns what was given.
+    /// Returns the particle and the times that were given.
     pub fn given(&self) -> Scope {
         Scope {
             particle: self.particle,

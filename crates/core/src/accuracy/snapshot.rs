@@ -18,9 +18,9 @@ use crate::scene::Model;
 use crate::spring::SpringKind;
 use crate::system::Mechanics;
 
-/// Size of a plain number over the largest one, up to which it is the rounding errors of others,
-/// and its errors are over the size of these: thousands of steps, each of which leaves a few units
-/// in the last place.
+/// Size of a plain number over the largest one, up to which it counts as rounding errors, a few
+/// units in the last place for each of thousands of steps. Its errors are then over the size of the
+/// largest number.
 const ROUNDING: f64 = 1e-12;
 
 /// Quantities of a state that are compared.

@@ -252,7 +252,7 @@ fn a_choice_on_a_stiff_system_costs_no_more_the_stiffer_it_is() {
         let reference = reference.unwrap();
         let found = choose(&scene, &reference, Metric::State, 1e-4, &|| true, |_| {});
         let best = found.unwrap().unwrap()[0];
-        // y = (k^2 cos t + k sin t) / (1 + k^2), but for what decays at once.
+        // y = (k^2 cos t + k sin t) / (1 + k^2), after a transient that decays at once.
         let exact = (k * k * 2f64.cos() + k * 2f64.sin()) / (1.0 + k * k);
         let mut run = Simulation::new(scene, best.method, best.control).unwrap();
         run.advance_to(2.0).unwrap();

@@ -1,5 +1,5 @@
 //! Radau IIA of order 5 (Hairer, Wanner, *Solving Ordinary Differential Equations II*, 1996, IV.8):
-//! collocation at three nodes, the last of which is the end of the step. Any step is stable, and
+//! collocation at three nodes; the last node is the end of the step. Any step is stable, and
 //! stiff motion is damped out. The error is estimated by a formula of order 3, whose difference is
 //! filtered by (REAL / h - J)^-1, so that stiff motion does not spoil it. Steps are predicted from
 //! the last two errors (Gustafsson, *Control-theoretic techniques for stepsize selection in
