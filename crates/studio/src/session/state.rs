@@ -159,15 +159,27 @@ impl Session {
     }
 
     /// Advances the runs by `simulated` (s), as far as the budgets of real time allow, and records
-    /// their states on the timeline.
+    /// their states on the timeline, as often in a slow window as in a quick one.
     pub(super) fn advance(&mut self, simulated: f64, budget: Duration, reference_budget: Duration) {
         self.record(false);
         let (begun, start) = (Instant::now(), self.runs.clock);
-        let alive = self.runs.count_alive();
-        self.runs
-            .advance(start + simulated, budget, reference_budget);
-        if self.readings.in_window && self.runs.count_alive() < alive {
-            self.record_blow_up();
+        let (end, alive) = (start + simulated, self.runs.count_alive());
+        let left = |budget: Duration| budget.saturating_sub(begun.elapsed());
+        loop {
+            let due = self.timeline.due().filter(|due| *due > self.runs.clock);
+            let due = due.filter(|_| self.readings.in_window);
+            let next = due.map_or(end, |due| due.min(end));
+            self.runs
+                .advance(next, left(budget), left(reference_budget));
+            if self.readings.in_window && self.runs.count_alive() < alive {
+                self.record_blow_up();
+                break;
+            }
+            self.record(false);
+            // The budget is used up, or all runs have diverged.
+            if next >= end || self.runs.clock < next {
+                break;
+            }
         }
         self.meter
             .count_steps(self.runs.clock - start, begun.elapsed());

@@ -75,6 +75,11 @@ impl Timeline {
         entry.map_or(vec![], |entry| entry.moments.clone())
     }
 
+    /// Returns the time of the next moment (s), if there is one before it.
+    pub fn due(&self) -> Option<f64> {
+        self.moments.back().map(|newest| newest.clock + INTERVAL)
+    }
+
     /// Records the states at `clock` (s) if the last moment is old enough, or with `now` if it is
     /// older at all. Drops the moments after the chosen one first.
     pub fn record<'r>(
@@ -88,8 +93,8 @@ impl Timeline {
             self.blew_up = false;
         }
         let last = self.moments.back().map(|moment| moment.clock);
-        let due = INTERVAL * (1.0 - 1e-6);
-        if last.is_some_and(|last| clock <= last || (!now && clock < last + due)) {
+        let early = |due: f64| !now && clock < due - 1e-6 * INTERVAL;
+        if last.is_some_and(|last| clock <= last) || self.due().is_some_and(early) {
             return;
         }
         let size: usize = self.moments.iter().map(Entry::size).sum();
@@ -262,6 +267,19 @@ mod tests {
                 .collect::<Vec<_>>(),
             &[1.98],
         );
+    }
+
+    #[test]
+    fn a_slow_window_records_as_many_moments_as_a_quick_one() {
+        let moments = |tick: f64| {
+            let mut session = session(&["v", "0.005", "--scene", "chain"]);
+            session.readings.in_window = true;
+            while session.runs.clock < 1.0 - 1e-9 {
+                session.tick(tick);
+            }
+            session.timeline.moments.len()
+        };
+        assert_eq!((moments(0.1), moments(1.0 / 60.0)), (61, 61));
     }
 
     #[test]
