@@ -3,7 +3,6 @@
 use nalgebra::{Matrix3, Vector3};
 
 use super::frames::GoOn;
-use super::stiffness::is_stiff;
 use crate::control::Control;
 use crate::error::Error;
 use crate::failure::succeeded;
@@ -12,7 +11,7 @@ use crate::network::Network;
 use crate::random::SplitMix;
 use crate::scene::Scene;
 use crate::simulation::Simulation;
-use crate::stability::{Mode, fastest, largest_step, spectrum};
+use crate::stability::{Mode, accurate, fastest, is_stiff, largest_step, spectrum};
 use crate::system::Linearized;
 
 /// Largest factor by which the motion of the scene alone may amplify errors within the horizon.
@@ -91,9 +90,9 @@ pub fn horizon(scene: &Scene, until: f64, go_on: GoOn) -> Result<Option<Horizon>
     let Some((is_stiff, _)) = is_stiff(scene, longest, go_on)? else {
         return Ok(None);
     };
-    if let Some(radau) = find("radau").filter(|_| is_stiff) {
+    if is_stiff {
         let control = Control::Tolerance(TOLERANCE_SHARE * SEPARATION);
-        let found = TwoRuns::start(scene, radau, control, longest, go_on)?;
+        let found = TwoRuns::start(scene, accurate(true)?, control, longest, go_on)?;
         return Ok(found.map(|runs| runs.horizon));
     }
     let mut found = TwoRuns::start(scene, method, Control::Step(step), longest, go_on)?;

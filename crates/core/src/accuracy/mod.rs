@@ -10,7 +10,6 @@ mod reference;
 mod run;
 mod shown;
 mod snapshot;
-mod stiffness;
 mod trajectory;
 
 pub use choose::{Candidate, SetBy, Trial, choose, choose_among, choose_by};

@@ -15,14 +15,13 @@ use std::borrow::Cow;
 use super::frames::{Frames, GoOn};
 use super::run::{EnclosingStep, FrameState, run};
 use super::snapshot::{Errors, Metric, Scope, Snapshot};
-use super::stiffness::is_stiff;
 use super::trajectory::Trajectory;
 use crate::control::Control;
 use crate::error::Error;
 use crate::integrators::{Method, Work, find};
 use crate::scene::{Model, Scene};
 use crate::simulation::{Simulation, may_rest};
-use crate::stability::{LargestMode, Mode, largest_step, spectrum};
+use crate::stability::{LargestMode, Mode, accurate, is_stiff, largest_step, spectrum};
 use crate::system::Mechanics;
 
 /// Largest and smallest tolerance of the reference. Below the smallest, rounding errors outweigh
@@ -267,12 +266,7 @@ impl Making<'_> {
     /// tolerances. Returns the disagreement of the last two, and the share of it below which that
     /// with the other method is meaningless.
     fn by_tolerances(&mut self) -> Result<Option<(Errors, f64)>, Error> {
-        let name = if self.reference.is_stiff {
-            "radau"
-        } else {
-            "dop853"
-        };
-        let method = find(name).ok_or_else(missing)?;
+        let method = accurate(self.reference.is_stiff)?;
         let (loosest, tightest) = TOLERANCES;
         let mut tolerance = if self.precision.max_work.is_finite() {
             loosest

@@ -6,9 +6,10 @@ use super::snapshot::Errors;
 use crate::control::Control;
 use crate::error::Error;
 use crate::failure::succeeded;
-use crate::integrators::{Method, find};
+use crate::integrators::Method;
 use crate::scene::Scene;
 use crate::simulation::Simulation;
+use crate::stability::accurate;
 
 /// Number of times for each frame at which states are compared.
 const TIMES: u64 = 4;
@@ -42,12 +43,10 @@ pub fn shown(
         count: TIMES * reference.frames.count,
         ..reference.frames
     };
-    let accurate = find("dop853")
-        .ok_or_else(|| Error::Invalid("no accurate method is in the table".into()))?;
     let tolerance = Control::Tolerance(reference.trajectory.tolerance);
     let mut exact = scene.clone();
     exact.limits.absolute = None;
-    let mut exact = Simulation::new(exact, accurate, tolerance)?;
+    let mut exact = Simulation::new(exact, accurate(reference.is_stiff)?, tolerance)?;
     exact.locate_events();
     let mut run = Simulation::new(scene.clone(), method, control)?;
     let (mut truth, mut own) = (reference.start.clone(), reference.start.clone());

@@ -16,6 +16,7 @@ mod own_rest;
 mod rest;
 mod search;
 mod spectrum;
+mod stiffness;
 
 pub use limit::Growth;
 pub use limit::{GROWTH, HORIZON, Limit, STEPS, largest_step, tenfold_time};
@@ -26,3 +27,4 @@ pub use rest::observe_at_rest;
 pub use rest::{RestState, rest};
 pub use search::Budget;
 pub use spectrum::{LargestMode, spectrum};
+pub(crate) use stiffness::{accurate, is_stiff};

@@ -12,10 +12,11 @@ use super::limit::{GROWTH, Growth, HORIZON, largest_step};
 use super::mode::{Mode, Observation, sort};
 use super::search::{Budget, MAX_RUN_WORK, bisect, sharpen, steps, take_checked};
 use super::spectrum::spectrum;
+use super::stiffness::{accurate, is_stiff};
 use crate::control::Control;
 use crate::error::Error;
 use crate::failure::succeeded;
-use crate::integrators::{Method, find};
+use crate::integrators::Method;
 use crate::network::Network;
 use crate::random::SplitMix;
 use crate::scene::{Model, Scene};
@@ -82,8 +83,10 @@ impl Motion {
     /// # Errors
     /// The scene cannot be run.
     pub fn of(scene: &Scene, go_on: impl Fn() -> bool) -> Result<Option<Self>, Error> {
-        let accurate = find("dop853")
-            .ok_or_else(|| Error::Invalid("no accurate method is in the table".into()))?;
+        let Some((is_stiff, _)) = is_stiff(scene, HORIZON, &go_on)? else {
+            return Ok(None);
+        };
+        let accurate = accurate(is_stiff)?;
         let start = |scene| Simulation::new(scene, accurate, Control::Tolerance(TOLERANCE));
         let mut run = start(scene.clone())?;
         let n = scene.model.coordinates();

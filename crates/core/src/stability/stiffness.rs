@@ -1,8 +1,7 @@
 //! Whether a system is stiff, measured: an explicit and an implicit method take turns.
 
-use super::frames::GoOn;
 use crate::error::Error;
-use crate::integrators::{Adaptive, Tolerance, Work, find};
+use crate::integrators::{Adaptive, Method, Tolerance, Work, find};
 use crate::scene::Scene;
 
 /// Tolerance of both runs.
@@ -18,15 +17,15 @@ const STIFF_RATIO: f64 = 8.0;
 ///
 /// # Errors
 /// A function of the system failed.
-pub(super) fn is_stiff(
+pub(crate) fn is_stiff(
     scene: &Scene,
     until: f64,
-    go_on: GoOn,
+    go_on: &dyn Fn() -> bool,
 ) -> Result<Option<(bool, Work)>, Error> {
     let (system, none) = (scene.model.system(), Work::default());
     let tolerance = Tolerance::new(TOLERANCE)?;
     let radau = find("radau").filter(|method| method.check(system).is_ok());
-    let of = |method: Option<&crate::Method>| method.and_then(|m| m.adaptive(system, tolerance));
+    let of = |method: Option<&Method>| method.and_then(|m| m.adaptive(system, tolerance));
     let (Some(explicit), Some(implicit)) = (of(find("dop853")), of(radau)) else {
         return Ok(Some((false, none)));
     };
@@ -56,6 +55,15 @@ pub(super) fn is_stiff(
             Err(_) => return Ok(Some((turn == 0, work))),
         }
     }
+}
+
+/// Returns the method that is the most accurate one for its cost: Radau in a stiff system.
+///
+/// # Errors
+/// Never fails for the table of methods.
+pub(crate) fn accurate(is_stiff: bool) -> Result<&'static Method, Error> {
+    let none = || Error::Invalid("no accurate method is in the table".into());
+    find(if is_stiff { "radau" } else { "dop853" }).ok_or_else(none)
 }
 
 /// A method on its way.
