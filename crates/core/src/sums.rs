@@ -83,6 +83,19 @@ pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
     sums.into_iter().chain(rest).sum()
 }
 
+/// Returns the sum of numbers, in sixteen independent sums.
+#[inline(always)]
+pub(crate) fn total(a: &[f64]) -> f64 {
+    let mut sums = [0.0; 16];
+    let (blocks, rest) = a.as_chunks::<16>();
+    for a in blocks {
+        for (sum, a) in sums.iter_mut().zip(a) {
+            *sum += a;
+        }
+    }
+    sums.into_iter().chain(rest.iter().copied()).sum()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -1,11 +1,15 @@
 //! Own systems and own forces: functions of Python.
 
 use a3_core::elements::OwnForce;
-use a3_core::{Error, Model, Ode, Scene, SecondOrder};
+use a3_core::{Error, Model, Ode, ParticleSystem, Scene, SecondOrder};
 use pyo3::prelude::*;
 
 use super::errors::{of_error, wrong};
 use super::function::{Function, Raised, Shape};
+
+/// Cost of a call of a function of Python, in the unit of
+/// [`evaluation_cost`](a3_core::ParticleSystem::evaluation_cost). One of a line takes 5 us.
+const COST_OF_CALL: f64 = 25_000.0;
 
 /// Builds the scene of a `System` of Python.
 pub fn scene(system: &Bound<PyAny>, raised: &Raised) -> PyResult<Scene> {
@@ -32,6 +36,10 @@ pub fn scene(system: &Bound<PyAny>, raised: &Raised) -> PyResult<Scene> {
             f.of_state(t, y, dydt)
         });
         let scales: Vec<f64> = system.getattr("_scales")?.extract()?;
+        let made = made.and_then(|made| {
+            let cost = COST_OF_CALL + made.evaluation_cost();
+            made.with_evaluation_cost(cost)
+        });
         let made = made.map_err(failed)?;
         if scales.is_empty() {
             made.into()

@@ -6,7 +6,7 @@ use std::ops::Range;
 
 use pulp::{Simd, WithSimd};
 
-use super::error_norm::{BLOCK, ErrorNorm};
+use super::error_norm::{Allowed, BLOCK, ErrorNorm, sum_of_squares};
 use super::integrator::{Integrator, check_dim};
 use super::trial::{LastStep, Trial};
 use crate::error::Error;
@@ -88,9 +88,11 @@ struct End<'a> {
     k: &'a [Vec<f64>],
     /// Whether y1 still has to be computed.
     forms: bool,
+    allowed: Option<&'a Allowed<'a>>,
 }
 
-/// Sums of squares: of y0, of y1 and of the estimated errors.
+/// Sums of squares: of y0, of y1 and of the estimated errors, over the allowed ones if there are
+/// such.
 impl OnBlock<1, 4> for End<'_> {
     #[expect(
         clippy::inline_always,
@@ -99,17 +101,16 @@ impl OnBlock<1, 4> for End<'_> {
     #[inline(always)]
     fn run(&self, numbers: Range<usize>, [y1]: Columns<1>) -> [f64; 4] {
         let Self { tableau, h, k, .. } = *self;
+        let start = numbers.start;
         if self.forms {
-            combine_block(numbers.start, y1, self.y0, h, tableau.weights, k);
+            combine_block(start, y1, self.y0, h, tableau.weights, k);
         }
+        let y0 = &self.y0[numbers.clone()];
         let mut errors = [0.0; 2];
         for (sum, weights) in errors.iter_mut().zip(tableau.errors) {
-            let mut error = [0.0; BLOCK];
-            let error = &mut error[..numbers.len()];
-            add_to_block(numbers.start, error, h, weights, k);
-            *sum = dot(error, error);
+            let write = |error: &mut [f64]| add_to_block(start, error, h, weights, k);
+            *sum = sum_of_squares(self.allowed, numbers.clone(), [y0, y1], write);
         }
-        let y0 = &self.y0[numbers];
         [dot(y0, y0), dot(y1, y1), errors[0], errors[1]]
     }
 }
@@ -159,15 +160,16 @@ impl Trial for EmbeddedPair {
             work += self.finish(system, t);
         }
         let LastStep { y0, y1, k, .. } = &mut self.last;
-        let end = End {
-            tableau,
-            h,
-            y0,
-            k,
-            forms: !forms,
-        };
         let bands = threads(y0.len() / 6);
-        let [error, other] = norm.of_sums(|numbers| {
+        let [error, other] = norm.of_sums(|numbers, allowed| {
+            let end = End {
+                tableau,
+                h,
+                y0,
+                k,
+                forms: !forms,
+                allowed,
+            };
             let y1 = &mut y1[numbers.clone()];
             add_up(bands, numbers, BLOCK, [y1], &end)
         });

@@ -9,7 +9,7 @@ use std::ops::Range;
 
 use crate::error::{Error, positive};
 use crate::measure::Measure;
-use crate::sums::{OnBlock, add_up, dot};
+use crate::sums::{OnBlock, add_up, dot, total};
 use crate::system::ParticleSystem;
 use crate::threads::{Columns, threads};
 
@@ -99,10 +99,13 @@ impl ErrorNorm<'_> {
     }
 
     /// Returns the largest ratio for each of two errors, from the sums of squares over a range of
-    /// numbers: of y0, of y1 and of both errors.
-    pub fn of_sums(&self, sums: impl FnMut(Range<usize>) -> [f64; 4]) -> [f64; 2] {
+    /// numbers: of y0, of y1 and of both errors, each over its allowed one if these are given.
+    pub fn of_sums(
+        &self,
+        sums: impl FnMut(Range<usize>, Option<&Allowed>) -> [f64; 4],
+    ) -> [f64; 2] {
         let mut largest = [0.0; 2];
-        for (errors, Tolerated { fixed, rate }) in self.quantities(sums) {
+        for (errors, Tolerated { fixed, rate }) in self.quantities(sums, false) {
             for (largest, error) in largest.iter_mut().zip(errors) {
                 let ratio = error / (fixed + rate / self.h);
                 // NaN is returned as such.
@@ -118,13 +121,9 @@ impl ErrorNorm<'_> {
     /// derivative of y of order 1 or 2; infinite if nothing changes. It does not depend on h.
     pub fn time_scale(&self, y: &[f64], derivative: &[f64], order: i32) -> f64 {
         let root = |a: f64, order: i32| libm::pow(a, 1.0 / f64::from(order));
-        let mut all = squares([y, y, derivative]);
         // A plain number that vanishes has no size yet in which a change could be seen.
-        let sums = |numbers: Range<usize>| match self.sizes.get(numbers.start) {
-            Some(0.0) => [0.0; 4],
-            _ => all(numbers),
-        };
-        let times = self.quantities(sums).map(|([change, _], tolerated)| {
+        let all = self.quantities(squares([y, y, derivative]), true);
+        let times = all.map(|([change, _], tolerated)| {
             if change == 0.0 {
                 return f64::INFINITY;
             }
@@ -142,20 +141,27 @@ impl ErrorNorm<'_> {
         })
     }
 
-    /// Returns the errors of the quantities in the state, and the allowed ones.
+    /// Returns the errors of the quantities in the state, and the allowed ones. Plain numbers
+    /// without a size are left out on request.
     fn quantities(
         &self,
-        mut sums: impl FnMut(Range<usize>) -> [f64; 4],
+        mut sums: impl FnMut(Range<usize>, Option<&Allowed>) -> [f64; 4],
+        leaves_out: bool,
     ) -> impl Iterator<Item = ([f64; 2], Tolerated)> {
         let mut all = [Sums::default(); QUANTITIES];
+        let plain = Allowed {
+            tolerance: self.tolerance,
+            sizes: self.sizes,
+            scales: self.system.scales(),
+            leaves_out,
+        };
         self.system.measures(&mut |numbers, measure| {
-            if measure == Measure::Plain {
-                return self.add_plain(numbers, &mut sums, &mut all[PLAIN]);
-            }
             let length = numbers.len() as f64;
-            let [mut y0, mut y1, errors @ ..] = sums(numbers);
+            let allowed = Some(&plain).filter(|_| measure == Measure::Plain);
+            let [mut y0, mut y1, errors @ ..] = sums(numbers, allowed);
             let (quantity, count, factor) = match measure {
-                Measure::Plain | Measure::Alike => (0, length, 1.0),
+                Measure::Plain => (PLAIN, length, 1.0),
+                Measure::Alike => (0, length, 1.0),
                 Measure::Position => (1, length / 3.0, 1.0),
                 Measure::Velocity => (2, length / 3.0, 1.0),
                 Measure::Rotation { radius } => {
@@ -191,53 +197,90 @@ impl ErrorNorm<'_> {
     }
 }
 
-impl ErrorNorm<'_> {
-    /// Adds the squares of the errors of plain numbers, each over its allowed error.
-    fn add_plain(
-        &self,
-        numbers: Range<usize>,
-        sums: &mut impl FnMut(Range<usize>) -> [f64; 4],
-        all: &mut Sums,
-    ) {
-        let (Tolerance { relative, absolute }, scales) = (self.tolerance, self.system.scales());
-        for k in numbers {
-            let [y0, y1, errors @ ..] = sums(k..k + 1);
-            let before = self.sizes.get(k).copied().unwrap_or_default();
-            let size = before.max(y0.max(y1).sqrt());
-            let allowed = match scales.get(k) {
+/// Number of numbers up to which a small scratch serves, which takes less time to clear.
+const FEW: usize = 64;
+
+/// Allowed errors of plain numbers.
+pub(super) struct Allowed<'a> {
+    tolerance: Tolerance,
+    sizes: &'a [f64],
+    scales: &'a [f64],
+    /// Whether numbers without a size are left out.
+    leaves_out: bool,
+}
+
+impl Allowed<'_> {
+    /// Returns the sum of the squares of errors, each over its allowed one, in a step from y0 to
+    /// y1. Overwrites the errors.
+    #[inline(always)]
+    fn sum(&self, numbers: Range<usize>, [y0, y1]: [&[f64]; 2], errors: &mut [f64]) -> f64 {
+        let Tolerance { relative, absolute } = self.tolerance;
+        let ends = y0.iter().zip(y1);
+        for ((k, error), (y0, y1)) in numbers.zip(&mut *errors).zip(ends) {
+            let before = self.sizes.get(k).copied();
+            let size = before.unwrap_or_default().max(y0.abs().max(y1.abs()));
+            let allowed = match self.scales.get(k) {
                 Some(scale) => relative * size.max(*scale),
                 None => relative * size + absolute,
             };
-            all.count += 1.0;
-            for (sum, error) in all.errors.iter_mut().zip(errors) {
-                *sum += error / (allowed * allowed);
+            *error = *error * *error / (allowed * allowed);
+            if self.leaves_out && before == Some(0.0) {
+                *error = 0.0;
             }
         }
+        total(errors)
     }
 }
 
-/// Returns a function that sums squares over ranges of numbers of three states.
-fn squares(states: [&[f64]; 3]) -> impl FnMut(Range<usize>) -> [f64; 4] {
+/// Returns the sum of the squares of errors in a step from y0 to y1, each over its allowed one if
+/// it has one. `write` writes them to a scratch.
+#[inline(always)]
+pub(super) fn sum_of_squares(
+    allowed: Option<&Allowed>,
+    numbers: Range<usize>,
+    ends: [&[f64]; 2],
+    write: impl FnOnce(&mut [f64]),
+) -> f64 {
+    let length = numbers.len();
+    let (mut few, mut many);
+    let errors = if length <= FEW {
+        few = [0.0; FEW];
+        &mut few[..length]
+    } else {
+        many = [0.0; BLOCK];
+        &mut many[..length]
+    };
+    write(errors);
+    match allowed {
+        Some(allowed) => allowed.sum(numbers, ends, errors),
+        None => dot(errors, errors),
+    }
+}
+
+/// Returns a function that sums squares over ranges of numbers of three states: of both ends of a
+/// step, and of its errors.
+fn squares(states: [&[f64]; 3]) -> impl FnMut(Range<usize>, Option<&Allowed>) -> [f64; 4] {
     let bands = threads(states[0].len() / 6);
-    move |numbers| match numbers.len() {
-        1 => {
-            let [y0, y1, error] = states.map(|a| a[numbers.start] * a[numbers.start]);
-            [y0, y1, error, 0.0]
-        }
-        _ => add_up(bands, numbers, BLOCK, [], &Squares(states)),
+    move |numbers, allowed| {
+        let squares = Squares { states, allowed };
+        add_up(bands, numbers, BLOCK, [], &squares)
     }
 }
 
 /// Sums of squares.
-struct Squares<'a>([&'a [f64]; 3]);
+struct Squares<'a> {
+    states: [&'a [f64]; 3],
+    allowed: Option<&'a Allowed<'a>>,
+}
 
 impl OnBlock<0, 4> for Squares<'_> {
     #[inline(always)]
     fn run(&self, numbers: Range<usize>, []: Columns<0>) -> [f64; 4] {
-        let [y0, y1, error] = self.0.map(|a| {
-            let own = &a[numbers.clone()];
-            dot(own, own)
-        });
-        [y0, y1, error, 0.0]
+        let [y0, y1, error] = self.states.map(|a| &a[numbers.clone()]);
+        let errors = match self.allowed {
+            None => dot(error, error),
+            allowed => sum_of_squares(allowed, numbers, [y0, y1], |out| out.copy_from_slice(error)),
+        };
+        [dot(y0, y0), dot(y1, y1), errors, 0.0]
     }
 }

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use crate::error::{Error, positive};
 use crate::failure::{Failure, Outcome};
 use crate::scene::Model;
-use crate::system::ParticleSystem;
+use crate::system::{ParticleSystem, evaluation_cost};
 
 /// Function of t and y that writes numbers.
 type Function = dyn Fn(f64, &[f64], &mut [f64]) -> Result<(), String> + Send + Sync;
@@ -41,6 +41,7 @@ pub struct Ode {
     f: Box<Function>,
     jacobian: Option<Box<Function>>,
     scales: Vec<f64>,
+    evaluation_cost: f64,
     failure: Failure,
 }
 
@@ -62,6 +63,7 @@ impl Ode {
             f: Box::new(move |t, y, dydt| f(t, y, dydt).outcome()),
             jacobian: None,
             scales: vec![],
+            evaluation_cost: evaluation_cost(dim),
             failure: Failure::default(),
         })
     }
@@ -77,6 +79,20 @@ impl Ode {
             jacobian: Some(Box::new(move |t, y, out| jacobian(t, y, out).outcome())),
             ..self
         }
+    }
+
+    /// Sets the cost of an evaluation of f, in multiplications of two numbers within long rows: 150,
+    /// and 10 for each number, by default. The linear algebra of implicit methods is counted as work
+    /// by it.
+    ///
+    /// # Errors
+    /// The cost is not a finite number above 0.
+    pub fn with_evaluation_cost(self, evaluation_cost: f64) -> Result<Self, Error> {
+        positive("the cost of an evaluation", evaluation_cost)?;
+        Ok(Self {
+            evaluation_cost,
+            ..self
+        })
     }
 
     /// Sets the least size of each number to which errors are relative. By default, adaptive
@@ -119,6 +135,10 @@ impl ParticleSystem for Ode {
 
     fn scales(&self) -> &[f64] {
         &self.scales
+    }
+
+    fn evaluation_cost(&self) -> f64 {
+        self.evaluation_cost
     }
 
     fn take_failure(&self) -> Option<Error> {

@@ -153,7 +153,9 @@ impl Collocation {
         self.factored = if of_use { h } else { 0.0 };
         let work = Work {
             factorizations: 2,
-            ..Work::default()
+            ..self
+                .jacobian
+                .algebra(self.real.cost() + self.complex.cost())
         };
         (work, of_use)
     }
@@ -249,14 +251,16 @@ impl Collocation {
         for ((single, pair), &i) in single.iter().zip(&*pair).zip(&jacobian.unknowns) {
             (f[0][i], f[1][i], f[2][i]) = (*single, pair.re, pair.im);
         }
+        let solutions = self.real.cost_of_solution() + self.complex.cost_of_solution();
         Work {
+            evaluations: STAGES as u64,
             solves: 2,
-            ..Work::of(STAGES as u64)
+            ..self.jacobian.algebra(solutions)
         }
     }
 
-    /// Replaces a vector by its product with the inverse of REAL / h - J.
-    pub fn filter(&mut self, error: &mut [f64]) {
+    /// Replaces a vector by its product with the inverse of REAL / h - J. Returns the cost.
+    pub fn filter(&mut self, error: &mut [f64]) -> Work {
         let unknowns = &self.jacobian.unknowns;
         for (single, &i) in self.single.iter_mut().zip(unknowns) {
             *single = error[i];
@@ -266,6 +270,7 @@ impl Collocation {
         for (single, &i) in self.single.iter().zip(unknowns) {
             error[i] = *single;
         }
+        self.jacobian.algebra(self.real.cost_of_solution())
     }
 }
 

@@ -92,9 +92,11 @@ impl Dense {
             self.change[i] = *change;
         }
         add_scaled(y, 1.0, &self.change);
+        let algebra = self.jacobian.algebra(self.factors.cost_of_solution());
         Work {
+            evaluations: 1,
             solves: 1,
-            ..Work::of(1)
+            ..algebra
         }
     }
 
@@ -105,11 +107,12 @@ impl Dense {
 
     /// Forms and factorises 1 - a J at y. Returns the cost, and whether that succeeded.
     pub fn keep(&mut self, system: &dyn ParticleSystem, t: f64, a: f64, y: &[f64]) -> (Work, bool) {
-        let work = Work {
-            factorizations: 1,
-            ..self.jacobian.form(system, t, a, y)
-        };
+        let mut work = self.jacobian.form(system, t, a, y);
         let of_use = self.factors.factorise(1.0, a, &self.jacobian.matrix);
+        work += Work {
+            factorizations: 1,
+            ..self.jacobian.algebra(self.factors.cost())
+        };
         (work, of_use)
     }
 }

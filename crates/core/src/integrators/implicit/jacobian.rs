@@ -4,7 +4,7 @@
 use super::newton::dot;
 use crate::integrators::method::MAX_DENSE;
 use crate::measure::Measure;
-use crate::system::ParticleSystem;
+use crate::system::{ParticleSystem, rigid_of};
 use crate::work::Work;
 
 /// Half the step of a difference quotient, over the unit of the number.
@@ -26,6 +26,9 @@ pub(super) struct Jacobian {
     /// Unit of each unknown, in which changes are compared, and half the step of its difference
     /// quotient.
     units: Vec<[f64; 2]>,
+    /// Cost of an evaluation of f, in multiplications within rows; infinite for rigid bodies, whose
+    /// matrices are small.
+    evaluation: f64,
     /// Slopes, row by row.
     pub matrix: Vec<f64>,
     at: Vec<f64>,
@@ -42,6 +45,10 @@ impl Jacobian {
         let room = room.unwrap_or(0);
         Self {
             units: Vec::with_capacity(unknowns.len()),
+            evaluation: match rigid_of(system) {
+                Some(_) => f64::INFINITY,
+                None => system.evaluation_cost(),
+            },
             unknowns,
             matrix: vec![0.0; room * room],
             at: vec![0.0; dim],
@@ -53,6 +60,14 @@ impl Jacobian {
     /// Returns the number of unknowns for which there is room.
     pub fn order(&self) -> usize {
         self.matrix.len().isqrt()
+    }
+
+    /// Returns the work of linear algebra with this number of multiplications.
+    pub fn algebra(&self, multiplications: f64) -> Work {
+        Work {
+            algebra: multiplications / self.evaluation,
+            ..Work::default()
+        }
     }
 
     /// Returns the norm of the unknowns in a state, in their units.
@@ -108,6 +123,7 @@ impl Jacobian {
             at,
             above,
             below,
+            ..
         } = self;
         if count == y.len() && system.jacobian(t, y, matrix) {
             return Work::of(count as u64);

@@ -2,6 +2,12 @@
 
 use nalgebra::ComplexField;
 
+/// Cost of the search for pivots, for each entry of the matrix, in products within rows, which are
+/// computed in vectors. Measured, as [`SOLUTION`] was, on matrices of 30 and 150 rows.
+const SEARCH: f64 = 16.0;
+/// Cost of a solution, for each entry of the matrix, in the same unit.
+const SOLUTION: f64 = 8.0;
+
 /// Factors L and U of a matrix, in place of it, with room for them.
 pub(super) struct Lu<T> {
     order: usize,
@@ -9,6 +15,8 @@ pub(super) struct Lu<T> {
     matrix: Vec<T>,
     /// Row that each row was exchanged with, in turn.
     pivots: Vec<usize>,
+    /// Cost of the last factorisation, in real multiplications within rows.
+    cost: f64,
 }
 
 impl<T: ComplexField<RealField = f64> + Copy> Lu<T> {
@@ -18,13 +26,25 @@ impl<T: ComplexField<RealField = f64> + Copy> Lu<T> {
             order,
             matrix: vec![T::zero(); order * order],
             pivots: vec![0; order],
+            cost: 0.0,
         }
+    }
+
+    /// Returns the cost of the last factorisation, in real multiplications within rows.
+    pub fn cost(&self) -> f64 {
+        self.cost
+    }
+
+    /// Returns the cost of a solution in the same unit.
+    pub fn cost_of_solution(&self) -> f64 {
+        SOLUTION * parts::<T>() * (self.order * self.order) as f64
     }
 
     /// Factorises `shift` 1 - `scale` J, where J is a real matrix, row by row, by Gaussian
     /// elimination. Returns false if it is singular or not finite.
     pub fn factorise(&mut self, shift: T, scale: f64, jacobian: &[f64]) -> bool {
         let (n, matrix) = (self.order, &mut self.matrix);
+        let mut products = 0;
         for (k, (entry, slope)) in matrix.iter_mut().zip(jacobian).enumerate() {
             let unit = if k % (n + 1) == 0 { shift } else { T::zero() };
             *entry = unit - T::from_real(scale * slope);
@@ -45,16 +65,20 @@ impl<T: ComplexField<RealField = f64> + Copy> Lu<T> {
             let pivots = &above[k * n + k..];
             for row in below.chunks_exact_mut(n) {
                 let row = &mut row[k..];
+                // Most numbers do not act on one another in a large system.
+                if row[0] == T::zero() {
+                    continue;
+                }
                 let factor = row[0] / pivots[0];
                 row[0] = factor;
-                // Zero if numbers do not act on one another, as most do not in a large system.
-                if factor != T::zero() {
-                    for (x, pivot) in row[1..].iter_mut().zip(&pivots[1..]) {
-                        *x -= factor * *pivot;
-                    }
+                products += row.len();
+                for (x, pivot) in row[1..].iter_mut().zip(&pivots[1..]) {
+                    *x -= factor * *pivot;
                 }
             }
         }
+        let parts = parts::<T>();
+        self.cost = parts * (SEARCH * (n * n) as f64 + parts * products as f64);
         true
     }
 
@@ -64,8 +88,8 @@ impl<T: ComplexField<RealField = f64> + Copy> Lu<T> {
         for (k, pivot) in self.pivots.iter().enumerate() {
             b.swap(k, *pivot);
         }
-        for k in 0..n {
-            for i in k + 1..n {
+        for i in 0..n {
+            for k in 0..i {
                 let share = matrix[i * n + k] * b[k];
                 b[i] -= share;
             }
@@ -80,11 +104,16 @@ impl<T: ComplexField<RealField = f64> + Copy> Lu<T> {
     }
 }
 
+/// Returns the number of real numbers in a number.
+fn parts<T>() -> f64 {
+    (size_of::<T>() / size_of::<f64>()) as f64
+}
+
 #[cfg(test)]
 mod tests {
     use nalgebra::Complex;
 
-    use super::Lu;
+    use super::*;
 
     /// Needs exchanges of rows: the first pivot vanishes.
     #[test]
@@ -94,6 +123,9 @@ mod tests {
         let b: Vec<_> = (1..4).map(|k| Complex::new(f64::from(k), -0.5)).collect();
         let mut lu = Lu::new(3);
         assert!(lu.factorise(shift, 2.0, &jacobian));
+        // Nine entries; two rows of three numbers and one of two below their pivots.
+        assert_eq!(lu.cost(), 2.0 * (SEARCH * 9.0 + 2.0 * 8.0));
+        assert_eq!(lu.cost_of_solution(), 2.0 * SOLUTION * 9.0);
         let mut x = b.clone();
         lu.solve(&mut x);
         for (i, b) in b.iter().enumerate() {

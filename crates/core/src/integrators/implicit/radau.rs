@@ -181,33 +181,34 @@ impl Radau {
         }
     }
 
-    /// Writes the error of the step, for f at its beginning or a better value.
-    fn estimate(&mut self, h: f64, f: &[f64]) {
+    /// Writes the error of the step, for f at its beginning or a better value. Returns the cost.
+    fn estimate(&mut self, h: f64, f: &[f64]) -> Work {
         self.error.copy_from_slice(f);
         for (z, weight) in self.equations.stages.iter().zip(ERROR_WEIGHTS) {
             add_scaled(&mut self.error, weight / h, z);
         }
-        self.equations.filter(&mut self.error);
+        self.equations.filter(&mut self.error)
     }
 
     /// Returns the error of the step over the allowed one. If the first step, or one after a
     /// rejection, has too large an error, the stiff part of it is filtered once more.
     fn judge(&mut self, t: f64, norm: &ErrorNorm) -> (Work, f64) {
         let f = std::mem::take(&mut self.step.k[BEGIN]);
-        self.estimate(norm.h, &f);
+        let mut work = self.estimate(norm.h, &f);
         self.step.k[BEGIN] = f;
         let error = norm.of(&self.step.y0, &self.step.y1, &self.error);
         if error <= 1.0 || self.memory.has_past && !self.rejected {
-            return (Work::default(), error);
+            return (work, error);
         }
         self.base.copy_from_slice(&self.step.y0);
         add_scaled(&mut self.base, 1.0, &self.error);
         let mut f = std::mem::take(&mut self.step.k[END]);
         norm.system.eval_f(t, &self.base, &mut f);
-        self.estimate(norm.h, &f);
+        work += self.estimate(norm.h, &f);
+        work += Work::of(1);
         self.step.k[END] = f;
         let error = norm.of(&self.step.y0, &self.step.y1, &self.error);
-        (Work::of(1), error)
+        (work, error)
     }
 
     /// Returns the ratio of steps at which the error would just be allowed, with a safety factor
