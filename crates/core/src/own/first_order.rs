@@ -81,9 +81,9 @@ impl Ode {
         }
     }
 
-    /// Sets the cost of an evaluation of f, in multiplications of two numbers within long rows: 150,
-    /// and 10 for each number, by default. The linear algebra of implicit methods is counted as work
-    /// by it.
+    /// Sets the cost of an evaluation of f, in multiplications of two numbers within long rows:
+    /// 150, and 10 for each number, by default. The linear algebra of implicit methods is counted
+    /// as work by it.
     ///
     /// # Errors
     /// The cost is not a finite number above 0.

@@ -20,6 +20,10 @@ pub(crate) struct Dense {
     solution: Vec<f64>,
     change: Vec<f64>,
     f: Vec<f64>,
+    /// State at the beginning of a step.
+    pub(super) begun: Vec<f64>,
+    /// Work of the solutions that failed.
+    pub(super) spent: Work,
 }
 
 impl Dense {
@@ -32,6 +36,8 @@ impl Dense {
             solution: vec![0.0; order],
             change: vec![0.0; system.dim()],
             f: vec![0.0; system.dim()],
+            begun: vec![0.0; system.dim()],
+            spent: Work::default(),
         }
     }
 
@@ -48,8 +54,10 @@ impl Dense {
         check_dim(self.f.len(), y)?;
         let mut work = Work::default();
         let mut changes = Changes::new(true);
-        for iteration in 0..MAX_ITERATIONS {
-            if iteration == 0 || changes.shrink_fast() == Some(false) {
+        let mut renews = true;
+        for _ in 0..MAX_ITERATIONS {
+            let kept = !renews && changes.shrink_fast() != Some(false);
+            if !kept {
                 let (formed, of_use) = self.keep(system, t, a, y);
                 work += formed;
                 if !of_use {
@@ -57,12 +65,19 @@ impl Dense {
                 }
             }
             work += self.correct(system, t, a, base, y);
+            let change = self.jacobian.norm(&self.change);
+            // A larger change by an old Jacobian may lead to another solution.
+            renews = kept && changes.are_below(change);
+            if renews {
+                add_scaled(y, -1.0, &self.change);
+                continue;
+            }
             // Where bodies are does not matter.
             let size = match rigid_of(system) {
                 Some(_) => (self.solution.len() as f64).sqrt(),
                 None => self.jacobian.norm(y),
             };
-            changes.add(self.jacobian.norm(&self.change), size, 0.0);
+            changes.add(change, size, 0.0);
             if newton == Newton::Once || changes.are_over(1e-9) {
                 return Ok(work);
             }
@@ -70,6 +85,7 @@ impl Dense {
                 break;
             }
         }
+        self.spent += work;
         Err(changes.failure())
     }
 

@@ -1,9 +1,10 @@
-//! Implicit Euler: y1 = y + h f(t + h, y1), by one iteration of Newton's method (Baraff, Witkin,
-//! *Large Steps in Cloth Simulation*, 1998). Any step is stable, and longer steps damp the motion
-//! more. Order 1.
+//! Implicit Euler: y1 = y + h f(t + h, y1), with forces by one iteration of Newton's method
+//! (Baraff, Witkin, *Large Steps in Cloth Simulation*, 1998). Any step is stable, and longer steps
+//! damp the motion more. Order 1.
 
 use super::super::integrator::{Integrator, check_dim};
 use super::super::method::{Create, Method, View};
+use super::divided::{Divisible, is_plain};
 use super::newton::Newton;
 use super::stage::StageSolver;
 use crate::control::Control;
@@ -42,10 +43,31 @@ impl Integrator for ImplicitEuler {
         h: f64,
         y: &mut [f64],
     ) -> Result<Work, Error> {
+        check_dim(self.base.len(), y)?;
+        self.divided(system, t, h, y)
+    }
+}
+
+impl Divisible for ImplicitEuler {
+    fn stage(&mut self) -> &mut StageSolver {
+        &mut self.stage
+    }
+
+    fn whole(
+        &mut self,
+        system: &dyn ParticleSystem,
+        t: f64,
+        h: f64,
+        y: &mut [f64],
+    ) -> Result<Work, Error> {
         let Self { stage, base } = self;
-        check_dim(base.len(), y)?;
         base.copy_from_slice(y);
-        let work = stage.solve(system, t + h, h, base, y, Newton::Once)?;
+        let newton = if is_plain(stage, system) {
+            Newton::Full
+        } else {
+            Newton::Once
+        };
+        let work = stage.solve(system, t + h, h, base, y, newton)?;
         stage.project_bodies(system, y);
         Ok(work)
     }

@@ -9,6 +9,7 @@
 
 use super::super::integrator::{Integrator, check_dim};
 use super::super::method::{Create, Method, View};
+use super::divided::Divisible;
 use super::newton::Newton;
 use super::stage::StageSolver;
 use crate::control::Control;
@@ -52,13 +53,29 @@ impl Integrator for ImplicitMidpoint {
         h: f64,
         y: &mut [f64],
     ) -> Result<Work, Error> {
+        check_dim(self.base.len(), y)?;
+        self.divided(system, t, h, y)
+    }
+}
+
+impl Divisible for ImplicitMidpoint {
+    fn stage(&mut self) -> &mut StageSolver {
+        &mut self.stage
+    }
+
+    fn whole(
+        &mut self,
+        system: &dyn ParticleSystem,
+        t: f64,
+        h: f64,
+        y: &mut [f64],
+    ) -> Result<Work, Error> {
         let Self {
             stage,
             base,
             end,
             part,
         } = self;
-        check_dim(base.len(), y)?;
         base.copy_from_slice(y);
         let half = 0.5 * h;
         let mut work = stage.solve(system, t + half, half, base, y, Newton::Mirrored)?;

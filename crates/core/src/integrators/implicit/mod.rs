@@ -5,6 +5,7 @@
 mod bdf;
 mod collocation;
 mod dense;
+mod divided;
 mod euler;
 mod jacobian;
 mod joined;

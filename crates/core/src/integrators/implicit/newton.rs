@@ -199,6 +199,11 @@ impl Changes {
             || stay && self.last <= noise * self.size
     }
 
+    /// Returns whether the last change is smaller than another one, which is finite.
+    pub fn are_below(&self, other: f64) -> bool {
+        self.last < other && other.is_finite()
+    }
+
     /// Returns whether the last change is finite, so that another iteration is possible.
     pub fn are_finite(&self) -> bool {
         self.last.is_finite()

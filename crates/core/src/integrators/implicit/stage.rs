@@ -47,6 +47,29 @@ impl StageSolver {
         }
     }
 
+    /// Returns room for a state, which is to be given back.
+    pub(super) fn take_begun(&mut self) -> Vec<f64> {
+        match self {
+            Self::Mechanical(_) => vec![],
+            Self::Dense(stage) => std::mem::take(&mut stage.begun),
+        }
+    }
+
+    /// Takes the room for a state back.
+    pub(super) fn give_back(&mut self, begun: Vec<f64>) {
+        if let Self::Dense(stage) = self {
+            stage.begun = begun;
+        }
+    }
+
+    /// Returns the work of the solutions that failed since the last call.
+    pub(super) fn take_spent(&mut self) -> Work {
+        match self {
+            Self::Mechanical(_) => Work::default(),
+            Self::Dense(stage) => std::mem::take(&mut stage.spent),
+        }
+    }
+
     /// Returns whether there are constraints.
     pub(super) fn is_joined(&self) -> bool {
         matches!(self, Self::Mechanical(stage) if stage.joined.is_some())

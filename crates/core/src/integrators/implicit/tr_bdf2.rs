@@ -8,6 +8,7 @@ use std::f64::consts::{FRAC_1_SQRT_2, SQRT_2};
 
 use super::super::integrator::{Integrator, check_dim};
 use super::super::method::{Create, Method, View};
+use super::divided::Divisible;
 use super::newton::Newton;
 use super::stage::StageSolver;
 use crate::control::Control;
@@ -58,13 +59,29 @@ impl Integrator for TrBdf2 {
         h: f64,
         y: &mut [f64],
     ) -> Result<Work, Error> {
+        check_dim(self.base.len(), y)?;
+        self.divided(system, t, h, y)
+    }
+}
+
+impl Divisible for TrBdf2 {
+    fn stage(&mut self) -> &mut StageSolver {
+        &mut self.stage
+    }
+
+    fn whole(
+        &mut self,
+        system: &dyn ParticleSystem,
+        t: f64,
+        h: f64,
+        y: &mut [f64],
+    ) -> Result<Work, Error> {
         let Self {
             stage,
             f1,
             base,
             last,
         } = self;
-        check_dim(base.len(), y)?;
         system.eval_f(t, y, f1);
         let mut work = Work::of(1);
         for (((y, f1), base), last) in y.iter().zip(&*f1).zip(&mut *base).zip(&mut *last) {
