@@ -15,14 +15,15 @@ pub(super) trait Divisible {
     /// Returns the solver of its stages.
     fn stage(&mut self) -> &mut StageSolver;
 
-    /// Takes a step of h (s) from time t (s) as a whole.
+    /// Takes a step of h (s) from time t (s) as a whole. Adds what was done to the work.
     fn whole(
         &mut self,
         system: &dyn ParticleSystem,
         t: f64,
         h: f64,
         y: &mut [f64],
-    ) -> Result<Work, Error>;
+        work: &mut Work,
+    ) -> Result<(), Error>;
 
     /// Takes a step of h (s) from time t (s): of plain numbers in parts, each half as long as one
     /// whose equations could not be solved, and longer again after that.
@@ -33,19 +34,21 @@ pub(super) trait Divisible {
         h: f64,
         y: &mut [f64],
     ) -> Result<Work, Error> {
+        let mut work = Work::default();
         if !is_plain(self.stage(), system) {
-            return self.whole(system, t, h, y);
+            self.whole(system, t, h, y, &mut work)?;
+            return Ok(work);
         }
         let mut begun = self.stage().take_begun();
         let all = 1_u64 << MAX_HALVINGS;
-        let (mut done, mut halvings, mut work) = (0, 0, Work::default());
+        let (mut done, mut halvings) = (0, 0);
         let taken = loop {
             let part = all >> halvings;
             let share = |part: u64| part as f64 / all as f64;
             begun.copy_from_slice(y);
-            match self.whole(system, t + h * share(done), h * share(part), y) {
-                Ok(own) => {
-                    work += own;
+            let begin = t + h * share(done);
+            match self.whole(system, begin, h * share(part), y, &mut work) {
+                Ok(()) => {
                     done += part;
                     if done == all {
                         break Ok(work);

@@ -59,7 +59,8 @@ impl Divisible for ImplicitEuler {
         t: f64,
         h: f64,
         y: &mut [f64],
-    ) -> Result<Work, Error> {
+        work: &mut Work,
+    ) -> Result<(), Error> {
         let Self { stage, base } = self;
         base.copy_from_slice(y);
         let newton = if is_plain(stage, system) {
@@ -67,8 +68,8 @@ impl Divisible for ImplicitEuler {
         } else {
             Newton::Once
         };
-        let work = stage.solve(system, t + h, h, base, y, newton)?;
+        *work += stage.solve(system, t + h, h, base, y, newton)?;
         stage.project_bodies(system, y);
-        Ok(work)
+        Ok(())
     }
 }

@@ -69,7 +69,8 @@ impl Divisible for ImplicitMidpoint {
         t: f64,
         h: f64,
         y: &mut [f64],
-    ) -> Result<Work, Error> {
+        work: &mut Work,
+    ) -> Result<(), Error> {
         let Self {
             stage,
             base,
@@ -78,7 +79,7 @@ impl Divisible for ImplicitMidpoint {
         } = self;
         base.copy_from_slice(y);
         let half = 0.5 * h;
-        let mut work = stage.solve(system, t + half, half, base, y, Newton::Mirrored)?;
+        *work += stage.solve(system, t + half, half, base, y, Newton::Mirrored)?;
         if stage.is_joined() {
             let middle = base.len() / 2;
             for ((end, y), base) in end.iter_mut().zip(&*y).zip(&*base) {
@@ -101,13 +102,13 @@ impl Divisible for ImplicitMidpoint {
                 .iter_mut()
                 .zip(&part[middle..])
                 .for_each(|(v, part)| *v -= part);
-            work += stage.solve(system, t + half, half, base, y, Newton::Mirrored)?;
+            *work += stage.solve(system, t + half, half, base, y, Newton::Mirrored)?;
         }
         for (y, base) in y.iter_mut().zip(&*base) {
             *y = 2.0 * *y - base;
         }
         system.hold(t + h, y);
         stage.project(system, y);
-        Ok(work)
+        Ok(())
     }
 }
