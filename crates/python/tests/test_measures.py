@@ -155,6 +155,16 @@ def test_runs_are_compared():
     assert compared.distance(2, 1)[-1] > compared.distance(0, 1)[-1]
 
 
+def test_a_comparison_becomes_a_table_of_pandas():
+    pandas = pytest.importorskip("pandas")
+    runs = a3.compare("chain", [("rk4", 0.01), ("dopri5", 1e-4)], until=0.1)
+    table = runs.to_pandas()
+    assert isinstance(table, pandas.DataFrame) and len(table) == 2 * len(runs.times)
+    of_rk4 = table[table.method == "rk4"]
+    assert (of_rk4.time == runs.times).all() and (of_rk4.y0 == runs.runs[0].states[:, 0]).all()
+    assert (of_rk4.energy == runs.runs[0].energies).all() and (of_rk4.setting == 0.01).all()
+
+
 def test_a_comparison_tells_of_a_blow_up():
     compared = a3.compare("cloth", [("euler", 0.5), "rk4"], until=5.0, frames=10, progress=False)
     assert "blew up" in compared.runs[0].blow_up and compared.runs[1].blow_up is None

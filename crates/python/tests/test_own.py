@@ -2,6 +2,7 @@
 
 import math
 import pickle
+import re
 import signal
 import threading
 import os
@@ -36,6 +37,32 @@ def test_a_system_of_first_order_has_its_exact_solution():
     run.advance_to(10.0)
     assert run.state == pytest.approx([math.cos(10), -math.sin(10)], abs=1e-9)
     assert run.positions.shape == (0, 3) and run.scene == "oscillator"
+
+
+def spiral(t, y, rate, decay):
+    return [rate * y[1] - decay * y[0], -rate * y[0] - decay * y[1]]
+
+
+def test_a_function_has_further_arguments():
+    system = a3.System(spiral, [1.0, 0.0], args=(2.0, 0.5))
+    assert system.name == "spiral"
+    run = a3.Simulation(system, "dop853", tolerance=1e-11)
+    states = pickle.loads(pickle.dumps(run)).states_at([0.0, 0.5, 3.0])
+    times = np.array([0.0, 0.5, 3.0])
+    expected = np.exp(-0.5 * times) * [np.cos(2 * times), -np.sin(2 * times)]
+    assert states == pytest.approx(expected.T, abs=1e-9)
+    assert run.states_at([]).shape == (0, 2)
+
+    def pull(t, x, v, stiffness):
+        return -stiffness * x
+
+    particles = a3.System.of_particles(pull, [1.0], [[1, 0, 0]], args=[4.0])
+    run = a3.Simulation(particles, "dop853", tolerance=1e-11)
+    assert run.states_at([1.0])[0, 0] == pytest.approx(math.cos(2), abs=1e-9)
+
+
+def test_the_version_is_that_of_the_package():
+    assert re.fullmatch(r"\d+\.\d+\.\d+.*", a3.__version__) and "__version__" in dir(a3)
 
 
 def test_a_system_of_particles_has_masses_and_forces():

@@ -89,6 +89,10 @@ __all__ = list(_MODULES)
 
 
 def __getattr__(name: str) -> object:
+    if name == "__version__":
+        from importlib.metadata import version
+
+        return version("a3-simulator")
     module = _MODULES.get(name)
     if module is None:
         raise AttributeError(f"module 'a3_simulator' has no attribute {name!r}")
@@ -98,4 +102,4 @@ def __getattr__(name: str) -> object:
 
 
 def __dir__() -> List[str]:
-    return sorted([*__all__, *(name for name in globals() if name.startswith("__"))])
+    return sorted([*__all__, "__version__", *(name for name in globals() if name.startswith("__"))])

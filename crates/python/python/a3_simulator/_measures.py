@@ -310,6 +310,19 @@ class Comparison:
         apart = a_states[:frames, :coordinates] - b_states[:frames, :coordinates]
         return np.sqrt(np.sum(apart**2, axis=1) / count)
 
+    def to_pandas(self) -> Any:
+        """Returns the runs as a `pandas.DataFrame`: a row for each run and time, with method, setting, time (s), energy
+        (J), and the numbers of the state as y0, y1, ..."""
+        import pandas
+
+        tables = []
+        for run in self.runs:
+            numbers = {f"y{k}": run.states[:, k] for k in range(run.states.shape[1])}
+            energies = run.energies if len(run.energies) else np.full(len(run.states), np.nan)
+            head = {"method": run.method, "setting": run.setting, "time": self.times[: len(run.states)]}
+            tables.append(pandas.DataFrame({**head, "energy": energies, **numbers}))
+        return pandas.concat(tables, ignore_index=True)
+
     def __repr__(self) -> str:
         names = ", ".join(f"{run.method} {run.setting:g}" for run in self.runs)
         return f"<Comparison of {names} until {self.times[-1]:g} s>"

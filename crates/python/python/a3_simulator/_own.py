@@ -31,6 +31,7 @@ class System:
         scale: least size to which the errors of adaptive methods are relative, one for all numbers or (n,). By default
             an error is relative to the largest size that its number has had, and a billionth of that of the largest
             number of y0 is allowed besides.
+        args: further arguments of f, after t and y.
 
     Where a scene is expected, a system can stand. Arrays that f gets are its own: it may keep or change them.
     """
@@ -49,8 +50,9 @@ class System:
         *,
         name: Optional[str] = None,
         scale: Optional[npt.ArrayLike] = None,
+        args: Sequence[Any] = (),
     ) -> None:
-        self.f: Union[Derivative, Forces] = f
+        self.f: Union[Derivative, Forces] = _with(args, f)
         self.y0 = _numbers("y0", y0, (-1,))
         if self.y0.size == 0:
             raise InputError("y0: a system has at least one number")
@@ -72,6 +74,7 @@ class System:
         *,
         positional: bool = False,
         name: Optional[str] = None,
+        args: Sequence[Any] = (),
     ) -> "System":
         """Returns a system of second order, M x'' = F(t, x, v).
 
@@ -84,9 +87,10 @@ class System:
             positional: whether the forces do not depend on v. Verlet's and Nystroem's methods then take fewer
                 evaluations.
             name: name, for charts and errors; by default that of `forces`.
+            args: further arguments of `forces`, after t, x and v.
         """
         system = cls.__new__(cls)
-        system.f = forces
+        system.f = _with(args, forces)
         system.masses = _numbers("masses", masses, (-1,))
         shape = (system.masses.size, 3)
         x = _numbers("positions", positions, shape)
@@ -143,6 +147,21 @@ def method_name(method: Union[str, Method]) -> str:
     if isinstance(method, Method):
         return method.name
     raise InputError(f"a method is a name or a letter, or an a3.Method, not {type(method).__name__}")
+
+
+def _with(args: Sequence[Any], function: Any) -> Any:
+    """Returns a function that takes further arguments, with these."""
+    return _With(function, tuple(args)) if args else function
+
+
+class _With:
+    """A function with its last arguments. It can be pickled, as its parts can."""
+
+    def __init__(self, function: Any, args: "tuple[Any, ...]") -> None:
+        self.function, self.args = function, args
+
+    def __call__(self, *args: Any) -> Any:
+        return self.function(*args, *self.args)
 
 
 def _name(function: Any, otherwise: str) -> str:

@@ -154,6 +154,22 @@ class Simulation(_a3.Run):
         with progress_bar(progress, self.time, time) as report:
             self.advance(time, report)
 
+    def states_at(self, times: Sequence[float], progress: bool = False) -> np.ndarray:
+        """Advances to each of these times (s), and returns the states there, (times, numbers).
+
+        Args:
+            times: in their order, from the present time of the run on (s).
+            progress: whether a bar shows the progress, if `tqdm` is installed.
+
+        Raises:
+            BlowUp, InputError: as `advance_to` does.
+        """
+        states = []
+        for time in times:
+            self.advance_to(time, progress)
+            states.append(self.state)
+        return np.array(states).reshape(len(states), self.state.size)
+
     @property
     def energy(self) -> Optional[Energy]:
         """Energy by kind (J); `None` if the scene has no forces."""
