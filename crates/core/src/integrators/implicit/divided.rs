@@ -6,8 +6,8 @@ use crate::error::Error;
 use crate::system::{ParticleSystem, rigid_of};
 use crate::work::Work;
 
-/// Largest number of times that a step is halved. The jumps of van der Pol's oscillator with a
-/// stiffness of 1e6 need 13 in steps of 0.01 s.
+/// Largest number of times that a step is halved: a motion that needs shorter parts has no use for
+/// steps of that length.
 const MAX_HALVINGS: u32 = 16;
 
 /// Method with implicit stages.
