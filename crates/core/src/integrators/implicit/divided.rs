@@ -15,7 +15,8 @@ pub(super) trait Divisible {
     /// Returns the solver of its stages.
     fn stage(&mut self) -> &mut StageSolver;
 
-    /// Takes a step of h (s) from time t (s) as a whole. Adds what was done to the work.
+    /// Takes an undivided step of h (s) from time t (s), and adds the cost of the stages that were
+    /// solved to `work`.
     fn whole(
         &mut self,
         system: &dyn ParticleSystem,
