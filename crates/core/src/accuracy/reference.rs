@@ -4,8 +4,9 @@
 //! tolerance ten times as large, and with a method of another family at the steps h, h/2, h/4, ...,
 //! extrapolated to zero step (Richardson; Hairer, Norsett, Wanner, *Solving Ordinary Differential
 //! Equations I*, 1993, II.9). That method is PEFRL, or the classical Runge-Kutta method where
-//! forces depend on the velocity; where particles rest and slide on obstacles, it is Verner's pair
-//! at smaller and smaller tolerances, since fixed steps are too long for the onset of friction. Its
+//! forces depend on the velocity. Fixed steps are too long for the onset of friction, where
+//! particles rest and slide on obstacles, and for the events of plain numbers, such as two stars
+//! that pass each other closely: there it is Verner's pair at smaller and smaller tolerances. Its
 //! disagreement with the reference is the uncertainty: two tolerances of one method may share an
 //! error, two families do not. For a stiff system, the reference is a run of Radau IIA, and the
 //! other method is BDF at smaller and smaller tolerances.
@@ -327,11 +328,13 @@ impl Making<'_> {
             let method = find("bdf").ok_or_else(missing)?;
             return Ok((method, Control::Tolerance(TOLERANCES.0)));
         }
-        if model.network().is_some_and(may_rest) {
+        let mechanics = model.system().mechanics();
+        let is_plain = mechanics.is_none() && matches!(model, Model::FirstOrder(_));
+        if is_plain || model.network().is_some_and(may_rest) {
             let method = find("verner65").ok_or_else(missing)?;
             return Ok((method, Control::Tolerance(TOLERANCES.0)));
         }
-        let splitting = model.system().mechanics().and_then(Mechanics::splitting);
+        let splitting = mechanics.and_then(Mechanics::splitting);
         let smooth = splitting.is_some_and(|splitting| !splitting.kick_reads_velocity());
         let method = find(if smooth { "pefrl" } else { "rk4" }).ok_or_else(missing)?;
         let longest = |modes: &[Mode]| -> Result<f64, Error> {

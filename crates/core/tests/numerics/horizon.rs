@@ -2,6 +2,7 @@
 
 use crate::common::{described, scene};
 use a3_core::accuracy::horizon;
+use a3_core::{Ode, Scene};
 
 /// A planar truss under a load buckles out of its plane; a double pendulum is chaotic in its own.
 #[test]
@@ -67,4 +68,20 @@ fn growth_is_told_where_it_is_no_chaos() {
     );
     assert!((3.0..10.2).contains(&grown[0].growth), "{grown:?}");
     assert!((0.9..1.1).contains(&grown[1].growth), "{grown:?}");
+}
+
+/// A solution that a stiff system approaches at once attracts its neighbours.
+#[test]
+fn stiff_motion_that_dies_out_is_no_chaos() {
+    for k in [1e2, 1e5, 1e8] {
+        let system = Ode::new(1, move |t: f64, y: &[f64], dydt: &mut [f64]| {
+            dydt[0] = -k * (y[0] - t.cos());
+        });
+        let scene = Scene::new("follower", system.unwrap(), vec![1.0]);
+        let found = horizon(&scene, f64::INFINITY, &|| true).unwrap().unwrap();
+        assert!(
+            found.lyapunov.is_infinite() && found.growth < 2.0,
+            "{k:e}: {found:?}"
+        );
+    }
 }
