@@ -235,10 +235,10 @@ fn wrong_requests_are_refused_with_one_line() {
         (of(Metric::Position), "state"),
         (
             ChartOptions {
-                particle: Some(0),
+                particle: Some(9),
                 ..until(1.0)
             },
-            "plain numbers",
+            "has no number 9",
         ),
         (
             ChartOptions {

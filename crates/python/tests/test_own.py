@@ -362,3 +362,29 @@ def test_numbers_of_mixed_size_have_errors_of_their_own():
     for wrong in [[1, 1, 1], 0.0, [1, 1, 1, -1], "small"]:
         with pytest.raises(a3.InputError, match="scale"):
             a3.System(pair, [1.0, 0.0, 1e-6, 0.0], scale=wrong)
+
+
+def test_one_number_counts_alone():
+    """A slow number needs longer steps than a fast one beside it."""
+
+    def two(t, y):
+        return np.array([-y[0], 20 * y[2], -20 * y[1]])
+
+    system = a3.System(two, [1.0, 1.0, 0.0])
+    chosen = [
+        a3.choose(system, 1e-4, methods=["rk4"], until=2.0, component=k, progress=False) for k in (0, 1, None)
+    ]
+    slow, fast, both = (choice.setting for choice in chosen)
+    assert slow > 3 * fast and slow > 2 * both and chosen[0].error < 1e-4
+    run = a3.Simulation(system, "rk4", step=slow)
+    run.advance_to(2.0)
+    assert abs(run.state[0] - math.exp(-2)) < 1e-4 < abs(run.state[1] - math.cos(40))
+    for wrong, words in [
+        ({"component": 3}, "has no number 3: its numbers are 0 to 2"),
+        ({"particle": 0}, "give component=0"),
+        ({"component": -1}, "a number from 0"),
+    ]:
+        with pytest.raises(a3.InputError, match=words):
+            a3.chart(system, ["rk4"], until=2.0, progress=False, **wrong)
+    with pytest.raises(a3.InputError, match="give particle=2"):
+        a3.choose("chain", 1e-3, component=2)

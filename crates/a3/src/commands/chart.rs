@@ -10,7 +10,7 @@ use a3_files::output;
 use a3_files::progress::Bar;
 use a3_files::setup::Request;
 use a3_files::{interrupt, terminal};
-use a3_lab::chart::asked::{check_metric, methods, scope};
+use a3_lab::chart::asked::{check_metric, methods};
 use a3_lab::chart::data::Data;
 use a3_lab::chart::each::Each;
 use a3_lab::chart::value::{Chart, ChartOptions};
@@ -68,7 +68,11 @@ impl<'a> Asked<'a> {
         Ok(Self {
             options,
             methods,
-            scope: scope(options.scope.given(), &scene)?,
+            scope: options
+                .scope
+                .given()
+                .checked(&scene.model)
+                .map_err(Failure::usage)?,
             picture,
             scene,
             request,

@@ -6,7 +6,7 @@ use a3_files::failure::Failure;
 use a3_files::progress::Bar;
 use a3_files::setup::Request;
 use a3_files::{interrupt, terminal};
-use a3_lab::chart::{check_metric, methods, scope};
+use a3_lab::chart::{check_metric, methods};
 use a3_lab::choose::{Choice, ChooseOptions, Goal, choose, command, report};
 use a3_lab::motion::{grid_error, open};
 
@@ -45,7 +45,11 @@ impl<'a> Asked<'a> {
         Ok(Self {
             options,
             request,
-            scope: scope(options.scope.given(), &scene)?,
+            scope: options
+                .scope
+                .given()
+                .checked(&scene.model)
+                .map_err(Failure::usage)?,
             scene,
             wanted: ChooseOptions {
                 goal,

@@ -121,7 +121,7 @@ impl Reference {
         go_on: GoOn,
     ) -> Result<Option<Self>, Error> {
         precision.metric.check(&scene.model)?;
-        scope.check(scene.model.particles())?;
+        let scope = scope.checked(&scene.model)?;
         let Some((is_stiff, work)) = is_stiff(scene, frames.until, go_on)? else {
             return Ok(None);
         };

@@ -368,25 +368,29 @@ fn between([[xa, va], [xb, vb]]: [[&[f64]; 2]; 2], time: f64, s: f64, x: &mut [f
 /// Particles and times at which errors are taken.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Scope {
-    /// The only particle whose position and phase count; `None` for all of them, or for all numbers
-    /// of a state without particles.
+    /// The only particle whose position and phase count, or the only number of a state without
+    /// particles; `None` for all of them.
     pub particle: Option<usize>,
     /// Whether only the last frame counts, instead of the largest error of all frames.
     pub at_end: bool,
 }
 
 impl Scope {
-    /// Checks that the only particle that counts, if there is one, is among this number of
-    /// particles.
-    pub(super) fn check(self, particles: usize) -> Result<(), Error> {
+    /// Returns this scope.
+    ///
+    /// # Errors
+    /// The model has no such particle or number.
+    pub fn checked(self, model: &Model) -> Result<Self, Error> {
+        let (kind, count) = match model.particles() {
+            0 => ("number", model.system().dim()),
+            particles => ("particle", particles),
+        };
         match self.particle {
-            Some(i) if i >= particles => Err(Error::Invalid(match particles.checked_sub(1) {
-                Some(last) => {
-                    format!("there is no particle {i}: the scene has particles 0 to {last}")
-                }
-                None => format!("there is no particle {i}: the scene has plain numbers"),
-            })),
-            _ => Ok(()),
+            Some(i) if i >= count => Err(Error::Invalid(format!(
+                "the scene has no {kind} {i}: its {kind}s are 0 to {}",
+                count - 1
+            ))),
+            _ => Ok(self),
         }
     }
 }

@@ -303,11 +303,11 @@ fn what_needs_particles_is_refused() {
     for metric in [Metric::Position, Metric::Energy, Metric::Strain] {
         says(of(all, metric), "ask for the error of the state");
     }
-    let first = Scope {
-        particle: Some(0),
+    let beyond = Scope {
+        particle: Some(9),
         ..all
     };
-    says(of(first, Metric::State), "there is no particle 0");
+    says(of(beyond, Metric::State), "the scene has no number 9");
     let reference = reference(&scene, 1.0);
     let chosen = choose(&scene, &reference, Metric::Energy, 1e-3, &go_on, |_| {});
     says(chosen.err(), "ask for the error of the state");

@@ -1,7 +1,7 @@
 //! Checks of the command line against the scene: the solvers, the metric, and the particles and
 //! times at which errors are taken.
 
-use a3_core::accuracy::{Metric, Scope};
+use a3_core::accuracy::Metric;
 use a3_core::{Error, Method, Scene, integrators};
 
 use a3_files::failure::Failure;
@@ -95,26 +95,6 @@ pub fn check_metric(metric: Metric, scene: &Scene) -> Result<(), Failure> {
             scene.name,
             motion.name()
         ))),
-    }
-}
-
-/// Checks the particles and times at which errors are asked to be taken.
-///
-/// # Errors
-/// The scene has no such particle.
-pub fn scope(asked: Scope, scene: &Scene) -> Result<Scope, Failure> {
-    let particles = scene.model.particles();
-    match asked.particle {
-        Some(_) if particles == 0 => Err(Failure::usage(format!(
-            "the scene {} has no particles, but plain numbers: take the error of all of them",
-            scene.name
-        ))),
-        Some(i) if i >= particles => Err(Failure::usage(format!(
-            "the scene {} has no particle {i}: its particles are 0 to {}",
-            scene.name,
-            particles - 1
-        ))),
-        _ => Ok(asked),
     }
 }
 

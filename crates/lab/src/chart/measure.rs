@@ -78,7 +78,7 @@ impl Study {
             self_collision: label.on.contact,
             stiffness,
             until,
-            scope: words(scope),
+            scope: words(scope, &scene.model),
             ..Record::default()
         };
         Self {

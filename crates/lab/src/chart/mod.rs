@@ -10,7 +10,7 @@ pub mod table;
 pub mod value;
 pub mod words;
 
-pub use asked::{check_contact, check_methods, check_metric, check_scene, methods, scope};
+pub use asked::{check_contact, check_methods, check_metric, check_scene, methods};
 pub use record::Record;
 pub use value::{Chart, ChartOptions, chart};
 pub use value::{check_motion, look_ahead};

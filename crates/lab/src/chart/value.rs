@@ -10,7 +10,7 @@ use a3_files::report::Report;
 use a3_files::rows::text;
 use a3_plot::{Figure, WorkPrecision};
 
-use super::asked::{check_methods, check_metric, check_scene, scope};
+use super::asked::{check_methods, check_metric, check_scene};
 use super::data::Data;
 use super::each::Each;
 use super::measure::{Measured, Study, stiffened};
@@ -26,7 +26,8 @@ pub struct ChartOptions {
     pub until: Option<f64>,
     /// Error that counts; by default that of the positions or, without particles, of the state.
     pub error: Option<Metric>,
-    /// The only particle whose position and phase count; by default all.
+    /// The only particle whose position and phase count, or the only number of a system without
+    /// particles; by default all.
     pub particle: Option<usize>,
     /// Whether the error at the end counts, instead of the largest one.
     pub at_end: bool,
@@ -104,11 +105,11 @@ impl Chart {
     ) -> Result<Self, Failure> {
         let metric = options.error.unwrap_or(Metric::of_motion(&scene.model));
         check_metric(metric, scene)?;
-        let asked = Scope {
+        let scope = Scope {
             particle: options.particle,
             at_end: options.at_end,
         };
-        let scope = scope(asked, scene)?;
+        let scope = scope.checked(&scene.model).map_err(Failure::usage)?;
         let mut until = options
             .until
             .map(|until| HORIZONS.check(until))

@@ -11,6 +11,7 @@ use super::search::ENOUGH_MARGIN;
 use super::value::{Choice, Chosen, Goal, describe_goal};
 use crate::chart::table::fraction;
 use crate::chart::{describe, unit};
+use crate::motion::words as scope_in_words;
 
 /// Error that is shown at any time, over the one at 60 frames a second, from which on it is told.
 const MAX_RATIO: f64 = 1.05;
@@ -105,7 +106,7 @@ pub fn report(on: Disturbances, scene: &Scene, goal: (Goal, Scope), choice: &Cho
         }
         Goal::Budget(_) => String::new(),
     };
-    let goal = describe_goal(goal, metric, scope);
+    let goal = describe_goal(goal, metric, &scope_in_words(scope, &scene.model));
     Report {
         head: format!("{} for {until} s, {goal}:\n", describe(on, scene)),
         rows,

@@ -9,7 +9,7 @@ use a3_files::monitor::Monitor;
 use super::search::{ENOUGH_MARGIN, cheapest, within};
 use crate::chart::measure::{precision, reference};
 use crate::chart::{
-    check_contact, check_methods, check_metric, check_motion, check_scene, look_ahead, scope, unit,
+    check_contact, check_methods, check_metric, check_motion, check_scene, look_ahead, unit,
 };
 use crate::motion::words;
 
@@ -32,7 +32,8 @@ pub struct ChooseOptions {
     /// End of the runs (s), from 0.01 to 1000; by default as long as errors mean something on the
     /// scene.
     pub until: Option<f64>,
-    /// The only particle whose position and phase count; by default all.
+    /// The only particle whose position and phase count, or the only number of a system without
+    /// particles; by default all.
     pub particle: Option<usize>,
     /// Whether the error at the end counts, instead of the largest one.
     pub at_end: bool,
@@ -173,7 +174,7 @@ impl<'a> Search<'a> {
             scene,
             options,
             metric,
-            scope: scope(asked, scene)?,
+            scope: asked.checked(&scene.model).map_err(Failure::usage)?,
         })
     }
 
@@ -219,7 +220,7 @@ impl<'a> Search<'a> {
         if !found.is_empty() {
             return Ok(found);
         }
-        let goal = describe_goal(self.options.goal, metric, self.scope);
+        let goal = describe_goal(self.options.goal, metric, &words(self.scope, &scene.model));
         let name = &scene.name;
         Err(Failure::run(match self.options.goal {
             Goal::Error(_) => {
@@ -233,9 +234,9 @@ impl<'a> Search<'a> {
 }
 
 /// Describes the goal in words.
-pub fn describe_goal(goal: Goal, metric: Metric, scope: Scope) -> String {
+pub fn describe_goal(goal: Goal, metric: Metric, scope: &str) -> String {
     match goal {
-        Goal::Error(error) => format!("an error of {error:e} {} ({})", unit(metric), words(scope)),
+        Goal::Error(error) => format!("an error of {error:e} {} ({scope})", unit(metric)),
         Goal::Budget(budget) => format!("{budget} ms per frame"),
     }
 }

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use a3_core::accuracy::{Frames, Scope};
 use a3_core::integrators::find;
-use a3_core::{Control, Method, Scene};
+use a3_core::{Control, Method, Model, Scene};
 use a3_files::failure::Failure;
 use a3_files::interrupt;
 use a3_files::quantity::Quantity;
@@ -270,7 +270,7 @@ impl Known {
                 hash.value()
             ),
             of: compared.quantity.name().into(),
-            scope: words(compared.scope),
+            scope: words(compared.scope, &scene.model),
             until: compared.frames.until,
             solver: method.name.into(),
             tolerance: control.value(),
@@ -294,11 +294,15 @@ pub fn beside(data: &Path) -> PathBuf {
     data.with_extension(format!("models.{ending}"))
 }
 
-/// Describes a scope in words.
-pub fn words(scope: Scope) -> String {
+/// Describes a scope of a model in words.
+pub fn words(scope: Scope, model: &Model) -> String {
     let when = if scope.at_end { " at the end" } else { "" };
+    let kind = match model.particles() {
+        0 => "number",
+        _ => "particle",
+    };
     match scope.particle {
-        Some(i) => format!("particle {i}{when}"),
-        None => format!("all particles{when}"),
+        Some(i) => format!("{kind} {i}{when}"),
+        None => format!("all {kind}s{when}"),
     }
 }

@@ -17,7 +17,7 @@ use super::chart::chart;
 use super::lean::{Answer, LeanModel, MAX_TIME_RATIO, Solved, assemble, solve, time_in_turns};
 use super::models::{Model, Models, measure_all};
 use super::table;
-use crate::chart::{check_motion, look_ahead, scope};
+use crate::chart::{check_motion, look_ahead};
 use crate::motion::{Compared, open};
 
 /// Method that is often the cheapest, and is tried first.
@@ -250,13 +250,11 @@ fn whole<'a>(
         .until
         .map(|until| HORIZONS.check(until))
         .transpose()?;
-    let scope = scope(
-        Scope {
-            particle: options.particle,
-            at_end: options.at_end,
-        },
-        &scene,
-    )?;
+    let scope = Scope {
+        particle: options.particle,
+        at_end: options.at_end,
+    };
+    let scope = scope.checked(&scene.model).map_err(Failure::usage)?;
     if scope.particle.is_some() && quantity != Quantity::Position {
         return Err(Failure::usage(
             "--particle: only positions are those of a particle",

@@ -335,6 +335,7 @@ def chart(
     until: Optional[float] = None,
     error: Optional[str] = None,
     particle: Optional[int] = None,
+    component: Optional[int] = None,
     at_end: bool = False,
     work: str = "evaluations",
     spread: bool = False,
@@ -352,6 +353,7 @@ def chart(
         error: what counts as the error: "position" (m, root mean square over the particles), "energy" (J), "strain",
             "momentum" (kg m/s), "phase" (s), "penetration", "impact" (s); "state" of systems without particles.
         particle: the only particle whose position counts.
+        component: the only number that counts, of a system without particles.
         at_end: whether the error at the end counts, instead of the largest one.
         work: what counts as the cost: "evaluations" of f, the same on every machine, or "time" on this one.
         spread: whether adaptive methods also run at neighbouring tolerances, to show how much their errors vary.
@@ -362,10 +364,11 @@ def chart(
     """
     names = _names(methods)
     scene_given = given(scene, **options)
+    one = _only(scene, particle, component)
     timed = _timed(work)
     source = _work(
         lambda monitor: _a3.chart(
-            scene_given, names, monitor, until, error, particle, at_end, timed, spread, list(stiffness)
+            scene_given, names, monitor, until, error, one, at_end, timed, spread, list(stiffness)
         ),
         progress,
     )
@@ -381,6 +384,7 @@ def choose(
     of: Optional[str] = None,
     until: Optional[float] = None,
     particle: Optional[int] = None,
+    component: Optional[int] = None,
     at_end: bool = False,
     work: str = "evaluations",
     progress: bool = True,
@@ -394,14 +398,15 @@ def choose(
         budget: computing time of a frame of 1/60 s (ms), in place of an error.
         methods: methods to choose among; by default all that support the scene.
         of: what counts as the error, as `error` of `chart`.
-        until, particle, at_end, work, progress, options: as in `chart`.
+        until, particle, component, at_end, work, progress, options: as in `chart`.
     """
     names = _names(methods)
     scene_given = given(scene, **options)
+    one = _only(scene, particle, component)
     timed = _timed(work)
     found, _, end, floor = _work(
         lambda monitor: _a3.choose(
-            scene_given, names, monitor, error, budget, of, until, particle, at_end, timed
+            scene_given, names, monitor, error, budget, of, until, one, at_end, timed
         ),
         progress,
     )
@@ -486,6 +491,19 @@ def _names(methods: Sequence[MethodLike]) -> List[str]:
     if isinstance(methods, (str, Method)):
         methods = [methods]
     return [method_name(method) for method in methods]
+
+
+def _only(scene: SceneLike, particle: Optional[int], component: Optional[int]) -> Optional[int]:
+    """Returns the only particle or number whose error counts."""
+    is_plain = isinstance(scene, System) and scene.masses is None
+    wrong, right = ("particle", "component") if is_plain else ("component", "particle")
+    for name, value in (("particle", particle), ("component", component)):
+        if value is not None and name == wrong:
+            kind = "plain numbers" if is_plain else "particles"
+            raise InputError(f"{wrong}: {getattr(scene, 'name', scene)} has {kind}: give {right}={value}")
+        if isinstance(value, bool) or value is not None and value < 0:
+            raise InputError(f"{name}: a number from 0 is expected, not {value}")
+    return component if is_plain else particle
 
 
 def _timed(work: str) -> bool:

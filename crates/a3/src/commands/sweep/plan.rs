@@ -4,9 +4,9 @@ use a3_core::accuracy::{Metric, Scope};
 use a3_core::{Method, Scene, integrators};
 use a3_files::failure::Failure;
 use a3_files::scene_file::{Hash, Source};
+use a3_lab::chart::check_metric;
 use a3_lab::chart::data::VERSION;
 use a3_lab::chart::measure::stiffened;
-use a3_lab::chart::{check_metric, scope};
 use a3_lab::motion::words;
 use rayon::prelude::*;
 use serde_json::Value;
@@ -188,13 +188,21 @@ fn variant(
         until.ok_or_else(|| format!("the scene {} has no duration: give `until`", scene.name))?;
     check_metric(sweep.error, &scene).map_err(|failure| failure.to_string())?;
     variant.metric = sweep.error;
-    variant.scope = scope(sweep.scope, &scene).map_err(|failure| failure.to_string())?;
+    variant.scope = sweep
+        .scope
+        .checked(&scene.model)
+        .map_err(|why| why.to_string())?;
     let mut hash = Hash::default();
     hash.add(VERSION.bytes());
     hash.add([0]);
     hash.add(source.text().bytes());
     hash.add([0]);
-    hash.add(variant.name.bytes().chain(words(variant.scope).bytes()));
+    hash.add(
+        variant
+            .name
+            .bytes()
+            .chain(words(variant.scope, &scene.model).bytes()),
+    );
     hash.add(
         [variant.stiffness, variant.until]
             .into_iter()

@@ -72,7 +72,7 @@ fn run_variant(
         cols: grid.map_or(0, |grid| grid.cols()),
         stiffness: variant.stiffness,
         until,
-        scope: words(scope),
+        scope: words(scope, &scene.model),
         ..Record::default()
     };
     runs.par_iter().try_for_each(|run| {
