@@ -1,4 +1,5 @@
-//! Own methods: functions step(f, t, y, h) of Python that return the state at t + h.
+//! Own methods: functions step(f, t, y, h) of Python that return the state at t + h; and solvers of
+//! other libraries, functions that return the states at given times.
 
 use std::collections::BTreeMap;
 use std::sync::{Mutex, PoisonError};
@@ -73,23 +74,56 @@ pub fn add_method(
     let function = Function::new(step, Shape::Flat, &raised)?;
     let method = Method::from_step(name, order, move |f, t, y, h| {
         let mut next = vec![0.0; y.len()];
-        let stepped = STEPPED.set(f, || {
-            Python::attach(|py| {
-                let arguments = (Derivative, t, numbers(py, y), h);
-                function.call(py, Ok(arguments), &mut next)
-            })
-        });
-        stepped.map_err(Error::Callback)?;
+        with(f, |py| {
+            let arguments = (Derivative, t, numbers(py, y), h);
+            function.call(py, Ok(arguments), &mut next)
+        })?;
         Ok(next)
     });
     let method = method.map_err(|error| wrong(py, error.to_string()))?;
     let method = method
         .with_evaluations(evaluations)
         .with_default_step(default_step);
-    let _ = method.register();
+    register(method, raised);
+    Ok(())
+}
+
+/// Registers a solver of another library. `solve` is called with f, the times (s), the state at
+/// time 0 and a relative tolerance, and returns the states at these times, one after another.
+#[pyfunction]
+pub fn add_foreign(py: Python<'_>, name: &str, solve: &Bound<PyAny>) -> PyResult<()> {
+    let raised = Raised::default();
+    let function = Function::new(solve, Shape::Flat, &raised)?;
+    let method = Method::foreign(name, move |f, times, y, tolerance| {
+        let mut states = vec![0.0; times.len() * y.len()];
+        with(f, |py| {
+            let arguments = (Derivative, numbers(py, times), numbers(py, y), tolerance);
+            function.call(py, Ok(arguments), &mut states)
+        })?;
+        Ok(states)
+    });
+    register(
+        method.map_err(|error| wrong(py, error.to_string()))?,
+        raised,
+    );
+    Ok(())
+}
+
+/// Makes a call of a function of Python that may evaluate f.
+fn with(
+    f: &mut CoreDerivative,
+    call: impl FnOnce(Python<'_>) -> Result<(), String>,
+) -> Result<(), Error> {
+    STEPPED
+        .set(f, || Python::attach(call))
+        .map_err(Error::Callback)
+}
+
+/// Registers a method, with the place of its exceptions.
+fn register(method: Method, raised: Raised) {
+    let name = method.register().name;
     let mut all = RAISED.lock().unwrap_or_else(PoisonError::into_inner);
     all.insert(name.into(), raised);
-    Ok(())
 }
 
 /// Exceptions of own methods, by their names.

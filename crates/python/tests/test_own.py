@@ -388,3 +388,48 @@ def test_one_number_counts_alone():
             a3.chart(system, ["rk4"], until=2.0, progress=False, **wrong)
     with pytest.raises(a3.InputError, match="give particle=2"):
         a3.choose("chain", 1e-3, component=2)
+
+
+def test_a_solver_of_another_library_is_charted():
+    integrate = pytest.importorskip("scipy.integrate")
+
+    def rk45(f, times, y0, tol):
+        return integrate.solve_ivp(f, (0, times[-1]), y0, "RK45", times, rtol=tol, atol=tol).y.T
+
+    def end(f, times, y0, tol):
+        return integrate.solve_ivp(f, (0, times[-1]), y0, "DOP853", rtol=tol, atol=tol).y[:, -1]
+
+    system = a3.System(lambda t, y: np.array([y[1], -y[0]]), [1.0, 0.0])
+    scipy, whole = a3.foreign("SciPy RK45", rk45), a3.foreign("SciPy DOP853", end)
+    chart = a3.chart(system, ["dopri5", scipy], until=5.0, progress=False)
+    assert chart.methods == ["dopri5", "SciPy RK45"] and "SciPy RK45" in chart.table
+    runs = chart.of(scipy)
+    calls = []
+
+    def counted(t, y):
+        calls.append(t)
+        return [y[1], -y[0]]
+
+    k = np.flatnonzero(runs["error"] < 1e-4)[0]
+    times = np.linspace(0, 5, 301)[1:]
+    states = rk45(counted, times, [1.0, 0.0], runs["setting"][k])
+    off = np.sqrt(((states - np.array([np.cos(times), -np.sin(times)]).T) ** 2).mean(axis=1)).max()
+    assert runs["work"][k] == len(calls)
+    assert runs["error"][k] == pytest.approx(off, rel=0.05)
+    # The same formulas, with errors of the same size at the same cost.
+    own = chart.of("dopri5")
+    by_work = np.argsort(own["work"])
+    near = np.interp(np.log(runs["work"][k]), np.log(own["work"][by_work]), np.log(own["error"][by_work]))
+    assert abs(near - np.log(off)) < np.log(20)
+    at_end = a3.chart(system, [whole], until=5.0, at_end=True, progress=False)
+    assert at_end.of(whole)["error"].min() < 1e-8
+    with pytest.raises(a3.InputError, match="for the end alone, chart with at_end=True"):
+        a3.chart(system, [whole], until=5.0, progress=False)
+    with pytest.raises(a3.InputError, match="a choice is among"):
+        a3.choose(system, 1e-4, methods=[scipy], until=5.0, progress=False)
+    with pytest.raises(a3.Error, match="takes no steps"):
+        a3.Simulation(system, scipy, tolerance=1e-6)
+    with pytest.raises(a3.Error, match="networks"):
+        a3.chart("chain", [scipy], progress=False)
+    with pytest.raises(a3.InputError, match="a function of f"):
+        a3.foreign("none", 3)

@@ -4,13 +4,13 @@ use std::time::Duration;
 
 use super::frames::GoOn;
 use super::reference::Reference;
-use super::run::{FrameState, Observer, run_observed};
-use super::snapshot::Errors;
+use super::run::{EnclosingStep, FrameState, Observer, run_observed};
+use super::snapshot::{Errors, Snapshot};
 use crate::contact::Guarded;
 use crate::control::Control;
-use crate::error::{BlowUp, Error};
-use crate::integrators::{Method, Work};
-use crate::scene::Scene;
+use crate::error::{BlowUp, Cause, Error};
+use crate::integrators::{Derivative, Method, Solve, Work};
+use crate::scene::{Model, Scene};
 use crate::simulation::Simulation;
 
 /// Outcome of a run against the reference.
@@ -61,33 +61,18 @@ pub fn measure_by(
     go_on: GoOn,
 ) -> Result<Option<Outcome>, Error> {
     coordinates.fill(0.0);
-    let mut simulation = Simulation::new(scene.clone(), method, control)?;
-    let mut errors = Errors::default();
-    let mut last = reference.start.clone();
-    let mut visit = |seen: &FrameState| {
-        let (k, model) = (seen.frame, seen.run.model());
-        last = last.next(model, reference.frames.time(k), seen.state);
-        if reference.counts(k) {
-            let mut here = reference.errors(k, &last);
-            let mut at = (reference.frames.time(k), last.positions());
-            if let Some(step) = &seen.within {
-                let at_end = reference.errors_between(model, k, step);
-                if at_end.of_coordinates() < here.of_coordinates() {
-                    at = step.nearest;
-                }
-                here = here.min(at_end);
-            }
-            errors = errors.max(here);
-            if coordinates.is_empty() {
-                return;
-            }
-            let truth = reference.positions(model, k, at.0);
-            let apart = truth.iter().zip(at.1).map(|(a, b)| (a - b).abs());
-            for (most, apart) in coordinates.iter_mut().zip(apart) {
-                *most = f64::max(*most, apart);
-            }
-        }
+    let mut tally = Tally {
+        reference,
+        coordinates,
+        errors: Errors::default(),
+        last: reference.start.clone(),
     };
+    if let Some(solve) = method.solve() {
+        return measure_whole(clock, scene, (method, solve), control, &mut tally).map(Some);
+    }
+    let mut simulation = Simulation::new(scene.clone(), method, control)?;
+    let mut visit =
+        |seen: &FrameState| tally.add(seen.frame, seen.run.model(), seen.state, seen.within);
     let mut observer = Observer {
         visit: &mut visit,
         clock,
@@ -103,9 +88,103 @@ pub fn measure_by(
     let time = clock().saturating_sub(begun + observer.spent);
     Ok(end.map(|lost| Outcome {
         time,
-        errors,
+        errors: tally.errors,
         work: simulation.work(),
         guarded: simulation.guarded(),
         lost,
     }))
+}
+
+/// Errors of a run, frame by frame.
+struct Tally<'a> {
+    reference: &'a Reference,
+    coordinates: &'a mut [f64],
+    errors: Errors,
+    /// The frame before.
+    last: Snapshot,
+}
+
+impl Tally<'_> {
+    /// Adds the errors at frame k, counted from 1.
+    fn add(&mut self, k: u64, model: &Model, state: &[f64], within: Option<EnclosingStep>) {
+        let reference = self.reference;
+        self.last = self.last.next(model, reference.frames.time(k), state);
+        if !reference.counts(k) {
+            return;
+        }
+        let mut here = reference.errors(k, &self.last);
+        let mut at = (reference.frames.time(k), self.last.positions());
+        if let Some(step) = &within {
+            let at_end = reference.errors_between(model, k, step);
+            if at_end.of_coordinates() < here.of_coordinates() {
+                at = step.nearest;
+            }
+            here = here.min(at_end);
+        }
+        self.errors = self.errors.max(here);
+        if self.coordinates.is_empty() {
+            return;
+        }
+        let truth = reference.positions(model, k, at.0);
+        let apart = truth.iter().zip(at.1).map(|(a, b)| (a - b).abs());
+        for (most, apart) in self.coordinates.iter_mut().zip(apart) {
+            *most = f64::max(*most, apart);
+        }
+    }
+}
+
+/// Runs another library's solver over all frames that count, and compares its states.
+fn measure_whole(
+    clock: &dyn Fn() -> Duration,
+    scene: &Scene,
+    (method, solve): (&'static Method, &Solve),
+    control: Control,
+    tally: &mut Tally,
+) -> Result<Outcome, Error> {
+    method.check(scene.model.system())?;
+    method.check_control(control)?;
+    let Control::Tolerance(tolerance) = control else {
+        return Err(Error::Invalid(format!(
+            "{} takes a tolerance, not a step",
+            method.title
+        )));
+    };
+    let (reference, dim) = (tally.reference, scene.state.len());
+    let frames: Vec<u64> = (1..=reference.frames.count)
+        .filter(|k| reference.counts(*k))
+        .collect();
+    let times: Vec<f64> = frames.iter().map(|k| reference.frames.time(*k)).collect();
+    let mut f = Derivative::new(scene.model.system());
+    let begun = clock();
+    let states = solve(&mut f, &times, &scene.state, tolerance)?;
+    let time = clock().saturating_sub(begun);
+    if states.len() != times.len() * dim {
+        return Err(Error::Callback(format!(
+            "{} returned {} numbers, but {dim} at each of {} times were asked for",
+            method.title,
+            states.len(),
+            times.len()
+        )));
+    }
+    let mut lost = None;
+    for (k, state) in frames.into_iter().zip(states.chunks_exact(dim)) {
+        if let Some(index) = state.iter().position(|y| !y.is_finite()) {
+            lost = Some(BlowUp {
+                method: method.title,
+                control,
+                step: k,
+                time: reference.frames.time(k),
+                cause: Cause::NumberNotFinite { index },
+            });
+            break;
+        }
+        tally.add(k, &scene.model, state, None);
+    }
+    Ok(Outcome {
+        time,
+        errors: tally.errors,
+        work: f.work(),
+        guarded: Guarded::default(),
+        lost,
+    })
 }

@@ -10,6 +10,7 @@ use super::embedded::{EmbeddedPair, Tableau};
 use super::error_norm::Tolerance;
 use super::integrator::Integrator;
 use super::nystrom::{NystromPair, NystromTableau};
+use super::own::Solve;
 use super::splitting::Plan;
 use super::sweep;
 use super::sweep::RungeKutta;
@@ -42,6 +43,8 @@ pub(super) enum Create {
     Adaptive(CreateStep, CreateTrial),
     /// Function of an own method.
     Own(&'static CreateOwn),
+    /// Function that runs a whole span of time.
+    Foreign(&'static Solve),
 }
 
 /// Function that creates an integrator for a system.
@@ -60,6 +63,7 @@ impl fmt::Debug for Create {
             Self::Step(_) => "Step",
             Self::Adaptive(..) => "Adaptive",
             Self::Own(_) => "Own",
+            Self::Foreign(_) => "Foreign",
         })
     }
 }
@@ -151,11 +155,11 @@ impl Method {
         self.view == View::Accelerations
     }
 
-    /// Returns whether the method supports only systems whose Jacobian is a small matrix: neither
-    /// networks nor rigid bodies.
+    /// Returns whether the method supports neither networks nor rigid bodies: it needs a small
+    /// Jacobian, or a motion that f says whole.
     #[must_use]
     pub fn plain_only(&self) -> bool {
-        self.view == View::Jacobian
+        self.view == View::Jacobian || self.is_foreign()
     }
 
     /// Returns whether the method solves spring by spring, and supports no other forces between
@@ -182,6 +186,10 @@ impl Method {
     /// Returns the reason why the method does not support a system; `None` if it does.
     #[must_use]
     pub fn refusal(&self, system: &dyn ParticleSystem) -> Option<Refusal> {
+        let is_network = || system.mechanics().is_some_and(|m| m.linearized().is_some());
+        if self.is_foreign() && (system.rigid().is_some() || is_network()) {
+            return Some(Refusal::NotPlain);
+        }
         let Some(mechanics) = system.mechanics() else {
             return match self.view {
                 View::Derivative => None,
@@ -221,7 +229,8 @@ impl Method {
     /// Creates an integrator, with scratch, for this system.
     ///
     /// # Errors
-    /// The method does not support the system, see [`check`](Self::check).
+    /// The method does not support the system, see [`check`](Self::check), or it takes no steps, see
+    /// [`foreign`](Self::foreign).
     pub fn integrator(&self, system: &dyn ParticleSystem) -> Result<Box<dyn Integrator>, Error> {
         self.check(system)?;
         Ok(match self.create {
@@ -231,6 +240,12 @@ impl Method {
             Create::Nystrom(tableau) => Box::new(self.nystrom(tableau, system)),
             Create::Step(create) | Create::Adaptive(create, _) => create(system),
             Create::Own(create) => create(system),
+            Create::Foreign(_) => {
+                return Err(Error::Invalid(format!(
+                    "{} runs whole spans of time, which a chart measures: it takes no steps",
+                    self.title
+                )));
+            }
         })
     }
 
@@ -245,7 +260,21 @@ impl Method {
     /// Returns whether the method is not of the table, but made by the caller of this library.
     #[must_use]
     pub fn is_own(&self) -> bool {
-        matches!(self.create, Create::Own(_))
+        matches!(self.create, Create::Own(_) | Create::Foreign(_))
+    }
+
+    /// Returns whether the method is the solver of another library, see [`foreign`](Self::foreign).
+    #[must_use]
+    pub fn is_foreign(&self) -> bool {
+        self.solve().is_some()
+    }
+
+    /// Returns the function that runs a whole span of time, if that is what the method has.
+    pub(crate) fn solve(&self) -> Option<&'static Solve> {
+        match self.create {
+            Create::Foreign(solve) => Some(solve),
+            _ => None,
+        }
     }
 
     /// Returns whether both methods use the same integrator for fixed steps. Own methods share
@@ -278,7 +307,7 @@ impl Method {
     pub fn is_adaptive(&self) -> bool {
         matches!(
             self.create,
-            Create::Embedded(_) | Create::Nystrom(_) | Create::Adaptive(..)
+            Create::Embedded(_) | Create::Nystrom(_) | Create::Adaptive(..) | Create::Foreign(_)
         )
     }
 

@@ -28,5 +28,6 @@ pub use implicit::bdf_growth;
 pub use integrator::Integrator;
 pub use method::{Method, View};
 pub use own::Derivative;
+pub(crate) use own::Solve;
 pub(crate) use sweep::add_scaled;
 pub use table::{METHODS, find};

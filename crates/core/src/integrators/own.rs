@@ -1,4 +1,5 @@
-//! Own methods: from an integrator, or from a function that takes a step.
+//! Own methods: from an integrator, or from a function that takes a step; and solvers of other
+//! libraries, from a function that runs a whole span of time.
 
 use super::integrator::{Integrator, check_dim};
 use super::method::add_own;
@@ -15,6 +16,8 @@ const MAX_ORDER: u32 = 50;
 const MAX_NAME: usize = 40;
 /// Default step of an own method (s).
 const DEFAULT_STEP: f64 = 1e-3;
+/// Default tolerance of another library's solver.
+const FOREIGN_TOLERANCE: f64 = 1e-6;
 
 /// Own methods.
 impl Method {
@@ -70,8 +73,12 @@ impl Method {
         order: u32,
         create: impl Fn(&dyn ParticleSystem) -> Box<dyn Integrator> + Send + Sync + 'static,
     ) -> Result<Self, Error> {
-        let name = name.into();
-        check_name(&name)?;
+        Self::made(name.into(), order, Create::Own(Box::leak(Box::new(create))))
+    }
+
+    /// Creates the row of a method.
+    fn made(name: String, order: u32, create: Create) -> Result<Self, Error> {
+        check_name(&name, matches!(create, Create::Foreign(_)))?;
         if !(1..=MAX_ORDER).contains(&order) {
             return Err(Error::Invalid(format!(
                 "the order of the method {name} must be from 1 to {MAX_ORDER}, not {order}"
@@ -88,7 +95,7 @@ impl Method {
             evaluations: order,
             damped_evaluations: order,
             view: View::Derivative,
-            create: Create::Own(Box::leak(Box::new(create))),
+            create,
         })
     }
 
@@ -132,6 +139,32 @@ impl Method {
                 dim: system.dim(),
                 step,
             })
+        })
+    }
+
+    /// Creates a method from a solver of another library, so that a chart measures it beside others.
+    /// From the [`Derivative`] f, times (s), the state at time 0 and a relative tolerance, `solve`
+    /// computes the state at each of these times, one after another. f counts its evaluations;
+    /// further work of the solver, such as linear algebra, is in its computing time alone.
+    ///
+    /// It takes no steps, so that it makes no [`Simulation`](crate::Simulation), and serves neither
+    /// networks nor rigid bodies, whose steps do more than f says.
+    ///
+    /// # Errors
+    /// The name is empty, has signs that are not printed or more than 40 bytes, or is a name, an
+    /// alias or a letter of the table.
+    pub fn foreign(
+        name: impl Into<String>,
+        solve: impl Fn(&mut Derivative, &[f64], &[f64], f64) -> Result<Vec<f64>, Error>
+        + Send
+        + Sync
+        + 'static,
+    ) -> Result<Self, Error> {
+        let create = Create::Foreign(Box::leak(Box::new(solve)));
+        let method = Self::made(name.into(), 1, create)?;
+        Ok(Self {
+            default_control: Control::Tolerance(FOREIGN_TOLERANCE),
+            ..method
         })
     }
 
@@ -179,12 +212,18 @@ impl Method {
     }
 }
 
-/// Checks that a name can be that of an own method.
-fn check_name(name: &str) -> Result<(), Error> {
-    let is_word = !name.is_empty() && !name.contains(|c: char| c.is_whitespace() || c.is_control());
-    if !is_word || name.len() > MAX_NAME {
+/// Checks that a name can be that of an own method, or of another library's solver, which may have
+/// several words.
+fn check_name(name: &str, has_words: bool) -> Result<(), Error> {
+    let is_wrong = |c: char| c.is_control() || c.is_whitespace() && !(has_words && c == ' ');
+    if name.trim().is_empty() || name.contains(is_wrong) || name.len() > MAX_NAME {
+        let (kind, example) = if has_words {
+            ("a text", "SciPy RK45")
+        } else {
+            ("a word", "my-heun")
+        };
         return Err(Error::Invalid(format!(
-            "a method's name is a word of at most {MAX_NAME} bytes, such as my-heun, not `{}`",
+            "a method's name is {kind} of at most {MAX_NAME} bytes, such as {example}, not `{}`",
             name.escape_debug()
         )));
     }
@@ -202,6 +241,22 @@ pub struct Derivative<'a> {
     system: &'a dyn ParticleSystem,
     dim: usize,
     evaluations: u64,
+}
+
+impl<'a> Derivative<'a> {
+    /// Creates the derivative of a system, which nothing has evaluated yet.
+    pub(crate) fn new(system: &'a dyn ParticleSystem) -> Self {
+        Self {
+            system,
+            dim: system.dim(),
+            evaluations: 0,
+        }
+    }
+
+    /// Returns the evaluations until now.
+    pub(crate) fn work(&self) -> Work {
+        Work::of(self.evaluations)
+    }
 }
 
 impl Derivative<'_> {
@@ -237,6 +292,10 @@ impl Derivative<'_> {
 /// Function that takes a step.
 type Step = dyn Fn(&mut Derivative, f64, &[f64], f64) -> Result<Vec<f64>, Error> + Send + Sync;
 
+/// Function that runs a whole span of time.
+pub(crate) type Solve =
+    dyn Fn(&mut Derivative, &[f64], &[f64], f64) -> Result<Vec<f64>, Error> + Send + Sync;
+
 /// Integrator of a method that is a function.
 struct Stepped {
     name: String,
@@ -253,11 +312,7 @@ impl Integrator for Stepped {
         y: &mut [f64],
     ) -> Result<Work, Error> {
         check_dim(self.dim, y)?;
-        let mut f = Derivative {
-            system,
-            dim: self.dim,
-            evaluations: 0,
-        };
+        let mut f = Derivative::new(system);
         let next = (self.step)(&mut f, t, y, h)?;
         if next.len() != self.dim {
             return Err(Error::Callback(format!(
@@ -268,6 +323,6 @@ impl Integrator for Stepped {
             )));
         }
         y.copy_from_slice(&next);
-        Ok(Work::of(f.evaluations))
+        Ok(f.work())
     }
 }

@@ -60,12 +60,16 @@ pub fn tenfold_time(h: f64) -> f64 {
 
 /// Finds the largest steps of a method with which no mode grows, and with which none grows tenfold;
 /// all shorter steps are as good. Modes that have no restoring force, or grow by themselves, are
-/// left out: they fall, buckle or flutter with any method. `None` if no mode is left.
+/// left out: they fall, buckle or flutter with any method. `None` if no mode is left, or if the
+/// method takes no steps.
 ///
 /// # Errors
 /// The method does not support a mechanical system with drag and damping as in these modes.
 pub fn largest_step(method: &Method, modes: &[Mode]) -> Result<Option<Limit>, Error> {
     let mut limit: Option<Limit> = None;
+    if method.is_foreign() {
+        return Ok(limit);
+    }
     for (k, mode) in modes.iter().enumerate().filter(|(_, m)| m.returns()) {
         let mut growth = Growth::new(method, *mode)?;
         // Rate of the fastest motion, by stiffness or by damping.

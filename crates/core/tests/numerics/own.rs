@@ -100,6 +100,77 @@ fn names_are_checked_and_found() {
     assert!(!method("euler").shares_integrator(rk4("own-other").register()));
 }
 
+/// Solver of another library: classical Runge-Kutta steps of tol^(1/4) s, to each time in turn.
+fn another(name: &str) -> Result<Method, Error> {
+    Method::foreign(name, |f, times, y0, tolerance| {
+        let (mut t, mut y, mut states) = (0.0, y0.to_vec(), vec![]);
+        for &time in times {
+            let count = ((time - t) / tolerance.powf(0.25)).ceil();
+            let h = (time - t) / count;
+            for k in 0..count as u32 {
+                let t = t + f64::from(k) * h;
+                let k1 = f.at(t, &y)?;
+                let k2 = f.at(t + 0.5 * h, &plus(&y, 0.5 * h, &k1))?;
+                let k3 = f.at(t + 0.5 * h, &plus(&y, 0.5 * h, &k2))?;
+                let k4 = f.at(t + h, &plus(&y, h, &k3))?;
+                for (weight, k) in [(1.0, k1), (2.0, k2), (2.0, k3), (1.0, k4)] {
+                    y = plus(&y, weight * h / 6.0, &k);
+                }
+            }
+            t = time;
+            states.extend_from_slice(&y);
+        }
+        Ok(states)
+    })
+}
+
+/// A solver of another library has the errors and the evaluations of the same steps by a3's own.
+#[test]
+fn a_solver_of_another_library_is_measured_beside_others() {
+    let foreign = another("Another RK4").unwrap().register();
+    assert!(foreign.is_foreign() && foreign.is_adaptive() && !method("rk4").is_foreign());
+    assert_eq!(find("Another RK4"), Some(foreign));
+    let scene = rotation(3.0);
+    let frames = Frames {
+        until: 2.0,
+        count: 20,
+    };
+    let reference = Reference::finest(&scene, frames, &|| true)
+        .unwrap()
+        .unwrap();
+    let of = |method, control| measure(&scene, method, control, &reference, &|| true);
+    // Two steps of 0.05 s to each frame.
+    let own = of(method("rk4"), Control::Step(0.05)).unwrap().unwrap();
+    let found = of(foreign, Control::Tolerance(0.05f64.powi(4) * 1.000_001));
+    let found = found.unwrap().unwrap();
+    assert_relative_eq!(found.errors.state, own.errors.state, max_relative = 1e-6);
+    assert_eq!(found.work.evaluations, 4 * 40);
+
+    let refused = Simulation::new(scene.clone(), foreign, Control::Tolerance(1e-6));
+    let why = refused.err().unwrap().to_string();
+    assert!(why.contains("takes no steps"), "{why}");
+    assert!(
+        foreign
+            .check(crate::common::scene("chain").model.system())
+            .is_err()
+    );
+    assert!(of(foreign, Control::Step(0.1)).is_err());
+    let modes = spectrum(scene.model.system(), 0.0, &scene.state);
+    assert_eq!(largest_step(foreign, &modes).unwrap(), None);
+    assert!(another("\n").is_err() && another("rk4").is_err());
+
+    let with = |states: Vec<f64>| {
+        let method = Method::foreign("short", move |_, _, _, _| Ok(states.clone()));
+        of(method.unwrap().register(), Control::Tolerance(1e-6))
+    };
+    let short = with(vec![0.0; 3]).unwrap_err().to_string();
+    assert!(short.contains("returned 3 numbers"), "{short}");
+    let mut states = vec![0.0; 2 * 20];
+    states[5] = f64::NAN;
+    let lost = with(states).unwrap().unwrap().lost.unwrap();
+    assert_relative_eq!(lost.time, 0.3);
+}
+
 fn euler_named(name: &str) -> Result<Method, Error> {
     Method::from_step(name, 1, |f, t, y, h| Ok(plus(y, h, &f.at(t, y)?)))
 }

@@ -320,7 +320,9 @@ impl Study {
         if let Some(each) = data.each.as_mut().filter(|_| record.lost_at.is_none()) {
             each.add(&record, &coordinates)?;
         }
-        let seconds = if timed && record.lost_at.is_none() {
+        let seconds = if timed && method.is_foreign() {
+            Some(once.as_secs_f64())
+        } else if timed && record.lost_at.is_none() {
             let control = method.control(record.setting);
             let timed = time(
                 go_on,

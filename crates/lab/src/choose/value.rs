@@ -125,6 +125,12 @@ pub fn choose(
 ) -> Result<Choice, Failure> {
     check_scene(scene)?;
     let methods = check_methods(scene, methods)?;
+    if let Some(method) = methods.iter().find(|method| method.is_foreign()) {
+        return Err(Failure::usage(format!(
+            "{}: a chart measures it, but a choice is among solvers that a3 steps with",
+            method.name
+        )));
+    }
     let search = Search::new(scene, options)?;
     let reference = search.reference(monitor)?;
     monitor.expect(methods.len() as f64);

@@ -33,6 +33,7 @@ if TYPE_CHECKING:
     from ._measures import stability as stability
     from ._own import Method as Method
     from ._own import System as System
+    from ._own import foreign as foreign
     from ._picture import Picture as Picture
     from ._picture import render as render
     from ._scenes import MethodInfo as MethodInfo
@@ -69,6 +70,7 @@ _MODULES = {
     "stability": "_measures",
     "Method": "_own",
     "System": "_own",
+    "foreign": "_own",
     "Picture": "_picture",
     "render": "_picture",
     "MethodInfo": "_scenes",

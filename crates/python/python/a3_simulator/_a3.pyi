@@ -21,6 +21,8 @@ def add_method(
     name: str, step: Callable[..., npt.ArrayLike], order: int, evaluations: int, default_step: float
 ) -> None: ...
 
+def add_foreign(name: str, solve: Callable[..., npt.ArrayLike]) -> None: ...
+
 class Derivative:
     """The function f that a step gets."""
 

@@ -18,6 +18,8 @@ Derivative = Callable[[float, Floats], npt.ArrayLike]
 Forces = Callable[[float, Floats, Floats], npt.ArrayLike]
 #: step(f, t, y, h): the state at t + h, of the shape of y, from the state y at time t (s).
 Step = Callable[[Callable[[float, npt.ArrayLike], Floats], float, Floats, float], npt.ArrayLike]
+#: solve(f, times, y0, tol): the states at these times, a row for each, from the state y0 at time 0.
+Solve = Callable[[Callable[[float, npt.ArrayLike], Floats], Floats, Floats, float], npt.ArrayLike]
 
 
 class System:
@@ -138,6 +140,52 @@ class Method:
 
     def __repr__(self) -> str:
         return f"<Method {self.name} of order {self.order}>"
+
+
+class _Foreign(Method):
+    """A solver of another library."""
+
+    def __init__(self, name: str, solve: Solve) -> None:
+        if not callable(solve):
+            raise InputError(f"solve: a function of f, times, y0 and tol is expected, not {type(solve).__name__}")
+        self.name, self.step = name, solve
+        _a3.add_foreign(name, self._states)
+
+    def _states(self, f: Any, times: Floats, y0: Floats, tol: float) -> Floats:
+        found = np.asarray(self.step(f, times, y0, tol))
+        one = found[np.newaxis] if found.ndim == 1 and len(times) == 1 else found
+        if one.shape != (len(times), len(y0)):
+            ends = found.shape == y0.shape and "; for the end alone, chart with at_end=True" or ""
+            raise InputError(
+                f"{self.name} returned an array of shape {found.shape}, where a row of {len(y0)} numbers for each of "
+                f"{len(times)} times is expected{ends}"
+            )
+        return one.ravel()
+
+    def __reduce__(self) -> Any:
+        return foreign, (self.name, self.step)
+
+    def __repr__(self) -> str:
+        return f"<Method {self.name} of another library>"
+
+
+def foreign(name: str, solve: Solve) -> Method:
+    """Returns a solver of another library as a method, which `chart` measures beside others.
+
+    Args:
+        name: name in legends and tables.
+        solve: function of f, times (s), the state y0 at t = 0, (n,), and a relative tolerance tol, that returns the
+            states at these times, (times, n). f(t, y) is the derivative, (n,), and counts its calls. With
+            `chart(..., at_end=True)` there is one time, the end.
+
+    The other work of the solver, such as linear algebra, is not counted: `chart(..., work="time")` has it.
+
+        def rk45(f, times, y0, tol):
+            return solve_ivp(f, (0, times[-1]), y0, "RK45", times, rtol=tol, atol=tol).y.T
+
+        a3.chart(system, methods=["dopri5", a3.foreign("SciPy RK45", rk45)])
+    """
+    return _Foreign(name, solve)
 
 
 def method_name(method: Union[str, Method]) -> str:
