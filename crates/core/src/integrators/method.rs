@@ -6,11 +6,11 @@ use std::fmt;
 use std::sync::{PoisonError, RwLock};
 
 use super::adaptive::Adaptive;
+use super::derivative::Solve;
 use super::embedded::{EmbeddedPair, Tableau};
 use super::error_norm::Tolerance;
 use super::integrator::Integrator;
 use super::nystrom::{NystromPair, NystromTableau};
-use super::own::Solve;
 use super::splitting::Plan;
 use super::sweep;
 use super::sweep::RungeKutta;
@@ -229,8 +229,8 @@ impl Method {
     /// Creates an integrator, with scratch, for this system.
     ///
     /// # Errors
-    /// The method does not support the system, see [`check`](Self::check), or it takes no steps, see
-    /// [`foreign`](Self::foreign).
+    /// The method does not support the system, see [`check`](Self::check), or it takes no steps,
+    /// see [`foreign`](Self::foreign).
     pub fn integrator(&self, system: &dyn ParticleSystem) -> Result<Box<dyn Integrator>, Error> {
         self.check(system)?;
         Ok(match self.create {

@@ -2,6 +2,7 @@
 //! arrays and knows no physics.
 
 mod adaptive;
+mod derivative;
 mod embedded;
 mod error_norm;
 mod implicit;
@@ -23,11 +24,11 @@ mod xpbd;
 
 pub use crate::work::Work;
 pub use adaptive::{Adaptive, AdaptiveState, Taken};
+pub use derivative::Derivative;
+pub(crate) use derivative::Solve;
 pub use error_norm::Tolerance;
 pub use implicit::bdf_growth;
 pub use integrator::Integrator;
 pub use method::{Method, View};
-pub use own::Derivative;
-pub(crate) use own::Solve;
 pub(crate) use sweep::add_scaled;
 pub use table::{METHODS, find};

@@ -1,6 +1,7 @@
 //! Own methods: from an integrator, or from a function that takes a step; and solvers of other
 //! libraries, from a function that runs a whole span of time.
 
+use super::derivative::Derivative;
 use super::integrator::{Integrator, check_dim};
 use super::method::add_own;
 use super::method::{Create, Method, View};
@@ -142,10 +143,11 @@ impl Method {
         })
     }
 
-    /// Creates a method from a solver of another library, so that a chart measures it beside others.
-    /// From the [`Derivative`] f, times (s), the state at time 0 and a relative tolerance, `solve`
-    /// computes the state at each of these times, one after another. f counts its evaluations;
-    /// further work of the solver, such as linear algebra, is in its computing time alone.
+    /// Creates a method from a solver of another library, so that a chart measures it beside
+    /// others. From the [`Derivative`] f, times (s), the state at time 0 and a relative tolerance,
+    /// `solve` computes the state at each of these times, one after another. f counts its
+    /// evaluations; further work of the solver, such as linear algebra, is in its computing time
+    /// alone.
     ///
     /// It takes no steps, so that it makes no [`Simulation`](crate::Simulation), and serves neither
     /// networks nor rigid bodies, whose steps do more than f says.
@@ -236,65 +238,8 @@ fn check_name(name: &str, has_words: bool) -> Result<(), Error> {
     }
 }
 
-/// The derivative f(t, y) of a system, for a step of an own method. It counts its evaluations.
-pub struct Derivative<'a> {
-    system: &'a dyn ParticleSystem,
-    dim: usize,
-    evaluations: u64,
-}
-
-impl<'a> Derivative<'a> {
-    /// Creates the derivative of a system, which nothing has evaluated yet.
-    pub(crate) fn new(system: &'a dyn ParticleSystem) -> Self {
-        Self {
-            system,
-            dim: system.dim(),
-            evaluations: 0,
-        }
-    }
-
-    /// Returns the evaluations until now.
-    pub(crate) fn work(&self) -> Work {
-        Work::of(self.evaluations)
-    }
-}
-
-impl Derivative<'_> {
-    /// Returns f(t, y).
-    ///
-    /// # Errors
-    /// The length of y is not that of the system's state, or the system reports a failure.
-    pub fn at(&mut self, t: f64, y: &[f64]) -> Result<Vec<f64>, Error> {
-        let mut dydt = vec![0.0; self.dim];
-        self.write(t, y, &mut dydt)?;
-        Ok(dydt)
-    }
-
-    /// Writes f(t, y) to `dydt`.
-    ///
-    /// # Errors
-    /// As [`at`](Self::at); also if the length of `dydt` is not that of the system's state.
-    pub fn write(&mut self, t: f64, y: &[f64], dydt: &mut [f64]) -> Result<(), Error> {
-        check_dim(self.dim, y)?;
-        check_dim(self.dim, dydt)?;
-        self.evaluations += 1;
-        self.system.eval_f(t, y, dydt);
-        self.system.take_failure().map_or(Ok(()), Err)
-    }
-
-    /// Returns the system.
-    #[must_use]
-    pub fn system(&self) -> &dyn ParticleSystem {
-        self.system
-    }
-}
-
 /// Function that takes a step.
 type Step = dyn Fn(&mut Derivative, f64, &[f64], f64) -> Result<Vec<f64>, Error> + Send + Sync;
-
-/// Function that runs a whole span of time.
-pub(crate) type Solve =
-    dyn Fn(&mut Derivative, &[f64], &[f64], f64) -> Result<Vec<f64>, Error> + Send + Sync;
 
 /// Integrator of a method that is a function.
 struct Stepped {
