@@ -49,9 +49,8 @@ impl Derivative {
         }
         let array =
             array(y).ok_or_else(|| wrong(py, "f(t, y) takes a time and an array of numbers"))?;
-        let y = array
-            .to_vec()
-            .map_err(|_| wrong(py, "f(t, y) takes a contiguous array"))?;
+        // A column of a matrix is not contiguous.
+        let y: Vec<f64> = array.readonly().as_array().iter().copied().collect();
         let evaluated = py.detach(|| STEPPED.with(|f| f.evaluate(t, &y)));
         let dydt =
             evaluated.map_err(|error| super::errors::of_error(py, &error, error.to_string()))?;

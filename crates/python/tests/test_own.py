@@ -423,6 +423,12 @@ def test_a_solver_of_another_library_is_charted():
     assert abs(near - np.log(off)) < np.log(20)
     at_end = a3.chart(system, [whole], until=5.0, at_end=True, progress=False)
     assert at_end.of(whole)["error"].min() < 1e-8
+    # Its Jacobian comes from columns of a matrix.
+    implicit = a3.foreign(
+        "SciPy BDF",
+        lambda f, times, y0, tol: integrate.solve_ivp(f, (0, times[-1]), y0, "BDF", times, rtol=tol, atol=tol).y.T,
+    )
+    assert a3.chart(system, [implicit], until=5.0, progress=False).of(implicit)["error"].min() < 1e-4
     with pytest.raises(a3.InputError, match="for the end alone, chart with at_end=True"):
         a3.chart(system, [whole], until=5.0, progress=False)
     with pytest.raises(a3.InputError, match="a choice is among"):
