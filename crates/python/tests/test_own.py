@@ -429,6 +429,10 @@ def test_a_solver_of_another_library_is_charted():
         lambda f, times, y0, tol: integrate.solve_ivp(f, (0, times[-1]), y0, "BDF", times, rtol=tol, atol=tol).y.T,
     )
     assert a3.chart(system, [implicit], until=5.0, progress=False).of(implicit)["error"].min() < 1e-4
+    gives_up = a3.foreign("gives up", lambda f, times, y0, tol: rk45(f, times, y0, tol)[: -1 if tol > 1e-5 else None])
+    found = a3.chart(system, [gives_up], until=5.0, progress=False).of(gives_up)
+    assert np.isnan(found["error"][found["setting"] > 1e-5]).all()
+    assert np.isfinite(found["error"][found["setting"] < 1e-5]).all()
     with pytest.raises(a3.InputError, match="for the end alone, chart with at_end=True"):
         a3.chart(system, [whole], until=5.0, progress=False)
     with pytest.raises(a3.InputError, match="a choice is among"):

@@ -154,6 +154,9 @@ class _Foreign(Method):
     def _states(self, f: Any, times: Floats, y0: Floats, tol: float) -> Floats:
         found = np.asarray(self.step(f, times, y0, tol))
         one = found[np.newaxis] if found.ndim == 1 and len(times) == 1 else found
+        if one.ndim == 2 and one.shape[1] == len(y0) and len(one) < len(times):
+            # The solver gave up before the end.
+            one = np.concatenate([one, np.full((len(times) - len(one), len(y0)), np.nan)])
         if one.shape != (len(times), len(y0)):
             ends = found.shape == y0.shape and "; for the end alone, chart with at_end=True" or ""
             raise InputError(
@@ -176,7 +179,7 @@ def foreign(name: str, solve: Solve) -> Method:
         name: name in legends and tables.
         solve: function of f, times (s), the state y0 at t = 0, (n,), and a relative tolerance tol, that returns the
             states at these times, (times, n). f(t, y) is the derivative, (n,), and counts its calls. With
-            `chart(..., at_end=True)` there is one time, the end.
+            `chart(..., at_end=True)` there is one time, the end. Fewer rows than times are of a run that gave up.
 
     The other work of the solver, such as linear algebra, is not counted: `chart(..., work="time")` has it.
 
