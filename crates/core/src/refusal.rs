@@ -28,6 +28,13 @@ pub enum Refusal {
         /// Largest number of them.
         most: usize,
     },
+    /// The system is large, and its numbers do not act on few others.
+    TooDense {
+        /// Numbers of its state.
+        numbers: usize,
+        /// Largest number of them in a system in which each may act on all.
+        most: usize,
+    },
 }
 
 /// Advice if forces depend on the velocity.
@@ -70,6 +77,11 @@ impl fmt::Display for Refusal {
                 f,
                 "computes the Jacobian of such a system by differences, for a state of up to {most} \
                  numbers, but this one has {numbers}: use an explicit solver"
+            ),
+            Self::TooDense { numbers, most } => write!(
+                f,
+                "serves systems of more than {most} numbers if each acts on few others, but in this \
+                 one of {numbers} numbers they act on many: use an explicit solver"
             ),
         }
     }

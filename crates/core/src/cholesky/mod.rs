@@ -8,7 +8,7 @@ mod factor;
 mod pattern;
 
 pub(crate) use factor::{Block, Factor};
-pub(crate) use pattern::{Pattern, Place};
+pub(crate) use pattern::{Pattern, Place, neighbours, order};
 
 #[cfg(test)]
 mod tests;

@@ -140,7 +140,7 @@ impl Pattern {
 }
 
 /// Lists the neighbours of each of n rows, in order, from pairs of them that may be repeated.
-fn neighbours(n: usize, pairs: impl Iterator<Item = [u32; 2]>) -> Vec<Vec<u32>> {
+pub(crate) fn neighbours(n: usize, pairs: impl Iterator<Item = [u32; 2]>) -> Vec<Vec<u32>> {
     let mut meets = vec![vec![]; n];
     for [i, j] in pairs.filter(|[i, j]| i != j) {
         meets[i as usize].push(j);
@@ -215,7 +215,7 @@ const DENSE_DEGREES: [f64; 2] = [40.0, 2.0];
 
 /// Returns the elimination order (approximate minimum degree) of a matrix given by its adjacency
 /// lists; `None` if the factor would have more than `most` blocks below its diagonal.
-pub(super) fn order(mut meets: Vec<Vec<u32>>, most: usize) -> Option<Vec<u32>> {
+pub(crate) fn order(mut meets: Vec<Vec<u32>>, most: usize) -> Option<Vec<u32>> {
     let n = meets.len();
     let many = DENSE_DEGREES[0].max(DENSE_DEGREES[1] * (n as f64).sqrt()) as usize;
     let is_last: Vec<bool> = meets.iter().map(|others| others.len() > many).collect();

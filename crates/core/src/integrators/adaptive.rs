@@ -297,6 +297,7 @@ impl Adaptive {
                 self.next = 0.0;
                 return Err(failure);
             }
+            self.trial.check(system)?;
             if h <= shortest.min(longest) || !error.is_finite() {
                 let f = &mut self.first[0];
                 self.trial.derivative(system, f);

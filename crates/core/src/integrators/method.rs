@@ -186,18 +186,18 @@ impl Method {
     /// Returns the reason why the method does not support a system; `None` if it does.
     #[must_use]
     pub fn refusal(&self, system: &dyn ParticleSystem) -> Option<Refusal> {
+        let is_rigid = system.rigid().is_some();
         let is_network = || system.mechanics().is_some_and(|m| m.linearized().is_some());
-        if self.is_foreign() && (system.rigid().is_some() || is_network()) {
+        if self.is_foreign() && (is_rigid || is_network()) {
             return Some(Refusal::NotPlain);
         }
         let Some(mechanics) = system.mechanics() else {
             return match self.view {
-                View::Derivative => None,
-                View::Jacobian if system.rigid().is_some() => Some(Refusal::NotPlain),
-                View::Tangent | View::Jacobian => refusal_by_size(system),
-                View::Kicks if system.rigid().is_some() => None,
-                View::Damping if system.rigid().is_some() => refusal_by_size(system),
-                _ if system.rigid().is_some() => Some(Refusal::Rotates),
+                View::Jacobian if is_rigid => Some(Refusal::NotPlain),
+                View::Tangent | View::Damping if is_rigid => refusal_by_size(system),
+                View::Derivative | View::Tangent | View::Jacobian => None,
+                View::Kicks if is_rigid => None,
+                _ if is_rigid => Some(Refusal::Rotates),
                 _ => Some(Refusal::LacksMasses),
             };
         };
@@ -207,9 +207,7 @@ impl Method {
         let lists_all_couplings = linearized.is_none_or(Linearized::lists_all_couplings);
         let is_joined = linearized.is_some_and(|linearized| linearized.held().is_some());
         match self.view {
-            View::Jacobian if linearized.is_some() || system.rigid().is_some() => {
-                Some(Refusal::NotPlain)
-            }
+            View::Jacobian if linearized.is_some() || is_rigid => Some(Refusal::NotPlain),
             View::Springs if holds_constraints => Some(Refusal::HoldsConstraints),
             View::Tangent if holds_constraints && !is_joined => Some(refusal_of_joints(linearized)),
             View::Tangent | View::Springs if !lists_all_couplings => Some(Refusal::HidesCouplings),
@@ -218,10 +216,8 @@ impl Method {
             View::Accelerations if self.is_adaptive() && mechanics.is_rough() => {
                 Some(Refusal::ReadsVelocity)
             }
-            View::Tangent | View::Jacobian | View::Damping if linearized.is_none() => {
-                refusal_by_size(system)
-            }
-            View::Damping if holds_constraints => refusal_by_size(system),
+            View::Tangent if linearized.is_none() && is_rigid => refusal_by_size(system),
+            View::Damping if linearized.is_none() || holds_constraints => refusal_by_size(system),
             _ => None,
         }
     }

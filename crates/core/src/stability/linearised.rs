@@ -20,7 +20,7 @@ use crate::path::Place;
 use crate::random::SplitMix;
 use crate::system::{
     Linearized, Mechanics, ParticleSystem, Splitting, kick_reads_velocity, place_pins,
-    reads_velocity, rigid_of,
+    reads_velocity, rigid_of, size,
 };
 
 /// Numbers of steps after which growth is measured; a step fails if it shows after both.
@@ -314,7 +314,7 @@ impl Jacobian {
             matrix = DMatrix::from_row_slice(y.len(), y.len(), &exact);
         }
         for (column, &j) in unknowns.iter().enumerate().filter(|_| !is_known) {
-            let h = 1e-6 * y[j].abs().max(1.0);
+            let h = 1e-6 * size(system, j, y[j]);
             at[j] = y[j] + h;
             system.eval_f(t, &at, &mut above);
             at[j] = y[j] - h;

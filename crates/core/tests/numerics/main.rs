@@ -25,5 +25,6 @@ mod radau;
 mod reference;
 mod resting;
 mod scales;
+mod sparse;
 mod stability;
 mod views;

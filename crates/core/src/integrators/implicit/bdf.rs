@@ -219,6 +219,10 @@ impl Bdf {
 }
 
 impl Trial for Bdf {
+    fn check(&self, _: &dyn ParticleSystem) -> Result<(), Error> {
+        self.solver.check()
+    }
+
     fn dim(&self) -> usize {
         self.step.y0.len()
     }

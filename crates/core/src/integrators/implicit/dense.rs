@@ -1,4 +1,4 @@
-//! Implicit stages of a small system without masses, or of rigid bodies, by Newton's method with
+//! Implicit stages of a system without masses, or of rigid bodies, by Newton's method with
 //! the Jacobian J of f.
 
 use super::jacobian::Jacobian;
@@ -10,7 +10,7 @@ use crate::integrators::sweep::add_scaled;
 use crate::system::{ParticleSystem, rigid_of};
 use crate::work::Work;
 
-/// Solver of the implicit stages of a small system, with its scratch. Particles on rigid bodies
+/// Solver of the implicit stages of such a system, with its scratch. Particles on rigid bodies
 /// stay as they are.
 pub(crate) struct Dense {
     jacobian: Jacobian,
@@ -86,6 +86,7 @@ impl Dense {
             }
         }
         self.spent += work;
+        self.jacobian.check()?;
         Err(changes.failure())
     }
 
@@ -114,6 +115,14 @@ impl Dense {
             solves: 1,
             ..algebra
         }
+    }
+
+    /// Checks that the Jacobian is not too large.
+    ///
+    /// # Errors
+    /// It is neither small nor sparse.
+    pub fn check(&self) -> Result<(), Error> {
+        self.jacobian.check()
     }
 
     /// Returns the change of y by the last correction.

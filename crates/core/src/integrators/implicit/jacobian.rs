@@ -1,16 +1,41 @@
-//! The Jacobian of f of a small system without masses, or of rigid bodies: the system's own, or
-//! central differences.
+//! The Jacobian of f of a system without masses, or of rigid bodies: the system's own, or
+//! differences of f. If a system is large and each of its numbers acts on few others, one
+//! difference gives all columns of a colour of its [`Pattern`], and the matrix is sparse.
 
+use std::ops::Range;
+
+use super::lu::Matrix;
 use super::newton::dot;
+use super::pattern::Pattern;
+use crate::error::Error;
 use crate::integrators::method::MAX_DENSE;
 use crate::measure::Measure;
-use crate::system::{ParticleSystem, rigid_of};
+use crate::random::SplitMix;
+use crate::refusal::Refusal;
+use crate::system::{ParticleSystem, rigid_of, size};
 use crate::work::Work;
 
-/// Half the step of a difference quotient, over the unit of the number.
-const DIFFERENCE_SHARE: f64 = 1e-6;
-/// The same for speeds, relative to that for positions: the resulting motion is tiny.
+/// Step of a difference quotient, over the size of the number: the root of the rounding error.
+const DIFFERENCE_SHARE: f64 = 1.490_116_119_384_765_6e-8;
+/// The same for speeds of bodies, relative to that for positions: the resulting motion is tiny.
 const SPEED_DIFFERENCE_SHARE: f64 = 1e-3;
+
+/// Least size of a plain number, over its change in a step and over the largest number, if the former
+/// is not larger: a difference quotient then has seven digits less than f.
+const LEAST_SIZE: f64 = 1e-3;
+
+/// Number of plain numbers from which on a pattern is searched.
+const MANY: usize = 32;
+
+/// Share of their size by which numbers change where the pattern is searched: it differs from any
+/// at which an entry happens to vanish.
+const SEARCH_SHARE: f64 = 1e-3;
+
+/// Share of the changes of a number by which they may miss the change that follows from the
+/// matrix: by more, an entry is not in its pattern.
+const MISSING_SHARE: f64 = 1e-3;
+/// Largest rounding error of f, over its size, that is told from such a miss.
+const ROUNDING: f64 = 16.0 * f64::EPSILON;
 
 /// Lists the numbers of the state that the equations are solved for: all, except those of particles
 /// on rigid bodies, which f does not read.
@@ -23,43 +48,63 @@ pub(super) fn unknowns(system: &dyn ParticleSystem) -> Vec<usize> {
 /// Jacobian with respect to the unknowns, with its scratch.
 pub(super) struct Jacobian {
     pub unknowns: Vec<usize>,
-    /// Unit of each unknown, in which changes are compared, and half the step of its difference
+    /// Unit of each unknown, in which changes are compared, and the step of its difference
     /// quotient.
     units: Vec<[f64; 2]>,
     /// Cost of an evaluation of f, in multiplications within rows; infinite for rigid bodies, whose
     /// matrices are small.
     evaluation: f64,
-    /// Slopes, row by row.
-    pub matrix: Vec<f64>,
+    pub matrix: Matrix,
+    /// Whether a pattern is still to be searched.
+    searches: bool,
     at: Vec<f64>,
-    above: Vec<f64>,
-    below: Vec<f64>,
+    f: Vec<f64>,
+    changed: Vec<f64>,
 }
 
 impl Jacobian {
     /// Creates room for the Jacobian of a system.
     pub fn new(system: &dyn ParticleSystem) -> Self {
         let (dim, unknowns) = (system.dim(), unknowns(system));
-        // Systems that are too large are refused, and need no room.
-        let room = Some(unknowns.len()).filter(|count| *count <= MAX_DENSE);
-        let room = room.unwrap_or(0);
+        let (count, is_rigid) = (unknowns.len(), rigid_of(system).is_some());
         Self {
-            units: Vec::with_capacity(unknowns.len()),
-            evaluation: match rigid_of(system) {
-                Some(_) => f64::INFINITY,
-                None => system.evaluation_cost(),
+            units: Vec::with_capacity(count),
+            evaluation: if is_rigid {
+                f64::INFINITY
+            } else {
+                system.evaluation_cost()
             },
             unknowns,
-            matrix: vec![0.0; room * room],
+            matrix: full(count),
+            searches: count >= MANY && !is_rigid,
             at: vec![0.0; dim],
-            above: vec![0.0; dim],
-            below: vec![0.0; dim],
+            f: vec![0.0; dim],
+            changed: vec![0.0; dim],
         }
     }
 
-    /// Returns the number of unknowns for which there is room.
+    /// Returns the number of unknowns.
     pub fn order(&self) -> usize {
-        self.matrix.len().isqrt()
+        self.unknowns.len()
+    }
+
+    /// Checks that the matrix is not too large.
+    ///
+    /// # Errors
+    /// It is neither small nor sparse.
+    pub fn check(&self) -> Result<(), Error> {
+        let numbers = self.unknowns.len();
+        let is_small = numbers <= MAX_DENSE || self.searches;
+        if is_small || matches!(self.matrix, Matrix::Sparse(..)) {
+            return Ok(());
+        }
+        Err(Error::Unsupported {
+            method: "the implicit method",
+            why: Refusal::TooDense {
+                numbers,
+                most: MAX_DENSE,
+            },
+        })
     }
 
     /// Returns the work of linear algebra with this number of multiplications.
@@ -77,18 +122,28 @@ impl Jacobian {
         squares.sum::<f64>().sqrt()
     }
 
-    /// Finds the units at y. With rigid bodies they are the largest radius, the speed that covers
-    /// it in a time a, the length of a quaternion, and the angular momentum at which the body's
-    /// surface has that speed; without bodies, plain numbers.
+    /// Finds the units at y, where f is known. With rigid bodies they are the largest radius, the
+    /// speed that covers it in a time a, the length of a quaternion, and the angular momentum at
+    /// which the body's surface has that speed; without bodies, plain numbers.
     fn measure(&mut self, system: &dyn ParticleSystem, a: f64, y: &[f64]) {
-        let mut length: f64 = 0.0;
-        system.measures(&mut |_, measure| {
-            if let Measure::Rotation { radius } = measure {
-                length = length.max(radius);
-            }
+        let (mut length, mut most) = (0.0_f64, 0.0_f64);
+        system.measures(&mut |numbers, measure| match measure {
+            Measure::Rotation { radius } => length = length.max(radius),
+            Measure::Plain => most = y[numbers].iter().fold(most, |most, y| most.max(y.abs())),
+            _ => (),
         });
+        let of_plain = |k: usize, f: f64| {
+            let change = LEAST_SIZE * (a * f).abs().min(most);
+            let own = y[k]
+                .abs()
+                .max(system.scales().get(k).copied().unwrap_or(change));
+            let sizes = [own, LEAST_SIZE * most, 1.0];
+            let size = sizes.into_iter().find(|size| *size > 0.0);
+            size.unwrap_or(1.0)
+        };
         let speed = length / a.abs();
-        self.units.clear();
+        let Self { units, f, .. } = self;
+        units.clear();
         system.measures(&mut |numbers, measure| {
             let unit = match measure {
                 Measure::Position => length,
@@ -97,49 +152,204 @@ impl Jacobian {
                 Measure::Momentum { speed: own } => speed / own,
                 Measure::Plain | Measure::Alike => 0.0,
             };
-            let difference = match measure {
-                Measure::Position | Measure::Rotation { .. } => DIFFERENCE_SHARE * unit,
-                _ => SPEED_DIFFERENCE_SHARE * DIFFERENCE_SHARE * unit,
+            let share = match measure {
+                Measure::Position | Measure::Rotation { .. } => 1.0,
+                _ => SPEED_DIFFERENCE_SHARE,
             };
-            self.units.extend(numbers.map(|k| {
+            units.extend(numbers.map(|k| {
                 if unit > 0.0 {
-                    [unit, difference]
-                } else {
-                    [1.0, DIFFERENCE_SHARE * y[k].abs().max(1.0)]
+                    return [unit, DIFFERENCE_SHARE * share * unit];
                 }
+                let size = match measure {
+                    Measure::Plain => of_plain(k, f[k]),
+                    _ => size(system, k, y[k]),
+                };
+                let step = DIFFERENCE_SHARE * size;
+                // Exactly the difference of two numbers.
+                [1.0, (y[k] + step) - y[k]]
             }));
         });
     }
 
     /// Forms the Jacobian at y, for steps of about a (s). One that the system knows counts as an
-    /// evaluation for each of its columns, one by differences as two.
+    /// evaluation for each of its columns.
     pub fn form(&mut self, system: &dyn ParticleSystem, t: f64, a: f64, y: &[f64]) -> Work {
-        self.measure(system, a, y);
         let count = self.unknowns.len();
+        if let Matrix::Full(matrix) = &mut self.matrix
+            && count == y.len()
+            && count <= MAX_DENSE
+            && system.jacobian(t, y, matrix)
+        {
+            self.units.clear();
+            self.units.resize(count, [1.0, 0.0]);
+            return Work::of(count as u64);
+        }
+        system.eval_f(t, y, &mut self.f);
+        self.measure(system, a, y);
+        self.at.copy_from_slice(y);
+        let mut work = Work::of(1);
+        let mut grows = true;
+        if std::mem::take(&mut self.searches) {
+            work += self.search(system, t, y).0;
+        }
+        while std::mem::take(&mut grows) {
+            work += self.difference(system, t, y);
+            let (cost, is_met) = self.is_met(system, t, y);
+            work += cost;
+            if !is_met {
+                let (cost, found) = self.search(system, t, y);
+                work += cost;
+                grows = found;
+            }
+        }
+        work
+    }
+
+    /// Searches the pattern of the matrix near y. Returns the cost, and whether it has become
+    /// larger.
+    fn search(&mut self, system: &dyn ParticleSystem, t: f64, y: &[f64]) -> (Work, bool) {
         let Self {
             unknowns,
             units,
             matrix,
             at,
-            above,
-            below,
+            f,
+            changed,
             ..
         } = self;
-        if count == y.len() && system.jacobian(t, y, matrix) {
-            return Work::of(count as u64);
-        }
+        let mut random = SplitMix(1);
+        let all = unknowns.iter().zip(&*units);
+        let mut shifts = || -> Vec<f64> {
+            let share = SEARCH_SHARE / DIFFERENCE_SHARE;
+            let all = all.clone();
+            all.map(|(_, [_, step])| share * step * random.between(0.5, 1.0))
+                .collect()
+        };
+        let (away, moves) = (shifts(), shifts());
         at.copy_from_slice(y);
-        for (column, &j) in unknowns.iter().enumerate() {
-            let [_, h] = units[column];
-            at[j] = y[j] + h;
-            system.eval_f(t, at, above);
-            at[j] = y[j] - h;
-            system.eval_f(t, at, below);
-            at[j] = y[j];
-            for (row, &i) in unknowns.iter().enumerate() {
-                matrix[row * count + column] = (above[i] - below[i]) / (2.0 * h);
+        for (j, away) in unknowns.iter().zip(&away) {
+            at[*j] += away;
+        }
+        let mut base = vec![0.0; y.len()];
+        system.eval_f(t, at, &mut base);
+        if base.iter().any(|f| !f.is_finite()) {
+            at.copy_from_slice(y);
+            base.copy_from_slice(f);
+        }
+        let mut count = 1;
+        let most = MAX_DENSE * MAX_DENSE;
+        let found = Pattern::find(unknowns.len(), most, |ranges: &[Range<usize>]| {
+            let columns = || ranges.iter().flat_map(Clone::clone);
+            let before: Vec<_> = columns().map(|k| at[unknowns[k]]).collect();
+            columns().for_each(|k| at[unknowns[k]] += moves[k]);
+            system.eval_f(t, at, changed);
+            for (k, before) in columns().zip(before) {
+                at[unknowns[k]] = before;
+            }
+            count += 1;
+            let differs = |i: usize| changed[i].to_bits() != base[i].to_bits();
+            let rows = unknowns.iter().zip(0..);
+            rows.filter(|(i, _)| differs(**i))
+                .map(|(_, row)| row)
+                .collect()
+        });
+        at.copy_from_slice(y);
+        let (known, entries) = match &*matrix {
+            Matrix::Sparse(known, entries) => (Some(known), entries.len()),
+            Matrix::Full(_) => (None, 0),
+        };
+        let found = match known {
+            Some(known) => found.and_then(|found| known.joined(&found, most)),
+            None => found,
+        };
+        let grows = found
+            .as_ref()
+            .is_none_or(|found| found.rows.len() > entries);
+        if let Some(found) = found.filter(|_| grows) {
+            let values = vec![0.0; found.rows.len()];
+            *matrix = Matrix::Sparse(found, values);
+        } else if grows && known.is_some() {
+            *matrix = full(unknowns.len());
+        }
+        (Work::of(count), grows)
+    }
+
+    /// Computes the matrix by difference quotients at y, where f is known. Returns the cost.
+    fn difference(&mut self, system: &dyn ParticleSystem, t: f64, y: &[f64]) -> Work {
+        let Self {
+            unknowns,
+            units,
+            matrix,
+            at,
+            f,
+            changed,
+            ..
+        } = self;
+        let count = unknowns.len();
+        match matrix {
+            Matrix::Full(matrix) if matrix.len() < count * count => Work::default(),
+            Matrix::Full(matrix) => {
+                for (column, &j) in unknowns.iter().enumerate() {
+                    let [_, step] = units[column];
+                    at[j] = y[j] + step;
+                    system.eval_f(t, at, changed);
+                    at[j] = y[j];
+                    for (row, &i) in unknowns.iter().enumerate() {
+                        matrix[row * count + column] = (changed[i] - f[i]) / step;
+                    }
+                }
+                Work::of(count as u64)
+            }
+            Matrix::Sparse(pattern, values) => {
+                for columns in &pattern.colours {
+                    for k in columns {
+                        at[unknowns[*k]] += units[*k][1];
+                    }
+                    system.eval_f(t, at, changed);
+                    for column in columns {
+                        at[unknowns[*column]] = y[unknowns[*column]];
+                        for k in pattern.column(*column) {
+                            let i = unknowns[pattern.rows[k] as usize];
+                            values[k] = (changed[i] - f[i]) / units[*column][1];
+                        }
+                    }
+                }
+                Work::of(pattern.colours.len() as u64)
             }
         }
-        Work::of(2 * count as u64)
     }
+
+    /// Returns whether all entries of a sparse matrix are in its pattern, by changes of all numbers
+    /// at y, where f is known; and the cost.
+    fn is_met(&mut self, system: &dyn ParticleSystem, t: f64, y: &[f64]) -> (Work, bool) {
+        let Matrix::Sparse(pattern, values) = &self.matrix else {
+            return (Work::default(), true);
+        };
+        let mut random = SplitMix(2);
+        // Changes that follow from the matrix, and their sizes.
+        let mut follow = vec![[0.0; 2]; self.unknowns.len()];
+        for (column, (j, [_, step])) in self.unknowns.iter().zip(&self.units).enumerate() {
+            let step = step * random.between(-1.0, 1.0);
+            self.at[*j] = y[*j] + step;
+            for k in pattern.column(column) {
+                let [change, size] = &mut follow[pattern.rows[k] as usize];
+                *change += values[k] * step;
+                *size += (values[k] * step).abs();
+            }
+        }
+        system.eval_f(t, &self.at, &mut self.changed);
+        self.at.copy_from_slice(y);
+        let is_met = self.unknowns.iter().zip(follow).all(|(i, [change, size])| {
+            let (before, after) = (self.f[*i], self.changed[*i]);
+            let rounding = ROUNDING * (before.abs() + after.abs());
+            (after - before - change).abs() <= MISSING_SHARE * size + rounding
+        });
+        (Work::of(1), is_met)
+    }
+}
+
+/// Returns room for a full matrix of an order; none if it is too large.
+fn full(order: usize) -> Matrix {
+    let room = if order > MAX_DENSE { 0 } else { order * order };
+    Matrix::Full(vec![0.0; room])
 }

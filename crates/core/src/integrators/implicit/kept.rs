@@ -8,6 +8,7 @@ use super::super::sweep::add_scaled;
 use super::mechanical::Mechanical;
 use super::newton::Newton;
 use super::stage::StageSolver;
+use crate::error::Error;
 use crate::system::{Linearized, Mechanics, ParticleSystem};
 use crate::work::Work;
 
@@ -67,6 +68,14 @@ impl KeptSolver {
             at: vec![0.0; system.dim()],
             change: vec![0.0; system.dim()],
         }
+    }
+
+    /// Checks that the matrix of the stages is not too large.
+    ///
+    /// # Errors
+    /// It is neither small nor sparse.
+    pub fn check(&self) -> Result<(), Error> {
+        self.stage.check()
     }
 
     /// Forgets the tangent, because the system may have changed.

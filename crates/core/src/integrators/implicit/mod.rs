@@ -14,7 +14,9 @@ mod lu;
 mod mechanical;
 mod midpoint;
 mod newton;
+mod pattern;
 mod radau;
+mod sparse;
 mod stage;
 mod tr_bdf2;
 

@@ -272,6 +272,10 @@ impl Radau {
 }
 
 impl Trial for Radau {
+    fn check(&self, _: &dyn ParticleSystem) -> Result<(), Error> {
+        self.equations.jacobian.check()
+    }
+
     fn dim(&self) -> usize {
         self.step.y0.len()
     }

@@ -13,7 +13,7 @@ use crate::work::Work;
 pub(super) enum StageSolver {
     /// Solver for a linearised mechanical system.
     Mechanical(Box<Mechanical>),
-    /// Solver for any other system, of a small dimension.
+    /// Solver for any other system.
     Dense(Box<Dense>),
 }
 
@@ -67,6 +67,17 @@ impl StageSolver {
         match self {
             Self::Mechanical(_) => Work::default(),
             Self::Dense(stage) => std::mem::take(&mut stage.spent),
+        }
+    }
+
+    /// Checks that the matrix of the stages is not too large.
+    ///
+    /// # Errors
+    /// It is neither small nor sparse.
+    pub(super) fn check(&self) -> Result<(), Error> {
+        match self {
+            Self::Mechanical(_) => Ok(()),
+            Self::Dense(stage) => stage.check(),
         }
     }
 

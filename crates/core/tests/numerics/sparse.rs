@@ -1,0 +1,211 @@
+//! Implicit methods on large systems of plain numbers: Jacobians from few differences, and sparse
+//! factors.
+
+use std::f64::consts::PI;
+
+use crate::common::method;
+use a3_core::integrators::Tolerance;
+use a3_core::{Error, Ode, ParticleSystem, Refusal, Work};
+
+/// Runs an adaptive method from y at 0 s to a time (s). Returns the state there, the number of
+/// steps and the work.
+fn run(
+    name: &str,
+    system: &dyn ParticleSystem,
+    until: f64,
+    mut y: Vec<f64>,
+    relative: f64,
+) -> Result<(Vec<f64>, u32, Work), Error> {
+    let tolerance = Tolerance::new(relative).unwrap();
+    let mut adaptive = method(name).adaptive(system, tolerance).unwrap();
+    let (mut t, mut steps, mut work) = (0.0, 0, Work::default());
+    while t < until {
+        let taken = adaptive.advance(system, t, until - t, &mut y)?;
+        (t, steps) = (t + taken.h, steps + 1);
+        work += taken.work;
+    }
+    Ok((y, steps, work))
+}
+
+/// Returns the second difference of a field that is 0 at both ends.
+fn bend(y: &[f64], k: usize) -> f64 {
+    let at = |k: Option<usize>| k.and_then(|k| y.get(k)).copied().unwrap_or_default();
+    at(k.checked_sub(1)) - 2.0 * y[k] + at(Some(k + 1))
+}
+
+/// Heat in a rod of 2,000 numbers: each sine decays at its own rate, -4 n^2 sin^2(m pi / 2 n) / s
+/// for m half waves, of up to 1.6e7 / s. Explicit methods would take three million steps.
+#[test]
+fn heat_in_a_long_rod_decays_as_its_sines_do() {
+    const N: usize = 2000;
+    let n = N as f64 + 1.0;
+    let rod = Ode::new(N, move |_: f64, y: &[f64], dydt: &mut [f64]| {
+        for (k, rate) in dydt.iter_mut().enumerate() {
+            *rate = n * n * bend(y, k);
+        }
+    })
+    .unwrap();
+    let sine = |m: f64, k: usize| (m * PI * (k as f64 + 1.0) / n).sin();
+    let start: Vec<_> = (0..N).map(|k| sine(1.0, k) + 0.5 * sine(7.0, k)).collect();
+    let left = |m: f64| (-4.0 * n * n * (m * PI / (2.0 * n)).sin().powi(2) * 0.1).exp();
+    for name in ["bdf", "radau"] {
+        let (y, steps, work) = run(name, &rod, 0.1, start.clone(), 1e-6).unwrap();
+        let exact = |k| left(1.0) * sine(1.0, k) + 0.5 * left(7.0) * sine(7.0, k);
+        let errors = y.iter().enumerate().map(|(k, y)| (y - exact(k)).abs());
+        let error = errors.fold(0.0, f64::max);
+        println!("{name}: {error:.1e}, {steps} steps, {work:?}");
+        assert!(error < 2e-5, "{name}: {error}");
+        assert!(work.evaluations < 20 * u64::from(steps), "{name}: {work:?}");
+    }
+}
+
+/// Brusselator of two fields in a row (Hairer, Wanner, *Solving Ordinary Differential Equations
+/// II*, 1996, IV.10), with as many numbers each.
+fn brusselator(count: usize) -> (Ode, Vec<f64>) {
+    let n = count as f64 + 1.0;
+    let strength = n * n / 50.0;
+    let f = move |_: f64, y: &[f64], dydt: &mut [f64]| {
+        let (u, v) = y.split_at(count);
+        let (du, dv) = dydt.split_at_mut(count);
+        for k in 0..count {
+            // 1 and 3 at the ends.
+            let ends = f64::from(u8::from(k == 0)) + f64::from(u8::from(k + 1 == count));
+            let react = u[k] * u[k] * v[k];
+            du[k] = 1.0 + react - 4.0 * u[k] + strength * (bend(u, k) + ends);
+            dv[k] = 3.0 * u[k] - react + strength * (bend(v, k) + 3.0 * ends);
+        }
+    };
+    let places = (1..=count).map(|k| k as f64 / n);
+    let u = places.map(|x| 1.0 + (2.0 * PI * x).sin());
+    let state = u.chain((0..count).map(|_| 3.0)).collect();
+    (Ode::new(2 * count, f).unwrap(), state)
+}
+
+/// Two families agree, on 500 and on 2,000 numbers, and a number more on the way costs no more
+/// evaluations.
+#[test]
+fn brusselators_cost_few_evaluations_whatever_their_size() {
+    let mut counts = vec![];
+    for count in [250, 1000] {
+        let (system, start) = brusselator(count);
+        let [bdf, radau] = ["bdf", "radau"].map(|name| {
+            let (y, steps, work) = run(name, &system, 10.0, start.clone(), 1e-6).unwrap();
+            println!("{name} {count}: {steps} steps, {work:?}");
+            assert!(work.evaluations < 20 * u64::from(steps));
+            counts.push(work.evaluations);
+            y
+        });
+        let apart = bdf.iter().zip(&radau).map(|(a, b)| (a - b).abs());
+        let apart = apart.fold(0.0, f64::max);
+        assert!(apart < 2e-4, "{apart}");
+    }
+    let [bdf, radau, ..] = counts[..] else {
+        panic!("four runs");
+    };
+    assert!(
+        counts[2] < bdf * 3 / 2 && counts[3] < radau * 3 / 2,
+        "{counts:?}"
+    );
+}
+
+/// A number that begins to act on a distant one, after the pattern was found, is found too: the
+/// first is a clock, and past 0.5 the last number follows the middle one, as fast as it decays.
+#[test]
+fn numbers_that_begin_to_act_later_are_found() {
+    const N: usize = 64;
+    let system = Ode::new(N, |_: f64, y: &[f64], dydt: &mut [f64]| {
+        for (rate, y) in dydt.iter_mut().zip(y) {
+            *rate = -1e4 * (y - 1.0);
+        }
+        dydt[0] = 1.0;
+        dydt[N / 2] = -y[N / 2];
+        if y[0] > 0.5 {
+            dydt[N - 1] = 1e6 * (y[N / 2] - y[N - 1]);
+        }
+    })
+    .unwrap();
+    let mut start = vec![0.0; N];
+    start[N / 2] = 2.0;
+    for name in ["bdf", "radau"] {
+        let (y, steps, work) = run(name, &system, 1.0, start.clone(), 1e-6).unwrap();
+        let followed = 2.0 * (-1.0_f64).exp() * (1.0 + 1e-6);
+        println!("{name}: {steps} steps, {work:?}");
+        assert!((y[N - 1] - followed).abs() < 1e-4, "{name}: {}", y[N - 1]);
+        assert!(
+            steps < 1000 && work.evaluations < 10_000,
+            "{name}: {steps}, {work:?}"
+        );
+    }
+}
+
+/// A system of more than 1,024 numbers, each of which acts on all, is refused in words, by fixed
+/// steps too.
+#[test]
+fn large_full_systems_are_refused() {
+    let system = Ode::new(1500, |_: f64, y: &[f64], dydt: &mut [f64]| {
+        let mean = y.iter().sum::<f64>() / 1500.0;
+        for (rate, y) in dydt.iter_mut().zip(y) {
+            *rate = mean - y;
+        }
+    })
+    .unwrap();
+    let is_refusal = |error: &Error| {
+        matches!(
+            error,
+            Error::Unsupported {
+                why: Refusal::TooDense {
+                    numbers: 1500,
+                    most: 1024
+                },
+                ..
+            }
+        )
+    };
+    let start: Vec<_> = (0..1500).map(f64::from).collect();
+    for name in ["bdf", "radau"] {
+        let refused = run(name, &system, 1.0, start.clone(), 1e-6).unwrap_err();
+        assert!(is_refusal(&refused), "{name}: {refused}");
+    }
+    for name in ["implicit", "implicit-midpoint", "tr-bdf2"] {
+        let mut fixed = method(name).integrator(&system).unwrap();
+        let mut y = start.clone();
+        let refused = fixed.step(&system, 0.0, 0.1, &mut y).unwrap_err();
+        assert!(is_refusal(&refused), "{name}: {refused}");
+    }
+}
+
+/// Stiff numbers of 1e-9 beside others of 1e9, and a change of all units: as many evaluations, and
+/// the same numbers to the tolerance.
+#[test]
+fn units_change_nothing() {
+    let system = |unit: f64| {
+        let f = move |_: f64, y: &[f64], dydt: &mut [f64]| {
+            let [a, b, c] = [y[0] / unit, y[1] / unit, y[2] / unit];
+            let [slow, fast, end] = [0.04 * a, 1e4 * b * c, 3e7 * b * b];
+            dydt[0] = (fast - slow) * unit;
+            dydt[1] = (slow - fast - end) * unit;
+            dydt[2] = end * unit;
+        };
+        Ode::new(3, f).unwrap()
+    };
+    for name in ["bdf", "radau"] {
+        let runs = [1.0, 1e-9, 1e9].map(|unit| {
+            let system = system(unit).with_scales(vec![1e-8 * unit; 3]).unwrap();
+            run(name, &system, 1e4, vec![unit, 0.0, 0.0], 1e-4).unwrap()
+        });
+        let counts = runs.each_ref().map(|(_, _, work)| work.evaluations);
+        println!("{name}: {counts:?}");
+        for ((y, ..), unit) in runs.iter().zip([1.0, 1e-9, 1e9]) {
+            for (k, y) in y.iter().enumerate() {
+                let apart = (y / unit - runs[0].0[k]).abs() / runs[0].0[k];
+                assert!(apart < 1e-3, "{name} {unit} {k}: {apart}");
+            }
+        }
+        assert!(
+            counts
+                .iter()
+                .all(|count| count.abs_diff(counts[0]) * 20 < counts[0]),
+            "{counts:?}"
+        );
+    }
+}
