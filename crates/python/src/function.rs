@@ -62,6 +62,8 @@ impl Raised {
 pub enum Shape {
     /// A flat array.
     Flat,
+    /// A square matrix for a flat array.
+    Square,
     /// A row of three numbers for each particle, of what a3 has column by column.
     Rows,
 }
@@ -137,7 +139,7 @@ impl Function {
 
     fn array<'py>(&self, py: Python<'py>, numbers: &[f64]) -> PyResult<Bound<'py, PyAny>> {
         Ok(match self.shape {
-            Shape::Flat => arrays::numbers(py, numbers).into_any(),
+            Shape::Flat | Shape::Square => arrays::numbers(py, numbers).into_any(),
             Shape::Rows => arrays::rows(py, numbers)?.into_any(),
         })
     }
@@ -148,6 +150,7 @@ impl Function {
 fn read(result: &Bound<PyAny>, name: &str, shape: Shape, out: &mut [f64]) -> PyResult<()> {
     let expected: &[usize] = match shape {
         Shape::Flat => &[out.len()],
+        Shape::Square => &[out.len().isqrt(); 2],
         Shape::Rows => &[out.len() / 3, 3],
     };
     let refuse = |found: &str| {
@@ -165,8 +168,8 @@ fn read(result: &Bound<PyAny>, name: &str, shape: Shape, out: &mut [f64]) -> PyR
     }
     let readable = array.readonly();
     match (shape, readable.as_slice()) {
-        (Shape::Flat, Ok(numbers)) => out.copy_from_slice(numbers),
-        (Shape::Flat, Err(_)) => {
+        (Shape::Flat | Shape::Square, Ok(numbers)) => out.copy_from_slice(numbers),
+        (Shape::Flat | Shape::Square, Err(_)) => {
             for (out, number) in out.iter_mut().zip(readable.as_array()) {
                 *out = *number;
             }

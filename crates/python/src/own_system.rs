@@ -40,7 +40,12 @@ pub fn scene(system: &Bound<PyAny>, raised: &Raised) -> PyResult<Scene> {
             let cost = COST_OF_CALL + made.evaluation_cost();
             made.with_evaluation_cost(cost)
         });
-        let made = made.map_err(failed)?;
+        let mut made = made.map_err(failed)?;
+        let jacobian = system.getattr("_jac")?;
+        if !jacobian.is_none() {
+            let jacobian = Function::new(&jacobian, Shape::Square, raised)?;
+            made = made.with_jacobian(move |t, y, out| jacobian.of_state(t, y, out));
+        }
         if scales.is_empty() {
             made.into()
         } else {

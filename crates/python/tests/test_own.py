@@ -61,6 +61,64 @@ def test_a_function_has_further_arguments():
     assert run.states_at([1.0])[0, 0] == pytest.approx(math.cos(2), abs=1e-9)
 
 
+def kinetics(t, y, rate=3e7):
+    slow, fast, end = 0.04 * y[0], 1e4 * y[1] * y[2], rate * y[1] ** 2
+    return [fast - slow, slow - fast - end, end]
+
+
+def slopes(t, y, rate=3e7):
+    return [
+        [-0.04, 1e4 * y[2], 1e4 * y[1]],
+        [0.04, -1e4 * y[2] - 2 * rate * y[1], -1e4 * y[1]],
+        [0, 2 * rate * y[1], 0],
+    ]
+
+
+@pytest.mark.parametrize("method", ["radau", "bdf"])
+def test_a_jacobian_spares_calls_of_f(method):
+    def calls(**jac):
+        count = [0]
+
+        def f(t, y, rate):
+            count[0] += 1
+            return kinetics(t, y, rate)
+
+        system = a3.System(f, [1.0, 0.0, 0.0], args=(3e7,), **jac)
+        run = a3.Simulation(system, method, tolerance=1e-6)
+        return run.states_at([40.0])[0], count[0]
+
+    own, few = calls(jac=slopes)
+    differences, many = calls()
+    # Hairer, Wanner: 0.7158, 9.185e-6, 0.2842 at 40 s.
+    assert own == pytest.approx([0.71582, 9.1855e-6, 0.28417], rel=1e-4)
+    assert differences == pytest.approx(own, rel=1e-5)
+    assert few < many
+
+
+def test_a_jacobian_of_another_shape_is_refused():
+    wrong = a3.System(kinetics, [1.0, 0.0, 0.0], jac=lambda t, y: [1.0, 2.0, 3.0])
+    with pytest.raises(a3.InputError, match=r"shape \(3,\), where an array of shape \(3, 3\) is expected"):
+        a3.Simulation(wrong, "radau", tolerance=1e-6).advance_to(1.0)
+    with pytest.raises(a3.InputError, match="a function is expected, not list"):
+        a3.Simulation(a3.System(kinetics, [1.0, 0.0, 0.0], jac=[[1.0]]), "radau")
+
+
+def test_a_large_stiff_system_takes_few_calls():
+    n = 2000
+
+    def heat(t, y):
+        wall = np.concatenate([[0.0], y, [0.0]])
+        calls[0] += 1
+        return (n + 1) ** 2 * np.diff(wall, 2)
+
+    calls = [0]
+    x = np.arange(1, n + 1) / (n + 1)
+    run = a3.Simulation(a3.System(heat, np.sin(np.pi * x)), "bdf", tolerance=1e-6)
+    rate = -4 * (n + 1) ** 2 * np.sin(np.pi / 2 / (n + 1)) ** 2
+    assert run.states_at([0.1])[0] == pytest.approx(np.exp(rate * 0.1) * np.sin(np.pi * x), abs=1e-5)
+    assert calls[0] < 600
+
+
 def test_the_version_is_that_of_the_package():
     assert re.fullmatch(r"\d+\.\d+\.\d+.*", a3.__version__) and "__version__" in dir(a3)
 

@@ -33,7 +33,9 @@ class System:
         scale: least size to which the errors of adaptive methods are relative, one for all numbers or (n,). By default
             an error is relative to the largest size that its number has had, and a billionth of that of the largest
             number of y0 is allowed besides.
-        args: further arguments of f, after t and y.
+        jac: function of t and y that returns the Jacobian df/dy, (n, n), for stiff methods and stability. Without it,
+            differences of f are taken; of a system of more than 1024 numbers they always are.
+        args: further arguments of f and jac, after t and y.
 
     Where a scene is expected, a system can stand. Arrays that f gets are its own: it may keep or change them.
     """
@@ -42,6 +44,8 @@ class System:
     masses: Optional[Floats] = None
     #: Whether forces depend on positions and time alone.
     positional = False
+    #: Function that returns the Jacobian, if there is one.
+    _jac: Optional[Derivative] = None
     #: Least size of each number to which errors are relative; empty where it is derived.
     _scales: Sequence[float] = ()
 
@@ -52,9 +56,11 @@ class System:
         *,
         name: Optional[str] = None,
         scale: Optional[npt.ArrayLike] = None,
+        jac: Optional[Derivative] = None,
         args: Sequence[Any] = (),
     ) -> None:
         self.f: Union[Derivative, Forces] = _with(args, f)
+        self._jac = None if jac is None else _with(args, jac)
         self.y0 = _numbers("y0", y0, (-1,))
         if self.y0.size == 0:
             raise InputError("y0: a system has at least one number")
