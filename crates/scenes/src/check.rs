@@ -80,6 +80,15 @@ pub(crate) fn one_of(
     }
 }
 
+/// Returns the same as `one_of`. The number must be finite and above 0.
+pub(crate) fn positive_one(
+    (a, first): (&str, Option<f64>),
+    (b, second): (&str, Option<f64>),
+) -> Result<(bool, f64), Fault> {
+    let (is_first, number) = one_of((a, first), (b, second))?;
+    at(if is_first { a } else { b }, positive("it", number)).map(|()| (is_first, number))
+}
+
 /// Returns the key of part k of a kind. The only part of a kind has no number.
 pub(crate) fn key_of(kind: &str, k: usize, count: usize) -> String {
     if count == 1 {

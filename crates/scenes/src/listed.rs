@@ -59,19 +59,14 @@ pub fn parse_json(text: &str) -> Result<(Description, Places), Fault> {
         particles: Some(Particles {
             positions: listed.positions,
             velocities: listed.velocities,
-            mass: None,
             masses: listed.mass,
             springs: listed.springs,
-            tension_only: false,
-            thickness: None,
-            contact_stiffness: None,
-            friction: 0.0,
-            restitution: 0.0,
             pin: if pin.particles.is_empty() {
                 vec![]
             } else {
                 vec![pin]
             },
+            ..Particles::default()
         }),
         ..Description::default()
     };

@@ -7,13 +7,15 @@ use a3_core::contact::Skin;
 use a3_core::elements::{Buckling, FluidLaw, Gas, Outflow, Sheet, Solid};
 use a3_core::rigid::{self, Rotation};
 use a3_core::{Constraint, Spring, Vector3};
+use nalgebra::Rotation3;
 
+use super::files::Files;
 use super::pins::{Pinned, pins};
 use crate::budget::{
-    BODIES, Budget, PARTICLES, PARTS, PINS, RODS, SMOOTHED, SPRINGS, STRIPS, TETRAHEDRA, TOUCHING,
+    BODIES, PARTICLES, PARTS, PINS, RODS, SMOOTHED, SPRINGS, STRIPS, TETRAHEDRA, TOUCHING,
 };
 use crate::check::{COORDINATES, is_coordinate};
-use crate::description::{Pin, Spot};
+use crate::description::{Fluid, Keys, Spot, Triple};
 use crate::fault::Fault;
 use crate::surface::Surface;
 
@@ -35,31 +37,34 @@ pub(super) struct Counts {
 }
 
 /// Body of a scene. The keys of its faults are relative to the body.
-pub(super) trait Body {
-    /// Counts its parts, before any memory is reserved.
-    fn counts(&self) -> Result<Counts, Fault>;
-
-    /// Adds the body's particles, springs, constraints and surface.
-    fn add_to(&self, assembly: &mut Assembly) -> Result<(), Fault>;
-
-    /// Returns the largest length over rest length of the body's springs, if it is limited.
-    fn strain_limit(&self) -> Option<f64> {
-        None
-    }
-
-    /// Returns the pins of the body.
-    fn pins(&self) -> &[Pin];
+pub(super) trait Body: Keys {
+    /// Adds the body's particles, springs, constraints and surface. It spends their budget before
+    /// any memory is reserved.
+    fn add_to(&self, assembly: &mut Assembly, files: &mut Files) -> Result<(), Fault>;
 
     /// Finds the particles of a spot, numbered from 0 in this body; `None` if the body has no such
     /// spot.
-    fn spot(&self, spot: Spot, positions: &[Vector3<f64>]) -> Option<Vec<usize>>;
+    fn spot(&self, _: Spot, _: &[Vector3<f64>]) -> Option<Vec<usize>> {
+        None
+    }
+}
+
+/// Returns the function that turns a point of a body about its origin, and moves that to `at` (m).
+pub(super) fn placed(
+    at: Triple,
+    rotation: Option<Triple>,
+) -> impl Fn(Vector3<f64>) -> Vector3<f64> {
+    let rotation = Rotation3::new(Vector3::from(rotation.unwrap_or_default()));
+    move |point| Vector3::from(at) + rotation * point
 }
 
 /// Bodies of a scene that were added so far.
 #[derive(Default)]
-pub(super) struct Assembly {
+pub(super) struct Assembly<'a> {
     /// Whether surfaces touch.
     touching: bool,
+    /// Liquid that touches rigid bodies.
+    pub liquid: Option<&'a Fluid>,
     pub masses: Vec<f64>,
     pub positions: Vec<Vector3<f64>>,
     pub velocities: Vec<Vector3<f64>>,
@@ -84,6 +89,8 @@ pub(super) struct Assembly {
     /// Particles of fluids that are not in walls.
     pub drops: Vec<u32>,
     pub pins: Pinned,
+    /// Largest length over rest length of the springs of the body that is being added.
+    pub strain_limit: Option<f64>,
     /// Bodies whose strain is limited: key, particles and limit.
     pub strain_limits: Vec<(String, Range<usize>, f64)>,
     /// Law of the fluid, and the particles of each of its bodies.
@@ -98,13 +105,30 @@ pub(super) struct Assembly {
     pub notes: Vec<String>,
 }
 
-impl Assembly {
+impl<'a> Assembly<'a> {
     /// Creates an assembly without bodies.
-    pub fn new(touching: bool) -> Self {
+    pub fn new(touching: bool, liquid: Option<&'a Fluid>) -> Self {
         Self {
             touching,
+            liquid,
             ..Self::default()
         }
+    }
+
+    /// Adds particles of these masses (kg), which have a velocity (m/s) in common, and returns the
+    /// number of the first.
+    pub fn add_particles(
+        &mut self,
+        masses: &[f64],
+        positions: impl IntoIterator<Item = Vector3<f64>>,
+        velocity: Option<Triple>,
+    ) -> usize {
+        let first = self.masses.len();
+        self.masses.extend(masses);
+        self.positions.extend(positions);
+        let velocity = Vector3::from(velocity.unwrap_or_default());
+        self.velocities.resize(self.masses.len(), velocity);
+        first
     }
 
     /// Adds springs whose particles are counted from `first`, and which may only pull.
@@ -142,9 +166,8 @@ impl Assembly {
         self.surface.bodies.push(self.masses.len());
     }
 
-    /// Adds the body of a key, with its pins.
-    pub fn add(&mut self, key: &str, body: &dyn Body, budget: &mut Budget) -> Result<(), Fault> {
-        let counts = body.counts().map_err(|fault| fault.within(key))?;
+    /// Takes the parts of a body from the budget.
+    pub fn spend(&self, files: &mut Files, counts: &Counts) -> Result<(), Fault> {
         let touching = if self.touching { counts.particles } else { 0 };
         for (count, part) in [
             (1, BODIES),
@@ -158,20 +181,26 @@ impl Assembly {
             (counts.walls, PINS),
             (counts.tetrahedra, TETRAHEDRA),
         ] {
-            budget.spend(key, count, part)?;
+            files.budget.spend("", count, part)?;
         }
-        let first = self.masses.len();
-        body.add_to(self).map_err(|fault| fault.within(key))?;
-        self.check(first).map_err(|fault| fault.within(key))?;
-        if let Some(limit) = body.strain_limit() {
+        Ok(())
+    }
+
+    /// Adds the body of a key, with its pins.
+    pub fn add(&mut self, key: &str, body: &dyn Body, files: &mut Files) -> Result<(), Fault> {
+        let (first, noted) = (self.masses.len(), self.notes.len());
+        body.add_to(self, files)?;
+        self.check(first)?;
+        if let Some(limit) = self.strain_limit.take() {
             let particles = first..self.masses.len();
             self.strain_limits.push((key.into(), particles, limit));
         }
+        for note in &mut self.notes[noted..] {
+            *note = format!("{key}: {note}");
+        }
         let positions = &self.positions[first..];
-        let pins = pins(body.pins(), positions, budget, |spot| {
-            body.spot(spot, positions)
-        })
-        .map_err(|fault| fault.within(key))?;
+        let spot = |spot| body.spot(spot, positions);
+        let pins = pins(body.pins(), positions, &mut files.budget, spot)?;
         self.pins.add(first, pins);
         Ok(())
     }

@@ -4,10 +4,11 @@ use a3_core::elements::Sheet;
 use a3_core::{Grid, SpringKind, Vector3};
 
 use super::assembly::{Assembly, Body, Counts};
+use super::files::Files;
 use super::laws::{damping_time, strip};
 use super::skins::SkinSpec;
-use crate::check::{at, at_least, one_of, positive};
-use crate::description::{Cloth, Pin, Spot};
+use crate::check::{at, at_least, positive_one};
+use crate::description::{Cloth, Spot};
 use crate::fault::Fault;
 
 impl Cloth {
@@ -18,11 +19,7 @@ impl Cloth {
 
     /// Returns the distance between neighbouring particles (m).
     pub(crate) fn checked_spacing(&self) -> Result<f64, Fault> {
-        let (by_width, size) = one_of(("width", self.width), ("spacing", self.spacing))?;
-        at(
-            if by_width { "width" } else { "spacing" },
-            positive("it", size),
-        )?;
+        let (by_width, size) = positive_one(("width", self.width), ("spacing", self.spacing))?;
         let cells = self.grid[1].max(2) - 1;
         Ok(if by_width { size / cells as f64 } else { size })
     }
@@ -30,11 +27,7 @@ impl Cloth {
     /// Returns the mass of each particle (kg): an equal share of the density times the area.
     pub(crate) fn checked_mass(&self) -> Result<f64, Fault> {
         let (grid, spacing) = (self.checked_grid()?, self.checked_spacing()?);
-        let (by_area, mass) = one_of(("density", self.density), ("mass", self.mass))?;
-        at(
-            if by_area { "density" } else { "mass" },
-            positive("it", mass),
-        )?;
+        let (by_area, mass) = positive_one(("density", self.density), ("mass", self.mass))?;
         let cells = (grid.rows() - 1) * (grid.cols() - 1);
         let share = spacing * spacing * (cells as f64 / grid.particles() as f64);
         Ok(if by_area { mass * share } else { mass })
@@ -54,21 +47,15 @@ impl Cloth {
 }
 
 impl Body for Cloth {
-    fn counts(&self) -> Result<Counts, Fault> {
-        let particles = self.checked_grid()?.particles();
-        Ok(Counts {
-            particles,
-            strips: if self.buckling.is_some() {
-                2 * particles
-            } else {
-                0
-            },
-            ..Counts::default()
-        })
-    }
-
-    fn add_to(&self, assembly: &mut Assembly) -> Result<(), Fault> {
+    fn add_to(&self, assembly: &mut Assembly, files: &mut Files) -> Result<(), Fault> {
         let grid = self.checked_grid()?;
+        let particles = grid.particles();
+        let counts = Counts {
+            particles,
+            strips: 2 * particles * usize::from(self.buckling.is_some()),
+            ..Counts::default()
+        };
+        assembly.spend(files, &counts)?;
         let (rows, cols, spacing) = (grid.rows(), grid.cols(), self.checked_spacing()?);
         let mass = self.checked_mass()?;
         let [structural, shear, bend] = self.stiffness;
@@ -114,29 +101,15 @@ impl Body for Cloth {
                 assembly.velocities.push(velocity + sway * share);
             }
         }
-        let skin = SkinSpec {
-            thickness: self.thickness,
-            contact_stiffness: self.contact_stiffness,
-            friction: self.friction,
-            restitution: self.restitution,
-            stiffness: structural,
-            time,
-        };
-        let masses = vec![mass; grid.particles()];
+        let skin = SkinSpec::of(self, structural, time);
+        let masses = vec![mass; particles];
         assembly.skins.extend(skin.uniform(&masses, spacing)?);
         assembly.masses.extend(masses);
         assembly.add_surface(first, grid.triangles().map(|t| t.map(|i| i as u32)));
         assembly.add_strips(first, strips);
         assembly.sheets.push(sheet.starting_at(first));
+        assembly.strain_limit = self.strain_limit;
         Ok(())
-    }
-
-    fn strain_limit(&self) -> Option<f64> {
-        self.strain_limit
-    }
-
-    fn pins(&self) -> &[Pin] {
-        &self.pin
     }
 
     fn spot(&self, spot: Spot, _: &[Vector3<f64>]) -> Option<Vec<usize>> {

@@ -5,6 +5,7 @@ mod chain;
 mod circle;
 mod cloth;
 mod constraints;
+mod files;
 mod fluid;
 mod forces;
 mod jelly;
@@ -36,6 +37,7 @@ use crate::setup::{Defaults, Presentation, Setup, Viewpoint};
 use crate::surface::Surface;
 use crate::wording::unknown_choice;
 use circle::Circling;
+use files::Files;
 pub use fluid::fluid_points;
 pub use laws::damping_time;
 use network::NetworkParts;
@@ -95,6 +97,8 @@ impl Description {
         asked: Option<Grid>,
         mesh: &mut dyn FnMut(&str) -> Result<Mesh, String>,
     ) -> Result<Setup, Fault> {
+        let budget = Budget::new(asked);
+        let mut files = Files { budget, mesh };
         let (mut model, mut state, surface, (tanks, notes), touch) =
             if let Some(circle) = &self.circle {
                 let start = Vector3::from(circle.start);
@@ -109,11 +113,11 @@ impl Description {
                     tanks,
                     notes,
                     touch,
-                } = network::build(self, &mut Budget::new(asked), mesh)?;
+                } = network::build(self, &mut files)?;
                 let model = Model::Network(Box::new(network));
                 (model, state, surface, (tanks, notes), touch)
             };
-        if self.circle.is_some() && network::bodies(self) > 0 {
+        if self.circle.is_some() && network::bodies(self).next().is_some() {
             return Err(Fault::new(
                 "circle",
                 "a circle is a first-order system and must be the only body",

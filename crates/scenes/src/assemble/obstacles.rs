@@ -3,16 +3,16 @@
 use std::sync::Arc;
 
 use a3_core::contact::{ClosedMesh, Obstacle, Shape};
-use a3_core::{Network, Path, Vector3, rotation};
+use a3_core::{Network, Vector3};
 
+use super::files::Files;
 use super::motion::motion;
-use crate::budget::{Budget, FACES, TRIANGLES};
 use crate::check::{at, at_least, key_of, positive, share};
 use crate::description::{
-    BoxSpec, CapsuleSpec, Description, Floor, FloorSpec, ObstacleSpec, SphereSpec,
+    BoxSpec, CapsuleSpec, Description, Floor, FloorSpec, Movable, ObstacleKeys, ObstacleSpec,
+    SphereSpec, Triple,
 };
 use crate::fault::Fault;
-use crate::mesh::Mesh;
 
 /// Largest number of obstacles of one kind.
 const MAX_OBSTACLES: usize = 1000;
@@ -22,22 +22,20 @@ pub(super) fn is_one_thick(description: &Description) -> bool {
     let spheres = description.sphere.iter().map(|spec| spec.thickness);
     let boxes = description.boxes.iter().map(|spec| spec.thickness);
     let capsules = description.capsule.iter().map(|spec| spec.thickness);
+    let solids = description.obstacle.iter().map(|spec| spec.thickness);
     let floor = match description.floor {
         Some(Floor::Table(FloorSpec { thickness, .. })) => thickness,
         _ => None,
     };
-    let solids = description.obstacle.iter().map(|spec| spec.thickness);
-    let solid = spheres.chain(boxes).chain(capsules).chain(solids);
-    let mut all = solid.chain([floor]);
-    all.any(|thickness| thickness.is_some())
+    let mut all = spheres.chain(boxes).chain(capsules).chain(solids);
+    floor.is_some() || all.any(|thickness| thickness.is_some())
 }
 
-/// Adds the obstacles of the description, the floor last. `mesh` reads a file of triangles.
+/// Adds the obstacles of the description, the floor last.
 pub(super) fn add(
     description: &Description,
     network: &mut Network,
-    budget: &mut Budget,
-    mesh: &mut dyn FnMut(&str) -> Result<Mesh, String>,
+    files: &mut Files,
 ) -> Result<(), Fault> {
     each("sphere", &description.sphere, |spec| {
         at("radius", network.add_obstacle(sphere(spec)?))
@@ -49,7 +47,7 @@ pub(super) fn add(
         at("radius", network.add_obstacle(capsule(spec)?))
     })?;
     each("obstacle", &description.obstacle, |spec| {
-        at("file", network.add_obstacle(solid(spec, budget, mesh)?))
+        at("file", network.add_obstacle(solid(spec, files)?))
     })?;
     match &description.floor {
         None => Ok(()),
@@ -77,96 +75,35 @@ fn each<T>(
 fn sphere(spec: &SphereSpec) -> Result<Obstacle, Fault> {
     let radius = spec.radius;
     at("radius", positive("it", radius))?;
-    let center = Vector3::from(spec.center);
-    let (path, turn) = motion(
-        spec.sine.as_ref(),
-        spec.shift.as_ref(),
-        spec.turn.as_ref(),
-        center,
-    )?;
-    Ok(Obstacle {
-        shape: Shape::Sphere { radius },
-        path,
-        turn,
-        friction: friction(spec.friction)?,
-        restitution: restitution(spec.restitution)?,
-        thickness: thickness(spec.thickness)?,
-    })
+    made(&spec.keys(), spec.center, || Ok(Shape::Sphere { radius }))
 }
 
 fn cuboid(spec: &BoxSpec) -> Result<Obstacle, Fault> {
-    let center = Vector3::from(spec.center);
-    let (path, turn) = motion(
-        spec.sine.as_ref(),
-        spec.shift.as_ref(),
-        spec.turn.as_ref(),
-        center,
-    )?;
-    let size = Vector3::from(spec.size);
-    let rotation = Vector3::from(spec.rotation.unwrap_or_default());
-    for edge in spec.size {
-        at("size", positive("each edge", edge))?;
-    }
-    Ok(Obstacle {
-        shape: at("size", Shape::turned_box(0.5 * size, rotation))?,
-        path,
-        turn,
-        friction: friction(spec.friction)?,
-        restitution: restitution(spec.restitution)?,
-        thickness: thickness(spec.thickness)?,
+    made(&spec.keys(), spec.center, || {
+        let size = Vector3::from(spec.size);
+        let rotation = Vector3::from(spec.rotation.unwrap_or_default());
+        for edge in spec.size {
+            at("size", positive("each edge", edge))?;
+        }
+        at("size", Shape::turned_box(0.5 * size, rotation))
     })
 }
 
 fn capsule(spec: &CapsuleSpec) -> Result<Obstacle, Fault> {
-    let (from, to) = (Vector3::from(spec.from), Vector3::from(spec.to));
-    let (path, turn) = motion(
-        spec.sine.as_ref(),
-        spec.shift.as_ref(),
-        spec.turn.as_ref(),
-        from,
-    )?;
-    Ok(Obstacle {
-        shape: Shape::Capsule {
-            ends: [Vector3::zeros(), to - from],
-            radius: spec.radius,
-        },
-        path,
-        turn,
-        friction: friction(spec.friction)?,
-        restitution: restitution(spec.restitution)?,
-        thickness: thickness(spec.thickness)?,
-    })
+    let axis = Vector3::from(spec.to) - Vector3::from(spec.from);
+    let shape = Shape::Capsule {
+        ends: [Vector3::zeros(), axis],
+        radius: spec.radius,
+    };
+    made(&spec.keys(), spec.from, || Ok(shape))
 }
 
-/// Reads the solid within the triangles of a file. Points at the same place are merged.
-fn solid(
-    spec: &ObstacleSpec,
-    budget: &mut Budget,
-    mesh: &mut dyn FnMut(&str) -> Result<Mesh, String>,
-) -> Result<Obstacle, Fault> {
-    let (path, turn) = motion(
-        spec.sine.as_ref(),
-        spec.shift.as_ref(),
-        spec.turn.as_ref(),
-        Vector3::from(spec.at.unwrap_or_default()),
-    )?;
-    let scale = spec.scale.unwrap_or(1.0);
-    at("scale", positive("it", scale))?;
-    let rotation = rotation(Vector3::from(spec.rotation.unwrap_or_default()));
-    let mesh = at("file", mesh(&spec.file))?;
-    budget.spend("file", mesh.triangles.len(), TRIANGLES)?;
-    let mesh = mesh.welded();
-    budget.spend("file", mesh.triangles.len(), FACES)?;
-    let points = mesh.positions.iter();
-    let points = points.map(|p| rotation * (Vector3::from(*p) * scale));
-    let mesh = at("file", ClosedMesh::new(points.collect(), mesh.triangles))?;
-    Ok(Obstacle {
-        shape: Shape::Mesh(Arc::new(mesh)),
-        path,
-        turn,
-        friction: friction(spec.friction)?,
-        restitution: restitution(spec.restitution)?,
-        thickness: thickness(spec.thickness)?,
+/// Reads the solid within the triangles of a file.
+fn solid(spec: &ObstacleSpec, files: &mut Files) -> Result<Obstacle, Fault> {
+    made(&spec.keys(), spec.at.unwrap_or_default(), || {
+        let (points, triangles) = files.surface(&spec.file, spec.scale, spec.rotation)?;
+        let mesh = at("file", ClosedMesh::new(points, triangles))?;
+        Ok(Shape::Mesh(Arc::new(mesh)))
     })
 }
 
@@ -180,29 +117,43 @@ fn floor(spec: &Floor) -> Result<Obstacle, Fault> {
         },
         Floor::Table(spec) => spec,
     };
-    let within = |fault: Fault| fault.within("floor");
-    Ok(Obstacle {
-        shape: Shape::Floor,
-        path: Path::Still(Vector3::new(0.0, spec.height, 0.0)),
-        turn: None,
-        friction: friction(spec.friction).map_err(within)?,
-        restitution: restitution(spec.restitution).map_err(within)?,
-        thickness: thickness(spec.thickness).map_err(within)?,
-    })
+    let keys = ObstacleKeys {
+        friction: spec.friction,
+        restitution: spec.restitution,
+        thickness: spec.thickness,
+        ..ObstacleKeys::default()
+    };
+    let floor = made(&keys, [0.0, spec.height, 0.0], || Ok(Shape::Floor));
+    floor.map_err(|fault| fault.within("floor"))
 }
 
-fn friction(mu: f64) -> Result<f64, Fault> {
-    at("friction", at_least(0.0, "it", mu))?;
-    Ok(mu)
-}
-
-fn restitution(e: f64) -> Result<f64, Fault> {
-    at("restitution", share("it", e))?;
-    Ok(e)
-}
-
-fn thickness(given: Option<f64>) -> Result<f64, Fault> {
-    let thickness = given.unwrap_or(0.0);
+/// Makes an obstacle that begins at `from` (m).
+fn made(
+    keys: &ObstacleKeys,
+    from: Triple,
+    shape: impl FnOnce() -> Result<Shape, Fault>,
+) -> Result<Obstacle, Fault> {
+    let ObstacleKeys {
+        friction,
+        restitution,
+        thickness,
+        sine,
+        shift,
+        turn,
+    } = keys;
+    let from = Vector3::from(from);
+    let (path, turn) = motion(sine.as_ref(), shift.as_ref(), turn.as_ref(), from)?;
+    let shape = shape()?;
+    let thickness = thickness.unwrap_or(0.0);
+    at("friction", at_least(0.0, "it", *friction))?;
+    at("restitution", share("it", *restitution))?;
     at("thickness", at_least(0.0, "it", thickness))?;
-    Ok(thickness)
+    Ok(Obstacle {
+        shape,
+        path,
+        turn,
+        friction: *friction,
+        restitution: *restitution,
+        thickness,
+    })
 }

@@ -3,7 +3,9 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::bodies::Keys;
 use super::motion::Triple;
+use super::obstacles::is_zero;
 
 /// Liquid of smoothed particles that begins as a box or a ball. All fluids of a scene are the same
 /// liquid, which mixes: each repeats `spacing`, `density`, `sound`, `viscosity` and `dimensions`.
@@ -45,6 +47,8 @@ pub struct Fluid {
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub outflow: Vec<Outflow>,
 }
+
+impl Keys for Fluid {}
 
 /// Shape in which a fluid begins.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
@@ -103,11 +107,6 @@ pub struct Outflow {
     pub size: Triple,
     /// Centre (m).
     pub at: Triple,
-}
-
-#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde calls it so")]
-fn is_zero(number: &f64) -> bool {
-    *number == 0.0
 }
 
 fn three() -> u8 {

@@ -3,6 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::bodies::{Keys, SharedKeys, SkinKeys, share_keys};
 use super::motion::{Pin, Triple};
 use super::obstacles::is_zero;
 
@@ -49,6 +50,8 @@ pub struct RigidBody {
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub pin: Vec<Pin>,
 }
+
+share_keys!(RigidBody);
 
 /// Part of a rigid body: one of a box, a ball, a capsule and a mesh.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
