@@ -254,10 +254,8 @@ fn each_contact(scene: &mut Description, mut change: impl FnMut([&mut f64; 2])) 
 /// Replaces a wind on the triangles of cloths by forces on particles: the drag of a cloth that
 /// stands across the wind.
 fn simplify_wind(scene: &mut Description) {
-    let is_cloth_alone = !scene.cloth.is_empty()
-        && [scene.jelly.len(), scene.mesh.len(), scene.solid.len()] == [0; 3]
-        && [scene.chain.len(), scene.body.len(), scene.fluid.len()] == [0; 3]
-        && scene.particles.is_none();
+    let is_alone = scene.fluid.is_empty() && scene.bodies_mut().count() == scene.cloth.len();
+    let is_cloth_alone = is_alone && !scene.cloth.is_empty();
     let (mut area, mut mass) = (0.0, 0.0);
     for cloth in &scene.cloth {
         let (Ok(spacing), Ok(share)) = (cloth.checked_spacing(), cloth.checked_mass()) else {

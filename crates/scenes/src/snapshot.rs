@@ -72,11 +72,6 @@ pub fn begin_with(description: &mut Description, model: &Model, now: &Checkpoint
     let (n, t) = (model.particles(), now.time());
     description.solver = Some(now.run.method.name.into());
     description.step = Some(now.run.control.value());
-    let rows = |part: &[f64]| {
-        (0..n)
-            .map(|i| [part[i], part[n + i], part[2 * n + i]])
-            .collect()
-    };
     let mut parts = now.run.y.chunks_exact(3 * n);
     let rotations = || {
         let network = model.network().into_iter();
@@ -101,28 +96,34 @@ pub fn begin_with(description: &mut Description, model: &Model, now: &Checkpoint
         wind.on = now.wind.is_some();
         wind.ahead += t;
     }
-    for inflow in description
-        .fluid
-        .iter_mut()
-        .filter_map(|it| it.inflow.as_mut())
-    {
+    let fluids = description.fluid.iter_mut();
+    for inflow in fluids.filter_map(|it| it.inflow.as_mut()) {
         inflow.ahead += t;
     }
     write_obstacles(description, network, t);
     write_strain_limits(description, network);
     // Particles that are attached to rigid bodies stay so.
-    for pins in body_pins(description) {
-        pins.retain(|pin| pin.body.is_some());
-    }
+    let pinned = description.bodies_mut().filter_map(|body| body.pin);
+    pinned.for_each(|pins| pins.retain(|pin| pin.body.is_some()));
     description.pin.retain(|pin| pin.body.is_some());
     description.pin.extend(pins(now));
 }
 
+/// Returns the rows of particles whose numbers are all x, all y, all z.
+pub(crate) fn rows(part: &[f64]) -> Vec<Triple> {
+    let n = part.len() / 3;
+    (0..n)
+        .map(|i| [part[i], part[n + i], part[2 * n + i]])
+        .collect()
+}
+
 /// Replaces the pins of a description by those of another one of the same bodies, in its words.
 pub fn pin_as(description: &mut Description, mut other: Description) {
-    for (pins, others) in body_pins(description).zip(body_pins(&mut other)) {
-        std::mem::swap(pins, others);
-    }
+    let pinned = description.bodies_mut().filter_map(|body| body.pin);
+    let others = other.bodies_mut().filter_map(|body| body.pin);
+    pinned
+        .zip(others)
+        .for_each(|(pins, others)| std::mem::swap(pins, others));
     description.pin = other.pin;
 }
 
@@ -207,11 +208,6 @@ fn write_strain_limits(description: &mut Description, network: &Network) {
     for body in bodies {
         *body = limits.next();
     }
-}
-
-/// Returns the pins of each body.
-pub(crate) fn body_pins(description: &mut Description) -> impl Iterator<Item = &mut Vec<Pin>> {
-    description.bodies_mut().filter_map(|body| body.pin)
 }
 
 /// Describes the pins from now on, except those of liquid that has flowed out. Pins with the same

@@ -17,7 +17,7 @@ use crate::budget::{
 use crate::check::{COORDINATES, is_coordinate};
 use crate::description::{Fluid, Keys, Spot, Triple};
 use crate::fault::Fault;
-use crate::surface::Surface;
+use crate::setup::Presentation;
 
 /// Numbers of those parts of a body that the budget counts.
 #[derive(Default)]
@@ -72,7 +72,8 @@ pub(super) struct Assembly<'a> {
     pub sheets: Vec<Sheet>,
     /// Tetrahedra of each solid.
     pub solids: Vec<Solid>,
-    pub surface: Surface,
+    /// Surface, tanks, and sentences about what may not be meant.
+    pub presentation: Presentation,
     pub springs: Vec<Spring>,
     /// Gas in closed meshes.
     pub gases: Vec<Gas>,
@@ -99,10 +100,6 @@ pub(super) struct Assembly<'a> {
     pub outflows: Vec<Outflow>,
     /// Points of each rigid body that the fluid touches.
     pub soaked: Vec<Range<usize>>,
-    /// Particles of the walls of each tank.
-    pub tanks: Vec<Range<usize>>,
-    /// Sentences about what may not be meant.
-    pub notes: Vec<String>,
 }
 
 impl<'a> Assembly<'a> {
@@ -162,8 +159,9 @@ impl<'a> Assembly<'a> {
     /// Adds the surface of the body that was added last. Its particles are counted from `first`.
     pub fn add_surface(&mut self, first: usize, triangles: impl IntoIterator<Item = [u32; 3]>) {
         let triangles = triangles.into_iter().map(|t| t.map(|i| i + first as u32));
-        self.surface.triangles.extend(triangles);
-        self.surface.bodies.push(self.masses.len());
+        let surface = &mut self.presentation.surface;
+        surface.triangles.extend(triangles);
+        surface.bodies.push(self.masses.len());
     }
 
     /// Takes the parts of a body from the budget.
@@ -188,14 +186,14 @@ impl<'a> Assembly<'a> {
 
     /// Adds the body of a key, with its pins.
     pub fn add(&mut self, key: &str, body: &dyn Body, files: &mut Files) -> Result<(), Fault> {
-        let (first, noted) = (self.masses.len(), self.notes.len());
+        let (first, noted) = (self.masses.len(), self.presentation.notes.len());
         body.add_to(self, files)?;
         self.check(first)?;
         if let Some(limit) = self.strain_limit.take() {
             let particles = first..self.masses.len();
             self.strain_limits.push((key.into(), particles, limit));
         }
-        for note in &mut self.notes[noted..] {
+        for note in &mut self.presentation.notes[noted..] {
             *note = format!("{key}: {note}");
         }
         let positions = &self.positions[first..];

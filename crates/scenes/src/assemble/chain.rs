@@ -6,7 +6,7 @@ use super::assembly::{Assembly, Body, Counts};
 use super::files::Files;
 use super::laws::{springs, strip};
 use super::skins::SkinSpec;
-use crate::check::{at, at_least, positive};
+use crate::check::{at, at_least, one_of, positive};
 use crate::description::{Chain, Particles, Spot};
 use crate::fault::Fault;
 
@@ -109,15 +109,10 @@ impl Body for Particles {
             ..Counts::default()
         };
         assembly.spend(files, &counts)?;
-        let (key, masses) = match (self.mass, &self.masses[..]) {
-            (Some(mass), []) => ("mass", vec![mass; n]),
-            (None, [_, ..]) => ("masses", self.masses.clone()),
-            (Some(_), _) => return Err(Fault::not_both("mass", "masses")),
-            (None, []) => {
-                let why = "one of the keys `mass` and `masses` is needed";
-                return Err(Fault::new("", why));
-            }
-        };
+        let same = self.mass.map(|mass| vec![mass; n]);
+        let listed = Some(self.masses.clone()).filter(|all| !all.is_empty());
+        let (is_same, masses) = one_of(("mass", same), ("masses", listed))?;
+        let key = if is_same { "mass" } else { "masses" };
         for m in &masses {
             at(key, positive("each", *m))?;
         }

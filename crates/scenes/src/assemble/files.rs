@@ -1,5 +1,8 @@
 //! Files of meshes that a scene names, and its budget.
 
+use std::sync::Arc;
+
+use a3_core::contact::{ClosedMesh, Shape};
 use a3_core::{Vector3, rotation};
 
 use crate::budget::{Budget, FACES, TRIANGLES};
@@ -20,14 +23,14 @@ impl Files<'_> {
         at("file", (self.mesh)(file))
     }
 
-    /// Reads the points (m), scaled and turned about the file's origin, and the triangles of the
-    /// surface of a solid. Points at the same place are merged.
-    pub fn surface(
+    /// Reads the solid within the triangles of a file, scaled and turned about the file's origin,
+    /// and its smallest extent (m). Points at the same place are merged.
+    pub fn solid(
         &mut self,
         file: &str,
         scale: Option<f64>,
         turn: Option<Triple>,
-    ) -> Result<(Vec<Vector3<f64>>, Vec<[u32; 3]>), Fault> {
+    ) -> Result<(Shape, f64), Fault> {
         let scale = scale.unwrap_or(1.0);
         at("scale", positive("it", scale))?;
         let turn = rotation(Vector3::from(turn.unwrap_or_default()));
@@ -36,7 +39,11 @@ impl Files<'_> {
         let mesh = mesh.welded();
         self.budget.spend("file", mesh.triangles.len(), FACES)?;
         let points = mesh.positions.iter();
-        let points = points.map(|p| turn * (Vector3::from(*p) * scale));
-        Ok((points.collect(), mesh.triangles))
+        let points: Vec<_> = points.map(|p| turn * (Vector3::from(*p) * scale)).collect();
+        let far = Vector3::repeat(f64::INFINITY);
+        let around = |(low, high): (Vector3<f64>, Vector3<f64>), p| (low.inf(p), high.sup(p));
+        let (low, high) = points.iter().fold((far, -far), around);
+        let solid = at("file", ClosedMesh::new(points, mesh.triangles))?;
+        Ok((Shape::Mesh(Arc::new(solid)), (high - low).min()))
     }
 }

@@ -216,7 +216,7 @@ impl Body for Fluid {
         // Surfaces do not touch walls.
         assembly.skins.resize(all, Skin::default());
         if all > free {
-            assembly.tanks.push(free..all);
+            assembly.presentation.tanks.push(free..all);
         }
         let (law, particles) = (self.law(), first..all);
         assembly.outflows.extend(outflows);

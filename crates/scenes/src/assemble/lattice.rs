@@ -4,6 +4,7 @@
 
 use a3_core::{Spring, SpringKind, SpringLaw};
 
+use super::pins::side;
 use crate::description::Spot;
 use crate::fault::Fault;
 
@@ -71,13 +72,7 @@ impl Lattice {
 
     /// Lists the particles of a face, if the spot is one.
     pub fn face(self, spot: Spot) -> Option<Vec<usize>> {
-        let (axis, far) = match spot {
-            Spot::Left => (0, false),
-            Spot::Right => (0, true),
-            Spot::Bottom => (1, false),
-            Spot::Top => (1, true),
-            _ => return None,
-        };
+        let (axis, far) = side(spot)?;
         let at = if far { self.0[axis] - 1 } else { 0 };
         let there = self.cells().filter(|cell| cell[axis] == at);
         Some(there.map(|cell| self.index_of(cell)).collect())

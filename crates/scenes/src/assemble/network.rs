@@ -1,6 +1,5 @@
 //! The network of a description: bodies, pins, constraints, forces and obstacles.
 
-use std::ops::Range;
 use std::sync::Arc;
 
 use a3_core::elements::Cords;
@@ -14,20 +13,16 @@ use crate::budget::SPRINGS;
 use crate::check::{at, key_of};
 use crate::description::Description;
 use crate::fault::Fault;
-use crate::surface::Surface;
+use crate::setup::Presentation;
 
 /// Largest number of bodies: some work grows with the square of that number.
 const MAX_BODIES: usize = 1000;
 
-/// Network with its initial state, and with its surfaces for drawing and contact.
+/// Network with its initial state, its presentation, and its surfaces for contact.
 pub(super) struct NetworkParts {
     pub network: Network,
     pub state: Vec<f64>,
-    pub surface: Surface,
-    /// Particles of the walls of each tank.
-    pub tanks: Vec<Range<usize>>,
-    /// Sentences about what may not be meant.
-    pub notes: Vec<String>,
+    pub presentation: Presentation,
     /// Surfaces that can touch, if there are any.
     pub touch: Option<Arc<Touch>>,
 }
@@ -105,7 +100,7 @@ pub(super) fn build(description: &Description, files: &mut Files) -> Result<Netw
     )?;
     constraints::add(description, &mut network, &state)?;
     joints::add(description, budget, &assembly.pins, &mut network, &state)?;
-    let triangles = assembly.surface.triangles.iter();
+    let triangles = assembly.presentation.surface.triangles.iter();
     let triangles = triangles.map(|t| t.map(|i| i as usize));
     at("", network.set_triangles(triangles))?;
     at("", network.pin_all(assembly.pins.paths))?;
@@ -133,9 +128,7 @@ pub(super) fn build(description: &Description, files: &mut Files) -> Result<Netw
     Ok(NetworkParts {
         network,
         state,
-        surface: assembly.surface,
-        tanks: assembly.tanks,
-        notes: assembly.notes,
+        presentation: assembly.presentation,
         touch: has_surface.then(|| Arc::new(touch)),
     })
 }

@@ -1,8 +1,6 @@
 //! Obstacles.
 
-use std::sync::Arc;
-
-use a3_core::contact::{ClosedMesh, Obstacle, Shape};
+use a3_core::contact::{Obstacle, Shape};
 use a3_core::{Network, Vector3};
 
 use super::files::Files;
@@ -37,17 +35,16 @@ pub(super) fn add(
     network: &mut Network,
     files: &mut Files,
 ) -> Result<(), Fault> {
-    each("sphere", &description.sphere, |spec| {
-        at("radius", network.add_obstacle(sphere(spec)?))
-    })?;
-    each("box", &description.boxes, |spec| {
-        at("size", network.add_obstacle(cuboid(spec)?))
-    })?;
-    each("capsule", &description.capsule, |spec| {
-        at("radius", network.add_obstacle(capsule(spec)?))
-    })?;
-    each("obstacle", &description.obstacle, |spec| {
-        at("file", network.add_obstacle(solid(spec, files)?))
+    each(["sphere", "radius"], &description.sphere, network, sphere)?;
+    each(["box", "size"], &description.boxes, network, cuboid)?;
+    each(
+        ["capsule", "radius"],
+        &description.capsule,
+        network,
+        capsule,
+    )?;
+    each(["obstacle", "file"], &description.obstacle, network, |it| {
+        solid(it, files)
     })?;
     match &description.floor {
         None => Ok(()),
@@ -55,11 +52,12 @@ pub(super) fn add(
     }
 }
 
-/// Adds the obstacles of one kind.
+/// Adds the obstacles of one kind. A network that refuses one has a fault of the other key.
 fn each<T>(
-    kind: &str,
+    [kind, key]: [&str; 2],
     specs: &[T],
-    mut add: impl FnMut(&T) -> Result<(), Fault>,
+    network: &mut Network,
+    mut make: impl FnMut(&T) -> Result<Obstacle, Fault>,
 ) -> Result<(), Fault> {
     let count = specs.len();
     if count > MAX_OBSTACLES {
@@ -67,7 +65,8 @@ fn each<T>(
         return Err(Fault::new(kind, why));
     }
     for (k, spec) in specs.iter().enumerate() {
-        add(spec).map_err(|fault| fault.within(&key_of(kind, k, count)))?;
+        let added = make(spec).and_then(|made| at(key, network.add_obstacle(made)));
+        added.map_err(|fault| fault.within(&key_of(kind, k, count)))?;
     }
     Ok(())
 }
@@ -101,9 +100,8 @@ fn capsule(spec: &CapsuleSpec) -> Result<Obstacle, Fault> {
 /// Reads the solid within the triangles of a file.
 fn solid(spec: &ObstacleSpec, files: &mut Files) -> Result<Obstacle, Fault> {
     made(&spec.keys(), spec.at.unwrap_or_default(), || {
-        let (points, triangles) = files.surface(&spec.file, spec.scale, spec.rotation)?;
-        let mesh = at("file", ClosedMesh::new(points, triangles))?;
-        Ok(Shape::Mesh(Arc::new(mesh)))
+        let solid = files.solid(&spec.file, spec.scale, spec.rotation);
+        solid.map(|(shape, _)| shape)
     })
 }
 
@@ -111,9 +109,7 @@ fn floor(spec: &Floor) -> Result<Obstacle, Fault> {
     let spec = match *spec {
         Floor::Height(height) => FloorSpec {
             height,
-            friction: 0.0,
-            restitution: 0.0,
-            thickness: None,
+            ..FloorSpec::default()
         },
         Floor::Table(spec) => spec,
     };

@@ -46,16 +46,21 @@ pub(super) fn pins(
     Ok(all)
 }
 
+/// Returns the axis across a side, and whether it is the far side; `None` if the spot is no side.
+pub(super) fn side(spot: Spot) -> Option<(usize, bool)> {
+    match spot {
+        Spot::Left => Some((0, false)),
+        Spot::Right => Some((0, true)),
+        Spot::Bottom => Some((1, false)),
+        Spot::Top => Some((1, true)),
+        _ => None,
+    }
+}
+
 /// Finds the outermost particles on a side, to within a hundredth of the body's extent; `None` if
 /// the spot is no side.
 pub(super) fn extreme(spot: Spot, positions: &[Vector3<f64>]) -> Option<Vec<usize>> {
-    let (axis, far) = match spot {
-        Spot::Left => (0, false),
-        Spot::Right => (0, true),
-        Spot::Bottom => (1, false),
-        Spot::Top => (1, true),
-        _ => return None,
-    };
+    let (axis, far) = side(spot)?;
     let places = || positions.iter().map(|p| p[axis]);
     let (low, high) = (
         places().fold(f64::INFINITY, f64::min),
@@ -90,16 +95,12 @@ fn pinned(
         particles.extend(there);
     }
     if particles.is_empty() {
-        return Err(Fault::new(
-            "",
-            "the pin holds nothing: it needs the key `at` or `particles`",
-        ));
+        let why = "the pin holds nothing: it needs the key `at` or `particles`";
+        return Err(Fault::new("", why));
     }
     if pin.turn.as_ref().is_some_and(|turn| turn.about.is_none()) {
-        return Err(Fault::new(
-            "turn.about",
-            "the turn of a pin needs it: a point of the axis (m)",
-        ));
+        let why = "the turn of a pin needs it: a point of the axis (m)";
+        return Err(Fault::new("turn.about", why));
     }
     if let Some(body) = pin.body {
         if pin.sine.is_some() || pin.shift.is_some() || pin.turn.is_some() {

@@ -1,9 +1,7 @@
 //! Rigid bodies, and their points that a fluid touches: particles of the fluid that the body
 //! carries.
 
-use std::sync::Arc;
-
-use a3_core::contact::{ClosedMesh, Shape, Skin};
+use a3_core::contact::{Shape, Skin};
 use a3_core::rigid::{Body as Rigid, MassProperties, Part, Rotation};
 use a3_core::{Vector3, rotation};
 use nalgebra::{Matrix3, Rotation3, UnitQuaternion};
@@ -19,12 +17,12 @@ use crate::fault::Fault;
 /// Default thickness of a body, relative to its smallest part.
 const THICKNESS: f64 = 0.02;
 
-/// Returns the mass, the centre and the inertia of all parts together at a density (kg/m3), relative
-/// to the origin.
-fn of_density(parts: &[Part], density: f64) -> Result<MassProperties, Fault> {
+/// Returns the mass, the centre and the inertia of all parts together at 1 kg/m3, relative to the
+/// origin.
+fn of_parts(parts: &[Part]) -> Result<MassProperties, Fault> {
     let mut all = MassProperties::default();
     for part in parts {
-        let own = at("parts", MassProperties::of(&part.shape, density))?;
+        let own = at("parts", MassProperties::of(&part.shape, 1.0))?;
         all += own.moved(part.at);
     }
     Ok(all)
@@ -51,7 +49,7 @@ impl RigidBody {
     /// Returns the mass, the centre and the inertia of the body, relative to the origin.
     fn properties(&self, parts: &[Part]) -> Result<MassProperties, Fault> {
         let (by_volume, number) = positive_one(("density", self.density), ("mass", self.mass))?;
-        let mut all = of_density(parts, 1.0)?;
+        let mut all = of_parts(parts)?;
         let scale = if by_volume { number } else { number / all.mass };
         (all.mass, all.inertia) = (all.mass * scale, all.inertia * scale);
         if let Some(inertia) = self.inertia {
@@ -66,8 +64,11 @@ impl Body for RigidBody {
         let (mut parts, smallest) = self.loaded(files)?;
         let mut wet = vec![];
         if let Some(fluid) = assembly.liquid {
-            wet = soaked(&parts, of_density(&parts, 1.0)?.mass, fluid)?;
-            assembly.notes.extend(leak(&parts, wet.len(), fluid));
+            wet = soaked(&parts, of_parts(&parts)?.mass, fluid)?;
+            assembly
+                .presentation
+                .notes
+                .extend(leak(&parts, wet.len(), fluid));
         }
         let points = parts.iter().map(|part| part.shape.simplices().points.len());
         let counts = Counts {
@@ -130,10 +131,8 @@ impl Body for RigidBody {
 fn shape(spec: &PartSpec, files: &mut Files) -> Result<(Shape, f64), Fault> {
     let turn = Vector3::from(spec.rotation.unwrap_or_default());
     if spec.scale.is_some() && spec.file.is_none() {
-        return Err(Fault::new(
-            "scale",
-            "it is that of a `file`, which is missing",
-        ));
+        let why = "it is that of a `file`, which is missing";
+        return Err(Fault::new("scale", why));
     }
     match (spec.cuboid, spec.ball, spec.capsule, &spec.file) {
         (Some(size), None, None, None) => {
@@ -154,20 +153,7 @@ fn shape(spec: &PartSpec, files: &mut Files) -> Result<(Shape, f64), Fault> {
             let ends = [-end, end];
             Ok((Shape::Capsule { ends, radius }, 2.0 * radius))
         }
-        (None, None, None, Some(file)) => {
-            let (points, triangles) = files.surface(file, spec.scale, spec.rotation)?;
-            let range = |axis: usize| {
-                let along = points.iter().map(|p| p[axis]);
-                let (low, high) = along
-                    .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| {
-                        (low.min(x), high.max(x))
-                    });
-                high - low
-            };
-            let extent = (0..3).map(range).fold(f64::INFINITY, f64::min);
-            let mesh = at("file", ClosedMesh::new(points, triangles))?;
-            Ok((Shape::Mesh(Arc::new(mesh)), extent))
-        }
+        (None, None, None, Some(file)) => files.solid(file, spec.scale, spec.rotation),
         _ => Err(Fault::new(
             "",
             "a part is one of box, ball, capsule and file, such as { ball = 0.2 }",

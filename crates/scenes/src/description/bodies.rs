@@ -4,8 +4,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::motion::{Pin, Shift, Sine, Triple, Turn};
-use super::obstacles::is_zero;
+use super::motion::{Pin, Shift, Sine, Triple, Turn, is_default};
 
 /// Keys of the skin of a body, which say how its surface touches others.
 #[derive(Clone, Copy, Default)]
@@ -97,10 +96,10 @@ macro_rules! bodies {
         #[serde(default)]
         pub contact_stiffness: Option<f64>,
         /// Coefficient of Coulomb friction where surfaces touch; 0 if not given.
-        #[serde(default, skip_serializing_if = "is_zero")]
+        #[serde(default, skip_serializing_if = "is_default")]
         pub friction: f64,
         /// Coefficient of restitution where surfaces touch; 0 if not given.
-        #[serde(default, skip_serializing_if = "is_zero")]
+        #[serde(default, skip_serializing_if = "is_default")]
         pub restitution: f64,
         $(#[$about_pins])*
         #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -415,8 +414,4 @@ pub struct SwingSpec {
     pub amplitude: Triple,
     /// Angular frequency (rad/s).
     pub rate: f64,
-}
-
-fn is_default<T: Default + PartialEq>(value: &T) -> bool {
-    *value == T::default()
 }

@@ -4,8 +4,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::bodies::Keys;
-use super::motion::Triple;
-use super::obstacles::is_zero;
+use super::motion::{Triple, is_default};
 
 /// Liquid of smoothed particles that begins as a box or a ball. All fluids of a scene are the same
 /// liquid, which mixes: each repeats `spacing`, `density`, `sound`, `viscosity` and `dimensions`.
@@ -13,7 +12,7 @@ use super::obstacles::is_zero;
 #[serde(deny_unknown_fields)]
 pub struct Fluid {
     /// Shape at the beginning; a box if not given.
-    #[serde(default, skip_serializing_if = "FluidShape::is_box")]
+    #[serde(default, skip_serializing_if = "is_default")]
     pub shape: FluidShape,
     /// Lengths of the edges of the box or diameters of the ball (m), whole multiples of `spacing`.
     /// In two dimensions, the last one is 0. With an `inflow`, [0, 0, 0] means none of it at first.
@@ -61,13 +60,6 @@ pub enum FluidShape {
     Ball,
 }
 
-impl FluidShape {
-    #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde calls it so")]
-    fn is_box(&self) -> bool {
-        *self == Self::Box
-    }
-}
-
 /// Tank that is open at the top: its walls are pinned particles of the fluid.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -95,7 +87,7 @@ pub struct Inflow {
     pub duration: f64,
     /// Time for which it has flowed at the start (s), straight on if no state is given; 0 if not
     /// given.
-    #[serde(default, skip_serializing_if = "is_zero")]
+    #[serde(default, skip_serializing_if = "is_default")]
     pub ahead: f64,
 }
 

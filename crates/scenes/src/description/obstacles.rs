@@ -7,7 +7,7 @@ use serde::de::value::MapAccessDeserializer;
 use serde::de::{MapAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize, de};
 
-use super::motion::{Shift, Sine, Triple, Turn};
+use super::motion::{Shift, Sine, Triple, Turn, is_default};
 use crate::check::{beyond, within};
 
 /// Keys that obstacles of all kinds share.
@@ -42,10 +42,10 @@ macro_rules! obstacles {
     pub struct $obstacle {
         $($own)*
         /// Coefficient of Coulomb friction; 0 if not given.
-        #[serde(default, skip_serializing_if = "is_zero")]
+        #[serde(default, skip_serializing_if = "is_default")]
         pub friction: f64,
         /// Coefficient of restitution, from 0 to 1; 0 if not given.
-        #[serde(default, skip_serializing_if = "is_zero")]
+        #[serde(default, skip_serializing_if = "is_default")]
         pub restitution: f64,
         /// Thickness (m), with which edges and triangles of bodies touch it and not only particles.
         #[serde(default)]
@@ -135,14 +135,6 @@ moves as a solid
 
 }
 
-#[allow(
-    clippy::trivially_copy_pass_by_ref,
-    reason = "serde calls it so; on 32 bits clippy lets it"
-)]
-pub(super) fn is_zero(number: &f64) -> bool {
-    *number == 0.0
-}
-
 /// Level floor: `floor = -1.0`, or `floor = { height = -1.0, friction = 0.4, restitution = 0.8 }`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
 #[serde(untagged)]
@@ -154,7 +146,7 @@ pub enum Floor {
 }
 
 /// Level floor with its friction, restitution and thickness.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct FloorSpec {
     /// Height (m).
@@ -163,7 +155,7 @@ pub struct FloorSpec {
     #[serde(default)]
     pub friction: f64,
     /// Coefficient of restitution, from 0 to 1; 0 if not given.
-    #[serde(default, skip_serializing_if = "is_zero")]
+    #[serde(default, skip_serializing_if = "is_default")]
     pub restitution: f64,
     /// Thickness (m), with which it repels bodies before they touch it.
     #[serde(default, skip_serializing_if = "Option::is_none")]

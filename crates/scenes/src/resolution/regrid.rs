@@ -69,15 +69,14 @@ pub fn regridded(scene: &Description, factor: f64, particles: usize) -> Result<R
     })
 }
 
+/// Counts the bodies that may have a grid.
+fn gridded(scene: &Description) -> usize {
+    scene.cloth.len() + scene.jelly.len() + scene.solid.len() + scene.fluid.len()
+}
+
 /// Checks that a body has a grid, and that nothing in the scene refers to single particles.
 fn check_grids(scene: &Description) -> Result<(), String> {
-    let is_gridded = [
-        scene.cloth.len(),
-        scene.jelly.len(),
-        scene.solid.len(),
-        scene.fluid.len(),
-    ] != [0; 4];
-    if !is_gridded {
+    if gridded(scene) == 0 {
         return Err("no body has a grid that could be finer".into());
     }
     if !scene.fluid.is_empty() && !scene.body.is_empty() {
@@ -122,13 +121,7 @@ fn keep_forces_per_mass(
     let by_particle = own.drag.is_some() || own.drag_per_mass.is_some();
     let wind = scene.wind.as_mut();
     let pushed = wind.filter(|wind| wind.force.is_some() || wind.force_per_mass.is_some());
-    let bodies = [
-        scene.cloth.len(),
-        scene.jelly.len(),
-        scene.solid.len(),
-        scene.fluid.len(),
-    ];
-    let uneven = places.kept > 0 || bodies.iter().sum::<usize>() > 1;
+    let uneven = places.kept > 0 || gridded(own) > 1;
     if uneven && (by_particle || pushed.is_some()) {
         return Err("drag or wind is the same for each particle of several bodies".into());
     }
