@@ -27,11 +27,8 @@ pub fn scale_springs(description: &mut Description, stiffness: f64, damping: f64
         let strips = body.buckling.into_iter().flatten();
         let of_strips = strips.flat_map(|law| [&mut law.bending, &mut law.compression]);
         of_springs.chain(of_strips).for_each(|k| *k *= stiffness);
-        for (numbers, factor) in [(body.damping, time), (body.damping_ratio, ratio)] {
-            numbers
-                .into_iter()
-                .flatten()
-                .for_each(|number| *number *= factor);
+        for (damping, factor) in [(body.damping, time), (body.damping_ratio, ratio)] {
+            damping.into_iter().flatten().for_each(|c| *c *= factor);
         }
     }
     for solid in &mut description.solid {
@@ -336,9 +333,6 @@ fn turned(before: Option<Triple>, pose: &Pose) -> Option<Triple> {
     };
     let before = rotation(before.unwrap_or_default().into());
     let now = Rotation3::from_matrix_unchecked(orientation.rotation * before);
-    Some(
-        UnitQuaternion::from_rotation_matrix(&now)
-            .scaled_axis()
-            .into(),
-    )
+    let now = UnitQuaternion::from_rotation_matrix(&now);
+    Some(now.scaled_axis().into())
 }

@@ -11,30 +11,10 @@ use nalgebra::Rotation3;
 
 use super::files::Files;
 use super::pins::{Pinned, pins};
-use crate::budget::{
-    BODIES, PARTICLES, PARTS, PINS, RODS, SMOOTHED, SPRINGS, STRIPS, TETRAHEDRA, TOUCHING,
-};
 use crate::check::{COORDINATES, is_coordinate};
 use crate::description::{Fluid, Keys, Spot, Triple};
 use crate::fault::Fault;
 use crate::setup::Presentation;
-
-/// Numbers of those parts of a body that the budget counts.
-#[derive(Default)]
-pub(super) struct Counts {
-    pub particles: usize,
-    /// Springs that belong to no grid.
-    pub springs: usize,
-    /// Springs that buckle.
-    pub strips: usize,
-    pub rods: usize,
-    /// Parts of a rigid body.
-    pub parts: usize,
-    /// Particles of fluid, and those of them that are walls.
-    pub smoothed: usize,
-    pub walls: usize,
-    pub tetrahedra: usize,
-}
 
 /// Body of a scene. The keys of its faults are relative to the body.
 pub(super) trait Body: Keys {
@@ -61,8 +41,6 @@ pub(super) fn placed(
 /// Bodies of a scene that were added so far.
 #[derive(Default)]
 pub(super) struct Assembly<'a> {
-    /// Whether surfaces touch.
-    touching: bool,
     /// Liquid that touches rigid bodies.
     pub liquid: Option<&'a Fluid>,
     pub masses: Vec<f64>,
@@ -102,16 +80,7 @@ pub(super) struct Assembly<'a> {
     pub soaked: Vec<Range<usize>>,
 }
 
-impl<'a> Assembly<'a> {
-    /// Creates an assembly without bodies.
-    pub fn new(touching: bool, liquid: Option<&'a Fluid>) -> Self {
-        Self {
-            touching,
-            liquid,
-            ..Self::default()
-        }
-    }
-
+impl Assembly<'_> {
     /// Adds particles of these masses (kg), which have a velocity (m/s) in common, and returns the
     /// number of the first.
     pub fn add_particles(
@@ -164,26 +133,6 @@ impl<'a> Assembly<'a> {
         surface.bodies.push(self.masses.len());
     }
 
-    /// Takes the parts of a body from the budget.
-    pub fn spend(&self, files: &mut Files, counts: &Counts) -> Result<(), Fault> {
-        let touching = if self.touching { counts.particles } else { 0 };
-        for (count, part) in [
-            (1, BODIES),
-            (counts.particles, PARTICLES),
-            (touching, TOUCHING),
-            (counts.springs, SPRINGS),
-            (counts.strips, STRIPS),
-            (counts.rods, RODS),
-            (counts.parts, PARTS),
-            (counts.smoothed, SMOOTHED),
-            (counts.walls, PINS),
-            (counts.tetrahedra, TETRAHEDRA),
-        ] {
-            files.budget.spend("", count, part)?;
-        }
-        Ok(())
-    }
-
     /// Adds the body of a key, with its pins.
     pub fn add(&mut self, key: &str, body: &dyn Body, files: &mut Files) -> Result<(), Fault> {
         let (first, noted) = (self.masses.len(), self.presentation.notes.len());
@@ -215,15 +164,10 @@ impl<'a> Assembly<'a> {
             }
         }
         let masses = &self.masses[first..];
-        match masses
-            .iter()
-            .position(|m| !m.is_finite() || !m.recip().is_finite())
-        {
-            Some(i) => Err(Fault::new(
-                "",
-                format!("its particle {i} would have a mass of {:e} kg", masses[i]),
-            )),
-            None => Ok(()),
-        }
+        let is_wrong = |m: &f64| !m.is_finite() || !m.recip().is_finite();
+        masses.iter().position(is_wrong).map_or(Ok(()), |i| {
+            let why = format!("its particle {i} would have a mass of {:e} kg", masses[i]);
+            Err(Fault::new("", why))
+        })
     }
 }

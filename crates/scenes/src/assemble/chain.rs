@@ -2,10 +2,11 @@
 
 use a3_core::{Constraint, Spring, SpringKind, SpringLaw, Vector3};
 
-use super::assembly::{Assembly, Body, Counts};
+use super::assembly::{Assembly, Body};
 use super::files::Files;
 use super::laws::{springs, strip};
 use super::skins::SkinSpec;
+use crate::budget::{RODS, SPRINGS, STRIPS};
 use crate::check::{at, at_least, one_of, positive};
 use crate::description::{Chain, Particles, Spot};
 use crate::fault::Fault;
@@ -21,14 +22,10 @@ impl Body for Chain {
             let why = format!("a chain has at least 2 particles, not {n}");
             return Err(Fault::new("particles", why));
         }
-        let counts = Counts {
-            particles: n,
-            springs: n * usize::from(!self.rigid),
-            strips: n * usize::from(self.buckling.is_some()),
-            rods: n * usize::from(self.rigid),
-            ..Counts::default()
-        };
-        assembly.spend(files, &counts)?;
+        let count = |is_there: bool| n * usize::from(is_there);
+        let (springs, strips) = (count(!self.rigid), count(self.buckling.is_some()));
+        let rods = count(self.rigid);
+        files.spend(n, &[(springs, SPRINGS), (strips, STRIPS), (rods, RODS)])?;
         let (from, to) = (Vector3::from(self.from), Vector3::from(self.to));
         at("mass", positive("it", self.mass))?;
         at("stiffness", at_least(0.0, "it", self.stiffness))?;
@@ -103,12 +100,7 @@ impl Body for Particles {
             let why = "there must be at least one position";
             return Err(Fault::new("positions", why));
         }
-        let counts = Counts {
-            particles: n,
-            springs: self.springs.len(),
-            ..Counts::default()
-        };
-        assembly.spend(files, &counts)?;
+        files.spend(n, &[(self.springs.len(), SPRINGS)])?;
         let same = self.mass.map(|mass| vec![mass; n]);
         let listed = Some(self.masses.clone()).filter(|all| !all.is_empty());
         let (is_same, masses) = one_of(("mass", same), ("masses", listed))?;

@@ -3,10 +3,11 @@
 use a3_core::elements::Sheet;
 use a3_core::{Grid, SpringKind, Vector3};
 
-use super::assembly::{Assembly, Body, Counts};
+use super::assembly::{Assembly, Body};
 use super::files::Files;
 use super::laws::{damping_time, strip};
 use super::skins::SkinSpec;
+use crate::budget::STRIPS;
 use crate::check::{at, at_least, positive_one};
 use crate::description::{Cloth, Spot};
 use crate::fault::Fault;
@@ -50,12 +51,8 @@ impl Body for Cloth {
     fn add_to(&self, assembly: &mut Assembly, files: &mut Files) -> Result<(), Fault> {
         let grid = self.checked_grid()?;
         let particles = grid.particles();
-        let counts = Counts {
-            particles,
-            strips: 2 * particles * usize::from(self.buckling.is_some()),
-            ..Counts::default()
-        };
-        assembly.spend(files, &counts)?;
+        let strips = 2 * particles * usize::from(self.buckling.is_some());
+        files.spend(particles, &[(strips, STRIPS)])?;
         let (rows, cols, spacing) = (grid.rows(), grid.cols(), self.checked_spacing()?);
         let mass = self.checked_mass()?;
         let [structural, shear, bend] = self.stiffness;

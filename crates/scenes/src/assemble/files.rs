@@ -1,11 +1,11 @@
-//! Files of meshes that a scene names, and its budget.
+//! What the bodies of a scene are made from: files of meshes, and its budget.
 
 use std::sync::Arc;
 
 use a3_core::contact::{ClosedMesh, Shape};
 use a3_core::{Vector3, rotation};
 
-use crate::budget::{Budget, FACES, TRIANGLES};
+use crate::budget::{BODIES, Budget, FACES, PARTICLES, Part, TOUCHING, TRIANGLES};
 use crate::check::{at, positive};
 use crate::description::Triple;
 use crate::fault::Fault;
@@ -15,9 +15,21 @@ use crate::mesh::Mesh;
 pub(super) struct Files<'a> {
     pub budget: Budget,
     pub mesh: &'a mut dyn FnMut(&str) -> Result<Mesh, String>,
+    /// Whether surfaces touch.
+    pub touching: bool,
 }
 
 impl Files<'_> {
+    /// Takes a body, its particles and other parts from the budget, before any memory is reserved.
+    pub fn spend(&mut self, particles: usize, others: &[(usize, Part)]) -> Result<(), Fault> {
+        let touching = if self.touching { particles } else { 0 };
+        let own = [(1, BODIES), (particles, PARTICLES), (touching, TOUCHING)];
+        for (count, part) in own.iter().chain(others) {
+            self.budget.spend("", *count, *part)?;
+        }
+        Ok(())
+    }
+
     /// Reads the mesh of a file.
     pub fn read(&mut self, file: &str) -> Result<Mesh, Fault> {
         at("file", (self.mesh)(file))

@@ -10,11 +10,12 @@ use a3_core::contact::Skin;
 use a3_core::elements::{Fluid as Liquid, FluidLaw, Outflow};
 use a3_core::{Network, Path, Pin as Held, Rounded, Vector3};
 
-use super::assembly::{Assembly, Body, Counts};
+use super::assembly::{Assembly, Body};
 use super::files::Files;
 use super::outflow::{MAX_OUTFLOWS, SLACK, spaces};
 use super::places::{LAYERS, Places};
 use super::skins::point_skin;
+use crate::budget::{PINS, SMOOTHED};
 use crate::check::{at, at_least, key_of, positive};
 use crate::description::{Fluid, FluidShape, Inflow, SkinKeys};
 use crate::fault::Fault;
@@ -165,13 +166,11 @@ impl Body for Fluid {
         let walls = tank.map_or(0, |tank| {
             tank.count(LAYERS.into()).saturating_sub(tank.count(0))
         });
-        let counts = Counts {
-            particles: flowing.saturating_add(walls),
-            smoothed: flowing.saturating_add(walls),
-            walls: walls.saturating_add(flows_in),
-            ..Counts::default()
-        };
-        assembly.spend(files, &counts)?;
+        let (all, pinned) = (
+            flowing.saturating_add(walls),
+            walls.saturating_add(flows_in),
+        );
+        files.spend(all, &[(all, SMOOTHED), (pinned, PINS)])?;
         self.check_inside()?;
         let [fluid, walls] = fluid_points(self)?;
         let first = assembly.masses.len();

@@ -2,11 +2,12 @@
 
 use a3_core::{SpringKind, SpringLaw, Vector3};
 
-use super::assembly::{Assembly, Body, Counts, placed};
+use super::assembly::{Assembly, Body, placed};
 use super::files::Files;
 use super::lattice::Lattice;
 use super::laws::damping_time;
 use super::skins::SkinSpec;
+use crate::budget::SPRINGS;
 use crate::check::{at, at_least, positive, positive_one};
 use crate::description::{Jelly, Spot};
 use crate::fault::Fault;
@@ -15,12 +16,7 @@ impl Body for Jelly {
     fn add_to(&self, assembly: &mut Assembly, files: &mut Files) -> Result<(), Fault> {
         let lattice = Lattice(self.grid);
         let particles = lattice.particles("jelly", [8, 8, 8])?;
-        let counts = Counts {
-            particles,
-            springs: particles.saturating_mul(16),
-            ..Counts::default()
-        };
-        assembly.spend(files, &counts)?;
+        files.spend(particles, &[(particles.saturating_mul(16), SPRINGS)])?;
         for size in self.size {
             at("size", positive("each edge", size))?;
         }
@@ -31,17 +27,13 @@ impl Body for Jelly {
         } else {
             mass
         };
-        let [structural, shear, bend] = self.stiffness;
+        let structural = self.stiffness[0];
         for k in self.stiffness {
             at("stiffness", at_least(0.0, "each", k))?;
         }
         let time = damping_time(self.damping, self.damping_ratio, mass, structural)?;
-        let law = |kind, rest_length| {
-            let stiffness = match kind {
-                SpringKind::Structural => structural,
-                SpringKind::Shear => shear,
-                SpringKind::Bend => bend,
-            };
+        let law = |kind: SpringKind, rest_length| {
+            let stiffness = self.stiffness[kind as usize];
             SpringLaw {
                 stiffness,
                 rest_length,

@@ -3,12 +3,12 @@
 use a3_core::elements::{Gas, GasLaw};
 use a3_core::{SpringKind, SpringLaw, Vector3};
 
-use super::assembly::{Assembly, Body, Counts, placed};
+use super::assembly::{Assembly, Body, placed};
 use super::files::Files;
 use super::laws::damping_time;
 use super::pins::extreme;
 use super::skins::SkinSpec;
-use crate::budget::TRIANGLES;
+use crate::budget::{SPRINGS, TRIANGLES};
 use crate::check::{at, positive};
 use crate::description::{MeshCloth, Spot};
 use crate::fault::Fault;
@@ -31,12 +31,7 @@ impl Body for MeshCloth {
         if mesh.triangles.is_empty() {
             return Err(Fault::new("file", "the mesh has no triangles"));
         }
-        let counts = Counts {
-            particles: mesh.positions.len(),
-            springs: 3 * mesh.triangles.len(),
-            ..Counts::default()
-        };
-        assembly.spend(files, &counts)?;
+        files.spend(mesh.positions.len(), &[(3 * mesh.triangles.len(), SPRINGS)])?;
         let scale = self.scale.unwrap_or(1.0);
         at("scale", positive("it", scale))?;
         at("density", positive("it", self.density))?;
@@ -45,20 +40,15 @@ impl Body for MeshCloth {
         let masses: Vec<_> = areas.iter().map(|area| area * self.density).collect();
         if let Some(bad) = masses.iter().position(|m| !m.is_finite() || *m <= 0.0) {
             let (number, [x, y, z]) = (mesh.number(bad), mesh.positions[bad]);
-            return Err(Fault::new(
-                "file",
-                format!("the triangles around point {number} at ({x}, {y}, {z}) have no area"),
-            ));
+            let at = format!("point {number} at ({x}, {y}, {z})");
+            let why = format!("the triangles around {at} have no area");
+            return Err(Fault::new("file", why));
         }
         let mean = masses.iter().sum::<f64>() / masses.len() as f64;
-        let [structural, bend] = self.stiffness;
+        let structural = self.stiffness[0];
         let time = damping_time(self.damping, self.damping_ratio, mean, structural)?;
         let law = |kind, length| {
-            let k = if kind == SpringKind::Bend {
-                bend
-            } else {
-                structural
-            };
+            let k = self.stiffness[usize::from(kind == SpringKind::Bend)];
             SpringLaw::new(k, length, k * time)
         };
         let springs = at("stiffness", scaled.springs(law))?;

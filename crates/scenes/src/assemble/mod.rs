@@ -95,8 +95,11 @@ impl Description {
         asked: Option<Grid>,
         mesh: &mut dyn FnMut(&str) -> Result<Mesh, String>,
     ) -> Result<Setup, Fault> {
-        let budget = Budget::new(asked);
-        let mut files = Files { budget, mesh };
+        let mut files = Files {
+            budget: Budget::new(asked),
+            mesh,
+            touching: network::touches(self),
+        };
         let (mut model, mut state, presentation, touch) = if let Some(circle) = &self.circle {
             let model = Model::Points(Arc::new(Circling));
             (model, circle.start.to_vec(), Presentation::default(), None)

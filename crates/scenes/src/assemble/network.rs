@@ -116,7 +116,7 @@ pub(super) fn build(description: &Description, files: &mut Files) -> Result<Netw
         drops: assembly.drops,
         bodies: true,
     };
-    if touches(description) {
+    if files.touching {
         let touch = Touch {
             bodies: description.self_collision || !description.body.is_empty(),
             ..touch.clone()
@@ -135,7 +135,7 @@ pub(super) fn build(description: &Description, files: &mut Files) -> Result<Netw
 
 /// Returns whether surfaces touch: those of rigid bodies and of bodies with a restitution always
 /// do.
-fn touches(description: &Description) -> bool {
+pub(super) fn touches(description: &Description) -> bool {
     let asked = description.self_collision || obstacles::is_one_thick(description);
     let is_elastic = |(_, body): (_, &dyn Body)| body.skin().restitution != 0.0;
     asked || !description.body.is_empty() || bodies(description).any(is_elastic)
@@ -149,12 +149,13 @@ fn assembled<'a>(description: &'a Description, files: &mut Files) -> Result<Asse
         return Err(Fault::new("", why));
     }
     if count == 0 {
-        return Err(Fault::new(
-            "",
-            "the scene is empty: it needs at least one of cloth, jelly, mesh, solid, chain, particles, body, fluid, circle",
-        ));
+        let why = "the scene is empty: it needs at least one of cloth, jelly, mesh, solid, chain, particles, body, fluid, circle";
+        return Err(Fault::new("", why));
     }
-    let mut assembly = Assembly::new(touches(description), description.fluid.first());
+    let mut assembly = Assembly {
+        liquid: description.fluid.first(),
+        ..Assembly::default()
+    };
     for (key, body) in bodies(description) {
         let added = assembly.add(&key, body, files);
         added.map_err(|fault| fault.within(&key))?;

@@ -16,37 +16,28 @@ use crate::fault::Fault;
 const MAX_OBSTACLES: usize = 1000;
 
 /// Returns whether an obstacle has a thickness, so that surfaces touch it.
-pub(super) fn is_one_thick(description: &Description) -> bool {
-    let spheres = description.sphere.iter().map(|spec| spec.thickness);
-    let boxes = description.boxes.iter().map(|spec| spec.thickness);
-    let capsules = description.capsule.iter().map(|spec| spec.thickness);
-    let solids = description.obstacle.iter().map(|spec| spec.thickness);
-    let floor = match description.floor {
-        Some(Floor::Table(FloorSpec { thickness, .. })) => thickness,
-        _ => None,
-    };
-    let mut all = spheres.chain(boxes).chain(capsules).chain(solids);
-    floor.is_some() || all.any(|thickness| thickness.is_some())
+pub(super) fn is_one_thick(all: &Description) -> bool {
+    let spheres = all.sphere.iter().map(|spec| spec.thickness);
+    let boxes = all.boxes.iter().map(|spec| spec.thickness);
+    let capsules = all.capsule.iter().map(|spec| spec.thickness);
+    let solids = all.obstacle.iter().map(|spec| spec.thickness);
+    let mut thicknesses = spheres.chain(boxes).chain(capsules).chain(solids);
+    thicknesses.any(|thickness| thickness.is_some())
+        || matches!(all.floor, Some(Floor::Table(floor)) if floor.thickness.is_some())
 }
 
 /// Adds the obstacles of the description, the floor last.
 pub(super) fn add(
-    description: &Description,
+    all: &Description,
     network: &mut Network,
     files: &mut Files,
 ) -> Result<(), Fault> {
-    each(["sphere", "radius"], &description.sphere, network, sphere)?;
-    each(["box", "size"], &description.boxes, network, cuboid)?;
-    each(
-        ["capsule", "radius"],
-        &description.capsule,
-        network,
-        capsule,
-    )?;
-    each(["obstacle", "file"], &description.obstacle, network, |it| {
-        solid(it, files)
-    })?;
-    match &description.floor {
+    each(["sphere", "radius"], &all.sphere, network, sphere)?;
+    each(["box", "size"], &all.boxes, network, cuboid)?;
+    each(["capsule", "radius"], &all.capsule, network, capsule)?;
+    let solid = |spec: &ObstacleSpec| solid(spec, files);
+    each(["obstacle", "file"], &all.obstacle, network, solid)?;
+    match &all.floor {
         None => Ok(()),
         Some(spec) => at("floor", network.add_obstacle(floor(spec)?)),
     }

@@ -6,10 +6,11 @@ use a3_core::rigid::{Body as Rigid, MassProperties, Part, Rotation};
 use a3_core::{Vector3, rotation};
 use nalgebra::{Matrix3, Rotation3, UnitQuaternion};
 
-use super::assembly::{Assembly, Body, Counts};
+use super::assembly::{Assembly, Body};
 use super::files::Files;
 use super::places::LAYERS;
 use super::skins::point_skin;
+use crate::budget::{PARTS, SMOOTHED};
 use crate::check::{at, at_least, key_of, positive, positive_one};
 use crate::description::{Fluid, Keys, PartSpec, RigidBody};
 use crate::fault::Fault;
@@ -71,13 +72,8 @@ impl Body for RigidBody {
                 .extend(leak(&parts, wet.len(), fluid));
         }
         let points = parts.iter().map(|part| part.shape.simplices().points.len());
-        let counts = Counts {
-            particles: 1 + points.sum::<usize>() + wet.len(),
-            smoothed: wet.len(),
-            parts: parts.len(),
-            ..Counts::default()
-        };
-        assembly.spend(files, &counts)?;
+        let particles = 1 + points.sum::<usize>() + wet.len();
+        files.spend(particles, &[(parts.len(), PARTS), (wet.len(), SMOOTHED)])?;
         let properties = self.properties(&parts)?;
         let (moments, axes) = properties.principal();
         for part in &mut parts {
@@ -86,11 +82,7 @@ impl Body for RigidBody {
         }
         let center = assembly.masses.len();
         let made = Rigid::new(center, center + 1, moments, parts);
-        let key = if self.inertia.is_some() {
-            "inertia"
-        } else {
-            "parts"
-        };
+        let key = self.inertia.map_or("parts", |_| "inertia");
         let points = wet
             .iter()
             .map(|place| axes.tr_mul(&(place - properties.center)));

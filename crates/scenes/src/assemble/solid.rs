@@ -3,12 +3,12 @@
 use a3_core::elements::{Hyperelastic, Material, Solid as Elastic};
 use a3_core::{Error, Vector3};
 
-use super::assembly::{Assembly, Body, Counts, placed};
+use super::assembly::{Assembly, Body, placed};
 use super::files::Files;
 use super::lattice::Lattice;
 use super::pins::extreme;
 use super::skins::SkinSpec;
-use crate::budget::CELLS;
+use crate::budget::{CELLS, TETRAHEDRA};
 use crate::check::{at, at_least, positive};
 use crate::description::{Solid, SolidModel, Spot};
 use crate::fault::Fault;
@@ -124,12 +124,7 @@ impl Body for Solid {
                 return Err(Fault::new("file", why));
             }
         };
-        let counts = Counts {
-            particles,
-            tetrahedra,
-            ..Counts::default()
-        };
-        assembly.spend(files, &counts)?;
+        files.spend(particles, &[(tetrahedra, TETRAHEDRA)])?;
         let material = self.material()?;
         at("density", positive("it", self.density))?;
         let source = if mesh.is_some() { "file" } else { "size" };
