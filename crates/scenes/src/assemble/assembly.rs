@@ -10,7 +10,7 @@ use a3_core::{Constraint, Spring, Vector3};
 use nalgebra::Rotation3;
 
 use super::files::Files;
-use super::pins::{Pinned, pins};
+use super::pins::Pinned;
 use crate::check::{COORDINATES, is_coordinate};
 use crate::description::{Fluid, Keys, Spot, Triple};
 use crate::fault::Fault;
@@ -116,15 +116,6 @@ impl Assembly<'_> {
         }));
     }
 
-    /// Adds buckling springs whose particles are counted from `first`.
-    pub fn add_strips(&mut self, first: usize, strips: Vec<Buckling>) {
-        self.strips.extend(strips.into_iter().map(|s| Buckling {
-            i: s.i + first,
-            j: s.j + first,
-            ..s
-        }));
-    }
-
     /// Adds the surface of the body that was added last. Its particles are counted from `first`.
     pub fn add_surface(&mut self, first: usize, triangles: impl IntoIterator<Item = [u32; 3]>) {
         let triangles = triangles.into_iter().map(|t| t.map(|i| i + first as u32));
@@ -147,9 +138,8 @@ impl Assembly<'_> {
         }
         let positions = &self.positions[first..];
         let spot = |spot| body.spot(spot, positions);
-        let pins = pins(body.pins(), positions, &mut files.budget, spot)?;
-        self.pins.add(first, pins);
-        Ok(())
+        let (pins, budget) = (body.pins(), &mut files.budget);
+        self.pins.add(first, pins, positions, budget, spot)
     }
 
     /// Checks that the positions of the particles from `first` on are within the bounds, and that

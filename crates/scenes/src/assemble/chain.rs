@@ -70,7 +70,8 @@ impl Body for Chain {
         }
         if let Some(law) = &self.buckling {
             let strip = |i| strip(law, [i, i + 2], 2.0 * rest_length, [0.0, 0.0]);
-            assembly.add_strips(first, (0..n - 2).map(strip).collect());
+            let strips = (first..first + n - 2).map(strip);
+            assembly.strips.extend(strips);
         }
         Ok(())
     }

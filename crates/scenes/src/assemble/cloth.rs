@@ -57,18 +57,17 @@ impl Body for Cloth {
         let mass = self.checked_mass()?;
         let [structural, shear, bend] = self.stiffness;
         let time = damping_time(self.damping, self.damping_ratio, mass, structural)?;
-        let sheet = at("stiffness", Sheet::new(grid, spacing, self.stiffness, time))?;
-        let (sheet, strips) = match &self.buckling {
-            None => (sheet, vec![]),
-            Some(law) => {
-                let ends = sheet.springs().filter(|s| s.kind == SpringKind::Bend);
-                let tension = [bend, bend * time];
-                let strips = ends.map(|s| strip(law, [s.i, s.j], 2.0 * spacing, tension));
-                let strips = strips.collect();
-                let others = Sheet::new(grid, spacing, [structural, shear, 0.0], time);
-                (at("stiffness", others)?, strips)
-            }
-        };
+        let first = assembly.masses.len();
+        let mut sheet = at("stiffness", Sheet::new(grid, spacing, self.stiffness, time))?;
+        if let Some(law) = &self.buckling {
+            let ends = sheet.springs().filter(|s| s.kind == SpringKind::Bend);
+            let ends = ends.map(|s| [s.i, s.j].map(|i| first + i));
+            let tension = [bend, bend * time];
+            let strips = ends.map(|ends| strip(law, ends, 2.0 * spacing, tension));
+            assembly.strips.extend(strips);
+            let others = Sheet::new(grid, spacing, [structural, shear, 0.0], time);
+            sheet = at("stiffness", others)?;
+        }
         let (right, down) = (self.axis("right")?, self.axis("down")?);
         if right.dot(&down).abs() > 1e-6 {
             let key = if self.down.is_some() { "down" } else { "right" };
@@ -86,7 +85,6 @@ impl Body for Cloth {
         let row = gathered(cols, spacing, self.folds, self.turn);
         let middle = 0.5 * row[cols - 1][0];
         let out = down.cross(&right);
-        let first = assembly.masses.len();
         let velocity = Vector3::from(self.velocity.unwrap_or_default());
         let sway = Vector3::from(self.sway.unwrap_or_default());
         for i in 0..rows {
@@ -103,7 +101,6 @@ impl Body for Cloth {
         assembly.skins.extend(skin.uniform(&masses, spacing)?);
         assembly.masses.extend(masses);
         assembly.add_surface(first, grid.triangles().map(|t| t.map(|i| i as u32)));
-        assembly.add_strips(first, strips);
         assembly.sheets.push(sheet.starting_at(first));
         assembly.strain_limit = self.strain_limit;
         Ok(())

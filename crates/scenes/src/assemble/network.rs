@@ -8,7 +8,7 @@ use a3_core::{Network, ParticleSystem, Touch, Vector3};
 
 use super::assembly::{Assembly, Body};
 use super::files::Files;
-use super::{constraints, fluid, forces, joints, laws, obstacles, pins, state};
+use super::{constraints, fluid, forces, joints, laws, obstacles, state};
 use crate::budget::SPRINGS;
 use crate::check::{at, key_of};
 use crate::description::Description;
@@ -58,8 +58,8 @@ pub(super) fn build(description: &Description, files: &mut Files) -> Result<Netw
     let given = given.filter(|positions| positions.len() == n);
     let given = given.map(|all| all.iter().map(|p| Vector3::from(*p)).collect::<Vec<_>>());
     let positions = given.as_ref().unwrap_or(&assembly.positions);
-    let more = pins::pins(&description.pin, positions, budget, |_| None)?;
-    assembly.pins.add(0, more);
+    let pins = &mut assembly.pins;
+    pins.add(0, &description.pin, positions, budget, |_| None)?;
     let mut state = state::of(&assembly.positions, &assembly.velocities);
     let mut network = at("", Network::new(assembly.masses))?;
     for sheet in assembly.sheets {

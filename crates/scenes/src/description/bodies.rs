@@ -75,7 +75,8 @@ macro_rules! share_keys {
 }
 
 /// Writes bodies with their own keys, and then those that all have: a skin and pins. After `with`
-/// come the names of own keys that bodies of other kinds have too.
+/// come the names of own keys that bodies of other kinds have too. Bodies are not indented: the
+/// lines of their docs are those of the schema.
 macro_rules! bodies {
     ($(
         $(#[$about:meta])*

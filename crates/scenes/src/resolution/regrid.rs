@@ -224,15 +224,16 @@ mod tests {
 
     const CLOTH: &str = "[[cloth]]\ngrid = [11, 16]\nwidth = 1.5\ndensity = 0.2\nstiffness = [100, 50, 10]\ndamping_ratio = 0.05\n";
 
+    fn build(description: &Description) -> a3_core::Scene {
+        let setup = description.build(None, &mut |_| Err(String::new()));
+        setup.unwrap().scene
+    }
+
     #[test]
     fn a_finer_cloth_has_the_same_size_and_mass() {
         let own = Description::parse(&format!("drag = 0.01\n{CLOTH}")).unwrap();
         for (factor, grid) in [(2.0, [21, 31]), (0.5, [7, 10]), (0.2, [3, 4])] {
             let other = regridded(&own, factor, 176).unwrap();
-            let build = |description: &Description| {
-                let setup = description.build(None, &mut |_| Err(String::new()));
-                setup.unwrap().scene
-            };
             let (a, b) = (build(&own), build(&other.description));
             let cloth = &other.description.cloth[0];
             assert_eq!(cloth.grid, grid);
@@ -270,10 +271,6 @@ mod tests {
                     tank = { size = [0.6, 0.4, 0.2], at = [0.1, 0.05, 0] }\n";
         for text in [fluid, &format!("{fluid}{tank}"), &ball, cube] {
             let own = Description::parse(text).unwrap();
-            let build = |description: &Description| {
-                let setup = description.build(None, &mut |_| Err(String::new()));
-                setup.unwrap().scene
-            };
             let a = build(&own);
             let n = a.model.particles();
             for factor in [2.0, 0.5] {
