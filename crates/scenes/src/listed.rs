@@ -47,10 +47,11 @@ const NAMES: &[(&str, &str)] = &[
 /// number is not from -1e13 to 1e13.
 pub fn parse_json(text: &str) -> Result<(Description, Places), Fault> {
     let (listed, places): (Listed, Places) = reader::read_json(text)?;
-    let pin = Pin {
+    let mut pin = vec![Pin {
         particles: listed.pinned,
         ..Pin::default()
-    };
+    }];
+    pin.retain(|pin| !pin.particles.is_empty());
     let description = Description {
         name: listed.name,
         summary: listed.note,
@@ -61,11 +62,7 @@ pub fn parse_json(text: &str) -> Result<(Description, Places), Fault> {
             velocities: listed.velocities,
             masses: listed.mass,
             springs: listed.springs,
-            pin: if pin.particles.is_empty() {
-                vec![]
-            } else {
-                vec![pin]
-            },
+            pin,
             ..Particles::default()
         }),
         ..Description::default()

@@ -59,8 +59,9 @@ pub fn parts(scene: &Description) -> Vec<Part> {
         named(Change::SelfCollision, "self-collision"),
         named(Change::Floor, "floor"),
     ]);
-    for (kind, name) in OBSTACLES.iter().enumerate() {
-        let count = obstacles(scene, kind);
+    let (spheres, boxes) = (scene.sphere.len(), scene.boxes.len());
+    let counts = [spheres, boxes, scene.capsule.len(), scene.obstacle.len()];
+    for (kind, (name, count)) in OBSTACLES.iter().zip(counts).enumerate() {
         all.extend((0..count).map(|k| Part {
             name: if count > 1 {
                 format!("{name} {}", k + 1)
@@ -108,16 +109,6 @@ pub fn without<'a>(scene: &Description, parts: impl IntoIterator<Item = &'a Part
         }
     }
     changed
-}
-
-/// Returns the number of obstacles of a kind, by its index in [`OBSTACLES`].
-fn obstacles(scene: &Description, kind: usize) -> usize {
-    match kind {
-        0 => scene.sphere.len(),
-        1 => scene.boxes.len(),
-        2 => scene.capsule.len(),
-        _ => scene.obstacle.len(),
-    }
 }
 
 /// Makes a change, except for obstacles, whose indices depend on one another.

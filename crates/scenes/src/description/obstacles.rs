@@ -28,8 +28,8 @@ pub(crate) trait Movable {
     fn set(&mut self, keys: ObstacleKeys);
 }
 
-/// Writes obstacles with their own keys, and then those that all share, with a word for what it is
-/// that moves. They are not indented: the lines of their docs are those of the schema.
+/// Writes obstacles with their own keys, and then those that all share, whose docs name what moves.
+/// They are not indented: the lines of their docs are those of the schema.
 macro_rules! obstacles {
     ($(
         $(#[$about:meta])*
