@@ -166,10 +166,8 @@ impl Body for Fluid {
         let walls = tank.map_or(0, |tank| {
             tank.count(LAYERS.into()).saturating_sub(tank.count(0))
         });
-        let (all, pinned) = (
-            flowing.saturating_add(walls),
-            walls.saturating_add(flows_in),
-        );
+        let all = flowing.saturating_add(walls);
+        let pinned = walls.saturating_add(flows_in);
         files.spend(all, &[(all, SMOOTHED), (pinned, PINS)])?;
         self.check_inside()?;
         let [fluid, walls] = fluid_points(self)?;

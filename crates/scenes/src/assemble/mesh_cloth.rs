@@ -40,8 +40,8 @@ impl Body for MeshCloth {
         let masses: Vec<_> = areas.iter().map(|area| area * self.density).collect();
         if let Some(bad) = masses.iter().position(|m| !m.is_finite() || *m <= 0.0) {
             let (number, [x, y, z]) = (mesh.number(bad), mesh.positions[bad]);
-            let at = format!("point {number} at ({x}, {y}, {z})");
-            let why = format!("the triangles around {at} have no area");
+            let point = format!("point {number} at ({x}, {y}, {z})");
+            let why = format!("the triangles around {point} have no area");
             return Err(Fault::new("file", why));
         }
         let mean = masses.iter().sum::<f64>() / masses.len() as f64;

@@ -120,27 +120,20 @@ fn made(
     from: Triple,
     shape: impl FnOnce() -> Result<Shape, Fault>,
 ) -> Result<Obstacle, Fault> {
-    let ObstacleKeys {
-        friction,
-        restitution,
-        thickness,
-        sine,
-        shift,
-        turn,
-    } = keys;
-    let from = Vector3::from(from);
-    let (path, turn) = motion(sine.as_ref(), shift.as_ref(), turn.as_ref(), from)?;
+    let (sine, shift) = (keys.sine.as_ref(), keys.shift.as_ref());
+    let turn = keys.turn.as_ref();
+    let (path, turn) = motion(sine, shift, turn, Vector3::from(from))?;
     let shape = shape()?;
-    let thickness = thickness.unwrap_or(0.0);
-    at("friction", at_least(0.0, "it", *friction))?;
-    at("restitution", share("it", *restitution))?;
+    let thickness = keys.thickness.unwrap_or(0.0);
+    at("friction", at_least(0.0, "it", keys.friction))?;
+    at("restitution", share("it", keys.restitution))?;
     at("thickness", at_least(0.0, "it", thickness))?;
     Ok(Obstacle {
         shape,
         path,
         turn,
-        friction: *friction,
-        restitution: *restitution,
+        friction: keys.friction,
+        restitution: keys.restitution,
         thickness,
     })
 }

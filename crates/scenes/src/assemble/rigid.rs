@@ -66,10 +66,8 @@ impl Body for RigidBody {
         let mut wet = vec![];
         if let Some(fluid) = assembly.liquid {
             wet = soaked(&parts, of_parts(&parts)?.mass, fluid)?;
-            assembly
-                .presentation
-                .notes
-                .extend(leak(&parts, wet.len(), fluid));
+            let leak = leak(&parts, wet.len(), fluid);
+            assembly.presentation.notes.extend(leak);
         }
         let points = parts.iter().map(|part| part.shape.simplices().points.len());
         let particles = 1 + points.sum::<usize>() + wet.len();
@@ -83,10 +81,8 @@ impl Body for RigidBody {
         let center = assembly.masses.len();
         let made = Rigid::new(center, center + 1, moments, parts);
         let key = self.inertia.map_or("parts", |_| "inertia");
-        let points = wet
-            .iter()
-            .map(|place| axes.tr_mul(&(place - properties.center)));
-        let made = at(key, made)?.with_points(points);
+        let own = |place: &Vector3<f64>| axes.tr_mul(&(place - properties.center));
+        let made = at(key, made)?.with_points(wet.iter().map(own));
         let turn = rotation(Vector3::from(self.rotation.unwrap_or_default()));
         let orientation = Rotation3::from_matrix_unchecked(turn * axes);
         let q = *UnitQuaternion::from_rotation_matrix(&orientation).quaternion();

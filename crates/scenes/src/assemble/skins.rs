@@ -38,9 +38,8 @@ impl SkinSpec {
     /// Creates the description of a body's skin, over springs of a stiffness (N/m) whose damping
     /// over stiffness is `time` (s).
     pub fn of(body: &dyn Keys, stiffness: f64, time: f64) -> Self {
-        let keys = body.skin();
         Self {
-            keys,
+            keys: body.skin(),
             stiffness,
             time,
         }
