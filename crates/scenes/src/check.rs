@@ -64,11 +64,11 @@ pub(crate) fn positive(what: &str, value: f64) -> Result<(), String> {
     }
 }
 
-/// Returns the number of the one key of two that is given, and whether that is the first.
-pub(crate) fn one_of(
-    (a, first): (&str, Option<f64>),
-    (b, second): (&str, Option<f64>),
-) -> Result<(bool, f64), Fault> {
+/// Returns the value of the one key of two that is given, and whether that is the first.
+pub(crate) fn one_of<T>(
+    (a, first): (&str, Option<T>),
+    (b, second): (&str, Option<T>),
+) -> Result<(bool, T), Fault> {
     match (first, second) {
         (Some(x), None) => Ok((true, x)),
         (None, Some(x)) => Ok((false, x)),
@@ -78,6 +78,15 @@ pub(crate) fn one_of(
             format!("one of the keys `{a}` and `{b}` is needed"),
         )),
     }
+}
+
+/// Returns the same as `one_of`. The number must be finite and above 0.
+pub(crate) fn positive_one(
+    (a, first): (&str, Option<f64>),
+    (b, second): (&str, Option<f64>),
+) -> Result<(bool, f64), Fault> {
+    let (is_first, number) = one_of((a, first), (b, second))?;
+    at(if is_first { a } else { b }, positive("it", number)).map(|()| (is_first, number))
 }
 
 /// Returns the key of part k of a kind. The only part of a kind has no number.

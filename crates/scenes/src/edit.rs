@@ -3,10 +3,9 @@
 use a3_core::Network;
 use a3_core::elements::Fluid;
 
-use crate::description::{
-    ConstraintSpec, Description, Particles, RigidBody, SpringSpec, State, Triple,
-};
+use crate::description::{ConstraintSpec, Description, Particles, RigidBody, SpringSpec, Triple};
 use crate::renumber;
+use crate::snapshot::rows;
 use crate::splice::{Splice, keep};
 
 /// Edit of a scene. Particles have the numbers that they have before the edit.
@@ -113,16 +112,11 @@ fn check_ends(network: &Network, [i, j]: [usize; 2]) -> Result<(), String> {
 /// Returns the number of the first particle of the fluids, which are the last.
 fn first_of_fluid(network: &Network) -> usize {
     let n = network.particles();
-    let fluid = network.fluid();
     let first = |fluid: &Fluid| {
-        fluid
-            .particles()
-            .iter()
-            .chain(fluid.members().drained())
-            .min()
-            .copied()
+        let all = fluid.particles().iter().chain(fluid.members().drained());
+        all.min().copied()
     };
-    let first = fluid.and_then(first);
+    let first = network.fluid().and_then(first);
     first.map_or(n, |i| i as usize)
 }
 
@@ -148,32 +142,16 @@ impl Edited {
         let alone = alone.map_err(|fault| fault.to_string())?.scene;
         let n = alone.model.particles();
         self.description.body.push(body.clone());
-        let rows = |half: &[f64]| -> Vec<Triple> {
-            (0..n)
-                .map(|i| [half[i], half[n + i], half[2 * n + i]])
-                .collect()
-        };
         let mut halves = alone.state.chunks_exact(3 * n);
         let mut next = || halves.next().map(rows).unwrap_or_default();
         self.insert(network.particles(), (next(), next()));
-        self.bodies = Splice {
-            at: network.bodies().len(),
-            removed: 0,
-            added: 1,
-        };
-        if let Some(State {
-            orientations,
-            angular_momenta,
-            ..
-        }) = &mut self.description.state
-        {
+        self.bodies = Splice::new(network.bodies().len(), 0, 1);
+        if let Some(state) = &mut self.description.state {
             let turned = &alone.state[6 * n..];
-            if !orientations.is_empty() {
-                orientations.push([0, 1, 2, 3].map(|k| turned[k]));
-            }
-            if !angular_momenta.is_empty() {
-                angular_momenta.push([4, 5, 6].map(|k| turned[k]));
-            }
+            let orientation = [0, 1, 2, 3].map(|k| turned[k]);
+            self.bodies.of(&mut state.orientations, [orientation]);
+            let momentum = [4, 5, 6].map(|k| turned[k]);
+            self.bodies.of(&mut state.angular_momenta, [momentum]);
         }
         Ok(())
     }
@@ -274,59 +252,37 @@ impl Edited {
 
     /// Adds rows of particles to the state, and numbers all others anew.
     fn insert(&mut self, at: usize, (positions, velocities): (Vec<Triple>, Vec<Triple>)) {
-        self.particles = Splice {
-            at,
-            removed: 0,
-            added: positions.len(),
-        };
+        self.particles = Splice::new(at, 0, positions.len());
         renumber::particles(&mut self.description, self.particles);
         if let Some(state) = &mut self.description.state {
             let moves = velocities.iter().any(|v| *v != [0.0; 3]);
             if state.velocities.is_empty() && moves {
                 state.velocities = vec![[0.0; 3]; state.positions.len()];
             }
-            if !state.positions.is_empty() {
-                self.particles.of(&mut state.positions, positions);
-            }
-            if !state.velocities.is_empty() {
-                self.particles.of(&mut state.velocities, velocities);
-            }
+            self.particles.of(&mut state.positions, positions);
+            self.particles.of(&mut state.velocities, velocities);
         }
     }
 
     /// Removes particles from the state and from all that is joined to them, and numbers the others
     /// anew.
     fn remove(&mut self, at: usize, removed: usize) {
-        self.particles = Splice {
-            at,
-            removed,
-            added: 0,
-        };
+        self.particles = Splice::new(at, removed, 0);
         renumber::particles(&mut self.description, self.particles);
         if let Some(state) = &mut self.description.state {
             for rows in [&mut state.positions, &mut state.velocities] {
-                if !rows.is_empty() {
-                    self.particles.of(rows, []);
-                }
+                self.particles.of(rows, []);
             }
         }
     }
 
     /// Removes body k from joints, pins and the state, and numbers the others anew.
     fn forget_body(&mut self, k: usize) {
-        self.bodies = Splice {
-            at: k,
-            removed: 1,
-            added: 0,
-        };
+        self.bodies = Splice::new(k, 1, 0);
         renumber::bodies(&mut self.description, self.bodies);
         if let Some(state) = &mut self.description.state {
-            if !state.orientations.is_empty() {
-                self.bodies.of(&mut state.orientations, []);
-            }
-            if !state.angular_momenta.is_empty() {
-                self.bodies.of(&mut state.angular_momenta, []);
-            }
+            self.bodies.of(&mut state.orientations, []);
+            self.bodies.of(&mut state.angular_momenta, []);
         }
     }
 }
@@ -334,18 +290,10 @@ impl Edited {
 impl Particles {
     /// Removes a particle, by its number in this body, with its springs and pins.
     fn remove(&mut self, i: usize) {
-        let one = Splice {
-            at: i,
-            removed: 1,
-            added: 0,
-        };
-        self.positions.remove(i);
-        if !self.velocities.is_empty() {
-            self.velocities.remove(i);
-        }
-        if !self.masses.is_empty() {
-            self.masses.remove(i);
-        }
+        let one = Splice::new(i, 1, 0);
+        one.of(&mut self.positions, []);
+        one.of(&mut self.velocities, []);
+        one.of(&mut self.masses, []);
         keep(&mut self.springs, |it| {
             Some((one.number(it.0)?, one.number(it.1)?, it.2, it.3, it.4))
         });

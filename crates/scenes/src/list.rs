@@ -4,6 +4,7 @@ use a3_core::{Model, Network, Path, Pin, Scene};
 use serde::Serialize;
 
 use crate::description::{SpringSpec, Triple};
+use crate::snapshot::rows;
 
 /// Forces that a list states.
 const STATED: [&str; 4] = ["springs", "spring damping", "gravity", "drag"];
@@ -74,9 +75,7 @@ impl List {
     }
 
     fn new(scene: &Scene, network: &Network) -> Self {
-        let n = network.particles();
         let (x, v) = network.halves(&scene.state);
-        let row = |part: &[f64], i: usize| [part[i], part[n + i], part[2 * n + i]];
         let springs = network.springs().map(|s| {
             let law = s.law;
             (s.i, s.j, law.stiffness, law.rest_length, law.damping)
@@ -87,8 +86,8 @@ impl List {
             drag: network.drag().unwrap_or(0.0),
             mass: network.masses().to_vec(),
             pinned: network.pins().map(|(i, _)| i).collect(),
-            positions: (0..n).map(|i| row(x, i)).collect(),
-            velocities: (0..n).map(|i| row(v, i)).collect(),
+            positions: rows(x),
+            velocities: rows(v),
             springs: springs.collect(),
         }
     }

@@ -47,10 +47,11 @@ const NAMES: &[(&str, &str)] = &[
 /// number is not from -1e13 to 1e13.
 pub fn parse_json(text: &str) -> Result<(Description, Places), Fault> {
     let (listed, places): (Listed, Places) = reader::read_json(text)?;
-    let pin = Pin {
+    let mut pin = vec![Pin {
         particles: listed.pinned,
         ..Pin::default()
-    };
+    }];
+    pin.retain(|pin| !pin.particles.is_empty());
     let description = Description {
         name: listed.name,
         summary: listed.note,
@@ -59,19 +60,10 @@ pub fn parse_json(text: &str) -> Result<(Description, Places), Fault> {
         particles: Some(Particles {
             positions: listed.positions,
             velocities: listed.velocities,
-            mass: None,
             masses: listed.mass,
             springs: listed.springs,
-            tension_only: false,
-            thickness: None,
-            contact_stiffness: None,
-            friction: 0.0,
-            restitution: 0.0,
-            pin: if pin.particles.is_empty() {
-                vec![]
-            } else {
-                vec![pin]
-            },
+            pin,
+            ..Particles::default()
         }),
         ..Description::default()
     };

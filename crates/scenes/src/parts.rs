@@ -2,9 +2,7 @@
 
 use crate::assemble::damping_time;
 use crate::change::Change;
-use crate::description::{
-    Chain, Cloth, Description, Floor, FloorSpec, Jelly, MeshCloth, Solid, WindSpec,
-};
+use crate::description::{Chain, Description, Floor, FloorSpec, Jelly, Solid, WindSpec};
 
 /// Part of a scene that can be left out or replaced by a simpler one.
 #[derive(Clone, Debug, PartialEq)]
@@ -61,8 +59,9 @@ pub fn parts(scene: &Description) -> Vec<Part> {
         named(Change::SelfCollision, "self-collision"),
         named(Change::Floor, "floor"),
     ]);
-    for (kind, name) in OBSTACLES.iter().enumerate() {
-        let count = obstacles(scene, kind);
+    let (spheres, boxes) = (scene.sphere.len(), scene.boxes.len());
+    let counts = [spheres, boxes, scene.capsule.len(), scene.obstacle.len()];
+    for (kind, (name, count)) in OBSTACLES.iter().zip(counts).enumerate() {
         all.extend((0..count).map(|k| Part {
             name: if count > 1 {
                 format!("{name} {}", k + 1)
@@ -112,16 +111,6 @@ pub fn without<'a>(scene: &Description, parts: impl IntoIterator<Item = &'a Part
     changed
 }
 
-/// Returns the number of obstacles of a kind, by its index in [`OBSTACLES`].
-fn obstacles(scene: &Description, kind: usize) -> usize {
-    match kind {
-        0 => scene.sphere.len(),
-        1 => scene.boxes.len(),
-        2 => scene.capsule.len(),
-        _ => scene.obstacle.len(),
-    }
-}
-
 /// Makes a change, except for obstacles, whose indices depend on one another.
 fn leave_out(scene: &mut Description, change: Change) {
     match change {
@@ -130,35 +119,21 @@ fn leave_out(scene: &mut Description, change: Change) {
         Change::Damping => leave_out_damping(scene),
         Change::Springs(kind) => leave_out_springs(scene, kind),
         Change::Buckling => {
-            for law in scene.cloth.iter_mut().map(|it| &mut it.buckling) {
-                *law = None;
-            }
-            for law in scene.chain.iter_mut().map(|it| &mut it.buckling) {
-                *law = None;
-            }
+            let laws = scene.bodies_mut().filter_map(|body| body.buckling);
+            laws.for_each(|law| *law = None);
         }
         Change::StrainLimit => {
-            for Cloth { strain_limit, .. } in &mut scene.cloth {
-                *strain_limit = None;
-            }
-            for Jelly { strain_limit, .. } in &mut scene.jelly {
-                *strain_limit = None;
-            }
-            for MeshCloth { strain_limit, .. } in &mut scene.mesh {
-                *strain_limit = None;
-            }
+            let limits = scene.bodies_mut().filter_map(|body| body.strain_limit);
+            limits.for_each(|limit| *limit = None);
         }
         Change::TensionOnly => {
-            let meshes = scene.mesh.iter_mut().map(|it| &mut it.tension_only);
-            let chains = scene.chain.iter_mut().map(|it| &mut it.tension_only);
-            let particles = scene.particles.iter_mut().map(|it| &mut it.tension_only);
-            let all = meshes.chain(chains).chain(particles);
+            let all = scene.bodies_mut().filter_map(|body| body.tension_only);
             all.for_each(|only| *only = false);
             scene.tension_only = false;
         }
         Change::Gas => {
-            for MeshCloth { pressure, fill, .. } in &mut scene.mesh {
-                (*pressure, *fill) = (None, None);
+            for mesh in &mut scene.mesh {
+                (mesh.pressure, mesh.fill) = (None, None);
             }
         }
         Change::Ropes => scene.constraint.retain(|it| it.rope.is_none()),
@@ -202,14 +177,9 @@ fn leave_out(scene: &mut Description, change: Change) {
 
 /// Sets the damping of all springs and solids to zero.
 fn leave_out_damping(scene: &mut Description) {
-    for cloth in &mut scene.cloth {
-        (cloth.damping, cloth.damping_ratio) = (None, None);
-    }
-    for jelly in &mut scene.jelly {
-        (jelly.damping, jelly.damping_ratio) = (None, None);
-    }
-    for mesh in &mut scene.mesh {
-        (mesh.damping, mesh.damping_ratio) = (None, None);
+    for body in scene.bodies_mut() {
+        let numbers = body.damping.into_iter().chain(body.damping_ratio);
+        numbers.for_each(|number| *number = None);
     }
     for Solid { damping, .. } in &mut scene.solid {
         *damping = 0.0;
@@ -234,56 +204,31 @@ fn leave_out_springs(scene: &mut Description, kind: usize) {
             (cloth.damping, cloth.damping_ratio) = (Some(time), None);
         }
     }
-    for Cloth {
-        stiffness,
-        buckling,
-        ..
-    } in &mut scene.cloth
-    {
-        stiffness[kind] = 0.0;
-        if kind == 2 {
-            *buckling = None;
+    for body in scene.bodies_mut() {
+        match body.stiffness {
+            Some([structural, _]) if kind == 0 => *structural = 0.0,
+            Some([_, bend]) if kind == 2 => *bend = 0.0,
+            Some([_, _]) | None => {}
+            Some(all) => all[kind] = 0.0,
         }
-    }
-    for Jelly { stiffness, .. } in &mut scene.jelly {
-        stiffness[kind] = 0.0;
-    }
-    for MeshCloth { stiffness, .. } in &mut scene.mesh {
-        match kind {
-            0 => stiffness[0] = 0.0,
-            2 => stiffness[1] = 0.0,
-            _ => {}
-        }
-    }
-    if kind == 2 {
-        for Chain { buckling, .. } in &mut scene.chain {
-            *buckling = None;
+        if let Some(law) = body.buckling.filter(|_| kind == 2) {
+            *law = None;
         }
     }
 }
 
 /// Calls a function with the friction and the restitution of each body and obstacle.
 fn each_contact(scene: &mut Description, mut change: impl FnMut([&mut f64; 2])) {
+    let bodies = scene.bodies_mut().filter_map(|body| body.contact);
+    bodies.for_each(&mut change);
     macro_rules! change {
-        ($($bodies:expr),*) => {
-            $(for it in $bodies {
+        ($($obstacles:expr),*) => {
+            $(for it in &mut $obstacles {
                 change([&mut it.friction, &mut it.restitution]);
             })*
         };
     }
-    change!(
-        &mut scene.cloth,
-        &mut scene.jelly,
-        &mut scene.mesh,
-        &mut scene.solid,
-        &mut scene.chain,
-        scene.particles.iter_mut(),
-        &mut scene.body,
-        &mut scene.sphere,
-        &mut scene.boxes,
-        &mut scene.capsule,
-        &mut scene.obstacle
-    );
+    change!(scene.sphere, scene.boxes, scene.capsule, scene.obstacle);
     if let Some(Floor::Table(FloorSpec {
         friction,
         restitution,
@@ -300,10 +245,8 @@ fn each_contact(scene: &mut Description, mut change: impl FnMut([&mut f64; 2])) 
 /// Replaces a wind on the triangles of cloths by forces on particles: the drag of a cloth that
 /// stands across the wind.
 fn simplify_wind(scene: &mut Description) {
-    let is_cloth_alone = !scene.cloth.is_empty()
-        && [scene.jelly.len(), scene.mesh.len(), scene.solid.len()] == [0; 3]
-        && [scene.chain.len(), scene.body.len(), scene.fluid.len()] == [0; 3]
-        && scene.particles.is_none();
+    let is_alone = scene.fluid.is_empty() && scene.bodies_mut().count() == scene.cloth.len();
+    let is_cloth_alone = is_alone && !scene.cloth.is_empty();
     let (mut area, mut mass) = (0.0, 0.0);
     for cloth in &scene.cloth {
         let (Ok(spacing), Ok(share)) = (cloth.checked_spacing(), cloth.checked_mass()) else {

@@ -1,7 +1,6 @@
 //! Numbers of particles and rigid bodies in a description, after some came or went.
 
 use crate::description::{Description, Pin};
-use crate::snapshot::body_pins;
 use crate::splice::{Splice, keep};
 
 /// Numbers all particles anew that the scene names, and forgets what names a removed one.
@@ -65,5 +64,6 @@ pub(crate) fn bodies(description: &mut Description, bodies: Splice) {
         });
     };
     fit(&mut description.pin);
-    body_pins(description).for_each(fit);
+    let pinned = description.bodies_mut().filter_map(|body| body.pin);
+    pinned.for_each(fit);
 }

@@ -6,8 +6,8 @@ use a3_core::{Checkpoint, Model, Network, Path, Pin as Held, Pose, rotation};
 use nalgebra::{Rotation3, UnitQuaternion};
 
 use crate::description::{
-    BucklingSpec, CapsuleSpec, Description, Floor, FloorSpec, Pin, Shift, Sine, SphereSpec,
-    SpringSpec, State, Triple, Turn,
+    Description, Floor, FloorSpec, Movable, ObstacleKeys, Pin, Shift, Sine, SpringSpec, State,
+    Triple, Turn,
 };
 
 /// Multiplies the stiffness and the damping of all springs by these factors. In fluids, the square
@@ -16,47 +16,26 @@ pub fn scale_springs(description: &mut Description, stiffness: f64, damping: f64
     // Factors of damping over stiffness, and of damping over the critical one, which grows with
     // the root of the stiffness.
     let (time, ratio) = (damping / stiffness, damping / stiffness.sqrt());
-    let scale = |number: &mut Option<f64>, factor: f64| {
-        *number = number.map(|number| number * factor);
-    };
-    let scale_strips = |buckling: &mut Option<BucklingSpec>| {
-        if let Some(BucklingSpec {
-            bending,
-            compression,
-        }) = buckling
-        {
-            *bending *= stiffness;
-            *compression *= stiffness;
-        }
-    };
     let scale_list = |springs: &mut Vec<SpringSpec>| {
         for (_, _, k, _, c) in springs {
             *k *= stiffness;
             *c *= damping;
         }
     };
-    for cloth in &mut description.cloth {
-        cloth.stiffness = cloth.stiffness.map(|k| k * stiffness);
-        scale_strips(&mut cloth.buckling);
-        scale(&mut cloth.damping, time);
-        scale(&mut cloth.damping_ratio, ratio);
-    }
-    for jelly in &mut description.jelly {
-        jelly.stiffness = jelly.stiffness.map(|k| k * stiffness);
-        scale(&mut jelly.damping, time);
-        scale(&mut jelly.damping_ratio, ratio);
-    }
-    for mesh in &mut description.mesh {
-        mesh.stiffness = mesh.stiffness.map(|k| k * stiffness);
-        scale(&mut mesh.damping, time);
-        scale(&mut mesh.damping_ratio, ratio);
+    for body in description.bodies_mut() {
+        let of_springs = body.stiffness.into_iter().flatten();
+        let strips = body.buckling.into_iter().flatten();
+        let of_strips = strips.flat_map(|law| [&mut law.bending, &mut law.compression]);
+        of_springs.chain(of_strips).for_each(|k| *k *= stiffness);
+        for (damping, factor) in [(body.damping, time), (body.damping_ratio, ratio)] {
+            damping.into_iter().flatten().for_each(|c| *c *= factor);
+        }
     }
     for solid in &mut description.solid {
         solid.young *= stiffness;
         solid.damping *= time;
     }
     for chain in &mut description.chain {
-        scale_strips(&mut chain.buckling);
         chain.stiffness *= stiffness;
         chain.damping *= damping;
     }
@@ -90,11 +69,6 @@ pub fn begin_with(description: &mut Description, model: &Model, now: &Checkpoint
     let (n, t) = (model.particles(), now.time());
     description.solver = Some(now.run.method.name.into());
     description.step = Some(now.run.control.value());
-    let rows = |part: &[f64]| {
-        (0..n)
-            .map(|i| [part[i], part[n + i], part[2 * n + i]])
-            .collect()
-    };
     let mut parts = now.run.y.chunks_exact(3 * n);
     let rotations = || {
         let network = model.network().into_iter();
@@ -119,28 +93,34 @@ pub fn begin_with(description: &mut Description, model: &Model, now: &Checkpoint
         wind.on = now.wind.is_some();
         wind.ahead += t;
     }
-    for inflow in description
-        .fluid
-        .iter_mut()
-        .filter_map(|it| it.inflow.as_mut())
-    {
+    let fluids = description.fluid.iter_mut();
+    for inflow in fluids.filter_map(|it| it.inflow.as_mut()) {
         inflow.ahead += t;
     }
     write_obstacles(description, network, t);
     write_strain_limits(description, network);
     // Particles that are attached to rigid bodies stay so.
-    for pins in body_pins(description) {
-        pins.retain(|pin| pin.body.is_some());
-    }
+    let pinned = description.bodies_mut().filter_map(|body| body.pin);
+    pinned.for_each(|pins| pins.retain(|pin| pin.body.is_some()));
     description.pin.retain(|pin| pin.body.is_some());
     description.pin.extend(pins(now));
 }
 
+/// Returns the rows of particles whose numbers are all x, all y, all z.
+pub(crate) fn rows(part: &[f64]) -> Vec<Triple> {
+    let n = part.len() / 3;
+    (0..n)
+        .map(|i| [part[i], part[n + i], part[2 * n + i]])
+        .collect()
+}
+
 /// Replaces the pins of a description by those of another one of the same bodies, in its words.
 pub fn pin_as(description: &mut Description, mut other: Description) {
-    for (pins, others) in body_pins(description).zip(body_pins(&mut other)) {
-        std::mem::swap(pins, others);
-    }
+    let pinned = description.bodies_mut().filter_map(|body| body.pin);
+    let others = other.bodies_mut().filter_map(|body| body.pin);
+    pinned
+        .zip(others)
+        .for_each(|(pins, others)| std::mem::swap(pins, others));
     description.pin = other.pin;
 }
 
@@ -158,52 +138,42 @@ fn write_obstacles(description: &mut Description, network: &Network, t: f64) {
         let Motion { sine, shift, about } = motion(&obstacle.path, t);
         let turn = obstacle.turn.and_then(|turn| going_on(turn, about, t));
         let (friction, restitution) = (obstacle.friction, obstacle.restitution);
+        let set = |described: &mut dyn Movable| {
+            described.set(ObstacleKeys {
+                friction,
+                restitution,
+                thickness: described.keys().thickness,
+                sine,
+                shift,
+                turn,
+            });
+        };
         match &obstacle.shape {
             &Shape::Sphere { radius } => {
                 if let Some(described) = spheres.next() {
-                    *described = SphereSpec {
-                        center: here.into(),
-                        radius,
-                        friction,
-                        restitution,
-                        thickness: described.thickness,
-                        sine,
-                        shift,
-                        turn,
-                    };
+                    (described.center, described.radius) = (here.into(), radius);
+                    set(described);
                 }
             }
             Shape::Box { .. } => {
                 if let Some(described) = boxes.next() {
                     described.center = here.into();
                     described.rotation = turned(described.rotation, &pose);
-                    (described.friction, described.restitution) = (friction, restitution);
-                    (described.sine, described.shift) = (sine, shift);
-                    described.turn = turn;
+                    set(described);
                 }
             }
             &Shape::Capsule { ends, radius } => {
                 if let Some(described) = capsules.next() {
-                    *described = CapsuleSpec {
-                        from: pose.of(ends[0]).position.into(),
-                        to: pose.of(ends[1]).position.into(),
-                        radius,
-                        friction,
-                        restitution,
-                        thickness: described.thickness,
-                        sine,
-                        shift,
-                        turn,
-                    };
+                    let [from, to] = ends.map(|end| pose.of(end).position.into());
+                    (described.from, described.to, described.radius) = (from, to, radius);
+                    set(described);
                 }
             }
             Shape::Mesh(_) => {
                 if let Some(described) = solids.next() {
                     described.at = Some(here.into());
                     described.rotation = turned(described.rotation, &pose);
-                    (described.friction, described.restitution) = (friction, restitution);
-                    (described.sine, described.shift) = (sine, shift);
-                    described.turn = turn;
+                    set(described);
                 }
             }
             Shape::Floor if [friction, restitution, obstacle.thickness] == [0.0; 3] => {
@@ -226,19 +196,8 @@ fn write_obstacles(description: &mut Description, network: &Network, t: f64) {
 /// Describes the limits of strain: those of the bodies that had one, or else, if limits were set
 /// during the run, those of the cloths.
 fn write_strain_limits(description: &mut Description, network: &Network) {
-    let cloths = description
-        .cloth
-        .iter_mut()
-        .map(|body| &mut body.strain_limit);
-    let jellies = description
-        .jelly
-        .iter_mut()
-        .map(|body| &mut body.strain_limit);
-    let meshes = description
-        .mesh
-        .iter_mut()
-        .map(|body| &mut body.strain_limit);
-    let mut bodies: Vec<_> = cloths.chain(jellies).chain(meshes).collect();
+    let bodies = description.bodies_mut();
+    let mut bodies: Vec<_> = bodies.filter_map(|body| body.strain_limit).collect();
     if bodies.iter().any(|limit| limit.is_some()) {
         bodies.retain(|limit| limit.is_some());
     }
@@ -246,24 +205,6 @@ fn write_strain_limits(description: &mut Description, network: &Network) {
     for body in bodies {
         *body = limits.next();
     }
-}
-
-/// Returns the pins of each body.
-pub(crate) fn body_pins(description: &mut Description) -> impl Iterator<Item = &mut Vec<Pin>> {
-    let cloths = description.cloth.iter_mut().map(|body| &mut body.pin);
-    let rigid = description.body.iter_mut().map(|body| &mut body.pin);
-    let jellies = description.jelly.iter_mut().map(|body| &mut body.pin);
-    let meshes = description.mesh.iter_mut().map(|body| &mut body.pin);
-    let solids = description.solid.iter_mut().map(|body| &mut body.pin);
-    let chains = description.chain.iter_mut().map(|body| &mut body.pin);
-    let particles = description.particles.iter_mut().map(|body| &mut body.pin);
-    cloths
-        .chain(jellies)
-        .chain(meshes)
-        .chain(solids)
-        .chain(chains)
-        .chain(particles)
-        .chain(rigid)
 }
 
 /// Describes the pins from now on, except those of liquid that has flowed out. Pins with the same
@@ -392,9 +333,6 @@ fn turned(before: Option<Triple>, pose: &Pose) -> Option<Triple> {
     };
     let before = rotation(before.unwrap_or_default().into());
     let now = Rotation3::from_matrix_unchecked(orientation.rotation * before);
-    Some(
-        UnitQuaternion::from_rotation_matrix(&now)
-            .scaled_axis()
-            .into(),
-    )
+    let now = UnitQuaternion::from_rotation_matrix(&now);
+    Some(now.scaled_axis().into())
 }

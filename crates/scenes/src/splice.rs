@@ -38,9 +38,17 @@ impl Splice {
         }
     }
 
-    /// Returns the items of a list since the edit, `new` ones at their places.
+    /// Creates the places from which items were removed, and to which others were added.
+    pub(crate) fn new(at: usize, removed: usize, added: usize) -> Self {
+        Self { at, removed, added }
+    }
+
+    /// Edits a list, with `new` items at their places. One that is empty, as if it were not given,
+    /// stays so.
     pub(crate) fn of<T>(self, list: &mut Vec<T>, new: impl IntoIterator<Item = T>) {
-        list.splice(self.at..self.at + self.removed, new);
+        if !list.is_empty() {
+            list.splice(self.at..self.at + self.removed, new);
+        }
     }
 }
 

@@ -7,59 +7,42 @@ use a3_core::contact::Skin;
 use a3_core::elements::{Buckling, FluidLaw, Gas, Outflow, Sheet, Solid};
 use a3_core::rigid::{self, Rotation};
 use a3_core::{Constraint, Spring, Vector3};
+use nalgebra::Rotation3;
 
-use super::pins::{Pinned, pins};
-use crate::budget::{
-    BODIES, Budget, PARTICLES, PARTS, PINS, RODS, SMOOTHED, SPRINGS, STRIPS, TETRAHEDRA, TOUCHING,
-};
+use super::files::Files;
+use super::pins::Pinned;
 use crate::check::{COORDINATES, is_coordinate};
-use crate::description::{Pin, Spot};
+use crate::description::{Fluid, Keys, Spot, Triple};
 use crate::fault::Fault;
-use crate::surface::Surface;
-
-/// Numbers of those parts of a body that the budget counts.
-#[derive(Default)]
-pub(super) struct Counts {
-    pub particles: usize,
-    /// Springs that belong to no grid.
-    pub springs: usize,
-    /// Springs that buckle.
-    pub strips: usize,
-    pub rods: usize,
-    /// Parts of a rigid body.
-    pub parts: usize,
-    /// Particles of fluid, and those of them that are walls.
-    pub smoothed: usize,
-    pub walls: usize,
-    pub tetrahedra: usize,
-}
+use crate::setup::Presentation;
 
 /// Body of a scene. The keys of its faults are relative to the body.
-pub(super) trait Body {
-    /// Counts its parts, before any memory is reserved.
-    fn counts(&self) -> Result<Counts, Fault>;
-
-    /// Adds the body's particles, springs, constraints and surface.
-    fn add_to(&self, assembly: &mut Assembly) -> Result<(), Fault>;
-
-    /// Returns the largest length over rest length of the body's springs, if it is limited.
-    fn strain_limit(&self) -> Option<f64> {
-        None
-    }
-
-    /// Returns the pins of the body.
-    fn pins(&self) -> &[Pin];
+pub(super) trait Body: Keys {
+    /// Adds the body's particles, springs, constraints and surface. It spends their budget before
+    /// any memory is reserved.
+    fn add_to(&self, assembly: &mut Assembly, files: &mut Files) -> Result<(), Fault>;
 
     /// Finds the particles of a spot, numbered from 0 in this body; `None` if the body has no such
     /// spot.
-    fn spot(&self, spot: Spot, positions: &[Vector3<f64>]) -> Option<Vec<usize>>;
+    fn spot(&self, _: Spot, _: &[Vector3<f64>]) -> Option<Vec<usize>> {
+        None
+    }
+}
+
+/// Returns the function that turns a point of a body about its origin, and moves that to `at` (m).
+pub(super) fn placed(
+    at: Triple,
+    rotation: Option<Triple>,
+) -> impl Fn(Vector3<f64>) -> Vector3<f64> {
+    let rotation = Rotation3::new(Vector3::from(rotation.unwrap_or_default()));
+    move |point| Vector3::from(at) + rotation * point
 }
 
 /// Bodies of a scene that were added so far.
 #[derive(Default)]
-pub(super) struct Assembly {
-    /// Whether surfaces touch.
-    touching: bool,
+pub(super) struct Assembly<'a> {
+    /// Liquid that touches rigid bodies.
+    pub liquid: Option<&'a Fluid>,
     pub masses: Vec<f64>,
     pub positions: Vec<Vector3<f64>>,
     pub velocities: Vec<Vector3<f64>>,
@@ -67,7 +50,8 @@ pub(super) struct Assembly {
     pub sheets: Vec<Sheet>,
     /// Tetrahedra of each solid.
     pub solids: Vec<Solid>,
-    pub surface: Surface,
+    /// Surface, tanks, and sentences about what may not be meant.
+    pub presentation: Presentation,
     pub springs: Vec<Spring>,
     /// Gas in closed meshes.
     pub gases: Vec<Gas>,
@@ -84,6 +68,8 @@ pub(super) struct Assembly {
     /// Particles of fluids that are not in walls.
     pub drops: Vec<u32>,
     pub pins: Pinned,
+    /// Largest length over rest length of the springs of the body that is being added.
+    pub strain_limit: Option<f64>,
     /// Bodies whose strain is limited: key, particles and limit.
     pub strain_limits: Vec<(String, Range<usize>, f64)>,
     /// Law of the fluid, and the particles of each of its bodies.
@@ -92,19 +78,23 @@ pub(super) struct Assembly {
     pub outflows: Vec<Outflow>,
     /// Points of each rigid body that the fluid touches.
     pub soaked: Vec<Range<usize>>,
-    /// Particles of the walls of each tank.
-    pub tanks: Vec<Range<usize>>,
-    /// Sentences about what may not be meant.
-    pub notes: Vec<String>,
 }
 
-impl Assembly {
-    /// Creates an assembly without bodies.
-    pub fn new(touching: bool) -> Self {
-        Self {
-            touching,
-            ..Self::default()
-        }
+impl Assembly<'_> {
+    /// Adds particles of these masses (kg), which have a velocity (m/s) in common, and returns the
+    /// number of the first.
+    pub fn add_particles(
+        &mut self,
+        masses: &[f64],
+        positions: impl IntoIterator<Item = Vector3<f64>>,
+        velocity: Option<Triple>,
+    ) -> usize {
+        let first = self.masses.len();
+        self.masses.extend(masses);
+        self.positions.extend(positions);
+        let velocity = Vector3::from(velocity.unwrap_or_default());
+        self.velocities.resize(self.masses.len(), velocity);
+        first
     }
 
     /// Adds springs whose particles are counted from `first`, and which may only pull.
@@ -126,54 +116,30 @@ impl Assembly {
         }));
     }
 
-    /// Adds buckling springs whose particles are counted from `first`.
-    pub fn add_strips(&mut self, first: usize, strips: Vec<Buckling>) {
-        self.strips.extend(strips.into_iter().map(|s| Buckling {
-            i: s.i + first,
-            j: s.j + first,
-            ..s
-        }));
-    }
-
     /// Adds the surface of the body that was added last. Its particles are counted from `first`.
     pub fn add_surface(&mut self, first: usize, triangles: impl IntoIterator<Item = [u32; 3]>) {
         let triangles = triangles.into_iter().map(|t| t.map(|i| i + first as u32));
-        self.surface.triangles.extend(triangles);
-        self.surface.bodies.push(self.masses.len());
+        let surface = &mut self.presentation.surface;
+        surface.triangles.extend(triangles);
+        surface.bodies.push(self.masses.len());
     }
 
     /// Adds the body of a key, with its pins.
-    pub fn add(&mut self, key: &str, body: &dyn Body, budget: &mut Budget) -> Result<(), Fault> {
-        let counts = body.counts().map_err(|fault| fault.within(key))?;
-        let touching = if self.touching { counts.particles } else { 0 };
-        for (count, part) in [
-            (1, BODIES),
-            (counts.particles, PARTICLES),
-            (touching, TOUCHING),
-            (counts.springs, SPRINGS),
-            (counts.strips, STRIPS),
-            (counts.rods, RODS),
-            (counts.parts, PARTS),
-            (counts.smoothed, SMOOTHED),
-            (counts.walls, PINS),
-            (counts.tetrahedra, TETRAHEDRA),
-        ] {
-            budget.spend(key, count, part)?;
-        }
-        let first = self.masses.len();
-        body.add_to(self).map_err(|fault| fault.within(key))?;
-        self.check(first).map_err(|fault| fault.within(key))?;
-        if let Some(limit) = body.strain_limit() {
+    pub fn add(&mut self, key: &str, body: &dyn Body, files: &mut Files) -> Result<(), Fault> {
+        let (first, noted) = (self.masses.len(), self.presentation.notes.len());
+        body.add_to(self, files)?;
+        self.check(first)?;
+        if let Some(limit) = self.strain_limit.take() {
             let particles = first..self.masses.len();
             self.strain_limits.push((key.into(), particles, limit));
         }
+        for note in &mut self.presentation.notes[noted..] {
+            *note = format!("{key}: {note}");
+        }
         let positions = &self.positions[first..];
-        let pins = pins(body.pins(), positions, budget, |spot| {
-            body.spot(spot, positions)
-        })
-        .map_err(|fault| fault.within(key))?;
-        self.pins.add(first, pins);
-        Ok(())
+        let spot = |spot| body.spot(spot, positions);
+        let (pins, budget) = (body.pins(), &mut files.budget);
+        self.pins.add(first, pins, positions, budget, spot)
     }
 
     /// Checks that the positions of the particles from `first` on are within the bounds, and that
@@ -188,15 +154,10 @@ impl Assembly {
             }
         }
         let masses = &self.masses[first..];
-        match masses
-            .iter()
-            .position(|m| !m.is_finite() || !m.recip().is_finite())
-        {
-            Some(i) => Err(Fault::new(
-                "",
-                format!("its particle {i} would have a mass of {:e} kg", masses[i]),
-            )),
-            None => Ok(()),
-        }
+        let is_wrong = |m: &f64| !m.is_finite() || !m.recip().is_finite();
+        masses.iter().position(is_wrong).map_or(Ok(()), |i| {
+            let why = format!("its particle {i} would have a mass of {:e} kg", masses[i]);
+            Err(Fault::new("", why))
+        })
     }
 }

@@ -3,11 +3,13 @@
 use a3_core::elements::Sheet;
 use a3_core::{Grid, SpringKind, Vector3};
 
-use super::assembly::{Assembly, Body, Counts};
+use super::assembly::{Assembly, Body};
+use super::files::Files;
 use super::laws::{damping_time, strip};
 use super::skins::SkinSpec;
-use crate::check::{at, at_least, one_of, positive};
-use crate::description::{Cloth, Pin, Spot};
+use crate::budget::STRIPS;
+use crate::check::{at, at_least, positive_one};
+use crate::description::{Cloth, Spot};
 use crate::fault::Fault;
 
 impl Cloth {
@@ -18,11 +20,7 @@ impl Cloth {
 
     /// Returns the distance between neighbouring particles (m).
     pub(crate) fn checked_spacing(&self) -> Result<f64, Fault> {
-        let (by_width, size) = one_of(("width", self.width), ("spacing", self.spacing))?;
-        at(
-            if by_width { "width" } else { "spacing" },
-            positive("it", size),
-        )?;
+        let (by_width, size) = positive_one(("width", self.width), ("spacing", self.spacing))?;
         let cells = self.grid[1].max(2) - 1;
         Ok(if by_width { size / cells as f64 } else { size })
     }
@@ -30,11 +28,7 @@ impl Cloth {
     /// Returns the mass of each particle (kg): an equal share of the density times the area.
     pub(crate) fn checked_mass(&self) -> Result<f64, Fault> {
         let (grid, spacing) = (self.checked_grid()?, self.checked_spacing()?);
-        let (by_area, mass) = one_of(("density", self.density), ("mass", self.mass))?;
-        at(
-            if by_area { "density" } else { "mass" },
-            positive("it", mass),
-        )?;
+        let (by_area, mass) = positive_one(("density", self.density), ("mass", self.mass))?;
         let cells = (grid.rows() - 1) * (grid.cols() - 1);
         let share = spacing * spacing * (cells as f64 / grid.particles() as f64);
         Ok(if by_area { mass * share } else { mass })
@@ -54,37 +48,26 @@ impl Cloth {
 }
 
 impl Body for Cloth {
-    fn counts(&self) -> Result<Counts, Fault> {
-        let particles = self.checked_grid()?.particles();
-        Ok(Counts {
-            particles,
-            strips: if self.buckling.is_some() {
-                2 * particles
-            } else {
-                0
-            },
-            ..Counts::default()
-        })
-    }
-
-    fn add_to(&self, assembly: &mut Assembly) -> Result<(), Fault> {
+    fn add_to(&self, assembly: &mut Assembly, files: &mut Files) -> Result<(), Fault> {
         let grid = self.checked_grid()?;
+        let particles = grid.particles();
+        let strips = 2 * particles * usize::from(self.buckling.is_some());
+        files.spend(particles, &[(strips, STRIPS)])?;
         let (rows, cols, spacing) = (grid.rows(), grid.cols(), self.checked_spacing()?);
         let mass = self.checked_mass()?;
         let [structural, shear, bend] = self.stiffness;
         let time = damping_time(self.damping, self.damping_ratio, mass, structural)?;
-        let sheet = at("stiffness", Sheet::new(grid, spacing, self.stiffness, time))?;
-        let (sheet, strips) = match &self.buckling {
-            None => (sheet, vec![]),
-            Some(law) => {
-                let ends = sheet.springs().filter(|s| s.kind == SpringKind::Bend);
-                let tension = [bend, bend * time];
-                let strips = ends.map(|s| strip(law, [s.i, s.j], 2.0 * spacing, tension));
-                let strips = strips.collect();
-                let others = Sheet::new(grid, spacing, [structural, shear, 0.0], time);
-                (at("stiffness", others)?, strips)
-            }
-        };
+        let first = assembly.masses.len();
+        let mut sheet = at("stiffness", Sheet::new(grid, spacing, self.stiffness, time))?;
+        if let Some(law) = &self.buckling {
+            let ends = sheet.springs().filter(|s| s.kind == SpringKind::Bend);
+            let ends = ends.map(|s| [s.i, s.j].map(|i| first + i));
+            let tension = [bend, bend * time];
+            let strips = ends.map(|ends| strip(law, ends, 2.0 * spacing, tension));
+            assembly.strips.extend(strips);
+            let others = Sheet::new(grid, spacing, [structural, shear, 0.0], time);
+            sheet = at("stiffness", others)?;
+        }
         let (right, down) = (self.axis("right")?, self.axis("down")?);
         if right.dot(&down).abs() > 1e-6 {
             let key = if self.down.is_some() { "down" } else { "right" };
@@ -102,7 +85,6 @@ impl Body for Cloth {
         let row = gathered(cols, spacing, self.folds, self.turn);
         let middle = 0.5 * row[cols - 1][0];
         let out = down.cross(&right);
-        let first = assembly.masses.len();
         let velocity = Vector3::from(self.velocity.unwrap_or_default());
         let sway = Vector3::from(self.sway.unwrap_or_default());
         for i in 0..rows {
@@ -114,29 +96,14 @@ impl Body for Cloth {
                 assembly.velocities.push(velocity + sway * share);
             }
         }
-        let skin = SkinSpec {
-            thickness: self.thickness,
-            contact_stiffness: self.contact_stiffness,
-            friction: self.friction,
-            restitution: self.restitution,
-            stiffness: structural,
-            time,
-        };
-        let masses = vec![mass; grid.particles()];
+        let skin = SkinSpec::of(self, structural, time);
+        let masses = vec![mass; particles];
         assembly.skins.extend(skin.uniform(&masses, spacing)?);
         assembly.masses.extend(masses);
         assembly.add_surface(first, grid.triangles().map(|t| t.map(|i| i as u32)));
-        assembly.add_strips(first, strips);
         assembly.sheets.push(sheet.starting_at(first));
+        assembly.strain_limit = self.strain_limit;
         Ok(())
-    }
-
-    fn strain_limit(&self) -> Option<f64> {
-        self.strain_limit
-    }
-
-    fn pins(&self) -> &[Pin] {
-        &self.pin
     }
 
     fn spot(&self, spot: Spot, _: &[Vector3<f64>]) -> Option<Vec<usize>> {

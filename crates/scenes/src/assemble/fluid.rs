@@ -10,12 +10,14 @@ use a3_core::contact::Skin;
 use a3_core::elements::{Fluid as Liquid, FluidLaw, Outflow};
 use a3_core::{Network, Path, Pin as Held, Rounded, Vector3};
 
-use super::assembly::{Assembly, Body, Counts};
+use super::assembly::{Assembly, Body};
+use super::files::Files;
 use super::outflow::{MAX_OUTFLOWS, SLACK, spaces};
 use super::places::{LAYERS, Places};
 use super::skins::point_skin;
+use crate::budget::{PINS, SMOOTHED};
 use crate::check::{at, at_least, key_of, positive};
-use crate::description::{Fluid, FluidShape, Inflow, Pin, Spot};
+use crate::description::{Fluid, FluidShape, Inflow, SkinKeys};
 use crate::fault::Fault;
 
 /// Thickness of the skin of a particle, relative to the spacing.
@@ -151,28 +153,22 @@ pub fn fluid_points(fluid: &Fluid) -> Result<[Vec<Vector3<f64>>; 2], Fault> {
 }
 
 impl Body for Fluid {
-    fn counts(&self) -> Result<Counts, Fault> {
+    fn add_to(&self, assembly: &mut Assembly, files: &mut Files) -> Result<(), Fault> {
         let Lattices {
             liquid,
             tank,
             column,
-            outflows: _,
+            outflows,
         } = self.lattices()?;
-        let column = column.map_or(0, |column| column.count());
+        let flows_in = column.as_ref().map_or(0, Column::count);
         let flowing = liquid.map_or(0, |liquid| liquid.count(0));
-        let flowing = flowing.saturating_add(column);
+        let flowing = flowing.saturating_add(flows_in);
         let walls = tank.map_or(0, |tank| {
             tank.count(LAYERS.into()).saturating_sub(tank.count(0))
         });
-        Ok(Counts {
-            particles: flowing.saturating_add(walls),
-            smoothed: flowing.saturating_add(walls),
-            walls: walls.saturating_add(column),
-            ..Counts::default()
-        })
-    }
-
-    fn add_to(&self, assembly: &mut Assembly) -> Result<(), Fault> {
+        let all = flowing.saturating_add(walls);
+        let pinned = walls.saturating_add(flows_in);
+        files.spend(all, &[(all, SMOOTHED), (pinned, PINS)])?;
         self.check_inside()?;
         let [fluid, walls] = fluid_points(self)?;
         let first = assembly.masses.len();
@@ -186,9 +182,6 @@ impl Body for Fluid {
         assembly
             .drops
             .extend(first as u32..assembly.positions.len() as u32);
-        let Lattices {
-            column, outflows, ..
-        } = self.lattices()?;
         let (column, next) = (column.iter(), assembly.positions.len());
         for (place, velocity, pin) in column.flat_map(|column| column.particles(next)) {
             assembly.positions.push(place);
@@ -211,12 +204,16 @@ impl Body for Fluid {
         assembly.masses.resize(all, mass);
         // As stiff as the fluid itself; against soft bodies, theirs counts.
         let stiffness = mass * (self.sound / self.spacing).powi(2);
-        let skin = point_skin(mass, thickness, Some(stiffness), [0.0; 2])?;
+        let keys = SkinKeys {
+            contact_stiffness: Some(stiffness),
+            ..SkinKeys::default()
+        };
+        let skin = point_skin(mass, thickness, keys)?;
         assembly.skins.resize(free, skin);
         // Surfaces do not touch walls.
         assembly.skins.resize(all, Skin::default());
         if all > free {
-            assembly.tanks.push(free..all);
+            assembly.presentation.tanks.push(free..all);
         }
         let (law, particles) = (self.law(), first..all);
         assembly.outflows.extend(outflows);
@@ -230,14 +227,6 @@ impl Body for Fluid {
             }
         }
         Ok(())
-    }
-
-    fn pins(&self) -> &[Pin] {
-        &[]
-    }
-
-    fn spot(&self, _: Spot, _: &[Vector3<f64>]) -> Option<Vec<usize>> {
-        None
     }
 }
 

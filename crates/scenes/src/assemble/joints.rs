@@ -83,45 +83,25 @@ fn join(spec: &JointSpec, network: &mut Network, state: &[f64]) -> Result<(), Fa
     let (own, against) = (pose(moved), other.map(pose));
     let center = own.1.place.position;
     let vector = |of: &[f64; 3]| Vector3::from(*of);
-    let (key, kind, place) = match spec {
-        JointSpec {
-            ball: Some(there),
-            hinge: None,
-            slider: None,
-            fixed: false,
-            ..
-        } => ("ball", JointKind::Ball, (vector(there), Vector3::x())),
-        JointSpec {
-            ball: None,
-            hinge: Some(hinge),
-            slider: None,
-            fixed: false,
-            ..
-        } => {
+    let along_x = |there| (there, Vector3::x());
+    let kinds = [
+        spec.ball
+            .map(|there| ("ball", JointKind::Ball, along_x(there.into()))),
+        spec.hinge.as_ref().map(|hinge| {
             let place = (vector(&hinge.at), vector(&hinge.axis));
             ("hinge.axis", JointKind::Hinge, place)
-        }
-        JointSpec {
-            ball: None,
-            hinge: None,
-            slider: Some(slider),
-            fixed: false,
-            ..
-        } => {
+        }),
+        spec.slider.as_ref().map(|slider| {
             let place = (center, vector(&slider.axis));
             ("slider.axis", JointKind::Slider, place)
-        }
-        JointSpec {
-            ball: None,
-            hinge: None,
-            slider: None,
-            fixed: true,
-            ..
-        } => ("fixed", JointKind::Fixed, (center, Vector3::x())),
-        _ => {
-            let why = "give one of `ball`, `hinge`, `slider` and `fixed = true`";
-            return Err(Fault::new("", why));
-        }
+        }),
+        spec.fixed
+            .then(|| ("fixed", JointKind::Fixed, along_x(center))),
+    ];
+    let mut kinds = kinds.into_iter().flatten();
+    let (Some((key, kind, place)), None) = (kinds.next(), kinds.next()) else {
+        let why = "give one of `ball`, `hinge`, `slider` and `fixed = true`";
+        return Err(Fault::new("", why));
     };
     let sides = (
         (own.0, &own.1),

@@ -4,7 +4,9 @@
 
 use a3_core::{Spring, SpringKind, SpringLaw};
 
+use super::pins::side;
 use crate::description::Spot;
+use crate::fault::Fault;
 
 /// Lattice of nx x ny x nz particles, in which x is counted fastest, then y, then z.
 #[derive(Clone, Copy)]
@@ -42,10 +44,19 @@ const KUHN_PATHS: [[usize; 3]; 6] = [
 ];
 
 impl Lattice {
-    /// Counts the particles; `None` if the number overflows.
-    pub fn particles(self) -> Option<usize> {
+    /// Counts the particles of a body of this name, which needs two along each edge as in the
+    /// example.
+    pub fn particles(self, body: &str, example: [usize; 3]) -> Result<usize, Fault> {
         let [nx, ny, nz] = self.0;
-        nx.checked_mul(ny)?.checked_mul(nz)
+        let particles = nx.checked_mul(ny).and_then(|layer| layer.checked_mul(nz));
+        let particles = particles.filter(|_| self.0.iter().all(|n| *n >= 2));
+        particles.ok_or_else(|| {
+            let why = format!(
+                "a {body} has at least 2 particles along each edge, such as {example:?}, not {:?}",
+                self.0
+            );
+            Fault::new("grid", why)
+        })
     }
 
     /// Returns the number of the particle at a lattice point.
@@ -61,13 +72,7 @@ impl Lattice {
 
     /// Lists the particles of a face, if the spot is one.
     pub fn face(self, spot: Spot) -> Option<Vec<usize>> {
-        let (axis, far) = match spot {
-            Spot::Left => (0, false),
-            Spot::Right => (0, true),
-            Spot::Bottom => (1, false),
-            Spot::Top => (1, true),
-            _ => return None,
-        };
+        let (axis, far) = side(spot)?;
         let at = if far { self.0[axis] - 1 } else { 0 };
         let there = self.cells().filter(|cell| cell[axis] == at);
         Some(there.map(|cell| self.index_of(cell)).collect())

@@ -5,6 +5,7 @@ mod chain;
 mod circle;
 mod cloth;
 mod constraints;
+mod files;
 mod fluid;
 mod forces;
 mod jelly;
@@ -33,12 +34,11 @@ use crate::description::Description;
 use crate::fault::Fault;
 use crate::mesh::Mesh;
 use crate::setup::{Defaults, Presentation, Setup, Viewpoint};
-use crate::surface::Surface;
 use crate::wording::unknown_choice;
 use circle::Circling;
+use files::Files;
 pub use fluid::fluid_points;
 pub use laws::damping_time;
-use network::NetworkParts;
 pub use places::LAYERS;
 pub use skins::max_thickness;
 
@@ -95,25 +95,20 @@ impl Description {
         asked: Option<Grid>,
         mesh: &mut dyn FnMut(&str) -> Result<Mesh, String>,
     ) -> Result<Setup, Fault> {
-        let (mut model, mut state, surface, (tanks, notes), touch) =
-            if let Some(circle) = &self.circle {
-                let start = Vector3::from(circle.start);
-                let model = Model::Points(Arc::new(Circling));
-                let start = start.as_slice().to_vec();
-                (model, start, Surface::default(), (vec![], vec![]), None)
-            } else {
-                let NetworkParts {
-                    network,
-                    state,
-                    surface,
-                    tanks,
-                    notes,
-                    touch,
-                } = network::build(self, &mut Budget::new(asked), mesh)?;
-                let model = Model::Network(Box::new(network));
-                (model, state, surface, (tanks, notes), touch)
-            };
-        if self.circle.is_some() && network::bodies(self) > 0 {
+        let mut files = Files {
+            budget: Budget::new(asked),
+            mesh,
+            touching: network::touches(self),
+        };
+        let (mut model, mut state, presentation, touch) = if let Some(circle) = &self.circle {
+            let model = Model::Points(Arc::new(Circling));
+            (model, circle.start.to_vec(), Presentation::default(), None)
+        } else {
+            let parts = network::build(self, &mut files)?;
+            let model = Model::Network(Box::new(parts.network));
+            (model, parts.state, parts.presentation, parts.touch)
+        };
+        if self.circle.is_some() && network::bodies(self).next().is_some() {
             return Err(Fault::new(
                 "circle",
                 "a circle is a first-order system and must be the only body",
@@ -142,10 +137,8 @@ impl Description {
         }
         let presentation = Presentation {
             viewpoint: self.viewpoint(&scene)?,
-            surface,
-            tanks,
-            notes,
             trail: self.trail,
+            ..presentation
         };
         if let Some(reach) = self.reach {
             at("reach", at_least(1.0, "it", reach))?;

@@ -1,59 +1,55 @@
 //! The network of a description: bodies, pins, constraints, forces and obstacles.
 
-use std::ops::Range;
 use std::sync::Arc;
 
 use a3_core::elements::Cords;
 use a3_core::rigid::ROTATION;
 use a3_core::{Network, ParticleSystem, Touch, Vector3};
 
-use super::assembly::Assembly;
-use super::mesh_cloth::LoadedMesh;
-use super::rigid::LoadedBody;
-use super::solid::LoadedSolid;
-use super::{constraints, fluid, forces, joints, laws, obstacles, pins, state};
-use crate::budget::{Budget, CELLS, SPRINGS, TRIANGLES};
+use super::assembly::{Assembly, Body};
+use super::files::Files;
+use super::{constraints, fluid, forces, joints, laws, obstacles, state};
+use crate::budget::SPRINGS;
 use crate::check::{at, key_of};
 use crate::description::Description;
 use crate::fault::Fault;
-use crate::mesh::Mesh;
-use crate::surface::Surface;
+use crate::setup::Presentation;
 
 /// Largest number of bodies: some work grows with the square of that number.
 const MAX_BODIES: usize = 1000;
 
-/// Network with its initial state, and with its surfaces for drawing and contact.
+/// Network with its initial state, its presentation, and its surfaces for contact.
 pub(super) struct NetworkParts {
     pub network: Network,
     pub state: Vec<f64>,
-    pub surface: Surface,
-    /// Particles of the walls of each tank.
-    pub tanks: Vec<Range<usize>>,
-    /// Sentences about what may not be meant.
-    pub notes: Vec<String>,
+    pub presentation: Presentation,
     /// Surfaces that can touch, if there are any.
     pub touch: Option<Arc<Touch>>,
 }
 
-/// Counts the bodies, without the circle.
-pub(super) fn bodies(description: &Description) -> usize {
-    description.cloth.len()
-        + description.jelly.len()
-        + description.mesh.len()
-        + description.solid.len()
-        + description.chain.len()
-        + usize::from(description.particles.is_some())
-        + description.body.len()
-        + description.fluid.len()
+/// Lists all bodies with their keys, in the order in which their particles are numbered.
+pub(super) fn bodies(all: &Description) -> impl Iterator<Item = (String, &dyn Body)> {
+    fn keyed<'a, T: Body>(
+        kind: &str,
+        all: &'a [T],
+    ) -> impl Iterator<Item = (String, &'a dyn Body)> {
+        let bodies = all.iter().map(|body| body as &dyn Body).enumerate();
+        bodies.map(move |(k, body)| (key_of(kind, k, all.len()), body))
+    }
+    keyed("cloth", &all.cloth)
+        .chain(keyed("jelly", &all.jelly))
+        .chain(keyed("mesh", &all.mesh))
+        .chain(keyed("solid", &all.solid))
+        .chain(keyed("chain", &all.chain))
+        .chain(keyed("particles", all.particles.as_slice()))
+        .chain(keyed("body", &all.body))
+        .chain(keyed("fluid", &all.fluid))
 }
 
-/// Builds the network. `mesh` reads a file of triangles or tetrahedra.
-pub(super) fn build(
-    description: &Description,
-    budget: &mut Budget,
-    mesh: &mut dyn FnMut(&str) -> Result<Mesh, String>,
-) -> Result<NetworkParts, Fault> {
-    let mut assembly = assembled(description, budget, mesh)?;
+/// Builds the network.
+pub(super) fn build(description: &Description, files: &mut Files) -> Result<NetworkParts, Fault> {
+    let mut assembly = assembled(description, files)?;
+    let budget = &mut files.budget;
     let n = assembly.masses.len();
     budget.spend("springs", description.springs.len(), SPRINGS)?;
     let between = laws::springs(&description.springs, n)?;
@@ -62,8 +58,8 @@ pub(super) fn build(
     let given = given.filter(|positions| positions.len() == n);
     let given = given.map(|all| all.iter().map(|p| Vector3::from(*p)).collect::<Vec<_>>());
     let positions = given.as_ref().unwrap_or(&assembly.positions);
-    let more = pins::pins(&description.pin, positions, budget, |_| None)?;
-    assembly.pins.add(0, more);
+    let pins = &mut assembly.pins;
+    pins.add(0, &description.pin, positions, budget, |_| None)?;
     let mut state = state::of(&assembly.positions, &assembly.velocities);
     let mut network = at("", Network::new(assembly.masses))?;
     for sheet in assembly.sheets {
@@ -104,7 +100,7 @@ pub(super) fn build(
     )?;
     constraints::add(description, &mut network, &state)?;
     joints::add(description, budget, &assembly.pins, &mut network, &state)?;
-    let triangles = assembly.surface.triangles.iter();
+    let triangles = assembly.presentation.surface.triangles.iter();
     let triangles = triangles.map(|t| t.map(|i| i as usize));
     at("", network.set_triangles(triangles))?;
     at("", network.pin_all(assembly.pins.paths))?;
@@ -113,14 +109,14 @@ pub(super) fn build(
         let limited = network.set_strain_limit(particles, Some(limit));
         at("strain_limit", limited).map_err(|fault| fault.within(&key))?;
     }
-    obstacles::add(description, &mut network, budget, mesh)?;
+    obstacles::add(description, &mut network, files)?;
     let touch = Touch {
         skins: assembly.skins,
         edges: assembly.edges,
         drops: assembly.drops,
         bodies: true,
     };
-    if touches(description) {
+    if files.touching {
         let touch = Touch {
             bodies: description.self_collision || !description.body.is_empty(),
             ..touch.clone()
@@ -132,94 +128,37 @@ pub(super) fn build(
     Ok(NetworkParts {
         network,
         state,
-        surface: assembly.surface,
-        tanks: assembly.tanks,
-        notes: assembly.notes,
+        presentation: assembly.presentation,
         touch: has_surface.then(|| Arc::new(touch)),
     })
 }
 
 /// Returns whether surfaces touch: those of rigid bodies and of bodies with a restitution always
 /// do.
-fn touches(description: &Description) -> bool {
+pub(super) fn touches(description: &Description) -> bool {
     let asked = description.self_collision || obstacles::is_one_thick(description);
-    asked || !description.body.is_empty() || is_one_elastic(description)
+    let is_elastic = |(_, body): (_, &dyn Body)| body.skin().restitution != 0.0;
+    asked || !description.body.is_empty() || bodies(description).any(is_elastic)
 }
 
-/// Returns whether a body has a restitution of its own.
-fn is_one_elastic(description: &Description) -> bool {
-    let cloths = description.cloth.iter().map(|body| body.restitution);
-    let jellies = description.jelly.iter().map(|body| body.restitution);
-    let meshes = description.mesh.iter().map(|body| body.restitution);
-    let solids = description.solid.iter().map(|body| body.restitution);
-    let chains = description.chain.iter().map(|body| body.restitution);
-    let particles = description.particles.iter().map(|body| body.restitution);
-    let all = cloths.chain(jellies).chain(meshes).chain(solids);
-    all.chain(chains).chain(particles).any(|e| e != 0.0)
-}
-
-/// Adds all bodies, in the order in which their particles are numbered.
-fn assembled(
-    description: &Description,
-    budget: &mut Budget,
-    mesh: &mut dyn FnMut(&str) -> Result<Mesh, String>,
-) -> Result<Assembly, Fault> {
-    let count = bodies(description);
+/// Adds all bodies.
+fn assembled<'a>(description: &'a Description, files: &mut Files) -> Result<Assembly<'a>, Fault> {
+    let count = bodies(description).count();
     if count > MAX_BODIES {
         let why = format!("the scene has {count} bodies; at most {MAX_BODIES} are allowed");
         return Err(Fault::new("", why));
     }
     if count == 0 {
-        return Err(Fault::new(
-            "",
-            "the scene is empty: it needs at least one of cloth, jelly, mesh, solid, chain, particles, body, fluid, circle",
-        ));
+        let why = "the scene is empty: it needs at least one of cloth, jelly, mesh, solid, chain, particles, body, fluid, circle";
+        return Err(Fault::new("", why));
     }
-    let mut assembly = Assembly::new(touches(description));
-    let Description {
-        cloth,
-        jelly,
-        chain,
-        ..
-    } = description;
-    for (k, body) in cloth.iter().enumerate() {
-        assembly.add(&key_of("cloth", k, cloth.len()), body, budget)?;
-    }
-    for (k, body) in jelly.iter().enumerate() {
-        assembly.add(&key_of("jelly", k, jelly.len()), body, budget)?;
-    }
-    for (k, cloth) in description.mesh.iter().enumerate() {
-        let key = key_of("mesh", k, description.mesh.len());
-        let mesh = at("file", mesh(&cloth.file)).map_err(|fault| fault.within(&key))?;
-        budget.spend(&key, mesh.triangles.len(), TRIANGLES)?;
-        let mesh = mesh.welded();
-        assembly.add(&key, &LoadedMesh { cloth, mesh }, budget)?;
-    }
-    for (k, solid) in description.solid.iter().enumerate() {
-        let key = key_of("solid", k, description.solid.len());
-        let file = solid.file.as_deref().map(&mut *mesh).transpose();
-        let mesh = at("file", file).map_err(|fault| fault.within(&key))?;
-        let count = mesh.as_ref().map_or(0, |mesh| mesh.tetrahedra.len());
-        budget.spend(&key, count, CELLS)?;
-        assembly.add(&key, &LoadedSolid { solid, mesh }, budget)?;
-    }
-    for (k, body) in chain.iter().enumerate() {
-        assembly.add(&key_of("chain", k, chain.len()), body, budget)?;
-    }
-    if let Some(body) = &description.particles {
-        assembly.add("particles", body, budget)?;
-    }
-    for (k, body) in description.body.iter().enumerate() {
-        let key = key_of("body", k, description.body.len());
-        let loaded = LoadedBody::load(body, description.fluid.first(), budget, mesh);
-        let loaded = loaded.map_err(|fault| fault.within(&key))?;
-        assembly
-            .notes
-            .extend(loaded.leak.iter().map(|leak| format!("{key}: {leak}")));
-        assembly.add(&key, &loaded, budget)?;
-    }
-    for (k, body) in description.fluid.iter().enumerate() {
-        assembly.add(&key_of("fluid", k, description.fluid.len()), body, budget)?;
+    let mut assembly = Assembly {
+        liquid: description.fluid.first(),
+        ..Assembly::default()
+    };
+    for (key, body) in bodies(description) {
+        let added = assembly.add(&key, body, files);
+        added.map_err(|fault| fault.within(&key))?;
     }
     Ok(assembly)
 }

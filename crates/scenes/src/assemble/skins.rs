@@ -3,6 +3,7 @@
 use a3_core::contact::Skin;
 
 use crate::check::{at, at_least, positive, share};
+use crate::description::{Keys, SkinKeys};
 use crate::fault::Fault;
 
 /// Default and largest thickness of a surface, relative to the distance of its particles:
@@ -26,30 +27,36 @@ const POINT_DAMPING: f64 = 1.5;
 
 /// Material of a body and the keys that describe its skin.
 pub(super) struct SkinSpec {
-    pub thickness: Option<f64>,
-    pub contact_stiffness: Option<f64>,
-    pub friction: f64,
-    pub restitution: f64,
+    keys: SkinKeys,
     /// Stiffness of its springs (N/m).
-    pub stiffness: f64,
+    stiffness: f64,
     /// Damping over stiffness of its springs (s).
-    pub time: f64,
+    time: f64,
 }
 
 impl SkinSpec {
+    /// Creates the description of a body's skin, over springs of a stiffness (N/m) whose damping
+    /// over stiffness is `time` (s).
+    pub fn of(body: &dyn Keys, stiffness: f64, time: f64) -> Self {
+        Self {
+            keys: body.skin(),
+            stiffness,
+            time,
+        }
+    }
+
     /// Creates the skin of a particle of this mass (kg) with this thickness (m).
     fn skin(&self, mass: f64, thickness: f64) -> Skin {
         Skin {
             thickness,
-            stiffness: self
-                .contact_stiffness
+            stiffness: (self.keys.contact_stiffness)
                 .unwrap_or_else(|| self.stiffness.max(mass * ACCELERATION / thickness)),
             // Damping counts fully where the gap would close within four times the springs' own
             // time: bounces die away as fast as the springs' oscillations.
             damping: DAMPING * self.time / thickness,
-            friction: self.friction,
+            friction: self.keys.friction,
             rolling: 0.0,
-            restitution: self.restitution,
+            restitution: self.keys.restitution,
             mass,
         }
     }
@@ -59,7 +66,7 @@ impl SkinSpec {
     pub fn uniform(&self, masses: &[f64], spacing: f64) -> Result<Vec<Skin>, Fault> {
         self.check()?;
         let most = MAX_THICKNESS * spacing;
-        let thickness = self.thickness.unwrap_or(most);
+        let thickness = self.keys.thickness.unwrap_or(most);
         if thickness > most * (1.0 + 1e-9) {
             let why = format!(
                 "it must be at most {most}, a quarter of the distance of neighbouring particles, not {thickness}"
@@ -76,7 +83,8 @@ impl SkinSpec {
         self.check()?;
         let thickness = |spacing: f64| {
             let most = MAX_THICKNESS * spacing;
-            self.thickness.map_or(most, |thickness| thickness.min(most))
+            let given = self.keys.thickness;
+            given.map_or(most, |thickness| thickness.min(most))
         };
         let all = masses.iter().zip(spacings);
         Ok(all
@@ -85,29 +93,24 @@ impl SkinSpec {
     }
 
     fn check(&self) -> Result<(), Fault> {
-        if let Some(thickness) = self.thickness {
+        if let Some(thickness) = self.keys.thickness {
             at("thickness", positive("it", thickness))?;
         }
-        if let Some(stiffness) = self.contact_stiffness {
+        if let Some(stiffness) = self.keys.contact_stiffness {
             at("contact_stiffness", positive("it", stiffness))?;
         }
-        at("friction", at_least(0.0, "it", self.friction))?;
-        at("restitution", share("it", self.restitution))
+        at("friction", at_least(0.0, "it", self.keys.friction))?;
+        at("restitution", share("it", self.keys.restitution))
     }
 }
 
 /// Creates the skin of a point of a rigid body, or of a fluid, of this mass (kg).
-pub(super) fn point_skin(
-    mass: f64,
-    thickness: f64,
-    contact_stiffness: Option<f64>,
-    [friction, restitution]: [f64; 2],
-) -> Result<Skin, Fault> {
+pub(super) fn point_skin(mass: f64, thickness: f64, keys: SkinKeys) -> Result<Skin, Fault> {
     let spec = SkinSpec {
-        thickness: Some(thickness),
-        contact_stiffness,
-        friction,
-        restitution,
+        keys: SkinKeys {
+            thickness: Some(thickness),
+            ..keys
+        },
         stiffness: 0.0,
         time: 0.0,
     };

@@ -2,23 +2,17 @@
 
 use a3_core::elements::{Hyperelastic, Material, Solid as Elastic};
 use a3_core::{Error, Vector3};
-use nalgebra::Rotation3;
 
-use super::assembly::{Assembly, Body, Counts};
+use super::assembly::{Assembly, Body, placed};
+use super::files::Files;
 use super::lattice::Lattice;
 use super::pins::extreme;
 use super::skins::SkinSpec;
+use crate::budget::{CELLS, TETRAHEDRA};
 use crate::check::{at, at_least, positive};
-use crate::description::{Pin, Solid, SolidModel, Spot};
+use crate::description::{Solid, SolidModel, Spot};
 use crate::fault::Fault;
 use crate::mesh::{Mesh, boundary};
-
-/// Solid with the tetrahedra of its file.
-pub(super) struct LoadedSolid<'a> {
-    pub solid: &'a Solid,
-    /// Mesh of the file; `None` for a box.
-    pub mesh: Option<Mesh>,
-}
 
 /// Points and tetrahedra of a solid, relative to its origin.
 struct Shape {
@@ -27,15 +21,12 @@ struct Shape {
     boundary: Vec<[u32; 3]>,
 }
 
-impl LoadedSolid<'_> {
+impl Solid {
     /// Returns the lattice of a box and the lengths of its edges (m); `None` for a file.
     fn lattice(&self) -> Result<Option<(Lattice, Vector3<f64>)>, Fault> {
-        let Solid {
-            grid, size, scale, ..
-        } = self.solid;
-        match (self.mesh.is_some(), grid, size) {
-            (false, Some(grid), Some(size)) if scale.is_none() => {
-                Ok(Some((Lattice(*grid), Vector3::from(*size))))
+        match (self.file.is_some(), self.grid, self.size) {
+            (false, Some(grid), Some(size)) if self.scale.is_none() => {
+                Ok(Some((Lattice(grid), Vector3::from(size))))
             }
             (true, None, None) => Ok(None),
             _ => Err(Fault::new(
@@ -45,11 +36,12 @@ impl LoadedSolid<'_> {
         }
     }
 
-    fn shape(&self) -> Result<Shape, Fault> {
+    /// Returns the shape of a box, or that of the mesh of its file.
+    fn shape(&self, mesh: Option<&Mesh>) -> Result<Shape, Fault> {
         let Some((lattice, size)) = self.lattice()? else {
-            let scale = self.solid.scale.unwrap_or(1.0);
+            let scale = self.scale.unwrap_or(1.0);
             at("scale", positive("it", scale))?;
-            let mesh = self.mesh.as_ref().map(|mesh| mesh.scaled(scale));
+            let mesh = mesh.map(|mesh| mesh.scaled(scale));
             let mesh = mesh.unwrap_or_default();
             return Ok(Shape {
                 positions: mesh.positions.into_iter().map(Vector3::from).collect(),
@@ -78,11 +70,11 @@ impl LoadedSolid<'_> {
             poisson,
             damping,
             ..
-        } = *self.solid;
+        } = *self;
         at("young", positive("it", young))?;
         at("damping", at_least(0.0, "it", damping))?;
         let material = Material {
-            model: match self.solid.model {
+            model: match self.model {
                 SolidModel::NeoHookean => Hyperelastic::NeoHookean,
                 SolidModel::StVenantKirchhoff => Hyperelastic::StVenantKirchhoff,
             },
@@ -94,44 +86,34 @@ impl LoadedSolid<'_> {
     }
 }
 
-impl LoadedSolid<'_> {
-    /// Rewrites an error of a tetrahedron with the numbers that the file gives to it and its
-    /// corners.
-    fn in_file(
-        &self,
-        why: Error,
-        tetrahedra: &[[u32; 4]],
-        positions: &[Vector3<f64>],
-        material: Material,
-    ) -> Error {
-        let is_wrong = |t: &[u32; 4]| Elastic::new(0, &[*t], positions, material).is_err();
-        let found = tetrahedra.iter().position(is_wrong).zip(self.mesh.as_ref());
-        let numbered = found.and_then(|(k, mesh)| {
-            let number = mesh.tetrahedron_numbers.get(k)?;
-            let [a, b, c, d] = tetrahedra[k].map(|i| mesh.number(i as usize));
-            Some(format!(
-                "{why}; in the file it is number {number}, with the points {a}, {b}, {c} and {d}"
-            ))
-        });
-        numbered.map_or(why, Error::Invalid)
-    }
+/// Rewrites an error of a tetrahedron with the numbers that the file gives to it and its corners.
+fn in_file(why: Error, mesh: Option<&Mesh>, shape: &Shape, material: Material) -> Error {
+    let Shape {
+        positions,
+        tetrahedra,
+        ..
+    } = shape;
+    let is_wrong = |t: &[u32; 4]| Elastic::new(0, &[*t], positions, material).is_err();
+    let found = tetrahedra.iter().position(is_wrong).zip(mesh);
+    let numbered = found.and_then(|(k, mesh)| {
+        let number = mesh.tetrahedron_numbers.get(k)?;
+        let [a, b, c, d] = tetrahedra[k].map(|i| mesh.number(i as usize));
+        Some(format!(
+            "{why}; in the file it is number {number}, with the points {a}, {b}, {c} and {d}"
+        ))
+    });
+    numbered.map_or(why, Error::Invalid)
 }
 
-impl Body for LoadedSolid<'_> {
-    fn counts(&self) -> Result<Counts, Fault> {
-        let (particles, tetrahedra) = match (self.lattice()?, &self.mesh) {
+impl Body for Solid {
+    fn add_to(&self, assembly: &mut Assembly, files: &mut Files) -> Result<(), Fault> {
+        let file = self.file.as_deref().map(|file| files.read(file));
+        let mesh = file.transpose()?;
+        let count = mesh.as_ref().map_or(0, |mesh| mesh.tetrahedra.len());
+        files.budget.spend("", count, CELLS)?;
+        let (particles, tetrahedra) = match (self.lattice()?, &mesh) {
             (Some((lattice, _)), _) => {
-                let particles = lattice
-                    .particles()
-                    .filter(|_| lattice.0.iter().all(|n| *n >= 2));
-                let particles = particles.ok_or_else(|| {
-                    let [x, y, z] = lattice.0;
-                    let why = format!(
-                        "a solid has at least 2 particles along each edge, such as [20, 4, 4], not \
-                         [{x}, {y}, {z}]"
-                    );
-                    Fault::new("grid", why)
-                })?;
+                let particles = lattice.particles("solid", [20, 4, 4])?;
                 (particles, particles.saturating_mul(6))
             }
             (None, Some(mesh)) if !mesh.tetrahedra.is_empty() => {
@@ -142,60 +124,37 @@ impl Body for LoadedSolid<'_> {
                 return Err(Fault::new("file", why));
             }
         };
-        Ok(Counts {
-            particles,
-            tetrahedra,
-            ..Counts::default()
-        })
-    }
-
-    fn add_to(&self, assembly: &mut Assembly) -> Result<(), Fault> {
+        files.spend(particles, &[(tetrahedra, TETRAHEDRA)])?;
         let material = self.material()?;
-        at("density", positive("it", self.solid.density))?;
-        let source = if self.mesh.is_some() { "file" } else { "size" };
+        at("density", positive("it", self.density))?;
+        let source = if mesh.is_some() { "file" } else { "size" };
+        let shape = self.shape(mesh.as_ref())?;
+        let first = assembly.masses.len();
+        let solid = Elastic::new(first, &shape.tetrahedra, &shape.positions, material);
+        let solid = solid.map_err(|why| in_file(why, mesh.as_ref(), &shape, material));
+        let solid = at(source, solid)?;
         let Shape {
             positions,
             tetrahedra,
             boundary,
-        } = self.shape()?;
-        let first = assembly.masses.len();
-        let solid = Elastic::new(first, &tetrahedra, &positions, material);
-        let solid = solid.map_err(|why| self.in_file(why, &tetrahedra, &positions, material));
-        let solid = at(source, solid)?;
+        } = shape;
         let mut masses = vec![0.0; positions.len()];
         let mut spacings = vec![f64::INFINITY; positions.len()];
         for (corners, volume) in tetrahedra.iter().zip(solid.volumes()) {
             let height = height(corners.map(|i| positions[i as usize]), volume);
             for i in corners.map(|i| i as usize) {
-                masses[i] += 0.25 * self.solid.density * volume;
+                masses[i] += 0.25 * self.density * volume;
                 spacings[i] = spacings[i].min(height);
             }
         }
         let mean = spacings.iter().sum::<f64>() / spacings.len() as f64;
-        let skin = SkinSpec {
-            thickness: self.solid.thickness,
-            contact_stiffness: self.solid.contact_stiffness,
-            friction: self.solid.friction,
-            restitution: self.solid.restitution,
-            stiffness: material.young * mean,
-            time: material.damping,
-        };
+        let skin = SkinSpec::of(self, material.young * mean, material.damping);
         assembly.skins.extend(skin.fitted(&masses, &spacings)?);
-        let rotation = Rotation3::new(Vector3::from(self.solid.rotation.unwrap_or_default()));
-        let origin = Vector3::from(self.solid.at);
-        let velocity = Vector3::from(self.solid.velocity.unwrap_or_default());
-        let count = positions.len();
-        let places = positions.into_iter().map(|p| origin + rotation * p);
-        assembly.positions.extend(places);
-        assembly.velocities.extend(vec![velocity; count]);
-        assembly.masses.extend(masses);
+        let places = positions.into_iter().map(placed(self.at, self.rotation));
+        assembly.add_particles(&masses, places, self.velocity);
         assembly.solids.push(solid);
         assembly.add_surface(first, boundary);
         Ok(())
-    }
-
-    fn pins(&self) -> &[Pin] {
-        &self.solid.pin
     }
 
     fn spot(&self, spot: Spot, positions: &[Vector3<f64>]) -> Option<Vec<usize>> {

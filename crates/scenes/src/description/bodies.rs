@@ -4,8 +4,113 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::motion::{Pin, Shift, Sine, Triple, Turn};
-use super::obstacles::is_zero;
+use super::motion::{Pin, Shift, Sine, Triple, Turn, is_default};
+
+/// Keys of the skin of a body, which say how its surface touches others.
+#[derive(Clone, Copy, Default)]
+pub(crate) struct SkinKeys {
+    pub thickness: Option<f64>,
+    pub contact_stiffness: Option<f64>,
+    pub friction: f64,
+    pub restitution: f64,
+}
+
+/// Keys that bodies of several kinds share, to be changed: `None` where a kind lacks one.
+#[derive(Default)]
+pub(crate) struct SharedKeys<'a> {
+    pub pin: Option<&'a mut Vec<Pin>>,
+    /// Friction and restitution.
+    pub contact: Option<[&'a mut f64; 2]>,
+    /// Stiffness of springs by their kinds.
+    pub stiffness: Option<&'a mut [f64]>,
+    pub damping: Option<&'a mut Option<f64>>,
+    pub damping_ratio: Option<&'a mut Option<f64>>,
+    pub strain_limit: Option<&'a mut Option<f64>>,
+    pub tension_only: Option<&'a mut bool>,
+    pub buckling: Option<&'a mut Option<BucklingSpec>>,
+}
+
+/// Body of any kind, by the keys that it shares with others. A fluid has none of them.
+pub(crate) trait Keys {
+    fn skin(&self) -> SkinKeys {
+        SkinKeys::default()
+    }
+
+    fn pins(&self) -> &[Pin] {
+        &[]
+    }
+
+    fn shared(&mut self) -> SharedKeys<'_> {
+        SharedKeys::default()
+    }
+}
+
+/// Implements `Keys` for a body that has `pin`, the keys of a skin, and those that are listed.
+macro_rules! share_keys {
+    ($body:ident $(, $key:ident)*) => {
+        impl Keys for $body {
+            fn skin(&self) -> SkinKeys {
+                SkinKeys {
+                    thickness: self.thickness,
+                    contact_stiffness: self.contact_stiffness,
+                    friction: self.friction,
+                    restitution: self.restitution,
+                }
+            }
+
+            fn pins(&self) -> &[Pin] {
+                &self.pin
+            }
+
+            fn shared(&mut self) -> SharedKeys<'_> {
+                SharedKeys {
+                    pin: Some(&mut self.pin),
+                    contact: Some([&mut self.friction, &mut self.restitution]),
+                    $($key: Some(&mut self.$key),)*
+                    ..SharedKeys::default()
+                }
+            }
+        }
+    };
+}
+
+/// Writes bodies with their own keys, and then those that all have: a skin and pins. After `with`
+/// come the names of own keys that bodies of other kinds have too. Bodies are not indented: the
+/// lines of their docs are those of the schema.
+macro_rules! bodies {
+    ($(
+        $(#[$about:meta])*
+        pub struct $body:ident { $($own:tt)* }
+        $(#[$about_pins:meta])*
+        with pin $(, $key:ident)*
+    )*) => {$(
+    $(#[$about])*
+    #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+    #[serde(deny_unknown_fields)]
+    pub struct $body {
+        $($own)*
+        /// Distance up to which its surface repels others where surfaces touch (m).
+        #[serde(default)]
+        pub thickness: Option<f64>,
+        #[doc = "Stiffness of its surface where surfaces touch (N/m); if not given, that of its springs, or"]
+        #[doc = "more if its mass needs that."]
+        #[serde(default)]
+        pub contact_stiffness: Option<f64>,
+        /// Coefficient of Coulomb friction where surfaces touch; 0 if not given.
+        #[serde(default, skip_serializing_if = "is_default")]
+        pub friction: f64,
+        /// Coefficient of restitution where surfaces touch; 0 if not given.
+        #[serde(default, skip_serializing_if = "is_default")]
+        pub restitution: f64,
+        $(#[$about_pins])*
+        #[serde(default, skip_serializing_if = "Vec::is_empty")]
+        pub pin: Vec<Pin>,
+    }
+
+    share_keys!($body $(, $key)*);
+    )*};
+}
+pub(super) use share_keys;
 
 /// First-order system of one particle whose velocity is its position turned by a right angle.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -15,9 +120,9 @@ pub struct Circle {
     pub start: Triple,
 }
 
+bodies! {
+
 /// Rectangular cloth: rows x columns of particles at equal spacing, numbered row by row.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
 pub struct Cloth {
     /// Numbers of rows and columns, each at least 2.
     pub grid: [usize; 2],
@@ -59,27 +164,11 @@ pub struct Cloth {
     pub velocity: Option<Triple>,
     /// Velocity of the last row relative to the first (m/s), with the rows between in proportion.
     pub sway: Option<Triple>,
-    /// Distance up to which its surface repels others where surfaces touch (m).
-    #[serde(default)]
-    pub thickness: Option<f64>,
-    /// Stiffness of its surface where surfaces touch (N/m); if not given, that of its springs, or
-    /// more if its mass needs that.
-    #[serde(default)]
-    pub contact_stiffness: Option<f64>,
-    /// Coefficient of Coulomb friction where surfaces touch; 0 if not given.
-    #[serde(default, skip_serializing_if = "is_zero")]
-    pub friction: f64,
-    /// Coefficient of restitution where surfaces touch; 0 if not given.
-    #[serde(default, skip_serializing_if = "is_zero")]
-    pub restitution: f64,
-    /// Pins of this body.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub pin: Vec<Pin>,
 }
+/// Pins of this body.
+with pin, stiffness, damping, damping_ratio, strain_limit, buckling
 
 /// Box of jelly: a lattice of particles, joined along edges, across faces and across cells.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
 pub struct Jelly {
     /// Numbers of particles along x, y and z, each at least 2.
     pub grid: [usize; 3],
@@ -105,28 +194,12 @@ pub struct Jelly {
     pub rotation: Option<Triple>,
     /// Velocity (m/s).
     pub velocity: Option<Triple>,
-    /// Distance up to which its surface repels others where surfaces touch (m).
-    #[serde(default)]
-    pub thickness: Option<f64>,
-    /// Stiffness of its surface where surfaces touch (N/m); if not given, that of its springs, or
-    /// more if its mass needs that.
-    #[serde(default)]
-    pub contact_stiffness: Option<f64>,
-    /// Coefficient of Coulomb friction where surfaces touch; 0 if not given.
-    #[serde(default, skip_serializing_if = "is_zero")]
-    pub friction: f64,
-    /// Coefficient of restitution where surfaces touch; 0 if not given.
-    #[serde(default, skip_serializing_if = "is_zero")]
-    pub restitution: f64,
-    /// Pins of this body.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub pin: Vec<Pin>,
 }
+/// Pins of this body.
+with pin, stiffness, damping, damping_ratio, strain_limit
 
 /// Cloth from a file of triangles: particles at their corners, structural springs on their edges,
 /// bend springs across these.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
 pub struct MeshCloth {
     /// A file (.obj, .gltf, .glb, .stl, .ply) in the scene's folder or in one below it.
     pub file: String,
@@ -158,39 +231,12 @@ pub struct MeshCloth {
     pub fill: Option<f64>,
     /// Velocity (m/s).
     pub velocity: Option<Triple>,
-    /// Distance up to which its surface repels others where surfaces touch (m).
-    #[serde(default)]
-    pub thickness: Option<f64>,
-    /// Stiffness of its surface where surfaces touch (N/m); if not given, that of its springs, or
-    /// more if its mass needs that.
-    #[serde(default)]
-    pub contact_stiffness: Option<f64>,
-    /// Coefficient of Coulomb friction where surfaces touch; 0 if not given.
-    #[serde(default, skip_serializing_if = "is_zero")]
-    pub friction: f64,
-    /// Coefficient of restitution where surfaces touch; 0 if not given.
-    #[serde(default, skip_serializing_if = "is_zero")]
-    pub restitution: f64,
-    /// Pins of this body. Its `top` and `bottom` are the particles as high as the highest and the
-    /// lowest one, to a hundredth of the body's height.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub pin: Vec<Pin>,
 }
-
-/// Energy of a solid.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub enum SolidModel {
-    /// Stable neo-Hookean energy, by which a tetrahedron that is inside out turns back.
-    #[default]
-    NeoHookean,
-    /// Energy after Saint Venant and Kirchhoff, for moderate strains.
-    StVenantKirchhoff,
-}
+/// Pins of this body. Its `top` and `bottom` are the particles as high as the highest and the
+/// lowest one, to a hundredth of the body's height.
+with pin, stiffness, damping, damping_ratio, strain_limit, tension_only
 
 /// Elastic solid of tetrahedra: a box, or the mesh of a file.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
 pub struct Solid {
     /// Numbers of particles of a box along x, y and z, each at least 2. An alternative is `file`.
     pub grid: Option<[usize; 3]>,
@@ -219,28 +265,12 @@ pub struct Solid {
     pub rotation: Option<Triple>,
     /// Velocity (m/s).
     pub velocity: Option<Triple>,
-    /// Distance up to which its surface repels others where surfaces touch (m).
-    #[serde(default)]
-    pub thickness: Option<f64>,
-    /// Stiffness of its surface where surfaces touch (N/m); if not given, that of its springs, or
-    /// more if its mass needs that.
-    #[serde(default)]
-    pub contact_stiffness: Option<f64>,
-    /// Coefficient of Coulomb friction where surfaces touch; 0 if not given.
-    #[serde(default, skip_serializing_if = "is_zero")]
-    pub friction: f64,
-    /// Coefficient of restitution where surfaces touch; 0 if not given.
-    #[serde(default, skip_serializing_if = "is_zero")]
-    pub restitution: f64,
-    /// Pins of this body. `top`, `bottom`, `left` and `right` of a solid from a file are the
-    /// particles that are farthest there, to a hundredth of its extent.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub pin: Vec<Pin>,
 }
+/// Pins of this body. `top`, `bottom`, `left` and `right` of a solid from a file are the
+/// particles that are farthest there, to a hundredth of its extent.
+with pin
 
 /// Straight row of particles joined by springs.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
 pub struct Chain {
     /// Number of particles, at least 2.
     pub particles: usize,
@@ -268,27 +298,11 @@ pub struct Chain {
     pub buckling: Option<BucklingSpec>,
     /// Velocity (m/s).
     pub velocity: Option<Triple>,
-    /// Distance up to which its surface repels others where surfaces touch (m).
-    #[serde(default)]
-    pub thickness: Option<f64>,
-    /// Stiffness of its surface where surfaces touch (N/m); if not given, that of its springs, or
-    /// more if its mass needs that.
-    #[serde(default)]
-    pub contact_stiffness: Option<f64>,
-    /// Coefficient of Coulomb friction where surfaces touch; 0 if not given.
-    #[serde(default, skip_serializing_if = "is_zero")]
-    pub friction: f64,
-    /// Coefficient of restitution where surfaces touch; 0 if not given.
-    #[serde(default, skip_serializing_if = "is_zero")]
-    pub restitution: f64,
-    /// Pins of this body.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub pin: Vec<Pin>,
 }
+/// Pins of this body.
+with pin, tension_only, buckling
 
 /// Single particles, with springs between them.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
 pub struct Particles {
     /// Positions (m).
     pub positions: Vec<Triple>,
@@ -307,22 +321,21 @@ pub struct Particles {
     /// Whether its springs only pull, and hang slack if they are shorter than their rest length.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub tension_only: bool,
-    /// Distance up to which its surface repels others where surfaces touch (m).
-    #[serde(default)]
-    pub thickness: Option<f64>,
-    /// Stiffness of its surface where surfaces touch (N/m); if not given, that of its springs, or
-    /// more if its mass needs that.
-    #[serde(default)]
-    pub contact_stiffness: Option<f64>,
-    /// Coefficient of Coulomb friction where surfaces touch; 0 if not given.
-    #[serde(default, skip_serializing_if = "is_zero")]
-    pub friction: f64,
-    /// Coefficient of restitution where surfaces touch; 0 if not given.
-    #[serde(default, skip_serializing_if = "is_zero")]
-    pub restitution: f64,
-    /// Pins of this body.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub pin: Vec<Pin>,
+}
+/// Pins of this body.
+with pin, tension_only
+
+}
+
+/// Energy of a solid.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum SolidModel {
+    /// Stable neo-Hookean energy, by which a tetrahedron that is inside out turns back.
+    #[default]
+    NeoHookean,
+    /// Energy after Saint Venant and Kirchhoff, for moderate strains.
+    StVenantKirchhoff,
 }
 
 /// Spring: [i, j, stiffness (N/m), rest length (m), damping (N s/m)].
@@ -402,8 +415,4 @@ pub struct SwingSpec {
     pub amplitude: Triple,
     /// Angular frequency (rad/s).
     pub rate: f64,
-}
-
-fn is_default<T: Default + PartialEq>(value: &T) -> bool {
-    *value == T::default()
 }

@@ -3,8 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::motion::Triple;
-use super::obstacles::is_zero;
+use super::motion::{Triple, is_default};
 
 /// Constraint: either a `rod` or a `rope` between two particles, or a `point`, a `line`, a
 /// `circle` or a `sphere` that one `particle` stays on.
@@ -18,7 +17,7 @@ pub struct ConstraintSpec {
     /// Length of the rod or the rope (m); if not given, the initial distance of its particles.
     pub length: Option<f64>,
     /// Coefficient of restitution of a rope that tightens; 0 if not given.
-    #[serde(skip_serializing_if = "is_zero")]
+    #[serde(skip_serializing_if = "is_default")]
     pub restitution: f64,
     /// The particle that stays on a point, a line, a circle or a sphere.
     pub particle: Option<usize>,

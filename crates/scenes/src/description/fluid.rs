@@ -3,7 +3,8 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::motion::Triple;
+use super::bodies::Keys;
+use super::motion::{Triple, is_default};
 
 /// Liquid of smoothed particles that begins as a box or a ball. All fluids of a scene are the same
 /// liquid, which mixes: each repeats `spacing`, `density`, `sound`, `viscosity` and `dimensions`.
@@ -11,7 +12,7 @@ use super::motion::Triple;
 #[serde(deny_unknown_fields)]
 pub struct Fluid {
     /// Shape at the beginning; a box if not given.
-    #[serde(default, skip_serializing_if = "FluidShape::is_box")]
+    #[serde(default, skip_serializing_if = "is_default")]
     pub shape: FluidShape,
     /// Lengths of the edges of the box or diameters of the ball (m), whole multiples of `spacing`.
     /// In two dimensions, the last one is 0. With an `inflow`, [0, 0, 0] means none of it at first.
@@ -46,6 +47,8 @@ pub struct Fluid {
     pub outflow: Vec<Outflow>,
 }
 
+impl Keys for Fluid {}
+
 /// Shape in which a fluid begins.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
@@ -55,13 +58,6 @@ pub enum FluidShape {
     Box,
     /// Ball, or a disc in two dimensions.
     Ball,
-}
-
-impl FluidShape {
-    #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde calls it so")]
-    fn is_box(&self) -> bool {
-        *self == Self::Box
-    }
 }
 
 /// Tank that is open at the top: its walls are pinned particles of the fluid.
@@ -91,7 +87,7 @@ pub struct Inflow {
     pub duration: f64,
     /// Time for which it has flowed at the start (s), straight on if no state is given; 0 if not
     /// given.
-    #[serde(default, skip_serializing_if = "is_zero")]
+    #[serde(default, skip_serializing_if = "is_default")]
     pub ahead: f64,
 }
 
@@ -103,11 +99,6 @@ pub struct Outflow {
     pub size: Triple,
     /// Centre (m).
     pub at: Triple,
-}
-
-#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde calls it so")]
-fn is_zero(number: &f64) -> bool {
-    *number == 0.0
 }
 
 fn three() -> u8 {

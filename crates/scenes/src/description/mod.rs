@@ -14,8 +14,10 @@ use crate::budget::check_text;
 use crate::fault::Fault;
 use crate::reader::{self, Places};
 
+use bodies::SharedKeys;
 pub use bodies::{BucklingSpec, RegionSpec, SpringSpec, SwingSpec, WindSpec};
 pub use bodies::{Chain, Circle, Cloth, Jelly, MeshCloth, Particles, Solid, SolidModel};
+pub(crate) use bodies::{Keys, SkinKeys};
 pub use constraints::{
     BallSpec, CircleSpec, ConstraintSpec, HingeSpec, JointSpec, LineSpec, SliderSpec,
 };
@@ -23,6 +25,7 @@ pub use fluid::{Fluid, FluidShape, Inflow, Outflow, Tank};
 pub use motion::{Pin, Shift, Sine, Spot, Triple, Turn};
 pub use obstacles::{BoxSpec, CapsuleSpec, ObstacleSpec, SphereSpec};
 pub use obstacles::{Floor, FloorSpec};
+pub(crate) use obstacles::{Movable, ObstacleKeys};
 pub use rigid::{PartSpec, RigidBody};
 
 /// Description of a scene: its bodies, the forces and obstacles that act on them, how it is run,
@@ -189,6 +192,19 @@ impl Description {
     /// wrong kind, or a number is not from -1e13 to 1e13.
     pub fn parse(text: &str) -> Result<Self, Fault> {
         parse_toml(text).map(|(description, _)| description)
+    }
+
+    /// Lists the keys that bodies share, body for body, in the order of the numbers of particles.
+    pub(crate) fn bodies_mut(&mut self) -> impl Iterator<Item = SharedKeys<'_>> {
+        let jellies = self.jelly.iter_mut().map(Keys::shared);
+        let meshes = self.mesh.iter_mut().map(Keys::shared);
+        let solids = self.solid.iter_mut().map(Keys::shared);
+        let chains = self.chain.iter_mut().map(Keys::shared);
+        let particles = self.particles.iter_mut().map(Keys::shared);
+        let rigid = self.body.iter_mut().map(Keys::shared);
+        let all = self.cloth.iter_mut().map(Keys::shared);
+        let all = all.chain(jellies).chain(meshes).chain(solids);
+        all.chain(chains).chain(particles).chain(rigid)
     }
 
     /// Writes TOML that [`parse`](Self::parse) reads as the same description.

@@ -6,6 +6,11 @@ use serde::{Deserialize, Serialize};
 /// Three numbers: x, y (up), z.
 pub type Triple = [f64; 3];
 
+/// Returns whether the value of a key is the one that it has if it is not given.
+pub(super) fn is_default<T: Default + PartialEq>(value: &T) -> bool {
+    *value == T::default()
+}
+
 /// Part of a body that can be pinned. A cloth has edges and corners, a jelly and a solid have
 /// faces, a chain has ends, a mesh has a top and a bottom.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]

@@ -7,40 +7,93 @@ use serde::de::value::MapAccessDeserializer;
 use serde::de::{MapAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize, de};
 
-use super::motion::{Shift, Sine, Triple, Turn};
+use super::motion::{Shift, Sine, Triple, Turn, is_default};
 use crate::check::{beyond, within};
 
+/// Keys that obstacles of all kinds share.
+#[derive(Default)]
+pub(crate) struct ObstacleKeys {
+    pub friction: f64,
+    pub restitution: f64,
+    pub thickness: Option<f64>,
+    pub sine: Option<Sine>,
+    pub shift: Option<Shift>,
+    pub turn: Option<Turn>,
+}
+
+/// Obstacle of any kind, by the keys that all share.
+pub(crate) trait Movable {
+    fn keys(&self) -> ObstacleKeys;
+
+    fn set(&mut self, keys: ObstacleKeys);
+}
+
+/// Writes obstacles with their own keys, and then those that all share, whose docs name what moves.
+/// They are not indented: the lines of their docs are those of the schema.
+macro_rules! obstacles {
+    ($(
+        $(#[$about:meta])*
+        pub struct $obstacle:ident { $($own:tt)* }
+        moves as a $kind:ident
+    )*) => {$(
+    $(#[$about])*
+    #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+    #[serde(deny_unknown_fields)]
+    pub struct $obstacle {
+        $($own)*
+        /// Coefficient of Coulomb friction; 0 if not given.
+        #[serde(default, skip_serializing_if = "is_default")]
+        pub friction: f64,
+        /// Coefficient of restitution, from 0 to 1; 0 if not given.
+        #[serde(default, skip_serializing_if = "is_default")]
+        pub restitution: f64,
+        /// Thickness (m), with which edges and triangles of bodies touch it and not only particles.
+        #[serde(default)]
+        pub thickness: Option<f64>,
+        #[doc = concat!("Oscillation of the ", stringify!($kind), ".")]
+        #[serde(default)]
+        pub sine: Option<Sine>,
+        #[doc = concat!("Displacement of the ", stringify!($kind), ", once.")]
+        #[serde(default)]
+        pub shift: Option<Shift>,
+        #[doc = concat!("Turn of the ", stringify!($kind), ".")]
+        #[serde(default)]
+        pub turn: Option<Turn>,
+    }
+
+    impl Movable for $obstacle {
+        fn keys(&self) -> ObstacleKeys {
+            ObstacleKeys {
+                friction: self.friction,
+                restitution: self.restitution,
+                thickness: self.thickness,
+                sine: self.sine.clone(),
+                shift: self.shift.clone(),
+                turn: self.turn.clone(),
+            }
+        }
+
+        fn set(&mut self, keys: ObstacleKeys) {
+            (self.friction, self.restitution) = (keys.friction, keys.restitution);
+            (self.sine, self.shift, self.turn) = (keys.sine, keys.shift, keys.turn);
+            self.thickness = keys.thickness;
+        }
+    }
+    )*};
+}
+
+obstacles! {
+
 /// Sphere that particles stay out of. It may move.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
 pub struct SphereSpec {
     /// Centre (m).
     pub center: Triple,
     /// Radius (m).
     pub radius: f64,
-    /// Coefficient of Coulomb friction; 0 if not given.
-    #[serde(default, skip_serializing_if = "is_zero")]
-    pub friction: f64,
-    /// Coefficient of restitution, from 0 to 1; 0 if not given.
-    #[serde(default, skip_serializing_if = "is_zero")]
-    pub restitution: f64,
-    /// Thickness (m), with which edges and triangles of bodies touch it and not only particles.
-    #[serde(default)]
-    pub thickness: Option<f64>,
-    /// Oscillation of the sphere.
-    #[serde(default)]
-    pub sine: Option<Sine>,
-    /// Displacement of the sphere, once.
-    #[serde(default)]
-    pub shift: Option<Shift>,
-    /// Turn of the sphere.
-    #[serde(default)]
-    pub turn: Option<Turn>,
 }
+moves as a sphere
 
 /// Box that particles stay out of. It may move.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
 pub struct BoxSpec {
     /// Centre (m).
     pub center: Triple,
@@ -49,29 +102,10 @@ pub struct BoxSpec {
     /// Rotation vector: its direction is the axis, its length the angle (rad).
     #[serde(default)]
     pub rotation: Option<Triple>,
-    /// Coefficient of Coulomb friction; 0 if not given.
-    #[serde(default, skip_serializing_if = "is_zero")]
-    pub friction: f64,
-    /// Coefficient of restitution, from 0 to 1; 0 if not given.
-    #[serde(default, skip_serializing_if = "is_zero")]
-    pub restitution: f64,
-    /// Thickness (m), with which edges and triangles of bodies touch it and not only particles.
-    #[serde(default)]
-    pub thickness: Option<f64>,
-    /// Oscillation of the box.
-    #[serde(default)]
-    pub sine: Option<Sine>,
-    /// Displacement of the box, once.
-    #[serde(default)]
-    pub shift: Option<Shift>,
-    /// Turn of the box.
-    #[serde(default)]
-    pub turn: Option<Turn>,
 }
+moves as a box
 
 /// Capsule that particles stay out of: all points within `radius` of a line segment. It may move.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
 pub struct CapsuleSpec {
     /// One end of the segment (m).
     pub from: Triple,
@@ -79,29 +113,10 @@ pub struct CapsuleSpec {
     pub to: Triple,
     /// Radius (m).
     pub radius: f64,
-    /// Coefficient of Coulomb friction; 0 if not given.
-    #[serde(default, skip_serializing_if = "is_zero")]
-    pub friction: f64,
-    /// Coefficient of restitution, from 0 to 1; 0 if not given.
-    #[serde(default, skip_serializing_if = "is_zero")]
-    pub restitution: f64,
-    /// Thickness (m), with which edges and triangles of bodies touch it and not only particles.
-    #[serde(default)]
-    pub thickness: Option<f64>,
-    /// Oscillation of the capsule.
-    #[serde(default)]
-    pub sine: Option<Sine>,
-    /// Displacement of the capsule, once.
-    #[serde(default)]
-    pub shift: Option<Shift>,
-    /// Turn of the capsule.
-    #[serde(default)]
-    pub turn: Option<Turn>,
 }
+moves as a capsule
 
 /// Solid that particles stay out of, within a closed surface from a file of triangles. It may move.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
 pub struct ObstacleSpec {
     /// A file (.obj, .gltf, .glb, .stl, .ply) in the scene's folder or in one below it. The
     /// triangles at each edge form pairs with the same winding order.
@@ -115,32 +130,9 @@ pub struct ObstacleSpec {
     /// Rotation vector: its direction is the axis, its length the angle (rad).
     #[serde(default)]
     pub rotation: Option<Triple>,
-    /// Coefficient of Coulomb friction; 0 if not given.
-    #[serde(default, skip_serializing_if = "is_zero")]
-    pub friction: f64,
-    /// Coefficient of restitution, from 0 to 1; 0 if not given.
-    #[serde(default, skip_serializing_if = "is_zero")]
-    pub restitution: f64,
-    /// Thickness (m), with which edges and triangles of bodies touch it and not only particles.
-    #[serde(default)]
-    pub thickness: Option<f64>,
-    /// Oscillation of the solid.
-    #[serde(default)]
-    pub sine: Option<Sine>,
-    /// Displacement of the solid, once.
-    #[serde(default)]
-    pub shift: Option<Shift>,
-    /// Turn of the solid.
-    #[serde(default)]
-    pub turn: Option<Turn>,
 }
+moves as a solid
 
-#[allow(
-    clippy::trivially_copy_pass_by_ref,
-    reason = "serde calls it so; on 32 bits clippy lets it"
-)]
-pub(super) fn is_zero(number: &f64) -> bool {
-    *number == 0.0
 }
 
 /// Level floor: `floor = -1.0`, or `floor = { height = -1.0, friction = 0.4, restitution = 0.8 }`.
@@ -154,7 +146,7 @@ pub enum Floor {
 }
 
 /// Level floor with its friction, restitution and thickness.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct FloorSpec {
     /// Height (m).
@@ -163,7 +155,7 @@ pub struct FloorSpec {
     #[serde(default)]
     pub friction: f64,
     /// Coefficient of restitution, from 0 to 1; 0 if not given.
-    #[serde(default, skip_serializing_if = "is_zero")]
+    #[serde(default, skip_serializing_if = "is_default")]
     pub restitution: f64,
     /// Thickness (m), with which it repels bodies before they touch it.
     #[serde(default, skip_serializing_if = "Option::is_none")]

@@ -3,8 +3,8 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::motion::{Pin, Triple};
-use super::obstacles::is_zero;
+use super::bodies::{Keys, SharedKeys, SkinKeys, share_keys};
+use super::motion::{Pin, Triple, is_default};
 
 /// Rigid body of one or several parts.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -36,19 +36,21 @@ pub struct RigidBody {
     #[serde(default)]
     pub contact_stiffness: Option<f64>,
     /// Coefficient of Coulomb friction; 0 if not given.
-    #[serde(default, skip_serializing_if = "is_zero")]
+    #[serde(default, skip_serializing_if = "is_default")]
     pub friction: f64,
     /// Coefficient of rolling friction (m): the largest torque that resists its turn where it
     /// touches, over the force along the normal; 0 if not given.
-    #[serde(default, skip_serializing_if = "is_zero")]
+    #[serde(default, skip_serializing_if = "is_default")]
     pub rolling_friction: f64,
     /// Coefficient of restitution, from 0 to 1; 0 if not given.
-    #[serde(default, skip_serializing_if = "is_zero")]
+    #[serde(default, skip_serializing_if = "is_default")]
     pub restitution: f64,
     /// Pins of this body: only of its particle 0, the centre of mass, about which it still turns.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub pin: Vec<Pin>,
 }
+
+share_keys!(RigidBody);
 
 /// Part of a rigid body: one of a box, a ball, a capsule and a mesh.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]

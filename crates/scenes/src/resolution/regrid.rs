@@ -69,15 +69,14 @@ pub fn regridded(scene: &Description, factor: f64, particles: usize) -> Result<R
     })
 }
 
+/// Counts the bodies that may have a grid.
+fn gridded(scene: &Description) -> usize {
+    scene.cloth.len() + scene.jelly.len() + scene.solid.len() + scene.fluid.len()
+}
+
 /// Checks that a body has a grid, and that nothing in the scene refers to single particles.
 fn check_grids(scene: &Description) -> Result<(), String> {
-    let is_gridded = [
-        scene.cloth.len(),
-        scene.jelly.len(),
-        scene.solid.len(),
-        scene.fluid.len(),
-    ] != [0; 4];
-    if !is_gridded {
+    if gridded(scene) == 0 {
         return Err("no body has a grid that could be finer".into());
     }
     if !scene.fluid.is_empty() && !scene.body.is_empty() {
@@ -122,13 +121,7 @@ fn keep_forces_per_mass(
     let by_particle = own.drag.is_some() || own.drag_per_mass.is_some();
     let wind = scene.wind.as_mut();
     let pushed = wind.filter(|wind| wind.force.is_some() || wind.force_per_mass.is_some());
-    let bodies = [
-        scene.cloth.len(),
-        scene.jelly.len(),
-        scene.solid.len(),
-        scene.fluid.len(),
-    ];
-    let uneven = places.kept > 0 || bodies.iter().sum::<usize>() > 1;
+    let uneven = places.kept > 0 || gridded(own) > 1;
     if uneven && (by_particle || pushed.is_some()) {
         return Err("drag or wind is the same for each particle of several bodies".into());
     }
@@ -231,15 +224,16 @@ mod tests {
 
     const CLOTH: &str = "[[cloth]]\ngrid = [11, 16]\nwidth = 1.5\ndensity = 0.2\nstiffness = [100, 50, 10]\ndamping_ratio = 0.05\n";
 
+    fn build(description: &Description) -> a3_core::Scene {
+        let setup = description.build(None, &mut |_| Err(String::new()));
+        setup.unwrap().scene
+    }
+
     #[test]
     fn a_finer_cloth_has_the_same_size_and_mass() {
         let own = Description::parse(&format!("drag = 0.01\n{CLOTH}")).unwrap();
         for (factor, grid) in [(2.0, [21, 31]), (0.5, [7, 10]), (0.2, [3, 4])] {
             let other = regridded(&own, factor, 176).unwrap();
-            let build = |description: &Description| {
-                let setup = description.build(None, &mut |_| Err(String::new()));
-                setup.unwrap().scene
-            };
             let (a, b) = (build(&own), build(&other.description));
             let cloth = &other.description.cloth[0];
             assert_eq!(cloth.grid, grid);
@@ -277,10 +271,6 @@ mod tests {
                     tank = { size = [0.6, 0.4, 0.2], at = [0.1, 0.05, 0] }\n";
         for text in [fluid, &format!("{fluid}{tank}"), &ball, cube] {
             let own = Description::parse(text).unwrap();
-            let build = |description: &Description| {
-                let setup = description.build(None, &mut |_| Err(String::new()));
-                setup.unwrap().scene
-            };
             let a = build(&own);
             let n = a.model.particles();
             for factor in [2.0, 0.5] {
