@@ -15,8 +15,10 @@ use crate::refusal::Refusal;
 use crate::system::{ParticleSystem, rigid_of, size};
 use crate::work::Work;
 
-/// Step of a difference quotient, over the size of the number: the root of the rounding error.
+/// Step of a difference quotient, over the size of the number: about the root of the rounding error.
 const DIFFERENCE_SHARE: f64 = 1.490_116_119_384_765_6e-8;
+/// Half the step of a central difference quotient, over the unit of the number.
+const CENTRAL_SHARE: f64 = 1e-6;
 /// The same for speeds of bodies, relative to that for positions: the resulting motion is tiny.
 const SPEED_DIFFERENCE_SHARE: f64 = 1e-3;
 
@@ -55,6 +57,9 @@ pub(super) struct Jacobian {
     /// matrices are small.
     evaluation: f64,
     pub matrix: Matrix,
+    /// Whether differences are central: for bodies and constraints, of whose equations implicit
+    /// Euler makes one iteration, which keeps the error of the matrix.
+    is_central: bool,
     /// Whether a pattern is still to be searched.
     searches: bool,
     at: Vec<f64>,
@@ -67,6 +72,9 @@ impl Jacobian {
     pub fn new(system: &dyn ParticleSystem) -> Self {
         let (dim, unknowns) = (system.dim(), unknowns(system));
         let (count, is_rigid) = (unknowns.len(), rigid_of(system).is_some());
+        let mut is_plain = true;
+        system.measures(&mut |_, measure| is_plain &= measure == Measure::Plain);
+        let is_central = is_rigid || !is_plain && system.mechanics().is_none();
         Self {
             units: Vec::with_capacity(count),
             evaluation: if is_rigid {
@@ -76,7 +84,8 @@ impl Jacobian {
             },
             unknowns,
             matrix: full(count),
-            searches: count >= MANY && !is_rigid,
+            is_central,
+            searches: count >= MANY && !is_central,
             at: vec![0.0; dim],
             f: vec![0.0; dim],
             changed: vec![0.0; dim],
@@ -142,7 +151,17 @@ impl Jacobian {
             size.unwrap_or(1.0)
         };
         let speed = length / a.abs();
-        let Self { units, f, .. } = self;
+        let Self {
+            units,
+            f,
+            is_central,
+            ..
+        } = self;
+        let share = if *is_central {
+            CENTRAL_SHARE
+        } else {
+            DIFFERENCE_SHARE
+        };
         units.clear();
         system.measures(&mut |numbers, measure| {
             let unit = match measure {
@@ -152,21 +171,28 @@ impl Jacobian {
                 Measure::Momentum { speed: own } => speed / own,
                 Measure::Plain | Measure::Alike => 0.0,
             };
-            let share = match measure {
-                Measure::Position | Measure::Rotation { .. } => 1.0,
-                _ => SPEED_DIFFERENCE_SHARE,
+            let of_unit = match measure {
+                Measure::Position | Measure::Rotation { .. } => share * unit,
+                _ => SPEED_DIFFERENCE_SHARE * share * unit,
             };
             units.extend(numbers.map(|k| {
                 if unit > 0.0 {
-                    return [unit, DIFFERENCE_SHARE * share * unit];
+                    return [unit, of_unit];
                 }
                 let size = match measure {
                     Measure::Plain => of_plain(k, f[k]),
                     _ => size(system, k, y[k]),
                 };
-                let step = DIFFERENCE_SHARE * size;
+                let step = share * size;
                 // Exactly the difference of two numbers.
-                [1.0, (y[k] + step) - y[k]]
+                [
+                    1.0,
+                    if *is_central {
+                        step
+                    } else {
+                        (y[k] + step) - y[k]
+                    },
+                ]
             }));
         });
     }
@@ -184,10 +210,13 @@ impl Jacobian {
             self.units.resize(count, [1.0, 0.0]);
             return Work::of(count as u64);
         }
-        system.eval_f(t, y, &mut self.f);
+        let mut work = Work::default();
+        if !self.is_central {
+            system.eval_f(t, y, &mut self.f);
+            work = Work::of(1);
+        }
         self.measure(system, a, y);
         self.at.copy_from_slice(y);
-        let mut work = Work::of(1);
         let mut grows = true;
         if std::mem::take(&mut self.searches) {
             work += self.search(system, t, y).0;
@@ -280,6 +309,7 @@ impl Jacobian {
             unknowns,
             units,
             matrix,
+            is_central,
             at,
             f,
             changed,
@@ -290,15 +320,20 @@ impl Jacobian {
             Matrix::Full(matrix) if matrix.len() < count * count => Work::default(),
             Matrix::Full(matrix) => {
                 for (column, &j) in unknowns.iter().enumerate() {
-                    let [_, step] = units[column];
+                    let [_, mut step] = units[column];
                     at[j] = y[j] + step;
                     system.eval_f(t, at, changed);
+                    if *is_central {
+                        at[j] = y[j] - step;
+                        system.eval_f(t, at, f);
+                        step *= 2.0;
+                    }
                     at[j] = y[j];
                     for (row, &i) in unknowns.iter().enumerate() {
                         matrix[row * count + column] = (changed[i] - f[i]) / step;
                     }
                 }
-                Work::of(count as u64)
+                Work::of(count as u64 * if *is_central { 2 } else { 1 })
             }
             Matrix::Sparse(pattern, values) => {
                 for columns in &pattern.colours {
