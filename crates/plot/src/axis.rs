@@ -1,10 +1,5 @@
 //! Axes: the map from numbers to the sheet, and ticks.
 
-use crate::figure::Figure;
-use crate::geometry::{Point, Rect};
-use crate::label::{Anchor, Label, width};
-use crate::paint::Pen;
-
 /// One direction of a chart, linear or logarithmic: a map from numbers to the sheet.
 ///
 /// ```
@@ -13,7 +8,9 @@ use crate::paint::Pen;
 /// ```
 #[derive(Clone, Copy, Debug)]
 pub struct Axis {
-    log: bool,
+    pub(crate) log: bool,
+    /// Whether numbers of more than six characters are written with exponents.
+    pub(crate) short: bool,
     /// The least and the greatest number, or their decimal logarithms.
     ends: [f64; 2],
     /// The ends on the sheet.
@@ -35,6 +32,7 @@ impl Axis {
     pub fn linear(ends: [f64; 2]) -> Self {
         Self {
             log: false,
+            short: false,
             ends,
             places: [0.0, 1.0],
         }
@@ -76,6 +74,7 @@ impl Axis {
                 .unwrap_or(1.0);
         Self {
             log: true,
+            short: false,
             ends: [down, up],
             places: [0.0, 1.0],
         }
@@ -158,6 +157,10 @@ impl Axis {
             .find(|s| *s >= least * (1.0 - 1e-9))
             .unwrap_or(10.0 * power);
         let digits = (-step.log10().floor()).max(0.0) as usize;
+        let label = |value: f64| match format!("{value:.digits$}") {
+            long if self.short && long.len() > 6 => format!("{value:.1e}"),
+            label => label,
+        };
         let (first, last) = (
             (self.ends[0] / step).ceil() as i64,
             (self.ends[1] / step).floor() as i64,
@@ -166,7 +169,7 @@ impl Axis {
             .map(|k| k as f64 * step)
             .map(|value| Tick {
                 value,
-                label: format!("{value:.digits$}").replace('-', "−"),
+                label: label(value).replace('-', "−"),
             })
             .collect()
     }
@@ -174,59 +177,6 @@ impl Axis {
 
 fn power_of_ten(power: f64) -> String {
     format!("10^{{{power}}}").replace('-', "−")
-}
-
-/// Returns the width of the widest label of an axis.
-pub fn widest(axis: &Axis, size: f64) -> f64 {
-    axis.ticks(1.6 * size)
-        .iter()
-        .map(|tick| width(&tick.label, size))
-        .fold(0.0, f64::max)
-}
-
-/// Draws the grid, the frame and the labels of a panel; `numbers` tells whether x and y are
-/// labelled.
-pub fn draw(figure: &mut Figure, area: Rect, [x, y]: [&Axis; 2], size: f64, numbers: [bool; 2]) {
-    let grid = |label: &str| {
-        let (colour, width) = if label.is_empty() {
-            ("#efefef", 0.045)
-        } else {
-            ("#d9d9d9", 0.07)
-        };
-        Pen::new(colour, width * size)
-    };
-    let (xs, ys) = (
-        x.ticks(if x.log { 3.4 } else { 2.3 } * size),
-        y.ticks(1.6 * size),
-    );
-    // Labelled ticks are drawn over minor ones.
-    for named in [false, true] {
-        for tick in xs.iter().filter(|tick| tick.label.is_empty() != named) {
-            let at = x.at(tick.value);
-            figure.line(&[[at, area.y0], [at, area.y1]], grid(&tick.label));
-        }
-        for tick in ys.iter().filter(|tick| tick.label.is_empty() != named) {
-            let at = y.at(tick.value);
-            figure.line(&[[area.x0, at], [area.x1, at]], grid(&tick.label));
-        }
-    }
-    figure.rect(area, Pen::new("#8a8a8a", 0.07 * size).into());
-    let mut number = |at: Point, label: Label| {
-        if figure.is_free(label.room(at)) {
-            figure.text(at, label);
-        }
-    };
-    for tick in xs.iter().filter(|_| numbers[0]) {
-        let label = Label::new(&tick.label, size).anchor(Anchor::Middle);
-        number([x.at(tick.value), area.y1 + 1.15 * size], label);
-    }
-    for tick in ys.iter().filter(|_| numbers[1]) {
-        let label = Label::new(&tick.label, size).anchor(Anchor::End);
-        number(
-            [area.x0 - 0.4 * size, y.at(tick.value) + 0.34 * size],
-            label,
-        );
-    }
 }
 
 #[cfg(test)]

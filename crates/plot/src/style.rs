@@ -53,7 +53,8 @@ pub(crate) enum Filling {
 
 impl CurveStyle {
     /// Returns the pen of a line in this style.
-    pub(crate) fn pen(self, width: f64) -> Pen {
+    #[must_use]
+    pub fn pen(self, width: f64) -> Pen {
         let dash = self.dash.iter().map(|d| d * width).collect();
         Pen::new(self.colour, width).dashed(dash)
     }
