@@ -1,11 +1,6 @@
 //! Axes: the map from numbers to the sheet, and ticks.
 
 /// One direction of a chart, linear or logarithmic: a map from numbers to the sheet.
-///
-/// ```
-/// let axis = a3_plot::Axis::log(1e-3, 1.0).between(0.0, 300.0);
-/// assert!(axis.at(1e-2) < axis.at(1e-1));
-/// ```
 #[derive(Clone, Copy, Debug)]
 pub struct Axis {
     pub(crate) log: bool,
@@ -28,8 +23,7 @@ pub struct Tick {
 
 impl Axis {
     /// Creates a linear axis between two numbers.
-    #[must_use]
-    pub fn linear(ends: [f64; 2]) -> Self {
+    pub(crate) fn linear(ends: [f64; 2]) -> Self {
         Self {
             log: false,
             short: false,
@@ -40,8 +34,7 @@ impl Axis {
 
     /// Creates a linear axis around all finite values, with a margin. A nearly constant value is in
     /// its middle, and its rounding errors are not magnified.
-    #[must_use]
-    pub fn around(values: impl Iterator<Item = f64>) -> Self {
+    pub(crate) fn around(values: impl Iterator<Item = f64>) -> Self {
         let finite = values.filter(|value| value.is_finite());
         let [low, high] = finite.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], value| {
             [low.min(value), high.max(value)]
@@ -57,8 +50,7 @@ impl Axis {
 
     /// Creates a logarithmic axis around two positive numbers, which ends at 1, 2 or 5 times powers
     /// of ten.
-    #[must_use]
-    pub fn log(low: f64, high: f64) -> Self {
+    pub(crate) fn log(low: f64, high: f64) -> Self {
         let marks = [0.0, 2_f64.log10(), 5_f64.log10(), 1.0];
         let [low, high] = [low, high].map(|end| end.max(f64::MIN_POSITIVE).log10());
         let (low, high) = (low - 0.03, high + 0.03);
@@ -81,8 +73,7 @@ impl Axis {
     }
 
     /// Places the ends of the axis at these coordinates of the sheet.
-    #[must_use]
-    pub fn between(self, from: f64, to: f64) -> Self {
+    pub(crate) fn between(self, from: f64, to: f64) -> Self {
         Self {
             places: [from, to],
             ..self
@@ -105,8 +96,7 @@ impl Axis {
     }
 
     /// Lists the ticks, whose labels are at least `gap` apart on the sheet.
-    #[must_use]
-    pub fn ticks(&self, gap: f64) -> Vec<Tick> {
+    pub(crate) fn ticks(&self, gap: f64) -> Vec<Tick> {
         let span = self.ends[1] - self.ends[0];
         let unit = (self.places[1] - self.places[0]).abs() / span;
         if self.log {

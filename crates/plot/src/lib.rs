@@ -22,7 +22,7 @@ mod svg;
 mod tests;
 mod work_precision;
 
-pub use axis::{Axis, Tick};
+pub use axis::Axis;
 pub use error::Error;
 pub use figure::Figure;
 pub use geometry::Rect;

@@ -82,7 +82,7 @@ impl Line {
 
 impl LinePanel {
     /// Returns the axes: across and up. Long numbers on those for a narrow space are shortened.
-    pub(crate) fn axes(&self, short: bool) -> [Axis; 2] {
+    fn axes(&self, short: bool) -> [Axis; 2] {
         let all = |k: usize| self.lines.iter().flat_map(Line::points).map(move |p| p[k]);
         let x = self.ends.map_or_else(|| Axis::around(all(0)), Axis::linear);
         [x, Axis::around(all(1))].map(|mut axis| {

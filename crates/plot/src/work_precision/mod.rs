@@ -79,8 +79,7 @@ impl WorkPrecision {
 
     /// Returns the axes of error and of work, around all runs on all problems; `None` if no run has
     /// a place on them.
-    #[must_use]
-    pub fn axes(&self) -> Option<[Axis; 2]> {
+    fn axes(&self) -> Option<[Axis; 2]> {
         let range = |values: &mut dyn Iterator<Item = f64>| {
             values.fold(None, |range, value| {
                 Some(range.map_or((value, value), |(low, high): (f64, f64)| {
