@@ -1,19 +1,11 @@
 //! Axes: the map from numbers to the sheet, and ticks.
 
-use crate::figure::Figure;
-use crate::geometry::{Point, Rect};
-use crate::label::{Anchor, Label, width};
-use crate::paint::Pen;
-
 /// One direction of a chart, linear or logarithmic: a map from numbers to the sheet.
-///
-/// ```
-/// let axis = a3_plot::Axis::log(1e-3, 1.0).between(0.0, 300.0);
-/// assert!(axis.at(1e-2) < axis.at(1e-1));
-/// ```
 #[derive(Clone, Copy, Debug)]
 pub struct Axis {
-    log: bool,
+    pub(crate) log: bool,
+    /// Whether numbers of more than six characters are written with exponents.
+    pub(crate) short: bool,
     /// The least and the greatest number, or their decimal logarithms.
     ends: [f64; 2],
     /// The ends on the sheet.
@@ -31,10 +23,10 @@ pub struct Tick {
 
 impl Axis {
     /// Creates a linear axis between two numbers.
-    #[must_use]
-    pub fn linear(ends: [f64; 2]) -> Self {
+    pub(crate) fn linear(ends: [f64; 2]) -> Self {
         Self {
             log: false,
+            short: false,
             ends,
             places: [0.0, 1.0],
         }
@@ -42,8 +34,7 @@ impl Axis {
 
     /// Creates a linear axis around all finite values, with a margin. A nearly constant value is in
     /// its middle, and its rounding errors are not magnified.
-    #[must_use]
-    pub fn around(values: impl Iterator<Item = f64>) -> Self {
+    pub(crate) fn around(values: impl Iterator<Item = f64>) -> Self {
         let finite = values.filter(|value| value.is_finite());
         let [low, high] = finite.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], value| {
             [low.min(value), high.max(value)]
@@ -59,8 +50,7 @@ impl Axis {
 
     /// Creates a logarithmic axis around two positive numbers, which ends at 1, 2 or 5 times powers
     /// of ten.
-    #[must_use]
-    pub fn log(low: f64, high: f64) -> Self {
+    pub(crate) fn log(low: f64, high: f64) -> Self {
         let marks = [0.0, 2_f64.log10(), 5_f64.log10(), 1.0];
         let [low, high] = [low, high].map(|end| end.max(f64::MIN_POSITIVE).log10());
         let (low, high) = (low - 0.03, high + 0.03);
@@ -76,14 +66,14 @@ impl Axis {
                 .unwrap_or(1.0);
         Self {
             log: true,
+            short: false,
             ends: [down, up],
             places: [0.0, 1.0],
         }
     }
 
     /// Places the ends of the axis at these coordinates of the sheet.
-    #[must_use]
-    pub fn between(self, from: f64, to: f64) -> Self {
+    pub(crate) fn between(self, from: f64, to: f64) -> Self {
         Self {
             places: [from, to],
             ..self
@@ -106,8 +96,7 @@ impl Axis {
     }
 
     /// Lists the ticks, whose labels are at least `gap` apart on the sheet.
-    #[must_use]
-    pub fn ticks(&self, gap: f64) -> Vec<Tick> {
+    pub(crate) fn ticks(&self, gap: f64) -> Vec<Tick> {
         let span = self.ends[1] - self.ends[0];
         let unit = (self.places[1] - self.places[0]).abs() / span;
         if self.log {
@@ -158,6 +147,10 @@ impl Axis {
             .find(|s| *s >= least * (1.0 - 1e-9))
             .unwrap_or(10.0 * power);
         let digits = (-step.log10().floor()).max(0.0) as usize;
+        let label = |value: f64| match format!("{value:.digits$}") {
+            long if self.short && long.len() > 6 => format!("{value:.1e}"),
+            label => label,
+        };
         let (first, last) = (
             (self.ends[0] / step).ceil() as i64,
             (self.ends[1] / step).floor() as i64,
@@ -166,7 +159,7 @@ impl Axis {
             .map(|k| k as f64 * step)
             .map(|value| Tick {
                 value,
-                label: format!("{value:.digits$}").replace('-', "−"),
+                label: label(value).replace('-', "−"),
             })
             .collect()
     }
@@ -174,59 +167,6 @@ impl Axis {
 
 fn power_of_ten(power: f64) -> String {
     format!("10^{{{power}}}").replace('-', "−")
-}
-
-/// Returns the width of the widest label of an axis.
-pub fn widest(axis: &Axis, size: f64) -> f64 {
-    axis.ticks(1.6 * size)
-        .iter()
-        .map(|tick| width(&tick.label, size))
-        .fold(0.0, f64::max)
-}
-
-/// Draws the grid, the frame and the labels of a panel; `numbers` tells whether x and y are
-/// labelled.
-pub fn draw(figure: &mut Figure, area: Rect, [x, y]: [&Axis; 2], size: f64, numbers: [bool; 2]) {
-    let grid = |label: &str| {
-        let (colour, width) = if label.is_empty() {
-            ("#efefef", 0.045)
-        } else {
-            ("#d9d9d9", 0.07)
-        };
-        Pen::new(colour, width * size)
-    };
-    let (xs, ys) = (
-        x.ticks(if x.log { 3.4 } else { 2.3 } * size),
-        y.ticks(1.6 * size),
-    );
-    // Labelled ticks are drawn over minor ones.
-    for named in [false, true] {
-        for tick in xs.iter().filter(|tick| tick.label.is_empty() != named) {
-            let at = x.at(tick.value);
-            figure.line(&[[at, area.y0], [at, area.y1]], grid(&tick.label));
-        }
-        for tick in ys.iter().filter(|tick| tick.label.is_empty() != named) {
-            let at = y.at(tick.value);
-            figure.line(&[[area.x0, at], [area.x1, at]], grid(&tick.label));
-        }
-    }
-    figure.rect(area, Pen::new("#8a8a8a", 0.07 * size).into());
-    let mut number = |at: Point, label: Label| {
-        if figure.is_free(label.room(at)) {
-            figure.text(at, label);
-        }
-    };
-    for tick in xs.iter().filter(|_| numbers[0]) {
-        let label = Label::new(&tick.label, size).anchor(Anchor::Middle);
-        number([x.at(tick.value), area.y1 + 1.15 * size], label);
-    }
-    for tick in ys.iter().filter(|_| numbers[1]) {
-        let label = Label::new(&tick.label, size).anchor(Anchor::End);
-        number(
-            [area.x0 - 0.4 * size, y.at(tick.value) + 0.34 * size],
-            label,
-        );
-    }
 }
 
 #[cfg(test)]

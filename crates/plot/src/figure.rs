@@ -1,5 +1,8 @@
 //! Figures: sheets that remember where their labels are, as SVG, PDF and PNG.
 
+use std::ops::Range;
+
+use crate::axis::Axis;
 use crate::error::Error;
 use crate::geometry::{Point, Rect};
 use crate::label::{GREY, Label};
@@ -11,8 +14,14 @@ use crate::{pdf, raster, svg};
 #[derive(Debug)]
 pub struct Figure {
     size: Point,
-    /// The shapes so far.
-    shapes: Vec<Shape>,
+    /// The shapes, from the lowest one up.
+    pub shapes: Vec<Shape>,
+    /// The places of the shapes of curves among all, and the indices of the curves in their panels.
+    pub parts: Vec<(Range<usize>, usize)>,
+    /// The areas between the axes of the panels, and the axes across and up.
+    pub panels: Vec<(Rect, [Axis; 2])>,
+    /// The runs of a diagram, as indices of curve and run, and where their markers are.
+    pub runs: Vec<([usize; 2], Point)>,
     /// The rectangles that labels occupy.
     labels: Vec<Rect>,
 }
@@ -23,6 +32,9 @@ impl Figure {
         Self {
             size,
             shapes: vec![],
+            parts: vec![],
+            panels: vec![],
+            runs: vec![],
             labels: vec![],
         }
     }
@@ -98,6 +110,18 @@ impl Figure {
             self.sheet().holds(*label) && !others.iter().any(|other| other.overlaps(*label))
         };
         self.labels.iter().enumerate().all(free)
+    }
+
+    /// Returns the curve whose line or entry in the legend are nearest to a point, at most
+    /// `reach` away.
+    #[must_use]
+    pub fn curve_at(&self, at: Point, reach: f64) -> Option<usize> {
+        let near = self.parts.iter().flat_map(|(places, curve)| {
+            let shapes = self.shapes[places.clone()].iter();
+            shapes.map(|shape| (shape.distance(at), *curve))
+        });
+        let near = near.filter(|(distance, _)| *distance <= reach);
+        near.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, k)| k)
     }
 
     /// Returns the figure as an SVG file.

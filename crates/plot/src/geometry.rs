@@ -3,34 +3,38 @@
 /// A horizontal and a vertical coordinate; the latter points down on the sheet.
 pub type Point = [f64; 2];
 
-/// An axis-aligned rectangle.
+/// An axis-aligned rectangle on a sheet.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rect {
+    /// The left edge.
     pub x0: f64,
+    /// The upper edge.
     pub y0: f64,
+    /// The right edge.
     pub x1: f64,
+    /// The lower edge.
     pub y1: f64,
 }
 
 impl Rect {
-    pub fn new(x0: f64, y0: f64, x1: f64, y1: f64) -> Self {
+    pub(crate) fn new(x0: f64, y0: f64, x1: f64, y1: f64) -> Self {
         Self { x0, y0, x1, y1 }
     }
 
     /// Creates the square around a point whose half side is `r`.
-    pub fn around([x, y]: Point, r: f64) -> Self {
+    pub(crate) fn around([x, y]: Point, r: f64) -> Self {
         Self::new(x - r, y - r, x + r, y + r)
     }
 
-    pub fn width(self) -> f64 {
+    pub(crate) fn width(self) -> f64 {
         self.x1 - self.x0
     }
 
-    pub fn height(self) -> f64 {
+    pub(crate) fn height(self) -> f64 {
         self.y1 - self.y0
     }
 
-    pub fn centre(self) -> Point {
+    pub(crate) fn centre(self) -> Point {
         [
             f64::midpoint(self.x0, self.x1),
             f64::midpoint(self.y0, self.y1),
@@ -38,17 +42,17 @@ impl Rect {
     }
 
     /// Returns whether the rectangles overlap in an area.
-    pub fn overlaps(self, other: Self) -> bool {
+    pub(crate) fn overlaps(self, other: Self) -> bool {
         self.x0 < other.x1 && other.x0 < self.x1 && self.y0 < other.y1 && other.y0 < self.y1
     }
 
     /// Returns whether the other rectangle lies entirely in this one.
-    pub fn holds(self, other: Self) -> bool {
+    pub(crate) fn holds(self, other: Self) -> bool {
         self.x0 <= other.x0 && other.x1 <= self.x1 && self.y0 <= other.y0 && other.y1 <= self.y1
     }
 
     /// Returns the corners, in order around the rectangle.
-    pub fn corners(self) -> [Point; 4] {
+    pub(crate) fn corners(self) -> [Point; 4] {
         [
             [self.x0, self.y0],
             [self.x1, self.y0],
@@ -58,7 +62,7 @@ impl Rect {
     }
 
     /// Returns whether the line from a to b meets the rectangle (Liang and Barsky, 1984).
-    pub fn meets(self, a: Point, b: Point) -> bool {
+    pub(crate) fn meets(self, a: Point, b: Point) -> bool {
         let (mut from, mut to) = (0.0_f64, 1.0_f64);
         for (start, end, lo, hi) in [
             (a[0], b[0], self.x0, self.x1),

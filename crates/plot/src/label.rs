@@ -16,13 +16,17 @@ pub const GREY: &str = "#5a5a5a";
 /// The part of a label that is placed at its point.
 #[derive(Clone, Copy, Debug)]
 pub enum Anchor {
+    /// Its start.
     Start,
+    /// Its middle.
     Middle,
+    /// Its end.
     End,
 }
 
 impl Anchor {
     /// Returns the fraction of the label before its point.
+    #[must_use]
     pub fn part(self) -> f64 {
         match self {
             Self::Start => 0.0,
@@ -37,8 +41,11 @@ impl Anchor {
 pub struct Look {
     /// The size of the font, in units of the sheet.
     pub size: f64,
+    /// The colour, as `#` and six hexadecimal digits.
     pub colour: &'static str,
+    /// The part that is at its point.
     pub anchor: Anchor,
+    /// Whether it is bold.
     pub bold: bool,
     /// Whether the label is rotated, to be read from below.
     pub turned: bool,
@@ -46,17 +53,17 @@ pub struct Look {
 
 impl Look {
     /// Returns the width of the line around the letters of a bold label, in units of the sheet.
-    pub fn weight(&self) -> f64 {
+    pub(crate) fn weight(&self) -> f64 {
         0.035 * self.size
     }
 
     /// Returns the height of a superscript above the base line, in units of the sheet.
-    pub fn rise(&self) -> f64 {
+    pub(crate) fn rise(&self) -> f64 {
         0.33 * self.size
     }
 
     /// Returns the paint of the letters. The font has no bold face; its outlines are drawn instead.
-    pub fn paint(&self) -> Paint {
+    pub(crate) fn paint(&self) -> Paint {
         let plain = Paint::fill(self.colour);
         if self.bold {
             plain.outlined(Pen::new(self.colour, self.weight()))

@@ -1,9 +1,11 @@
 //! Layout of all charts: headings and foot, a legend, a grid of panels, and sizes of text that fit.
 
+use crate::axis::Axis;
 use crate::error::Error;
 use crate::figure::Figure;
 use crate::geometry::{Point, Rect};
 use crate::label::{Anchor, GREY, Label, width};
+use crate::paint::Pen;
 
 /// The least size of text. Notes may have four fifths of it.
 const MIN_TEXT_SIZE: f64 = 7.0;
@@ -25,21 +27,7 @@ pub struct Level {
 pub fn fit(size: Point, draw: impl Fn(Figure, Level) -> Option<Figure>) -> Result<Figure, Error> {
     let at = |size: Point| {
         let base = ((size[0] * size[1]).sqrt() / 75.0).max(9.0);
-        let levels = [
-            (1.0, true),
-            (0.9, true),
-            (0.8, true),
-            (0.7, true),
-            (0.7, false),
-            (0.6, false),
-        ];
-        levels.into_iter().find_map(|(part, full)| {
-            let level = Level {
-                size: (part * base).max(MIN_TEXT_SIZE),
-                full,
-            };
-            draw(Figure::new(size), level).filter(Figure::is_sound)
-        })
+        largest(size, base, &draw)
     };
     if !size.iter().all(|length| (1.0..=20_000.0).contains(length)) {
         return Err(Error::Sheet(size));
@@ -52,6 +40,29 @@ pub fn fit(size: Point, draw: impl Fn(Figure, Level) -> Option<Figure>) -> Resul
             sheet: size,
             enough: larger.find(|size| at(*size).is_some()),
         }
+    })
+}
+
+/// Returns the drawing with the largest text that fits, at most of the size `base`.
+pub fn largest(
+    size: Point,
+    base: f64,
+    draw: impl Fn(Figure, Level) -> Option<Figure>,
+) -> Option<Figure> {
+    let levels = [
+        (1.0, true),
+        (0.9, true),
+        (0.8, true),
+        (0.7, true),
+        (0.7, false),
+        (0.6, false),
+    ];
+    levels.into_iter().find_map(|(part, full)| {
+        let level = Level {
+            size: (part * base).max(MIN_TEXT_SIZE),
+            full,
+        };
+        draw(Figure::new(size), level).filter(Figure::is_sound)
     })
 }
 
@@ -182,6 +193,60 @@ pub fn grid(n: usize, area: Rect, gap: f64, merit: impl Fn(Point) -> f64) -> (Ve
         Rect::new(x0, y0, x0 + w, y0 + h)
     };
     ((0..n).map(room).collect(), columns)
+}
+
+/// Returns the width of the widest label of an axis.
+pub fn widest(axis: &Axis, size: f64) -> f64 {
+    axis.ticks(1.6 * size)
+        .iter()
+        .map(|tick| width(&tick.label, size))
+        .fold(0.0, f64::max)
+}
+
+/// Draws the grid, the frame and the labels of a panel; `numbers` tells whether x and y are
+/// labelled.
+pub fn axes(figure: &mut Figure, area: Rect, [x, y]: [&Axis; 2], size: f64, numbers: [bool; 2]) {
+    figure.panels.push((area, [*x, *y]));
+    let grid = |label: &str| {
+        let (colour, width) = if label.is_empty() {
+            ("#efefef", 0.045)
+        } else {
+            ("#d9d9d9", 0.07)
+        };
+        Pen::new(colour, width * size)
+    };
+    let (xs, ys) = (
+        x.ticks(if x.log { 3.4 } else { 2.3 } * size),
+        y.ticks(1.6 * size),
+    );
+    // Labelled ticks are drawn over minor ones.
+    for named in [false, true] {
+        for tick in xs.iter().filter(|tick| tick.label.is_empty() != named) {
+            let at = x.at(tick.value);
+            figure.line(&[[at, area.y0], [at, area.y1]], grid(&tick.label));
+        }
+        for tick in ys.iter().filter(|tick| tick.label.is_empty() != named) {
+            let at = y.at(tick.value);
+            figure.line(&[[area.x0, at], [area.x1, at]], grid(&tick.label));
+        }
+    }
+    figure.rect(area, Pen::new("#8a8a8a", 0.07 * size).into());
+    let mut number = |at: Point, label: Label| {
+        if figure.is_free(label.room(at)) {
+            figure.text(at, label);
+        }
+    };
+    for tick in xs.iter().filter(|_| numbers[0]) {
+        let label = Label::new(&tick.label, size).anchor(Anchor::Middle);
+        number([x.at(tick.value), area.y1 + 1.15 * size], label);
+    }
+    for tick in ys.iter().filter(|_| numbers[1]) {
+        let label = Label::new(&tick.label, size).anchor(Anchor::End);
+        number(
+            [area.x0 - 0.4 * size, y.at(tick.value) + 0.34 * size],
+            label,
+        );
+    }
 }
 
 /// Writes the label below all panels, with an arrow to the left and the text `better` at it, unless

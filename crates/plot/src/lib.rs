@@ -22,11 +22,14 @@ mod svg;
 mod tests;
 mod work_precision;
 
-pub use axis::{Axis, Tick};
+pub use axis::Axis;
 pub use error::Error;
 pub use figure::Figure;
-pub use label::FONT;
+pub use geometry::Rect;
+pub use label::{Anchor, FONT, Look, pieces};
 pub use lines::{Line, LineChart, LinePanel};
+pub use paint::{Paint, Pen};
+pub use shape::Shape;
 pub use stability::{Region, StabilityRegions};
 pub use style::{CurveStyle, Marker};
 pub use work_precision::{Curve, Guide, Mark, Measurement, Problem, WorkPrecision};

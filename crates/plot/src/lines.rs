@@ -1,9 +1,10 @@
 //! Line charts: curves or points between linear axes, in panels below one another.
 
-use crate::axis::{self, Axis};
+use crate::axis::Axis;
 use crate::error::Error;
 use crate::figure::Figure;
 use crate::geometry::{Point, Rect};
+use crate::label::{Anchor, GREY, Label};
 use crate::layout::{self, Level, Sign};
 use crate::paint::Paint;
 use crate::style::{CurveStyle, Filling};
@@ -80,12 +81,14 @@ impl Line {
 }
 
 impl LinePanel {
-    /// Returns the axes: across and up.
-    #[must_use]
-    pub fn axes(&self) -> [Axis; 2] {
+    /// Returns the axes: across and up. Long numbers on those for a narrow space are shortened.
+    fn axes(&self, short: bool) -> [Axis; 2] {
         let all = |k: usize| self.lines.iter().flat_map(Line::points).map(move |p| p[k]);
         let x = self.ends.map_or_else(|| Axis::around(all(0)), Axis::linear);
-        [x, Axis::around(all(1))]
+        [x, Axis::around(all(1))].map(|mut axis| {
+            axis.short = short;
+            axis
+        })
     }
 }
 
@@ -105,6 +108,42 @@ impl LineChart {
         })
     }
 
+    /// Draws the panels, as many as fit from above, on a sheet of this width and height for a
+    /// narrow space: with text of this size, and above each panel its vertical label and, if asked
+    /// for, the names of its curves, instead of a title, a legend and a foot.
+    #[must_use]
+    pub fn draw_compact(&self, [width, height]: [f64; 2], size: f64, named: bool) -> Figure {
+        let mut figure = Figure::new([width, height]);
+        let count = ((height - 1.5 * size) / (5.0 * size)).max(0.0) as usize;
+        let shown = &self.panels[..count.min(self.panels.len())];
+        let high = (height - 1.5 * size) / shown.len() as f64;
+        let inset = widest(shown, high - 2.0 * size, size, true).max(3.4 * size) + 0.4 * size;
+        for (k, panel) in shown.iter().enumerate() {
+            let top = k as f64 * high + 1.5 * size;
+            let area = Rect::new(inset, top, width - 0.2 * size, top + high - 2.0 * size);
+            let line = top - 0.4 * size;
+            let mut right = area.x1;
+            let is_named = |line: &&Line| named && !line.name.is_empty();
+            for curve in panel.lines.iter().rev().filter(is_named) {
+                let name = Label::new(&curve.name, size).colour(curve.style.colour);
+                let name = figure.text([right, line], name.anchor(Anchor::End));
+                let [from, to] = [1.5, 0.3].map(|gap| [name.x0 - gap * size, line - 0.3 * size]);
+                figure.line(&[from, to], curve.style.pen(0.13 * size));
+                right = from[0] - 0.4 * size;
+            }
+            let words = layout::elide(&panel.y_label, size, right);
+            figure.text([0.0, line], Label::new(&words, size).colour(GREY));
+            let is_last = k + 1 == shown.len();
+            if is_last {
+                let place = [area.x1, area.y1 + 1.15 * size];
+                let label = Label::new(&panel.x_label, size).anchor(Anchor::End);
+                figure.text(place, label.colour(GREY));
+            }
+            panel.draw(&mut figure, area, size, is_last, true);
+        }
+        figure
+    }
+
     /// Draws the chart at this level; `None` if its panels would be too small.
     fn try_draw(&self, mut figure: Figure, level: Level) -> Option<Figure> {
         let size = level.size;
@@ -119,11 +158,7 @@ impl LineChart {
         // Below the last panel, or below each, are numbers and a label.
         let under = 3.0 * size;
         let height = (left.height() - labels * under) / count;
-        let numbers = self.panels.iter().map(|panel| {
-            let y = panel.axes()[1];
-            axis::widest(&y.between(0.0, height - size), size)
-        });
-        let inset = 2.0 * size + numbers.fold(0.0, f64::max);
+        let inset = 2.0 * size + widest(&self.panels, height - size, size, false);
         if height < 5.0 * size || left.width() - inset < 9.0 * size {
             return None;
         }
@@ -136,7 +171,7 @@ impl LineChart {
             };
             top += height;
             layout::label_left(&mut figure, room, &panel.y_label, "", size);
-            panel.draw(&mut figure, area, size, below(k));
+            panel.draw(&mut figure, area, size, below(k), false);
             if below(k) {
                 top += under;
                 let place = Rect {
@@ -174,12 +209,22 @@ impl LineChart {
     }
 }
 
+/// Returns the width of the widest number on the left of panels of this height.
+fn widest(panels: &[LinePanel], height: f64, size: f64, short: bool) -> f64 {
+    let numbers = panels.iter().map(|panel| {
+        let [_, y] = panel.axes(short);
+        layout::widest(&y.between(0.0, height), size)
+    });
+    numbers.fold(0.0, f64::max)
+}
+
 impl LinePanel {
-    /// Draws the panel; `below` tells whether there are numbers below it.
-    fn draw(&self, figure: &mut Figure, area: Rect, size: f64, below: bool) {
-        let [x, y] = self.axes();
+    /// Draws the panel; `below` tells whether there are numbers below it, and `short` whether long
+    /// ones are shortened and dots are larger.
+    fn draw(&self, figure: &mut Figure, area: Rect, size: f64, below: bool, short: bool) {
+        let [x, y] = self.axes(short);
         let [x, y] = [x.between(area.x0, area.x1), y.between(area.y1, area.y0)];
-        axis::draw(figure, area, [&x, &y], size, [below, true]);
+        layout::axes(figure, area, [&x, &y], size, [below, true]);
         let at = |[a, b]: &Point| [x.at(*a), y.at(*b)];
         figure.clipped(area, |figure| {
             for line in &self.lines {
@@ -189,7 +234,7 @@ impl LinePanel {
                         figure.line(&points, line.style.pen(0.13 * size).round());
                         continue;
                     }
-                    let side = 0.2 * size;
+                    let side = if short { 0.32 } else { 0.2 } * size;
                     for point in points {
                         let paint = Paint::fill(line.style.colour);
                         let outline = CurveStyle::default().outline(point, 0.7 * side);

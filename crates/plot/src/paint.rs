@@ -17,7 +17,7 @@ pub struct Pen {
 
 impl Pen {
     /// Creates a pen for solid lines.
-    pub fn new(colour: &'static str, width: f64) -> Self {
+    pub(crate) fn new(colour: &'static str, width: f64) -> Self {
         Self {
             colour,
             width,
@@ -27,12 +27,12 @@ impl Pen {
     }
 
     /// Gives the pen dashes.
-    pub fn dashed(self, dash: Vec<f64>) -> Self {
+    pub(crate) fn dashed(self, dash: Vec<f64>) -> Self {
         Self { dash, ..self }
     }
 
     /// Gives the pen round ends.
-    pub fn round(self) -> Self {
+    pub(crate) fn round(self) -> Self {
         Self {
             round: true,
             ..self
@@ -69,7 +69,7 @@ pub struct Paint {
 
 impl Paint {
     /// Creates a paint that fills a shape.
-    pub fn fill(colour: &'static str) -> Self {
+    pub(crate) fn fill(colour: &'static str) -> Self {
         Self {
             fill: Some(colour),
             opacity: 1.0,
@@ -78,12 +78,12 @@ impl Paint {
     }
 
     /// Gives the paint another opacity.
-    pub fn opacity(self, opacity: f64) -> Self {
+    pub(crate) fn opacity(self, opacity: f64) -> Self {
         Self { opacity, ..self }
     }
 
     /// Gives the paint a pen for the outline.
-    pub fn outlined(self, pen: Pen) -> Self {
+    pub(crate) fn outlined(self, pen: Pen) -> Self {
         Self {
             pen: Some(pen),
             ..self

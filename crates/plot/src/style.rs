@@ -53,7 +53,8 @@ pub(crate) enum Filling {
 
 impl CurveStyle {
     /// Returns the pen of a line in this style.
-    pub(crate) fn pen(self, width: f64) -> Pen {
+    #[must_use]
+    pub fn pen(self, width: f64) -> Pen {
         let dash = self.dash.iter().map(|d| d * width).collect();
         Pen::new(self.colour, width).dashed(dash)
     }
@@ -89,8 +90,7 @@ impl CurveStyle {
 
     /// Returns the corners of a marker of a radius around a centre. The marker is seen as a whole
     /// from its centre.
-    #[must_use]
-    pub fn outline(self, [x, y]: [f64; 2], r: f64) -> Vec<[f64; 2]> {
+    pub(crate) fn outline(self, [x, y]: [f64; 2], r: f64) -> Vec<[f64; 2]> {
         let at = |turn: f64, r: f64| [x + r * (TAU * turn).sin(), y - r * (TAU * turn).cos()];
         match self.marker {
             Marker::Polygon(n, turn) => {

@@ -28,8 +28,8 @@ fn charting() {
         app.still_screen();
         display.xdotool(&["click", "1"]);
     };
-    // The first point of the curve from above is on the right half of the screen.
-    let found = app.still_screen().block(800..1380, 0..880, 4, is_rk4);
+    // The first point of the curve from above is on the right half of the screen, below the legend.
+    let found = app.still_screen().block(800..1380, 350..880, 4, is_rk4);
     let (x, y) = found.expect("a point of the curve");
     display.xdotool(&["mousemove", &x.to_string(), &y.to_string()]);
     app.still_screen();

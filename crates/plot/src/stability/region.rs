@@ -3,10 +3,11 @@
 use std::collections::HashSet;
 use std::f64::consts::TAU;
 
-use crate::axis::{self, Axis};
+use crate::axis::Axis;
 use crate::contour;
 use crate::figure::Figure;
 use crate::geometry::{Point, Rect};
+use crate::layout;
 use crate::paint::{Paint, Pen};
 use crate::style::CurveStyle;
 
@@ -162,7 +163,7 @@ impl Region {
         let (dx, dy) = (area.width() / unit / 2.0, area.height() / unit / 2.0);
         let x = Axis::linear([middle - dx, middle + dx]).between(area.x0, area.x1);
         let y = Axis::linear([-dy, dy]).between(area.y1, area.y0);
-        axis::draw(figure, area, [&x, &y], size, [true, true]);
+        layout::axes(figure, area, [&x, &y], size, [true, true]);
         let at = |[re, im]: Point| {
             [
                 area.centre()[0] + (re - middle) * unit,

@@ -7,7 +7,7 @@ mod problem;
 
 pub use problem::{Curve, Guide, Mark, Measurement, Problem};
 
-use crate::axis::{self, Axis};
+use crate::axis::Axis;
 use crate::error::Error;
 use crate::figure::Figure;
 use crate::geometry::Rect;
@@ -46,8 +46,20 @@ impl WorkPrecision {
             let why = "no run to draw: each blew up or has no work";
             return Err(Error::Empty(why));
         };
+        let words = [&*self.title, &self.subtitle, &self.foot];
         layout::fit([width, height], |figure, level| {
-            self.try_draw(figure, level, axes)
+            self.try_draw(figure, level, words, axes)
+        })
+    }
+
+    /// Draws the diagram without its title, subtitle and foot on a sheet of this width and height,
+    /// with text of this size, or smaller if there is no room for it. Returns `None` if no run has
+    /// a place on the axes, or if the diagram does not fit.
+    #[must_use]
+    pub fn draw_bare(&self, sheet: [f64; 2], text: f64) -> Option<Figure> {
+        let axes = self.axes()?;
+        layout::largest(sheet, text, |figure, level| {
+            self.try_draw(figure, level, [""; 3], axes)
         })
     }
 
@@ -67,8 +79,7 @@ impl WorkPrecision {
 
     /// Returns the axes of error and of work, around all runs on all problems; `None` if no run has
     /// a place on them.
-    #[must_use]
-    pub fn axes(&self) -> Option<[Axis; 2]> {
+    fn axes(&self) -> Option<[Axis; 2]> {
         let range = |values: &mut dyn Iterator<Item = f64>| {
             values.fold(None, |range, value| {
                 Some(range.map_or((value, value), |(low, high): (f64, f64)| {
@@ -102,15 +113,17 @@ impl WorkPrecision {
     }
 
     /// Draws the diagram at this level; `None` if its panels would be too small.
-    fn try_draw(&self, mut figure: Figure, level: Level, [x, y]: [Axis; 2]) -> Option<Figure> {
+    fn try_draw(
+        &self,
+        mut figure: Figure,
+        level: Level,
+        words: [&str; 3],
+        [x, y]: [Axis; 2],
+    ) -> Option<Figure> {
         let size = level.size;
-        let mut left = layout::headings(
-            &mut figure,
-            [&self.title, &self.subtitle, &self.foot],
-            level,
-        );
+        let mut left = layout::headings(&mut figure, words, level);
         layout::legend(&mut figure, &mut left, &self.entries(size, &x), size);
-        let numbers = axis::widest(&y.between(0.0, left.height()), size) + 0.6 * size;
+        let numbers = layout::widest(&y.between(0.0, left.height()), size) + 0.6 * size;
         let inner = Rect::new(
             left.x0 + 1.4 * size + numbers,
             left.y0,
@@ -182,7 +195,8 @@ impl WorkPrecision {
     fn entries(&self, size: f64, x: &Axis) -> Vec<(String, Sign<'_>)> {
         let mut seen = vec![];
         let mut entries: Vec<(String, Sign)> = vec![];
-        for curve in self.problems.iter().flat_map(|problem| &problem.curves) {
+        let curves = self.problems.iter().map(|it| it.curves.iter().enumerate());
+        for (k, curve) in curves.flatten() {
             let is_drawn = curve.runs.iter().any(Measurement::is_drawn);
             if !is_drawn || seen.contains(&(curve.style, &curve.name)) {
                 continue;
@@ -195,6 +209,9 @@ impl WorkPrecision {
                     style.pen(0.13 * size),
                 );
                 style.draw_marker(figure, [x, y], 0.4 * size, Filling::Full);
+                // The line, the marker, and the name, which follows.
+                let next = figure.shapes.len();
+                figure.parts.push((next - 2..next + 1, k));
             });
             entries.push((curve.name.clone(), sign));
         }

@@ -3,10 +3,11 @@
 use std::cmp::Reverse;
 
 use super::problem::{Curve, Mark, Measurement, Problem};
-use crate::axis::{self, Axis};
+use crate::axis::Axis;
 use crate::figure::Figure;
 use crate::geometry::{Point, Rect};
 use crate::label::{Anchor, GREY, Label};
+use crate::layout;
 use crate::paint::{Paint, Pen};
 use crate::style::{CurveStyle, Filling, Marker};
 
@@ -93,7 +94,7 @@ impl<'a> Drawing<'a> {
                 figure.text([strip.centre()[0], main.y1 + 1.15 * size], label);
             }
         }
-        axis::draw(figure, main, [&self.axes[0], &self.axes[1]], size, numbers);
+        layout::axes(figure, main, [&self.axes[0], &self.axes[1]], size, numbers);
         let front: Vec<_> = (self.problem.front().into_iter())
             .map(|[c, r]| (c, &self.problem.curves[c].runs[r]))
             .collect();
@@ -141,16 +142,18 @@ impl<'a> Drawing<'a> {
     /// Draws the curves and their markers.
     fn curves(&mut self, figure: &mut Figure) {
         let radius = 0.38 * self.fine;
-        for curve in &self.problem.curves {
+        for (k, curve) in self.problem.curves.iter().enumerate() {
+            let first = figure.shapes.len();
             self.band(figure, curve);
             let style = curve.style;
             let line: Vec<_> = curve.joined().iter().map(|run| self.at(run)).collect();
             figure.line(&line, style.pen(0.14 * self.fine));
             self.lines
                 .extend(line.windows(2).map(|pair| [pair[0], pair[1]]));
-            let runs = curve.runs.iter();
-            for run in runs.filter(|run| run.is_drawn() && !run.is_lost()) {
+            let runs = curve.runs.iter().enumerate();
+            for (r, run) in runs.filter(|(_, run)| run.is_drawn() && !run.is_lost()) {
                 let point = self.at(run);
+                figure.runs.push(([k, r], point));
                 let filling = if run.held {
                     Filling::Half
                 } else {
@@ -159,6 +162,7 @@ impl<'a> Drawing<'a> {
                 style.draw_marker(figure, point, radius, filling);
                 self.taken.push(Rect::around(point, 1.2 * radius));
             }
+            figure.parts.push((first..figure.shapes.len(), k));
         }
     }
 
@@ -178,21 +182,20 @@ impl<'a> Drawing<'a> {
     fn blown_up(&mut self, figure: &mut Figure, strip: Rect) {
         let radius = 0.36 * self.fine.min(0.9 * self.size);
         let mut taken: Vec<Rect> = vec![];
-        for curve in &self.problem.curves {
-            let style = curve.style;
-            for run in curve
-                .runs
-                .iter()
-                .filter(|run| run.is_drawn() && run.is_lost())
-            {
+        for (k, curve) in self.problem.curves.iter().enumerate() {
+            let (style, first) = (curve.style, figure.shapes.len());
+            let runs = curve.runs.iter().enumerate();
+            for (r, run) in runs.filter(|(_, run)| run.is_drawn() && run.is_lost()) {
                 let [middle, y] = [strip.centre()[0], self.axes[1].at(run.work)];
                 let aside = [0.0, -1.0, 1.0].map(|k| [middle + 2.6 * k * radius, y]);
                 let room = |point: &Point| Rect::around(*point, radius);
                 let free = |point: &&Point| !taken.iter().any(|other| other.overlaps(room(point)));
                 let point = *aside.iter().find(free).unwrap_or(&aside[0]);
                 taken.push(room(&point));
+                figure.runs.push(([k, r], point));
                 style.draw_marker(figure, point, radius, Filling::None);
             }
+            figure.parts.push((first..figure.shapes.len(), k));
         }
     }
 

@@ -80,8 +80,7 @@ impl Mark {
 
 impl Measurement {
     /// Returns whether the run has a place on the chart. That of an error of 0 is at the left end.
-    #[must_use]
-    pub fn is_drawn(&self) -> bool {
+    pub(super) fn is_drawn(&self) -> bool {
         self.work.is_finite() && self.work > 0.0
     }
 
@@ -97,8 +96,7 @@ impl Curve {
     /// the method beats in both error and work. The steps of an adaptive method at its limit of
     /// stability cost about the same at any error, and a line through them would only go back and
     /// forth.
-    #[must_use]
-    pub fn joined(&self) -> Vec<&Measurement> {
+    pub(super) fn joined(&self) -> Vec<&Measurement> {
         let unbeaten = unbeaten(std::slice::from_ref(self)).into_iter();
         unbeaten.map(|(_, run)| run).collect()
     }
@@ -106,8 +104,7 @@ impl Curve {
 
 impl Problem {
     /// Returns the least error that can be trusted, or 0 if that is not known.
-    #[must_use]
-    pub fn trusted(&self) -> f64 {
+    pub(super) fn trusted(&self) -> f64 {
         let known = self.resolved.filter(|resolved| resolved.is_finite());
         known.unwrap_or(0.0)
     }

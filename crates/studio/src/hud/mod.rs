@@ -2,12 +2,10 @@
 //! knobs and plots.
 
 mod all;
-mod axes;
 mod bar;
 mod blow_up;
 #[cfg(not(target_arch = "wasm32"))]
 mod caption;
-#[cfg(not(target_arch = "wasm32"))]
 mod charts;
 mod docked;
 #[cfg_attr(target_arch = "wasm32", path = "no_edit.rs")]

@@ -1,46 +1,28 @@
 //! Plots of the last seconds of a run.
 
-use a3_plot::Axis;
-use egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Stroke, pos2};
+use a3_plot::{CurveStyle, Line, LineChart, LinePanel, Marker};
+use egui::{Painter, Pos2, Rect, Stroke};
 
-use super::super::axes::{Grid, line};
-use super::super::style::{FAINT, TEXT};
+use super::super::charts::{Sheet, colour};
+use super::super::style::FAINT;
 use super::super::words::signed;
 use crate::session::{Pane, SPAN, Sample, Samples};
 
-/// Smallest height of a plot (points).
-const MIN_HEIGHT: f32 = 56.0;
 /// Largest height of a plot over its width.
 const MAX_HEIGHT_PER_WIDTH: f32 = 0.6;
-/// Height of the title line (points).
-const TITLE_HEIGHT: f32 = 17.0;
-/// Height of the numbers below the last plot (points).
-const TICK_LABEL_HEIGHT: f32 = 15.0;
-/// Width of the numbers on the left (points).
-const TICK_LABEL_WIDTH: f32 = 40.0;
-/// Length of the sample of a curve before its name (points).
-const LEGEND_LINE_LENGTH: f32 = 14.0;
+/// Size of text (points).
+const SIZE: f64 = 11.0;
 
-const TEAL: Color32 = Color32::from_rgb(0, 122, 128);
-const AMBER: Color32 = Color32::from_rgb(190, 106, 0);
-const VIOLET: Color32 = Color32::from_rgb(112, 62, 158);
-/// The grid of the plots.
-const GRID: Grid = Grid {
-    colour: Color32::from_rgb(196, 197, 200),
-    width: 0.7,
-    gaps: [44.0, 18.0],
-    size: 10.5,
-};
+const TEAL: &str = "#007a80";
+const AMBER: &str = "#be6a00";
+const VIOLET: &str = "#703e9e";
 
 /// A curve of a plot.
-#[derive(Clone, Copy)]
 struct Curve {
     name: &'static str,
     /// Name of the column in a file, with the unit.
     column: &'static str,
-    colour: Color32,
-    /// Lengths of dashes and gaps in turn (points); empty for a solid line.
-    dashes: &'static [f32],
+    style: CurveStyle,
     /// Returns the value of a sample.
     of: fn(&Sample) -> Option<f64>,
 }
@@ -51,68 +33,68 @@ struct Plot {
     curves: &'static [Curve],
 }
 
+/// Creates a curve. Those of a plot differ not only in colour, but also in dashes.
 const fn curve(
     name: &'static str,
     column: &'static str,
-    colour: Color32,
+    (colour, dash): (&'static str, &'static [f64]),
     of: fn(&Sample) -> Option<f64>,
 ) -> Curve {
+    let marker = Marker::Cross(0.0);
     Curve {
         name,
         column,
-        colour,
-        dashes: &[],
+        style: CurveStyle {
+            colour,
+            dash,
+            marker,
+        },
         of,
     }
-}
-
-/// Makes a curve dashed, so that the curves of a plot differ not only in colour.
-const fn dashed(dashes: &'static [f32], curve: Curve) -> Curve {
-    Curve { dashes, ..curve }
 }
 
 static PLOTS: &[Plot] = &[
     Plot {
         title: "energy (J)",
         curves: &[
-            dashed(
-                &[7.0, 3.0],
-                curve("kinetic", "kinetic energy (J)", TEAL, |s| {
-                    Some(s.energy?.kinetic)
-                }),
+            curve("kinetic", "kinetic energy (J)", (TEAL, &[5.0, 2.1]), |s| {
+                Some(s.energy?.kinetic)
+            }),
+            curve("elastic", "elastic energy (J)", (AMBER, &[1.1, 1.7]), |s| {
+                Some(s.energy?.elastic)
+            }),
+            curve(
+                "gravity",
+                "gravitational energy (J)",
+                (VIOLET, &[5.0, 1.7, 1.1, 1.7]),
+                |s| Some(s.energy?.gravitational),
             ),
-            dashed(
-                &[1.6, 2.4],
-                curve("elastic", "elastic energy (J)", AMBER, |s| {
-                    Some(s.energy?.elastic)
-                }),
-            ),
-            dashed(
-                &[7.0, 2.4, 1.6, 2.4],
-                curve("gravity", "gravitational energy (J)", VIOLET, |s| {
-                    Some(s.energy?.gravitational)
-                }),
-            ),
-            curve("total", "total energy (J)", TEXT, |s| {
+            curve("total", "total energy (J)", ("#181c28", &[]), |s| {
                 Some(s.energy?.total())
             }),
         ],
     },
     Plot {
         title: "largest stretch",
-        curves: &[curve("", "largest stretch", AMBER, |s| s.stretch)],
+        curves: &[curve("", "largest stretch", (AMBER, &[]), |s| s.stretch)],
     },
     Plot {
         title: "computing (ms per simulated s)",
-        curves: &[curve("", "computing (ms per simulated s)", TEAL, |s| {
-            Some(s.cost?[1])
-        })],
+        curves: &[curve(
+            "",
+            "computing (ms per simulated s)",
+            (TEAL, &[]),
+            |s| Some(s.cost?[1]),
+        )],
     },
     Plot {
         title: "evaluations per simulated s",
-        curves: &[curve("", "evaluations per simulated s", VIOLET, |s| {
-            Some(s.cost?[0])
-        })],
+        curves: &[curve(
+            "",
+            "evaluations per simulated s",
+            (VIOLET, &[]),
+            |s| Some(s.cost?[0]),
+        )],
     },
 ];
 
@@ -140,102 +122,66 @@ pub fn draw(painter: &Painter, room: Rect, samples: &Samples, pointer: Option<Po
     let Some(last) = samples.iter().last() else {
         return;
     };
-    let to = last.time.max(SPAN);
-    let time = [to - SPAN, to];
+    let from = last.time.max(SPAN) - SPAN;
     let shown = PLOTS.iter().filter(|plot| {
         let of = |s: &Sample| (plot.curves[0].of)(s);
         samples.iter().filter_map(of).count() > 1
     });
-    let shown: Vec<_> = shown.collect();
-    let high = room.height() - TICK_LABEL_HEIGHT;
-    let count = shown.len().min((high / MIN_HEIGHT).max(0.0) as usize);
-    if count == 0 {
-        return;
+    // Values at the pointer replace the titles and the names of the curves.
+    let draw = |pointed: Option<&Sample>| {
+        let panels: Vec<_> = shown
+            .clone()
+            .map(|it| it.panel(samples, from, pointed))
+            .collect();
+        let highest = MAX_HEIGHT_PER_WIDTH * room.width() * panels.len() as f32;
+        let sheet = [room.width(), room.height().min(highest)].map(f64::from);
+        let chart = LineChart {
+            panels,
+            ..LineChart::default()
+        };
+        chart.draw_compact(sheet, SIZE, true)
+    };
+    let mut figure = draw(None);
+    let under = pointer.and_then(|pointer| Sheet::new(painter, room, &figure).under(pointer));
+    let pointed = under.and_then(|(_, share)| samples.nearest(from + share * SPAN));
+    if pointed.is_some() {
+        figure = draw(pointed);
     }
-    let plots = Rect::from_x_y_ranges(
-        room.left() + TICK_LABEL_WIDTH..=room.right() - 2.0,
-        room.y_range(),
-    );
-    let pointed = pointer
-        .filter(|pointer| plots.contains(*pointer))
-        .and_then(|pointer| {
-            let share = (pointer.x - plots.left()) / plots.width();
-            samples.nearest(time[0] + f64::from(share) * SPAN)
-        });
-    let height = (high / count as f32).min(MAX_HEIGHT_PER_WIDTH * room.width());
-    for (k, plot) in shown[..count].iter().enumerate() {
-        let top = room.top() + k as f32 * height;
-        let rect = Rect::from_min_max(pos2(room.left(), top), pos2(room.right(), top + height));
-        plot.draw(painter, rect, samples, time, k + 1 == count, pointed);
+    let sheet = Sheet::new(painter, room, &figure);
+    sheet.draw(None);
+    let Some(sample) = pointed else {
+        return;
+    };
+    sheet.mark(sample.time, Stroke::new(1.0, FAINT));
+    for (k, plot) in shown.enumerate().take(figure.panels.len()) {
+        for curve in plot.curves {
+            if let Some(value) = (curve.of)(sample) {
+                let at = sheet.at(k, [sample.time, value]);
+                painter.circle_filled(at, 2.6, colour(curve.style.colour));
+            }
+        }
     }
 }
 
 impl Plot {
-    fn draw(
-        &self,
-        painter: &Painter,
-        rect: Rect,
-        samples: &Samples,
-        time: [f64; 2],
-        last: bool,
-        pointed: Option<&Sample>,
-    ) {
-        let words = |at: Pos2, anchor, words: &str, size, colour| {
-            painter.text(at, anchor, words, FontId::proportional(size), colour)
-        };
-        // Values at the pointer replace the names of the curves.
-        let title = match pointed {
-            Some(sample) => format!("at {:.2} s", sample.time),
-            None => self.title.into(),
-        };
-        words(rect.left_top(), Align2::LEFT_TOP, &title, 11.5, FAINT);
-        let mut right = rect.right();
-        for curve in self.curves.iter().rev() {
+    fn panel(&self, samples: &Samples, from: f64, pointed: Option<&Sample>) -> LinePanel {
+        let line = |curve: &Curve| {
             let value = pointed.and_then(curve.of).map(signed);
-            let Some(said) = value.or((!curve.name.is_empty()).then(|| curve.name.into())) else {
-                continue;
-            };
-            let at = pos2(right, rect.top());
-            right = words(at, Align2::RIGHT_TOP, &said, 11.5, curve.colour).left() - 7.0;
-            if !curve.name.is_empty() {
-                let ends = [right + 4.0 - LEGEND_LINE_LENGTH, right + 4.0];
-                curve.draw(painter, ends.map(|x| pos2(x, rect.top() + 7.5)).into());
-                right = ends[0] - 5.0;
+            let points = samples.iter();
+            let points = points.filter_map(|sample| Some([sample.time, (curve.of)(sample)?]));
+            Line {
+                name: value.unwrap_or_else(|| curve.name.into()),
+                style: curve.style,
+                pieces: vec![points.collect()],
+                dots: false,
             }
-        }
-        let area = Rect::from_min_max(
-            rect.left_top() + egui::vec2(TICK_LABEL_WIDTH, TITLE_HEIGHT),
-            rect.right_bottom() - egui::vec2(2.0, 5.0),
-        );
-        let values = || {
-            let each = self.curves.iter();
-            each.flat_map(|curve| samples.iter().filter_map(curve.of))
         };
-        let x = Axis::linear(time).between(area.left().into(), area.right().into());
-        let y = Axis::around(values()).between(area.bottom().into(), area.top().into());
-        GRID.draw(painter, area, [x, y], last.then_some(" s"));
-        if let Some(sample) = pointed {
-            let at = x.at(sample.time) as f32;
-            painter.vline(at, area.y_range(), Stroke::new(1.0, FAINT));
-            for curve in self.curves {
-                if let Some(value) = (curve.of)(sample) {
-                    painter.circle_filled(pos2(at, y.at(value) as f32), 2.6, curve.colour);
-                }
-            }
+        LinePanel {
+            x_label: "s".into(),
+            y_label: pointed.map_or(self.title.into(), |it| format!("at {:.2} s", it.time)),
+            ends: Some([from, from + SPAN]),
+            lines: self.curves.iter().map(line).collect(),
         }
-        for curve in self.curves {
-            let points = samples.iter().filter_map(|sample| {
-                let value = (curve.of)(sample)?;
-                Some(pos2(x.at(sample.time) as f32, y.at(value) as f32))
-            });
-            curve.draw(painter, points.collect());
-        }
-    }
-}
-
-impl Curve {
-    fn draw(&self, painter: &Painter, points: Vec<Pos2>) {
-        line(painter, points, Stroke::new(1.4, self.colour), self.dashes);
     }
 }
 

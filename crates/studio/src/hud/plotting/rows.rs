@@ -2,10 +2,9 @@
 //! side by side in as many lines as they need.
 
 use a3_media::show;
-use egui::{Align2, CursorIcon, FontId, Id, Pos2, Rect, Sense, Stroke, Ui, pos2, vec2};
+use egui::{Align2, CursorIcon, FontId, Id, Pos2, Rect, Sense, Ui, pos2, vec2};
 
-use super::super::axes;
-use super::super::charts::{colour, dashes};
+use super::super::charts::line;
 use super::super::measure::chip;
 use super::super::style::{FAINT, TEXT};
 use super::super::words::signed;
@@ -79,9 +78,8 @@ impl Rows<'_> {
                 let name = run_name(pane);
                 let place = flow.words(self.ui, &name, 0.5 * SAMPLE + 8.0);
                 let at = place.left_center();
-                let stroke = Stroke::new(2.2, colour(style(session, [k, 0])));
-                let ends = [at + vec2(2.0, 0.0), at + vec2(2.0 + SAMPLE, 0.0)];
-                self.ui.painter().line_segment(ends, stroke);
+                let ends = vec![at + vec2(2.0, 0.0), at + vec2(2.0 + SAMPLE, 0.0)];
+                line(self.ui.painter(), ends, &style(session, [k, 0]).pen(2.2));
                 let (at, font) = (at + vec2(SAMPLE + 8.0, 0.0), FontId::proportional(13.0));
                 let painter = self.ui.painter();
                 painter.text(at, Align2::LEFT_CENTER, name, font, TEXT);
@@ -98,10 +96,13 @@ impl Rows<'_> {
         let response = ui.interact(place, id, Sense::click());
         chip(ui, place, &response, "", false);
         let painter = ui.painter();
-        let ink = if grey { TEXT } else { colour(look) };
         let at = place.left_center() + vec2(8.0, 0.0);
         let ends = vec![at, at + vec2(SAMPLE, 0.0)];
-        axes::line(painter, ends, Stroke::new(2.2, ink), &dashes(look, 2.2));
+        let mut pen = look.pen(2.2);
+        if grey {
+            pen.colour = "#181c28";
+        }
+        line(painter, ends, &pen);
         let (at, font) = (at + vec2(SAMPLE + 6.0, 0.0), FontId::proportional(13.0));
         painter.text(at, Align2::LEFT_CENTER, name, font, TEXT);
         let at = pos2(place.right() - 9.0, at.y);
