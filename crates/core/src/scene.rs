@@ -336,7 +336,8 @@ impl Scene {
     /// Returns the errors that a step may make under a relative tolerance.
     ///
     /// # Errors
-    /// The tolerance, or the scene's absolute one, is not a finite number above 0.
+    /// The tolerance, or the scene's absolute one, is not a finite number above 0, or the system has
+    /// [scales](ParticleSystem::scales) in place of an absolute one.
     pub fn tolerance(&self, relative: f64) -> Result<Tolerance, Error> {
         let own = || {
             let size = self.extent().1;
@@ -345,6 +346,11 @@ impl Scene {
                 _ => relative * size,
             }
         };
+        if self.limits.absolute.is_some() && !self.model.system().scales().is_empty() {
+            let why = "errors are relative to the scales of the system: leave out the scales, or \
+                       the absolute tolerance";
+            return Err(Error::Invalid(why.into()));
+        }
         let absolute = self.limits.absolute.unwrap_or_else(own);
         Tolerance::with_absolute(relative, absolute)
     }

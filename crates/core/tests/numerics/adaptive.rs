@@ -405,3 +405,19 @@ fn numbers_that_do_not_count_cost_nothing() {
             .is_err()
     );
 }
+
+/// Scales and an absolute tolerance say two things about the same error.
+#[test]
+fn an_absolute_tolerance_beside_scales_is_refused() {
+    let decay = Ode::new(1, |_t, y, dydt| dydt[0] = -y[0]).unwrap();
+    let scaled = decay.with_scales(vec![1e-3]).unwrap();
+    let mut scene = Scene::new("decay", scaled, vec![1.0]);
+    assert!(scene.tolerance(1e-3).is_ok());
+    scene.limits.absolute = Some(1e-6);
+    let refused = Simulation::new(scene, method("dopri5"), Control::Tolerance(1e-3));
+    let refused = refused.err().unwrap().to_string();
+    assert!(
+        refused.contains("leave out the scales, or the absolute tolerance"),
+        "{refused}"
+    );
+}
