@@ -167,9 +167,11 @@ fn read(result: &Bound<PyAny>, name: &str, shape: Shape, out: &mut [f64]) -> PyR
         )));
     }
     let readable = array.readonly();
-    match (shape, readable.as_slice()) {
-        (Shape::Flat | Shape::Square, Ok(numbers)) => out.copy_from_slice(numbers),
-        (Shape::Flat | Shape::Square, Err(_)) => {
+    // A slice of an array in Fortran's order has its numbers in another order.
+    let numbers = readable.as_slice().ok().filter(|_| array.is_c_contiguous());
+    match (shape, numbers) {
+        (Shape::Flat | Shape::Square, Some(numbers)) => out.copy_from_slice(numbers),
+        (Shape::Flat | Shape::Square, None) => {
             for (out, number) in out.iter_mut().zip(readable.as_array()) {
                 *out = *number;
             }

@@ -95,6 +95,23 @@ def test_a_jacobian_spares_calls_of_f(method):
     assert few < many
 
 
+def test_a_jacobian_may_have_any_order_in_memory():
+    calls = [0, 0]
+
+    def of(order):
+        def f(t, y):
+            calls[order] += 1
+            return [-1e3 * (y[0] - y[1]) + y[2], -1e2 * (y[1] - 2 * y[2]), -y[2]]
+
+        def jac(t, y):
+            slopes = np.array([[-1e3, 1e3, 1], [0, -1e2, 2e2], [0, 0, -1.0]])
+            return np.asfortranarray(slopes) if order else slopes
+
+        return a3.Simulation(a3.System(f, [1.0, 1.0, 1.0], jac=jac), "bdf", tolerance=1e-6).states_at([5.0])
+
+    assert (of(0) == of(1)).all() and calls[0] == calls[1]
+
+
 def test_a_jacobian_of_another_shape_is_refused():
     wrong = a3.System(kinetics, [1.0, 0.0, 0.0], jac=lambda t, y: [1.0, 2.0, 3.0])
     with pytest.raises(a3.InputError, match=r"shape \(3,\), where an array of shape \(3, 3\) is expected"):

@@ -167,7 +167,7 @@ impl Solver {
             }
             (Self::Dense { linear, base, k1 }, _) => {
                 let kicked = Kicked(system);
-                let (mut work, of_use) = linear.keep(&kicked, t, a, y);
+                let (mut work, of_use) = linear.keep(&kicked, t, [a, a], y);
                 if !of_use {
                     return Err(Error::NoConvergence { residual: 1.0 });
                 }

@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 
 use crate::common::method;
 use a3_core::integrators::Tolerance;
-use a3_core::{Error, Ode, ParticleSystem, Refusal, Work};
+use a3_core::{Control, Error, Ode, ParticleSystem, Refusal, Scene, Simulation, Work};
 
 /// Runs an adaptive method from y at 0 s to a time (s). Returns the state there, the number of
 /// steps and the work.
@@ -207,5 +207,122 @@ fn units_change_nothing() {
                 .all(|count| count.abs_diff(counts[0]) * 20 < counts[0]),
             "{counts:?}"
         );
+    }
+}
+
+/// Neighbours in a rod whose numbers are mixed up are found, as is one number that all act on; and
+/// numbers on which none acts cost one factorisation of the unit matrix.
+#[test]
+fn any_sparse_pattern_serves() {
+    const N: usize = 1500;
+    let mut number: Vec<_> = (0..N).collect();
+    number.sort_by_key(|k| k * k * 2_654_435_761 % 65_521);
+    let mut places = vec![0; N];
+    (0..N).for_each(|p| places[number[p]] = p);
+    let start = places
+        .iter()
+        .map(|p| PI * (*p as f64 + 1.0) / (N as f64 + 1.0));
+    let start: Vec<_> = start.map(f64::sin).collect();
+    let rod = Ode::new(N, move |_: f64, y: &[f64], dydt: &mut [f64]| {
+        for (k, rate) in dydt.iter_mut().enumerate() {
+            let at = |p: Option<usize>| p.and_then(|p| number.get(p)).map_or(0.0, |k| y[*k]);
+            let sides = at(places[k].checked_sub(1)) + at(Some(places[k] + 1));
+            *rate = 1e4 * (sides - 2.0 * y[k]);
+        }
+    })
+    .unwrap();
+    let rate = -4e4 * (PI / (2.0 * (N as f64 + 1.0))).sin().powi(2);
+    let drive = |_: f64, _: &[f64], dydt: &mut [f64]| dydt.fill(2.0);
+    let ground = |_: f64, y: &[f64], dydt: &mut [f64]| {
+        for (rate, y) in dydt.iter_mut().zip(y) {
+            *rate = -1e3 * y;
+        }
+        dydt[7] -= y.iter().sum::<f64>();
+    };
+    for name in ["bdf", "radau"] {
+        let (y, steps, work) = run(name, &rod, 10.0, start.clone(), 1e-6).unwrap();
+        println!("{name}: {steps} steps, {work:?}");
+        for (y, start) in y.iter().zip(&start) {
+            assert!(
+                (y - (rate * 10.0).exp() * start).abs() < 1e-5,
+                "{name}: {y}"
+            );
+        }
+        assert!(work.evaluations < 4 * N as u64, "{name}: {work:?}");
+        let driven = Ode::new(N, drive).unwrap();
+        let (y, _, work) = run(name, &driven, 3.0, vec![0.0; N], 1e-6).unwrap();
+        assert!(
+            (y[7] - 6.0).abs() < 1e-9 && work.evaluations < 300,
+            "{work:?}"
+        );
+        let grounded = Ode::new(N, ground).unwrap();
+        let (y, ..) = run(name, &grounded, 0.01, vec![1.0; N], 1e-6).unwrap();
+        assert!((y[0] - (-10.0_f64).exp()).abs() < 1e-5, "{name}: {}", y[0]);
+    }
+}
+
+/// Numbers that underflow as they decay, that are zero at first, or at the edge of the domain of f.
+#[test]
+fn differences_are_taken_of_any_number() {
+    let decay = Ode::new(2, |t: f64, y: &[f64], dydt: &mut [f64]| {
+        dydt.copy_from_slice(&[-1e3 * y[0], t.cos() - y[1]]);
+    })
+    .unwrap();
+    let edge = Ode::new(1, |_: f64, y: &[f64], dydt: &mut [f64]| {
+        dydt[0] = -y[0] + (1.0 - y[0]).sqrt();
+    })
+    .unwrap();
+    for name in ["implicit", "implicit-midpoint", "tr-bdf2"] {
+        let mut fixed = method(name).integrator(&decay).unwrap();
+        let mut y = [1.0, 1.0];
+        for k in 0..2500 {
+            fixed
+                .step(&decay, 0.01 * f64::from(k), 0.01, &mut y)
+                .unwrap();
+        }
+        assert!(y.iter().all(|y| y.is_finite()), "{name}: {y:?}");
+        let mut fixed = method(name).integrator(&edge).unwrap();
+        fixed.step(&edge, 0.0, 0.01, &mut [1.0]).unwrap();
+    }
+    for name in ["bdf", "radau"] {
+        let (y, ..) = run(name, &decay, 20.0, vec![1.0, 1e-320], 1e-6).unwrap();
+        let exact = 0.5 * (20.0_f64.sin() + 20.0_f64.cos() - (-20.0_f64).exp());
+        assert!((y[1] - exact).abs() < 1e-4, "{name}: {y:?}");
+        let (y, ..) = run(name, &edge, 20.0, vec![1.0], 1e-6).unwrap();
+        // Where y = sqrt(1 - y).
+        assert!(
+            (y[0] - 0.5 * (5.0_f64.sqrt() - 1.0)).abs() < 1e-5,
+            "{name}: {y:?}"
+        );
+    }
+}
+
+/// A run that is resumed after its pattern has grown goes on to the same bits.
+#[test]
+fn resumed_runs_keep_their_pattern() {
+    const N: usize = 40;
+    let scene = || {
+        let f = |t: f64, y: &[f64], dydt: &mut [f64]| {
+            for (k, rate) in dydt.iter_mut().enumerate() {
+                // Numbers that are large push their neighbours.
+                let pushes = |other: usize| (y[other] - 0.5).max(0.0);
+                *rate = 50.0 * (pushes((k + 1) % N) - pushes(k)) + (t + k as f64).sin() - y[k];
+            }
+        };
+        let state = (0..N).map(|k| 0.02 * k as f64).collect();
+        Scene::new("pushes", Ode::new(N, f).unwrap(), state)
+    };
+    for name in ["bdf", "radau"] {
+        let tolerance = Control::Tolerance(1e-5);
+        let mut whole = Simulation::new(scene(), method(name), tolerance).unwrap();
+        whole.advance_to(1.35).unwrap();
+        let kept = whole.checkpoint();
+        let mut resumed = Simulation::new(scene(), method(name), tolerance).unwrap();
+        resumed.restore(&kept).unwrap();
+        for run in [&mut whole, &mut resumed] {
+            run.advance_to(4.0).unwrap();
+        }
+        assert_eq!(whole.state(), resumed.state(), "{name}");
+        assert_eq!(whole.steps(), resumed.steps(), "{name}");
     }
 }

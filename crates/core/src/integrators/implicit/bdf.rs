@@ -14,6 +14,7 @@ use super::super::error_norm::ErrorNorm;
 use super::super::method::{Create, Method, View};
 use super::super::sweep::{add_scaled, scaled_sum};
 use super::super::trial::{LastStep, Trial};
+use super::jacobian::Jacobian;
 use super::kept::{KeptSolver, Tangent};
 use super::newton::MAX_ORDER;
 use super::{newton, tr_bdf2};
@@ -220,7 +221,7 @@ impl Bdf {
 
 impl Trial for Bdf {
     fn check(&self, _: &dyn ParticleSystem) -> Result<(), Error> {
-        self.solver.check()
+        self.solver.jacobian().map_or(Ok(()), Jacobian::check)
     }
 
     fn dim(&self) -> usize {
@@ -356,18 +357,23 @@ impl Trial for Bdf {
         let Tangent {
             t,
             a,
+            formed,
             clamped,
             rate,
         } = self.solver.tangent;
         let mut step = self.step.clone();
         step.k[DIFFERENCES].copy_from_slice(&self.solver.at);
         step.counts = vec![last, next, equal, usize::from(clamped)];
-        step.numbers = vec![t, a, rate];
+        let pattern = self.solver.jacobian().map(Jacobian::pattern);
+        step.counts.extend(pattern.unwrap_or_default());
+        step.numbers = vec![t, a, formed, rate];
         step
     }
 
     fn resume(&mut self, step: &LastStep) -> Result<(), Error> {
-        let (&[last, next, equal, clamped], &[t, a, rate]) = (&*step.counts, &*step.numbers) else {
+        let (&[last, next, equal, clamped, ref pattern @ ..], &[t, a, formed, rate]) =
+            (&*step.counts, &*step.numbers)
+        else {
             return Err(Error::Invalid("the last step is of another method".into()));
         };
         if [last, next]
@@ -377,12 +383,16 @@ impl Trial for Bdf {
             return Err(Error::Invalid(format!("there is no BDF of order {next}")));
         }
         self.step.resume(step)?;
+        if !self.solver.set_pattern(pattern) {
+            return Err(Error::Invalid("the last step is of another system".into()));
+        }
         self.first = false;
         self.orders = Orders { last, next, equal };
         self.solver.at.copy_from_slice(&step.k[DIFFERENCES]);
         self.solver.tangent = Tangent {
             t,
             a,
+            formed,
             clamped: clamped != 0,
             rate,
         };

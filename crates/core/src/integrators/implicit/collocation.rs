@@ -76,8 +76,8 @@ const RATE_MEMORY: f64 = 0.8;
 /// Solver of the equations, with the Jacobian and the factors that it keeps.
 pub(super) struct Collocation {
     pub jacobian: Jacobian,
-    /// Time (s) and state at which the Jacobian was formed.
-    pub formed: (f64, Vec<f64>),
+    /// Time and step (s), and state, for which the Jacobian was formed.
+    pub formed: ([f64; 2], Vec<f64>),
     /// Step (s) for which the matrices were factorised; 0 for none.
     pub factored: f64,
     pub real: Lu<f64>,
@@ -104,7 +104,7 @@ impl Collocation {
         let zeros = || [(); STAGES].map(|()| vec![0.0; dim]);
         Self {
             jacobian,
-            formed: (0.0, vec![0.0; dim]),
+            formed: ([0.0; 2], vec![0.0; dim]),
             factored: 0.0,
             real: Lu::new(order),
             complex: Lu::new(order),
@@ -122,7 +122,7 @@ impl Collocation {
 
     /// Forms the Jacobian at y, for steps of about h (s).
     pub fn form(&mut self, system: &dyn ParticleSystem, t: f64, h: f64, y: &[f64]) -> Work {
-        self.formed.0 = t;
+        self.formed.0 = [t, h];
         self.formed.1.copy_from_slice(y);
         self.factored = 0.0;
         self.remaining = 1.0;
@@ -131,9 +131,9 @@ impl Collocation {
 
     /// Forms and factorises the Jacobian again where it was formed before, which was counted as
     /// work then.
-    pub fn form_again(&mut self, system: &dyn ParticleSystem, h: f64) {
-        let (t, at) = &self.formed;
-        let _ = self.jacobian.form(system, *t, h, at);
+    pub fn form_again(&mut self, system: &dyn ParticleSystem) {
+        let ([t, h], at) = &self.formed;
+        let _ = self.jacobian.form(system, *t, *h, at);
         let factored = std::mem::take(&mut self.factored);
         if factored > 0.0 {
             let _ = self.factorise(factored);

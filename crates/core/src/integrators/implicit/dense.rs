@@ -13,7 +13,7 @@ use crate::work::Work;
 /// Solver of the implicit stages of such a system, with its scratch. Particles on rigid bodies
 /// stay as they are.
 pub(crate) struct Dense {
-    jacobian: Jacobian,
+    pub(super) jacobian: Jacobian,
     /// Factors of 1 - a J.
     factors: Lu<f64>,
     /// Change of the unknowns, and of the whole state.
@@ -58,7 +58,7 @@ impl Dense {
         for _ in 0..MAX_ITERATIONS {
             let kept = !renews && changes.shrink_fast() != Some(false);
             if !kept {
-                let (formed, of_use) = self.keep(system, t, a, y);
+                let (formed, of_use) = self.keep(system, t, [a, a], y);
                 work += formed;
                 if !of_use {
                     break;
@@ -117,24 +117,30 @@ impl Dense {
         }
     }
 
-    /// Checks that the Jacobian is not too large.
-    ///
-    /// # Errors
-    /// It is neither small nor sparse.
-    pub fn check(&self) -> Result<(), Error> {
-        self.jacobian.check()
-    }
-
     /// Returns the change of y by the last correction.
     pub fn change(&self) -> &[f64] {
         &self.change
     }
 
-    /// Forms and factorises 1 - a J at y. Returns the cost, and whether that succeeded.
-    pub fn keep(&mut self, system: &dyn ParticleSystem, t: f64, a: f64, y: &[f64]) -> (Work, bool) {
-        let mut work = self.jacobian.form(system, t, a, y);
+    /// Forms J at y, for steps of about `step` (s), and factorises 1 - a J. Returns the cost, and
+    /// whether that succeeded.
+    pub fn keep(
+        &mut self,
+        system: &dyn ParticleSystem,
+        t: f64,
+        [step, a]: [f64; 2],
+        y: &[f64],
+    ) -> (Work, bool) {
+        let mut work = self.jacobian.form(system, t, step, y);
+        let (cost, of_use) = self.factorise(a);
+        work += cost;
+        (work, of_use)
+    }
+
+    /// Factorises 1 - a J. Returns the cost, and whether that succeeded.
+    pub fn factorise(&mut self, a: f64) -> (Work, bool) {
         let of_use = self.factors.factorise(1.0, a, &self.jacobian.matrix);
-        work += Work {
+        let work = Work {
             factorizations: 1,
             ..self.jacobian.algebra(self.factors.cost())
         };

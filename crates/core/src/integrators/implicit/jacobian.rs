@@ -15,23 +15,29 @@ use crate::refusal::Refusal;
 use crate::system::{ParticleSystem, rigid_of, size};
 use crate::work::Work;
 
-/// Step of a difference quotient, over the size of the number: about the root of the rounding error.
+/// Step of a difference quotient, over the size of the number: about the root of the rounding
+/// error.
 const DIFFERENCE_SHARE: f64 = 1.490_116_119_384_765_6e-8;
 /// Half the step of a central difference quotient, over the unit of the number.
 const CENTRAL_SHARE: f64 = 1e-6;
 /// The same for speeds of bodies, relative to that for positions: the resulting motion is tiny.
 const SPEED_DIFFERENCE_SHARE: f64 = 1e-3;
 
-/// Least size of a plain number, over its change in a step and over the largest number, if the former
-/// is not larger: a difference quotient then has seven digits less than f.
+/// Least size of a plain number, over its change in a step or over the largest number, if that is
+/// smaller.
 const LEAST_SIZE: f64 = 1e-3;
+
+/// Size that counts as zero, as a share of the largest number: it would round away twice.
+const NO_SIZE: f64 = f64::EPSILON * f64::EPSILON;
+/// Size of which a difference is still a normal number.
+const LEAST: f64 = f64::MIN_POSITIVE / NO_SIZE;
 
 /// Number of plain numbers from which on a pattern is searched.
 const MANY: usize = 32;
 
-/// Share of their size by which numbers change where the pattern is searched: it differs from any
-/// at which an entry happens to vanish.
-const SEARCH_SHARE: f64 = 1e-3;
+/// Share of their size by which numbers change where the pattern is searched, away from a state at
+/// which an entry happens to vanish.
+const SEARCH_SHARE: f64 = 1e-5;
 
 /// Share of the changes of a number by which they may miss the change that follows from the
 /// matrix: by more, an entry is not in its pattern.
@@ -116,6 +122,54 @@ impl Jacobian {
         })
     }
 
+    /// Returns the pattern that was found: 0 before a search and 1 for a full matrix, else 2 and the
+    /// rows of each column after their number.
+    pub fn pattern(&self) -> Vec<usize> {
+        match &self.matrix {
+            Matrix::Full(_) => vec![usize::from(!self.searches)],
+            Matrix::Sparse(pattern, _) => {
+                let columns = (0..self.unknowns.len()).map(|j| &pattern.rows[pattern.column(j)]);
+                let lists = columns.flat_map(|rows| {
+                    let rows = rows.iter().map(|row| *row as usize);
+                    std::iter::once(rows.len()).chain(rows)
+                });
+                std::iter::once(2).chain(lists).collect()
+            }
+        }
+    }
+
+    /// Restores a pattern that was found. Returns false if it is of another system.
+    pub fn set_pattern(&mut self, pattern: &[usize]) -> bool {
+        let size = self.unknowns.len();
+        let Some((&kind, mut lists)) = pattern.split_first() else {
+            return false;
+        };
+        if kind < 2 {
+            self.searches = kind == 0 && size >= MANY && !self.is_central;
+            self.matrix = full(size);
+            return lists.is_empty();
+        }
+        let mut columns = vec![];
+        while let Some((&count, rest)) = lists.split_first() {
+            let Some((rows, rest)) = rest.split_at_checked(count) else {
+                return false;
+            };
+            let is_rising = rows.windows(2).all(|pair| pair[0] < pair[1]);
+            if !is_rising || rows.last().is_some_and(|row| *row >= size) {
+                return false;
+            }
+            columns.push(rows.iter().map(|row| *row as u32).collect());
+            lists = rest;
+        }
+        let found = Some(columns).filter(|columns| columns.len() == size);
+        let found = found.and_then(|columns| Pattern::of(&columns, MAX_DENSE * MAX_DENSE));
+        let Some(found) = found else {
+            return false;
+        };
+        (self.searches, self.matrix) = (false, sparse(found));
+        true
+    }
+
     /// Returns the work of linear algebra with this number of multiplications.
     pub fn algebra(&self, multiplications: f64) -> Work {
         Work {
@@ -143,12 +197,14 @@ impl Jacobian {
         });
         let of_plain = |k: usize, f: f64| {
             let change = LEAST_SIZE * (a * f).abs().min(most);
-            let own = y[k]
-                .abs()
-                .max(system.scales().get(k).copied().unwrap_or(change));
-            let sizes = [own, LEAST_SIZE * most, 1.0];
-            let size = sizes.into_iter().find(|size| *size > 0.0);
-            size.unwrap_or(1.0)
+            let scale = system.scales().get(k).copied();
+            let own = y[k].abs().max(scale.unwrap_or(change));
+            let sizes = [(own, NO_SIZE * most), (LEAST_SIZE * most, 0.0)];
+            let size = sizes
+                .into_iter()
+                .find(|(size, none)| size > none && *size > LEAST);
+            // Towards where the number goes: beyond, f may not be defined.
+            size.map_or(1.0, |(size, _)| size).copysign(f)
         };
         let speed = length / a.abs();
         let Self {
@@ -241,6 +297,7 @@ impl Jacobian {
             unknowns,
             units,
             matrix,
+            searches,
             at,
             f,
             changed,
@@ -265,6 +322,10 @@ impl Jacobian {
             at.copy_from_slice(y);
             base.copy_from_slice(f);
         }
+        if base.iter().any(|f| !f.is_finite()) {
+            *searches = true;
+            return (Work::of(1), false);
+        }
         let mut count = 1;
         let most = MAX_DENSE * MAX_DENSE;
         let found = Pattern::find(unknowns.len(), most, |ranges: &[Range<usize>]| {
@@ -283,22 +344,20 @@ impl Jacobian {
                 .collect()
         });
         at.copy_from_slice(y);
-        let (known, entries) = match &*matrix {
-            Matrix::Sparse(known, entries) => (Some(known), entries.len()),
-            Matrix::Full(_) => (None, 0),
+        let known = match &*matrix {
+            Matrix::Sparse(known, _) => Some(known),
+            Matrix::Full(_) => None,
         };
         let found = match known {
             Some(known) => found.and_then(|found| known.joined(&found, most)),
             None => found,
         };
-        let grows = found
-            .as_ref()
-            .is_none_or(|found| found.rows.len() > entries);
-        if let Some(found) = found.filter(|_| grows) {
-            let values = vec![0.0; found.rows.len()];
-            *matrix = Matrix::Sparse(found, values);
-        } else if grows && known.is_some() {
-            *matrix = full(unknowns.len());
+        let grows = match (known, &found) {
+            (Some(known), Some(found)) => found.rows.len() > known.rows.len(),
+            (known, found) => known.is_some() || found.is_some(),
+        };
+        if grows {
+            *matrix = found.map_or_else(|| full(unknowns.len()), sparse);
         }
         (Work::of(count), grows)
     }
@@ -381,6 +440,12 @@ impl Jacobian {
         });
         (Work::of(1), is_met)
     }
+}
+
+/// Returns a matrix of zeros of a pattern.
+fn sparse(pattern: Pattern) -> Matrix {
+    let values = vec![0.0; pattern.rows.len()];
+    Matrix::Sparse(pattern, values)
 }
 
 /// Returns room for a full matrix of an order; none if it is too large.

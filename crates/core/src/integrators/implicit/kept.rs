@@ -1,14 +1,15 @@
 //! Simplified Newton's method: the tangent is formed at one state and kept, over iterations and
-//! steps, as long as the iterations converge with it (Hairer, Wanner, *Solving Ordinary
-//! Differential Equations II*, 1996, IV.8). They end when, by their rate of convergence, the
-//! remaining error is a small part of the allowed error of a step.
+//! steps, as long as the iterations converge with it; a Jacobian is kept over steps of other
+//! lengths, too (Hairer, Wanner, *Solving Ordinary Differential Equations II*, 1996, IV.8). They end
+//! when, by their rate of convergence, the remaining error is a small part of the allowed error of a
+//! step.
 
 use super::super::error_norm::ErrorNorm;
 use super::super::sweep::add_scaled;
+use super::jacobian::Jacobian;
 use super::mechanical::Mechanical;
 use super::newton::Newton;
 use super::stage::StageSolver;
-use crate::error::Error;
 use crate::system::{Linearized, Mechanics, ParticleSystem};
 use crate::work::Work;
 
@@ -26,6 +27,8 @@ pub(super) struct Tangent {
     pub t: f64,
     /// Factor a of the equations y = base + a f(t, y) (s); 0 before one is formed.
     pub a: f64,
+    /// The factor for which it was formed: a Jacobian serves others too.
+    pub formed: f64,
     /// Whether compressed springs are clamped in it.
     pub clamped: bool,
     /// Ratio of consecutive changes in the iteration.
@@ -37,6 +40,7 @@ impl Tangent {
     pub const NONE: Self = Self {
         t: 0.0,
         a: 0.0,
+        formed: 0.0,
         clamped: false,
         rate: 1.0,
     };
@@ -70,12 +74,20 @@ impl KeptSolver {
         }
     }
 
-    /// Checks that the matrix of the stages is not too large.
-    ///
-    /// # Errors
-    /// It is neither small nor sparse.
-    pub fn check(&self) -> Result<(), Error> {
-        self.stage.check()
+    /// Returns the Jacobian of f, if the stages are solved by it.
+    pub fn jacobian(&self) -> Option<&Jacobian> {
+        match &self.stage {
+            StageSolver::Mechanical(_) => None,
+            StageSolver::Dense(stage) => Some(&stage.jacobian),
+        }
+    }
+
+    /// Restores the pattern of the Jacobian. Returns false if it is of another system.
+    pub fn set_pattern(&mut self, pattern: &[usize]) -> bool {
+        match &mut self.stage {
+            StageSolver::Mechanical(_) => pattern.is_empty(),
+            StageSolver::Dense(stage) => stage.jacobian.set_pattern(pattern),
+        }
     }
 
     /// Forgets the tangent, because the system may have changed.
@@ -100,6 +112,15 @@ impl KeptSolver {
     ) -> (Work, bool) {
         let mut work = Work::default();
         let mut fresh = self.tangent.a.to_bits() != a.to_bits();
+        if let StageSolver::Dense(stage) = &mut self.stage
+            && fresh
+            && self.tangent.a != 0.0
+        {
+            let (cost, of_use) = stage.factorise(a);
+            work += cost;
+            (self.tangent.a, self.tangent.rate) = (a, 1.0);
+            fresh = !of_use;
+        }
         let mut clamped = false;
         loop {
             y.copy_from_slice(predicted);
@@ -110,6 +131,7 @@ impl KeptSolver {
                 self.tangent = Tangent {
                     t,
                     a,
+                    formed: a,
                     clamped,
                     rate: 1.0,
                 };
@@ -148,7 +170,13 @@ impl KeptSolver {
     /// Forms the tangent where it was formed before. Returns the cost, and whether it is positive
     /// definite.
     pub fn form(&mut self, system: &dyn ParticleSystem) -> (Work, bool) {
-        let Tangent { t, a, clamped, .. } = self.tangent;
+        let Tangent {
+            t,
+            a,
+            formed,
+            clamped,
+            ..
+        } = self.tangent;
         match (&mut self.stage, linearized(system)) {
             (StageSolver::Mechanical(stage), Some(linearized)) => {
                 let (x, v) = self.at.split_at(self.at.len() / 2);
@@ -162,7 +190,7 @@ impl KeptSolver {
                 work += cost;
                 (work, of_use)
             }
-            (StageSolver::Dense(stage), _) => stage.keep(system, t, a, &self.at),
+            (StageSolver::Dense(stage), _) => stage.keep(system, t, [formed, a], &self.at),
             (StageSolver::Mechanical(_), None) => (Work::default(), false),
         }
     }

@@ -319,7 +319,7 @@ impl Trial for Radau {
         norm: &ErrorNorm,
     ) -> (Work, f64) {
         if std::mem::take(&mut self.resumed) && self.memory.has_jacobian {
-            self.equations.form_again(system, h);
+            self.equations.form_again(system);
         }
         let (mut work, solved) = self.solve(t, norm, MAX_ITERATIONS[0]);
         let mut error = f64::INFINITY;
@@ -370,30 +370,36 @@ impl Trial for Radau {
         let mut step = self.step.clone();
         step.k[FORMED].copy_from_slice(&self.equations.formed.1);
         step.counts = [has_jacobian, renews, has_past].map(usize::from).to_vec();
+        step.counts.extend(self.equations.jacobian.pattern());
         let Collocation {
             formed,
             remaining,
             factored,
             ..
         } = &self.equations;
-        step.numbers = vec![formed.0, *remaining, error, *factored];
+        step.numbers = vec![formed.0[0], formed.0[1], *remaining, error, *factored];
         step
     }
 
     fn resume(&mut self, step: &LastStep) -> Result<(), Error> {
-        let (&[has_jacobian, renews, has_past], &[t, remaining, error, factored]) =
-            (&*step.counts, &*step.numbers)
+        let (
+            &[has_jacobian, renews, has_past, ref pattern @ ..],
+            &[t, h, remaining, error, factored],
+        ) = (&*step.counts, &*step.numbers)
         else {
             return Err(Error::Invalid("the last step is of another method".into()));
         };
         self.step.resume(step)?;
+        if !self.equations.jacobian.set_pattern(pattern) {
+            return Err(Error::Invalid("the last step is of another system".into()));
+        }
         let Collocation {
             formed,
             remaining: own,
             factored: step_of_factors,
             ..
         } = &mut self.equations;
-        formed.0 = t;
+        formed.0 = [t, h];
         formed.1.copy_from_slice(&step.k[FORMED]);
         (*own, *step_of_factors) = (remaining, factored);
         let [has_jacobian, renews, has_past] =

@@ -70,17 +70,6 @@ impl StageSolver {
         }
     }
 
-    /// Checks that the matrix of the stages is not too large.
-    ///
-    /// # Errors
-    /// It is neither small nor sparse.
-    pub(super) fn check(&self) -> Result<(), Error> {
-        match self {
-            Self::Mechanical(_) => Ok(()),
-            Self::Dense(stage) => stage.check(),
-        }
-    }
-
     /// Returns whether there are constraints.
     pub(super) fn is_joined(&self) -> bool {
         matches!(self, Self::Mechanical(stage) if stage.joined.is_some())
