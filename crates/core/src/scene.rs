@@ -336,8 +336,8 @@ impl Scene {
     /// Returns the errors that a step may make under a relative tolerance.
     ///
     /// # Errors
-    /// The tolerance, or the scene's absolute one, is not a finite number above 0, or the system has
-    /// [scales](ParticleSystem::scales) in place of an absolute one.
+    /// The tolerance, or the scene's absolute one, is not a finite number above 0, or the system
+    /// has [scales](ParticleSystem::scales) in place of an absolute one.
     pub fn tolerance(&self, relative: f64) -> Result<Tolerance, Error> {
         let own = || {
             let size = self.extent().1;

@@ -122,8 +122,8 @@ impl Jacobian {
         })
     }
 
-    /// Returns the pattern that was found: 0 before a search and 1 for a full matrix, else 2 and the
-    /// rows of each column after their number.
+    /// Returns the pattern that was found: 0 before a search and 1 for a full matrix, else 2 and
+    /// the rows of each column after their number.
     pub fn pattern(&self) -> Vec<usize> {
         match &self.matrix {
             Matrix::Full(_) => vec![usize::from(!self.searches)],

@@ -1,8 +1,8 @@
 //! Simplified Newton's method: the tangent is formed at one state and kept, over iterations and
 //! steps, as long as the iterations converge with it; a Jacobian is kept over steps of other
-//! lengths, too (Hairer, Wanner, *Solving Ordinary Differential Equations II*, 1996, IV.8). They end
-//! when, by their rate of convergence, the remaining error is a small part of the allowed error of a
-//! step.
+//! lengths, too (Hairer, Wanner, *Solving Ordinary Differential Equations II*, 1996, IV.8).
+//! Iterations end when, by their rate of convergence, the remaining error is a small part of the
+//! allowed error of a step.
 
 use super::super::error_norm::ErrorNorm;
 use super::super::sweep::add_scaled;
