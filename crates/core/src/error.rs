@@ -123,6 +123,13 @@ pub enum Cause {
     },
     /// Force that depends on the velocity, which the method does not support.
     ReadsVelocity,
+    /// Jacobian that an implicit method needs, which is neither small nor sparse enough.
+    TooDense {
+        /// Numbers of the state.
+        numbers: usize,
+        /// Largest number of them in a system in which each may act on all.
+        most: usize,
+    },
     /// Constraint with a large error.
     Unmet(Unmet),
     /// Constraint that cannot be met with any step: it contradicts others, or pins.
@@ -270,6 +277,9 @@ impl fmt::Display for BlowUp {
                 f,
                 "forces must not depend on the velocity, except by drag: {USE_ANOTHER}"
             ),
+            &Cause::TooDense { numbers, most } => {
+                write!(f, "the solver {}", Refusal::TooDense { numbers, most })
+            }
             Cause::Unmet(unmet) => {
                 write!(f, "{unmet}, is off by {:.0} %", 100.0 * unmet.share)
             }

@@ -28,7 +28,7 @@ pub enum Refusal {
         /// Largest number of them.
         most: usize,
     },
-    /// The system is large, and its numbers do not act on few others.
+    /// The system is large, and its Jacobian is not sparse enough.
     TooDense {
         /// Numbers of its state.
         numbers: usize,
@@ -80,8 +80,8 @@ impl fmt::Display for Refusal {
             ),
             Self::TooDense { numbers, most } => write!(
                 f,
-                "serves systems of more than {most} numbers if each acts on few others, but in this \
-                 one of {numbers} numbers they act on many: use an explicit solver"
+                "needs the Jacobian of this system of {numbers} numbers, which is neither small (up \
+                 to {most} numbers) nor sparse enough: use an explicit solver"
             ),
         }
     }

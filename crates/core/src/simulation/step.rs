@@ -427,6 +427,10 @@ fn cause_of(error: Error, model: &Model) -> Result<Cause, Error> {
             why: Refusal::ReadsVelocity,
             ..
         } => Ok(Cause::ReadsVelocity),
+        Error::Unsupported {
+            why: Refusal::TooDense { numbers, most },
+            ..
+        } => Ok(Cause::TooDense { numbers, most }),
         error => Err(error),
     }
 }

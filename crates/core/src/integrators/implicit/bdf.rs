@@ -312,7 +312,10 @@ impl Trial for Bdf {
         let a = h / ((1.0 - KAPPA[order]) * harmonic(order));
         if std::mem::take(&mut self.resumed) && self.solver.tangent.a != 0.0 {
             // This tangent was formed, and counted as work, before the checkpoint.
-            let _ = self.solver.form(system);
+            let (_, of_use) = self.solver.form(system);
+            if !of_use {
+                self.solver.tangent = Tangent::NONE;
+            }
         }
         let equations = [&*self.base, &*self.predicted];
         let y1 = &mut self.step.y1;
@@ -382,10 +385,10 @@ impl Trial for Bdf {
         {
             return Err(Error::Invalid(format!("there is no BDF of order {next}")));
         }
-        self.step.resume(step)?;
         if !self.solver.set_pattern(pattern) {
             return Err(Error::Invalid("the last step is of another system".into()));
         }
+        self.step.resume(step)?;
         self.first = false;
         self.orders = Orders { last, next, equal };
         self.solver.at.copy_from_slice(&step.k[DIFFERENCES]);

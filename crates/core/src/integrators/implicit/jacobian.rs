@@ -35,6 +35,10 @@ const LEAST: f64 = f64::MIN_POSITIVE / NO_SIZE;
 /// Number of plain numbers from which on a pattern is searched.
 const MANY: usize = 32;
 
+/// Largest number of entries of the factors of a sparse matrix: they take 160 MiB, as real and as
+/// complex numbers.
+const MOST: usize = 1 << 22;
+
 /// Share of their size by which numbers change where the pattern is searched, away from a state at
 /// which an entry happens to vanish.
 const SEARCH_SHARE: f64 = 1e-5;
@@ -71,6 +75,8 @@ pub(super) struct Jacobian {
     at: Vec<f64>,
     f: Vec<f64>,
     changed: Vec<f64>,
+    /// Changes of the unknowns that follow from a sparse matrix, and their sizes.
+    follow: Vec<[f64; 2]>,
 }
 
 impl Jacobian {
@@ -95,6 +101,7 @@ impl Jacobian {
             at: vec![0.0; dim],
             f: vec![0.0; dim],
             changed: vec![0.0; dim],
+            follow: vec![],
         }
     }
 
@@ -138,6 +145,14 @@ impl Jacobian {
         }
     }
 
+    /// Forgets the pattern, because the system may have changed.
+    pub fn forget(&mut self) {
+        self.searches = self.unknowns.len() >= MANY && !self.is_central;
+        if matches!(self.matrix, Matrix::Sparse(..)) {
+            self.matrix = full(self.unknowns.len());
+        }
+    }
+
     /// Restores a pattern that was found. Returns false if it is of another system.
     pub fn set_pattern(&mut self, pattern: &[usize]) -> bool {
         let size = self.unknowns.len();
@@ -145,8 +160,10 @@ impl Jacobian {
             return false;
         };
         if kind < 2 {
-            self.searches = kind == 0 && size >= MANY && !self.is_central;
-            self.matrix = full(size);
+            if lists.is_empty() {
+                self.forget();
+                self.searches &= kind == 0;
+            }
             return lists.is_empty();
         }
         let mut columns = vec![];
@@ -162,7 +179,7 @@ impl Jacobian {
             lists = rest;
         }
         let found = Some(columns).filter(|columns| columns.len() == size);
-        let found = found.and_then(|columns| Pattern::of(&columns, MAX_DENSE * MAX_DENSE));
+        let found = found.and_then(|columns| Pattern::of(&columns, MOST));
         let Some(found) = found else {
             return false;
         };
@@ -326,9 +343,8 @@ impl Jacobian {
             *searches = true;
             return (Work::of(1), false);
         }
-        let mut count = 1;
-        let most = MAX_DENSE * MAX_DENSE;
-        let found = Pattern::find(unknowns.len(), most, |ranges: &[Range<usize>]| {
+        let (mut count, mut failed) = (1, false);
+        let found = Pattern::find(unknowns.len(), MOST, |ranges: &[Range<usize>]| {
             let columns = || ranges.iter().flat_map(Clone::clone);
             let before: Vec<_> = columns().map(|k| at[unknowns[k]]).collect();
             columns().for_each(|k| at[unknowns[k]] += moves[k]);
@@ -337,19 +353,25 @@ impl Jacobian {
                 at[unknowns[k]] = before;
             }
             count += 1;
-            let differs = |i: usize| changed[i].to_bits() != base[i].to_bits();
+            // An evaluation that failed, after which all do.
+            failed |= changed.iter().all(|f| f.is_nan());
+            let differs = |i: usize| !failed && changed[i].to_bits() != base[i].to_bits();
             let rows = unknowns.iter().zip(0..);
             rows.filter(|(i, _)| differs(**i))
                 .map(|(_, row)| row)
                 .collect()
         });
         at.copy_from_slice(y);
+        if failed {
+            *searches = true;
+            return (Work::of(count), false);
+        }
         let known = match &*matrix {
             Matrix::Sparse(known, _) => Some(known),
             Matrix::Full(_) => None,
         };
         let found = match known {
-            Some(known) => found.and_then(|found| known.joined(&found, most)),
+            Some(known) => found.and_then(|found| known.joined(&found, MOST)),
             None => found,
         };
         let grows = match (known, &found) {
@@ -420,10 +442,11 @@ impl Jacobian {
             return (Work::default(), true);
         };
         let mut random = SplitMix(2);
-        // Changes that follow from the matrix, and their sizes.
-        let mut follow = vec![[0.0; 2]; self.unknowns.len()];
+        let follow = &mut self.follow;
+        follow.clear();
+        follow.resize(self.unknowns.len(), [0.0; 2]);
         for (column, (j, [_, step])) in self.unknowns.iter().zip(&self.units).enumerate() {
-            let step = step * random.between(-1.0, 1.0);
+            let step = step * random.between(0.5, 1.0);
             self.at[*j] = y[*j] + step;
             for k in pattern.column(column) {
                 let [change, size] = &mut follow[pattern.rows[k] as usize];
@@ -433,11 +456,15 @@ impl Jacobian {
         }
         system.eval_f(t, &self.at, &mut self.changed);
         self.at.copy_from_slice(y);
-        let is_met = self.unknowns.iter().zip(follow).all(|(i, [change, size])| {
-            let (before, after) = (self.f[*i], self.changed[*i]);
-            let rounding = ROUNDING * (before.abs() + after.abs());
-            (after - before - change).abs() <= MISSING_SHARE * size + rounding
-        });
+        let is_met = self
+            .unknowns
+            .iter()
+            .zip(&*follow)
+            .all(|(i, [change, size])| {
+                let (before, after) = (self.f[*i], self.changed[*i]);
+                let rounding = ROUNDING * (before.abs() + after.abs());
+                (after - before - change).abs() <= MISSING_SHARE * size + rounding
+            });
         (Work::of(1), is_met)
     }
 }

@@ -93,10 +93,10 @@ impl KeptSolver {
     /// Forgets the tangent, because the system may have changed.
     pub fn forget(&mut self, system: &dyn ParticleSystem) {
         self.tangent = Tangent::NONE;
-        if let (StageSolver::Mechanical(stage), Some(linearized)) =
-            (&mut self.stage, linearized(system))
-        {
-            stage.solver.renew(linearized);
+        match (&mut self.stage, linearized(system)) {
+            (StageSolver::Mechanical(stage), Some(linearized)) => stage.solver.renew(linearized),
+            (StageSolver::Dense(stage), _) => stage.jacobian.forget(),
+            (StageSolver::Mechanical(_), None) => (),
         }
     }
 

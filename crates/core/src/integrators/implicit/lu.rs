@@ -4,6 +4,7 @@ use nalgebra::ComplexField;
 
 use super::pattern::Pattern;
 use super::sparse::Sparse;
+use crate::integrators::method::MAX_DENSE;
 
 /// Matrix J of real numbers.
 pub(super) enum Matrix {
@@ -40,11 +41,12 @@ enum Factors<T> {
 }
 
 impl<T: ComplexField<RealField = f64> + Copy> Lu<T> {
-    /// Creates room for the factors of a full matrix of this order.
+    /// Creates room for the factors of a matrix of this order, if it may be full.
     pub fn new(order: usize) -> Self {
+        let room = if order > MAX_DENSE { 0 } else { order * order };
         Self {
             order,
-            factors: Factors::Full(vec![T::zero(); order * order], vec![0; order]),
+            factors: Factors::Full(vec![T::zero(); room], vec![0; order]),
             costs: [0.0; 2],
         }
     }

@@ -50,8 +50,15 @@ impl Pattern {
             let halves: Vec<_> = blocks.iter().flat_map(halves).collect();
             let groups = group(size, halves.iter().map(|(_, rows)| *rows));
             if halves.len() >= MANY_HALVES && 2 * groups.len() > halves.len() {
-                let alone = |j| changed(std::slice::from_ref(&(j..j + 1)));
-                let each: Vec<_> = (0..size).map(alone).collect();
+                let room = (size * size / 4).min(2 * most + size);
+                let (mut each, mut entries) = (vec![], 0);
+                for j in 0..size {
+                    each.push(changed(std::slice::from_ref(&(j..j + 1))));
+                    entries += each[j].len();
+                    if entries > room {
+                        return None;
+                    }
+                }
                 return Self::of(&each, most);
             }
             let mut found = vec![vec![]; halves.len()];
@@ -69,11 +76,9 @@ impl Pattern {
                     }
                 }
             }
-            let columns = halves.into_iter().map(|(columns, _)| columns);
-            let columns: Vec<_> = columns.collect();
-            let both = columns.into_iter().zip(found);
+            let both = halves.into_iter().zip(found);
             blocks = both
-                .map(|(columns, rows)| Block { columns, rows })
+                .map(|((columns, _), rows)| Block { columns, rows })
                 .collect();
         }
         let columns: Vec<_> = blocks.into_iter().map(|block| block.rows).collect();
@@ -133,17 +138,22 @@ fn halves(block: &Block) -> impl Iterator<Item = (Range<usize>, &[u32])> {
 /// Groups the numbers of lists of rows: each comes into the first group in which no other list has
 /// one of its rows.
 fn group<'a>(size: usize, lists: impl Iterator<Item = &'a [u32]>) -> Vec<Vec<usize>> {
-    let (mut groups, mut taken): (Vec<Vec<usize>>, Vec<Vec<bool>>) = (vec![], vec![]);
+    // For each group, the number after that of the last list that it cannot take.
+    let (mut groups, mut met): (Vec<Vec<usize>>, Vec<usize>) = (vec![], vec![]);
+    let mut of_row: Vec<Vec<u32>> = vec![vec![]; size];
     for (number, rows) in lists.enumerate() {
-        let is_free = |taken: &Vec<bool>| rows.iter().all(|row| !taken[*row as usize]);
-        let k = taken.iter().position(is_free).unwrap_or(groups.len());
+        for k in rows.iter().flat_map(|row| &of_row[*row as usize]) {
+            met[*k as usize] = number + 1;
+        }
+        let free = met.iter().position(|met| *met <= number);
+        let k = free.unwrap_or(groups.len());
         if k == groups.len() {
             groups.push(vec![]);
-            taken.push(vec![false; size]);
+            met.push(0);
         }
         groups[k].push(number);
         for row in rows {
-            taken[k][*row as usize] = true;
+            of_row[*row as usize].push(k as u32);
         }
     }
     groups
@@ -157,7 +167,7 @@ mod tests {
     /// changes that the search took.
     fn search(size: usize, acts: impl Fn(usize, usize) -> bool) -> (Option<Pattern>, usize) {
         let mut count = 0;
-        let found = Pattern::find(size, usize::MAX, |ranges| {
+        let found = Pattern::find(size, 1 << 22, |ranges| {
             count += 1;
             let acted = |i: &u32| {
                 ranges

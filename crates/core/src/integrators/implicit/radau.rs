@@ -298,6 +298,7 @@ impl Trial for Radau {
         self.step.y0.copy_from_slice(y);
         system.eval_f(t, y, &mut self.step.k[BEGIN]);
         self.memory = Memory::default();
+        self.equations.jacobian.forget();
         (self.is_fresh, self.rejected, self.resumed) = (false, false, false);
         Work::of(1)
     }
@@ -389,10 +390,10 @@ impl Trial for Radau {
         else {
             return Err(Error::Invalid("the last step is of another method".into()));
         };
-        self.step.resume(step)?;
         if !self.equations.jacobian.set_pattern(pattern) {
             return Err(Error::Invalid("the last step is of another system".into()));
         }
+        self.step.resume(step)?;
         let Collocation {
             formed,
             remaining: own,
@@ -433,6 +434,7 @@ impl Integrator for Radau {
         };
         let (work, solved) = self.solve(t, &norm, MAX_ITERATIONS[1]);
         if !solved {
+            self.equations.jacobian.check()?;
             return Err(Error::NoConvergence {
                 residual: self.equations.rate(),
             });
