@@ -26,8 +26,8 @@ pub(crate) fn evaluation_cost(dim: usize) -> f64 {
     COSTS[0] + COSTS[1] * dim as f64
 }
 
-/// Returns the size of a number y of a system, of which a difference quotient takes a part: at
-/// least the number's own [scale](ParticleSystem::scales), or 1 where there is none.
+/// Returns the size of a number y of a system, to which the step of a difference quotient is in
+/// proportion: at least the number's own [scale](ParticleSystem::scales), or 1 without scales.
 pub(crate) fn size(system: &dyn ParticleSystem, number: usize, y: f64) -> f64 {
     let scale = system.scales().get(number).copied();
     y.abs().max(scale.unwrap_or(1.0))

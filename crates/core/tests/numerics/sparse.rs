@@ -141,8 +141,8 @@ fn numbers_that_begin_to_act_later_are_found() {
     }
 }
 
-/// A system of more than 1,024 numbers, each of which acts on all, is refused in words, by fixed
-/// steps too.
+/// Implicit methods refuse a system of more than 1,024 numbers where each acts on all, also in
+/// fixed steps.
 #[test]
 fn large_full_systems_are_refused() {
     let system = Ode::new(1500, |_: f64, y: &[f64], dydt: &mut [f64]| {

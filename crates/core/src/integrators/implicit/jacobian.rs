@@ -29,7 +29,7 @@ const LEAST_SIZE: f64 = 1e-3;
 
 /// Size that counts as zero, as a share of the largest number: it would round away twice.
 const NO_SIZE: f64 = f64::EPSILON * f64::EPSILON;
-/// Size of which a difference is still a normal number.
+/// Least size: the step of its difference quotient is still a normal number.
 const LEAST: f64 = f64::MIN_POSITIVE / NO_SIZE;
 
 /// Number of plain numbers from which on a pattern is searched.
