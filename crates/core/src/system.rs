@@ -116,6 +116,15 @@ pub trait ParticleSystem {
         &[]
     }
 
+    /// Returns the number of quantities by which states are compared; 0 if they are compared by their
+    /// own numbers.
+    fn quantities(&self) -> usize {
+        0
+    }
+
+    /// Writes these quantities of the state y at time t (s).
+    fn write_quantities(&self, _t: f64, _y: &[f64], _out: &mut [f64]) {}
+
     /// Returns the cost of an evaluation of f, in multiplications of two numbers within long rows.
     /// The linear algebra of implicit methods is counted as [work](crate::Work::algebra) by it.
     fn evaluation_cost(&self) -> f64 {

@@ -46,6 +46,13 @@ pub fn scene(system: &Bound<PyAny>, raised: &Raised) -> PyResult<Scene> {
             let jacobian = Function::new(&jacobian, Shape::Square, raised)?;
             made = made.with_jacobian(move |t, y, out| jacobian.of_state(t, y, out));
         }
+        let (count, quantities): (usize, Bound<PyAny>) =
+            system.getattr("_quantities")?.extract()?;
+        if !quantities.is_none() {
+            let quantities = Function::new(&quantities, Shape::Flat, raised)?;
+            let write = move |t: f64, y: &[f64], out: &mut [f64]| quantities.of_state(t, y, out);
+            made = made.with_quantities(count, write).map_err(failed)?;
+        }
         if scales.is_empty() {
             made.into()
         } else {

@@ -465,6 +465,44 @@ def test_one_number_counts_alone():
         a3.choose("chain", 1e-3, component=2)
 
 
+def test_a_function_of_the_state_counts():
+    """The radius of a turn falls by |1 + z + z^2 / 2 + z^3 / 6 + z^4 / 24|, z = ih, in each step of RK4."""
+
+    def turn(t, y):
+        return np.array([y[1], -y[0]])
+
+    def radius(t, y):
+        return math.hypot(*y)
+
+    system = a3.System(turn, [1.0, 0.0])
+    chart = a3.chart(system, ["rk4"], until=5.0, quantity=radius, at_end=True, progress=False)
+    checked = 0
+    for point in chart.points:
+        z, steps = 1j * point.setting, 5.0 / point.setting
+        shrinks = 1 - abs(1 + z + z**2 / 2 + z**3 / 6 + z**4 / 24) ** steps
+        if abs(steps - round(steps)) < 1e-9 and shrinks > 1e-9:
+            assert abs(point.error / shrinks - 1) < 0.01, (point, shrinks)
+            checked += 1
+    assert checked >= 2, [point.setting for point in chart.points]
+    # Both numbers together: the phase, which is wrong by h^5 / 120 a step, does not count.
+    chosen = [
+        a3.choose(system, 1e-6, methods=["rk4"], until=5.0, progress=False, **only)
+        for only in ({"quantity": radius}, {"quantity": lambda t, y: [radius(t, y), 2.0]}, {})
+    ]
+    assert chosen[0].setting > 1.3 * chosen[2].setting and chosen[1].setting >= chosen[0].setting
+    for wrong, words in [
+        ({"quantity": 3}, "a function is expected"),
+        ({"quantity": lambda t, y: []}, "at least one quantity"),
+        ({"quantity": radius, "component": 1}, "no quantity 1"),
+    ]:
+        with pytest.raises(a3.InputError, match=words):
+            a3.chart(system, ["rk4"], until=2.0, progress=False, **wrong)
+    with pytest.raises(ZeroDivisionError):
+        a3.chart(system, ["rk4"], until=2.0, progress=False, quantity=lambda t, y: 1 / 0 if t > 1 else y)
+    with pytest.raises(a3.InputError, match="has particles"):
+        a3.choose("chain", 1e-3, quantity=radius)
+
+
 def test_a_solver_of_another_library_is_charted():
     integrate = pytest.importorskip("scipy.integrate")
 

@@ -41,6 +41,7 @@ pub struct Ode {
     f: Box<Function>,
     jacobian: Option<Box<Function>>,
     scales: Vec<f64>,
+    quantities: Option<(usize, Box<Function>)>,
     evaluation_cost: f64,
     failure: Failure,
 }
@@ -63,6 +64,7 @@ impl Ode {
             f: Box::new(move |t, y, dydt| f(t, y, dydt).outcome()),
             jacobian: None,
             scales: vec![],
+            quantities: None,
             evaluation_cost: evaluation_cost(dim),
             failure: Failure::default(),
         })
@@ -115,6 +117,28 @@ impl Ode {
         }
         Ok(Self { scales, ..self })
     }
+
+    /// Sets `count` quantities by which states are compared in charts and choices, in place of their
+    /// own numbers: a function of t and y that writes them to its last argument, and may fail. The
+    /// error of each is relative to the largest size that it has had.
+    ///
+    /// # Errors
+    /// There are none.
+    pub fn with_quantities<R: Outcome>(
+        self,
+        count: usize,
+        quantities: impl Fn(f64, &[f64], &mut [f64]) -> R + Send + Sync + 'static,
+    ) -> Result<Self, Error> {
+        if count == 0 {
+            let why = "states need at least one quantity to be compared by";
+            return Err(Error::Invalid(why.into()));
+        }
+        let write = move |t: f64, y: &[f64], out: &mut [f64]| quantities(t, y, out).outcome();
+        Ok(Self {
+            quantities: Some((count, Box::new(write))),
+            ..self
+        })
+    }
 }
 
 impl ParticleSystem for Ode {
@@ -136,6 +160,16 @@ impl ParticleSystem for Ode {
 
     fn scales(&self) -> &[f64] {
         &self.scales
+    }
+
+    fn quantities(&self) -> usize {
+        self.quantities.as_ref().map_or(0, |(count, _)| *count)
+    }
+
+    fn write_quantities(&self, t: f64, y: &[f64], out: &mut [f64]) {
+        if let Some((_, write)) = &self.quantities {
+            self.failure.guard(out, |out| write(t, y, out));
+        }
     }
 
     fn evaluation_cost(&self) -> f64 {

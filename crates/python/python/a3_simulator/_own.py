@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import copy
 import math
-from typing import Any, Callable, Optional, Sequence, Union
+from typing import Any, Callable, Optional, Sequence, Tuple, Union
 
 import numpy as np
 import numpy.typing as npt
@@ -48,6 +49,8 @@ class System:
     _jac: Optional[Derivative] = None
     #: Least size of each number to which errors are relative; empty where it is derived.
     _scales: Sequence[float] = ()
+    #: Number of quantities by which states are compared, and the function that returns them; 0 for the state's numbers.
+    _quantities: Tuple[int, Optional[Derivative]] = (0, None)
 
     def __init__(
         self,
@@ -107,6 +110,19 @@ class System:
         system.name = name or _name(forces, "system")
         system.y0 = system._state = np.concatenate([x.T.ravel(), v.T.ravel()])
         return system
+
+    def _measured_by(self, quantity: Derivative) -> "System":
+        """Returns this system with states that are compared by a number, or an array, of t and y."""
+        if not callable(quantity):
+            raise InputError(f"quantity: a function is expected, not {type(quantity).__name__}")
+
+        def flat(t: float, y: Floats) -> Floats:
+            return np.ravel(quantity(t, y))
+
+        flat.__name__ = _name(quantity, "quantity")
+        measured = copy.copy(self)
+        measured._quantities = (flat(0.0, self.y0.copy()).size, flat)
+        return measured
 
     def __repr__(self) -> str:
         return f"<System {self.name} of {self.y0.size} numbers>"
