@@ -116,6 +116,12 @@ pub trait ParticleSystem {
         &[]
     }
 
+    /// Returns the first time after t (s) at which f, or one of its derivatives, jumps, if that is
+    /// known beforehand: a step ends there. Infinite if there is none.
+    fn next_jump(&self, _t: f64) -> f64 {
+        f64::INFINITY
+    }
+
     /// Returns the number of quantities by which states are compared; 0 if they are compared by their
     /// own numbers.
     fn quantities(&self) -> usize {

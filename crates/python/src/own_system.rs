@@ -46,6 +46,8 @@ pub fn scene(system: &Bound<PyAny>, raised: &Raised) -> PyResult<Scene> {
             let jacobian = Function::new(&jacobian, Shape::Square, raised)?;
             made = made.with_jacobian(move |t, y, out| jacobian.of_state(t, y, out));
         }
+        let jumps: Vec<f64> = system.getattr("_jumps")?.extract()?;
+        made = made.with_jumps(jumps).map_err(failed)?;
         let (count, quantities): (usize, Bound<PyAny>) =
             system.getattr("_quantities")?.extract()?;
         if !quantities.is_none() {

@@ -503,6 +503,19 @@ def test_a_function_of_the_state_counts():
         a3.choose("chain", 1e-3, quantity=radius)
 
 
+def test_a_pulse_from_rest_is_not_missed():
+    def pulse(t, y):
+        return [1.0 if 5.0 <= t < 5.001 else 0.0]
+
+    for method, control in (("dopri5", {"tolerance": 1e-6}), ("bdf", {"tolerance": 1e-6}), ("rk4", {"step": 0.3})):
+        run = a3.Simulation(a3.System(pulse, [0.0], tstops=[5.001, 5.0]), method, **control)
+        run.advance_to(9.9)
+        assert abs(run.state[0] - 1e-3) < 1e-9, (method, run.state)
+    for wrong in ([math.nan], "soon", [[1.0]]):
+        with pytest.raises(a3.InputError, match="tstops"):
+            a3.System(pulse, [0.0], tstops=wrong)
+
+
 def test_a_solver_of_another_library_is_charted():
     integrate = pytest.importorskip("scipy.integrate")
 

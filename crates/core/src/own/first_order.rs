@@ -42,6 +42,8 @@ pub struct Ode {
     jacobian: Option<Box<Function>>,
     scales: Vec<f64>,
     quantities: Option<(usize, Box<Function>)>,
+    /// Times at which f jumps (s), in order.
+    jumps: Vec<f64>,
     evaluation_cost: f64,
     failure: Failure,
 }
@@ -65,6 +67,7 @@ impl Ode {
             jacobian: None,
             scales: vec![],
             quantities: None,
+            jumps: vec![],
             evaluation_cost: evaluation_cost(dim),
             failure: Failure::default(),
         })
@@ -118,6 +121,24 @@ impl Ode {
         Ok(Self { scales, ..self })
     }
 
+    /// Sets the times (s) at which f or one of its derivatives jumps: a step ends at each of them,
+    /// and no evaluation of it is at or after that time. So a short pulse is not missed, and each
+    /// method keeps its order.
+    ///
+    /// # Errors
+    /// A time is not finite.
+    pub fn with_jumps(self, mut times: Vec<f64>) -> Result<Self, Error> {
+        if let Some(time) = times.iter().find(|time| !time.is_finite()) {
+            let why = format!("f jumps at finite times (s), not at {time}");
+            return Err(Error::Invalid(why));
+        }
+        times.sort_unstable_by(f64::total_cmp);
+        Ok(Self {
+            jumps: times,
+            ..self
+        })
+    }
+
     /// Sets `count` quantities by which states are compared in charts and choices, in place of their
     /// own numbers: a function of t and y that writes them to its last argument, and may fail. The
     /// error of each is relative to the largest size that it has had.
@@ -160,6 +181,11 @@ impl ParticleSystem for Ode {
 
     fn scales(&self) -> &[f64] {
         &self.scales
+    }
+
+    fn next_jump(&self, t: f64) -> f64 {
+        let next = self.jumps.partition_point(|time| *time <= t);
+        self.jumps.get(next).copied().unwrap_or(f64::INFINITY)
     }
 
     fn quantities(&self) -> usize {

@@ -37,6 +37,7 @@ class System:
         jac: function of t and y that returns the Jacobian df/dy, (n, n), for stiff methods and stability. Without it,
             differences of f are taken; of a system of more than 1024 numbers they always are.
         args: further arguments of f and jac, after t and y.
+        tstops: times at which f or one of its derivatives jumps: a step of any method ends at each of them.
 
     Where a scene is expected, a system can stand. Arrays that f gets are its own: it may keep or change them.
     """
@@ -49,6 +50,8 @@ class System:
     _jac: Optional[Derivative] = None
     #: Least size of each number to which errors are relative; empty where it is derived.
     _scales: Sequence[float] = ()
+    #: Times at which f jumps.
+    _jumps: Sequence[float] = ()
     #: Number of quantities by which states are compared, and the function that returns them; 0 for the state's numbers.
     _quantities: Tuple[int, Optional[Derivative]] = (0, None)
 
@@ -61,6 +64,7 @@ class System:
         scale: Optional[npt.ArrayLike] = None,
         jac: Optional[Derivative] = None,
         args: Sequence[Any] = (),
+        tstops: npt.ArrayLike = (),
     ) -> None:
         self.f: Union[Derivative, Forces] = _with(args, f)
         self._jac = None if jac is None else _with(args, jac)
@@ -69,6 +73,7 @@ class System:
             raise InputError("y0: a system has at least one number")
         self.name = name or _name(f, "system")
         self._state = self.y0
+        self._jumps = _numbers("tstops", tstops, (-1,))
         if scale is not None:
             same = np.broadcast_to(scale, self.y0.shape) if np.ndim(scale) == 0 else scale
             self._scales = _numbers("scale", same, self.y0.shape)
