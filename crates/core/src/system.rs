@@ -178,6 +178,12 @@ pub trait Mechanics {
         divide_by_masses(self.inverse_masses(), a);
     }
 
+    /// Returns the total energy (J) in the state y at time t (s) of a system of one's own, if it is
+    /// known.
+    fn energy(&self, _t: f64, _y: &[f64]) -> Option<f64> {
+        None
+    }
+
     /// Returns the coefficient c (kg/s) of viscous drag: the forces contain -c v on each particle.
     /// 0 by default.
     fn drag_coefficient(&self) -> f64 {

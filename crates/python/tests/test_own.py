@@ -503,6 +503,30 @@ def test_a_function_of_the_state_counts():
         a3.choose("chain", 1e-3, quantity=radius)
 
 
+def test_the_energy_of_an_own_system_is_charted():
+    """Verlet's energy of an oscillator swings by h^2 / 8 of it, and does not drift."""
+    system = a3.System.of_particles(
+        lambda t, x, v: -x,
+        [1.0],
+        [[1.0, 0.0, 0.0]],
+        positional=True,
+        energy=lambda t, x, v: 0.5 * float((x * x).sum() + (v * v).sum()),
+    )
+    for until in (10.0, 40.0):
+        chart = a3.chart(system, ["verlet"], error="energy", until=until, progress=False)
+        found = [point for point in chart.points if 0.001 < point.setting < 0.02]
+        assert found
+        for point in found:
+            assert 0.9 < point.error / (point.setting**2 / 8) < 1.1, point
+    assert a3.choose(system, 1e-6, of="energy", until=10.0, progress=False).error < 1e-6
+    plain = a3.System.of_particles(lambda t, x, v: -x, [1.0], [[1.0, 0.0, 0.0]])
+    with pytest.raises(a3.InputError, match="neither energy"):
+        a3.chart(plain, ["verlet"], error="energy", until=1.0, progress=False)
+    wrong = a3.System.of_particles(lambda t, x, v: -x, [1.0], [[1.0, 0.0, 0.0]], energy=lambda t, x, v: x)
+    with pytest.raises(a3.InputError, match="where a number is expected"):
+        a3.chart(wrong, ["verlet"], error="energy", until=1.0, progress=False)
+
+
 def test_a_pulse_from_rest_is_not_missed():
     def pulse(t, y):
         return [1.0 if 5.0 <= t < 5.001 else 0.0]

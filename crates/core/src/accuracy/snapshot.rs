@@ -37,7 +37,7 @@ pub(super) struct Snapshot {
     quantities: Vec<f64>,
     /// The largest size of each compared number so far; empty with particles.
     sizes: Vec<f64>,
-    /// Total energy (J); 0 for a first-order scene.
+    /// Total energy (J); 0 for a system that does not know it.
     energy: f64,
     /// Momentum of the particles that are not pinned (kg m/s); 0 for a first-order scene.
     momentum: Vector3<f64>,
@@ -64,6 +64,7 @@ impl Snapshot {
                 particles: model.particles(),
                 positions: positions.to_vec(),
                 velocities: velocities.into_owned(),
+                energy: model.own_energy(t, y).unwrap_or(0.0),
                 quantities,
                 sizes,
                 ..Self::default()
@@ -201,7 +202,7 @@ impl Snapshot {
     pub fn errors_of(&self, other: &Self, scope: Scope) -> Errors {
         let springs = self.strains.len().max(1) as f64;
         let stretch = self.strains.iter().zip(&other.strains);
-        fn moved<'a>(own: &'a [f64], other: &'a [f64]) -> impl Iterator<Item = f64> {
+        fn moved<'a>(own: &'a [f64], other: &'a [f64]) -> impl Iterator<Item = f64> + Clone + 'a {
             own.iter().zip(other).map(|(own, other)| other - own)
         }
         let positions = moved(&self.positions, &other.positions);
@@ -443,7 +444,7 @@ pub struct Errors {
     /// their errors, each over the largest size that the number has had in the reference; 0 with
     /// particles.
     pub state: f64,
-    /// Absolute error of the total energy (J); 0 for a first-order scene.
+    /// Absolute error of the total energy (J); 0 for a system that does not know it.
     pub energy: f64,
     /// Root mean square over the structural springs of the error of length over rest length; 0
     /// without such springs.

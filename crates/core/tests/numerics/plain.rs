@@ -403,7 +403,7 @@ fn known_jumps_end_steps() {
             dydt[0] = if (5.0..5.001).contains(&t) { 1.0 } else { 0.0 };
         };
         let ode = Ode::new(1, f).unwrap().with_jumps(jumps.to_vec()).unwrap();
-        Scene::new("pulse", ode.into(), vec![0.0])
+        Scene::new("pulse", ode, vec![0.0])
     };
     let mut tried = 0;
     for method in integrators::METHODS {

@@ -17,6 +17,8 @@ Floats = npt.NDArray[np.float64]
 Derivative = Callable[[float, Floats], npt.ArrayLike]
 #: F(t, x, v): the forces (N), (n, 3), at time t (s) on particles at x (m), (n, 3), that move at v (m/s), (n, 3).
 Forces = Callable[[float, Floats, Floats], npt.ArrayLike]
+#: E(t, x, v): the total energy (J).
+Energy = Callable[[float, Floats, Floats], float]
 #: step(f, t, y, h): the state at t + h, of the shape of y, from the state y at time t (s).
 Step = Callable[[Callable[[float, npt.ArrayLike], Floats], float, Floats, float], npt.ArrayLike]
 #: solve(f, times, y0, tol): the states at these times, a row for each, from the state y0 at time 0.
@@ -46,6 +48,8 @@ class System:
     masses: Optional[Floats] = None
     #: Whether forces depend on positions and time alone.
     positional = False
+    #: Function that returns the energy, if there is one.
+    _energy: Optional[Energy] = None
     #: Function that returns the Jacobian, if there is one.
     _jac: Optional[Derivative] = None
     #: Least size of each number to which errors are relative; empty where it is derived.
@@ -89,6 +93,7 @@ class System:
         velocities: Optional[npt.ArrayLike] = None,
         *,
         positional: bool = False,
+        energy: Optional[Energy] = None,
         name: Optional[str] = None,
         args: Sequence[Any] = (),
     ) -> "System":
@@ -102,8 +107,9 @@ class System:
             velocities: velocities at t = 0 (m/s), (n, 3); by default 0.
             positional: whether the forces do not depend on v. Verlet's and Nystroem's methods then take fewer
                 evaluations.
+            energy: function of t, x and v that returns the total energy (J), for charts and choices of its error.
             name: name, for charts and errors; by default that of `forces`.
-            args: further arguments of `forces`, after t, x and v.
+            args: further arguments of `forces` and `energy`, after t, x and v.
         """
         system = cls.__new__(cls)
         system.f = _with(args, forces)
@@ -112,6 +118,7 @@ class System:
         x = _numbers("positions", positions, shape)
         v = np.zeros(shape) if velocities is None else _numbers("velocities", velocities, shape)
         system.positional = positional
+        system._energy = None if energy is None else _with(args, energy)
         system.name = name or _name(forces, "system")
         system.y0 = system._state = np.concatenate([x.T.ravel(), v.T.ravel()])
         return system
