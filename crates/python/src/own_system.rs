@@ -28,11 +28,8 @@ pub fn scene(system: &Bound<PyAny>, raised: &Raised) -> PyResult<Scene> {
         let energy = system.getattr("_energy")?;
         if !energy.is_none() {
             let energy = Function::new(&energy, Shape::Number, raised)?;
-            system_of = system_of.with_energy(move |t, x, v| {
-                let mut found = [f64::NAN];
-                // The exception is kept, and raised at the end of the work.
-                let _ = energy.of_motion(t, x, v, &mut found);
-                found[0]
+            system_of = system_of.with_energy(move |t, x, v, found| {
+                energy.of_motion(t, x, v, std::slice::from_mut(found))
             });
         }
         if system.getattr("positional")?.extract()? {

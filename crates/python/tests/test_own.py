@@ -556,8 +556,8 @@ def test_tableaux_are_methods():
     assert runs[0].steps == runs[1].steps and runs[0].work.evaluations == runs[1].work.evaluations
     assert np.allclose(runs[0].state, runs[1].state, rtol=0, atol=1e-4)
     errors = []
-    for step in (0.02, 0.01):
-        run = a3.Simulation(a3.System(orbit, y0), fixed, step=step)
+    for count in (200, 400):
+        run = a3.Simulation(a3.System(orbit, y0), fixed, step=2 * math.pi / count)
         run.advance_to(2 * math.pi)
         errors.append(np.abs(run.state - y0).max())
     assert 4.5 < math.log2(errors[0] / errors[1]) < 6.5, errors
@@ -590,7 +590,7 @@ def test_events_are_located():
         run = a3.Simulation(a3.System(lambda t, y: [y[1], -g], [1.0, 0.0]), method, **control)
         times = []
         while run.advance_until(lambda t, y: y[0], 3.0):
-            assert abs(run.state[0]) < 1e-12
+            assert abs(run.state[0]) < 1e-9
             times.append(run.time)
             run.set_state([0.0, -kept * run.state[1]])
         fall = math.sqrt(2 / g)

@@ -13,9 +13,6 @@ type Forces = dyn Fn(f64, &[f64], &[f64], &mut [f64]) -> Result<(), String> + Se
 type Tangents =
     dyn Fn(f64, &[f64], &[f64], &mut [f64], &mut [f64]) -> Result<(), String> + Send + Sync;
 
-/// Function of t, x and v that returns an energy.
-type Energy = dyn Fn(f64, &[f64], &[f64]) -> f64 + Send + Sync;
-
 /// System of second order, M x'' = F(t, x, v), whose F is a function: of n particles in space, or
 /// of any number of coordinates.
 ///
@@ -47,7 +44,8 @@ pub struct SecondOrder {
     seen: usize,
     forces: Box<Forces>,
     tangents: Option<Box<Tangents>>,
-    energy: Option<Box<Energy>>,
+    /// Writes a single number.
+    energy: Option<Box<Forces>>,
     reads_velocity: bool,
     failure: Failure,
 }
@@ -126,15 +124,18 @@ impl SecondOrder {
         }
     }
 
-    /// Adds the total energy E(t, x, v) (J), whose errors charts and choices can then measure; NaN
-    /// where it is not known.
+    /// Adds the total energy E(t, x, v) (J), whose errors charts and choices can then measure: a
+    /// function that writes it to its last argument, and may fail.
     #[must_use]
-    pub fn with_energy(
+    pub fn with_energy<R: Outcome>(
         self,
-        energy: impl Fn(f64, &[f64], &[f64]) -> f64 + Send + Sync + 'static,
+        energy: impl Fn(f64, &[f64], &[f64], &mut f64) -> R + Send + Sync + 'static,
     ) -> Self {
+        let write = move |t: f64, x: &[f64], v: &[f64], out: &mut [f64]| {
+            energy(t, x, v, &mut out[0]).outcome()
+        };
         Self {
-            energy: Some(Box::new(energy)),
+            energy: Some(Box::new(write)),
             ..self
         }
     }
@@ -175,8 +176,12 @@ impl Mechanics for SecondOrder {
 
     fn energy(&self, t: f64, y: &[f64]) -> Option<f64> {
         let (x, v) = y.split_at(y.len() / 2);
+        let (x, v) = (&x[..self.seen], &v[..self.seen]);
         let energy = self.energy.as_ref()?;
-        Some(energy(t, &x[..self.seen], &v[..self.seen]))
+        let mut found = [0.0];
+        self.failure
+            .guard(&mut found, |found| energy(t, x, v, found));
+        Some(found[0])
     }
 
     fn is_positional(&self) -> bool {
