@@ -82,6 +82,12 @@ impl Model {
         }
     }
 
+    /// Returns the energy (J) in the state y at time t (s) of a system of one's own that knows it.
+    #[must_use]
+    pub fn own_energy(&self, t: f64, y: &[f64]) -> Option<f64> {
+        self.system().mechanics()?.energy(t, y)
+    }
+
     /// Returns the number of particles whose velocities follow the positions in the state.
     pub(crate) fn particles_with_velocities(&self) -> usize {
         match self {

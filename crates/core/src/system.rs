@@ -116,6 +116,21 @@ pub trait ParticleSystem {
         &[]
     }
 
+    /// Returns the first time after t (s) at which f, or one of its derivatives, jumps, if that is
+    /// known beforehand: a step ends there. Infinite if there is none.
+    fn next_jump(&self, _t: f64) -> f64 {
+        f64::INFINITY
+    }
+
+    /// Returns the number of quantities by which states are compared; 0 if they are compared by their
+    /// own numbers.
+    fn quantities(&self) -> usize {
+        0
+    }
+
+    /// Writes these quantities of the state y at time t (s).
+    fn write_quantities(&self, _t: f64, _y: &[f64], _out: &mut [f64]) {}
+
     /// Returns the cost of an evaluation of f, in multiplications of two numbers within long rows.
     /// The linear algebra of implicit methods is counted as [work](crate::Work::algebra) by it.
     fn evaluation_cost(&self) -> f64 {
@@ -161,6 +176,12 @@ pub trait Mechanics {
     fn accelerations(&self, t: f64, x: &[f64], v: &[f64], a: &mut [f64]) {
         self.forces(t, x, v, a);
         divide_by_masses(self.inverse_masses(), a);
+    }
+
+    /// Returns the total energy (J) in the state y at time t (s) of a system of one's own, if it is
+    /// known.
+    fn energy(&self, _t: f64, _y: &[f64]) -> Option<f64> {
+        None
     }
 
     /// Returns the coefficient c (kg/s) of viscous drag: the forces contain -c v on each particle.

@@ -66,6 +66,8 @@ pub enum Shape {
     Square,
     /// A row of three numbers for each particle, of what a3 has column by column.
     Rows,
+    /// Gets rows, and returns a number.
+    Number,
 }
 
 /// A function of Python.
@@ -140,7 +142,7 @@ impl Function {
     fn array<'py>(&self, py: Python<'py>, numbers: &[f64]) -> PyResult<Bound<'py, PyAny>> {
         Ok(match self.shape {
             Shape::Flat | Shape::Square => arrays::numbers(py, numbers).into_any(),
-            Shape::Rows => arrays::rows(py, numbers)?.into_any(),
+            Shape::Rows | Shape::Number => arrays::rows(py, numbers)?.into_any(),
         })
     }
 }
@@ -152,11 +154,14 @@ fn read(result: &Bound<PyAny>, name: &str, shape: Shape, out: &mut [f64]) -> PyR
         Shape::Flat => &[out.len()],
         Shape::Square => &[out.len().isqrt(); 2],
         Shape::Rows => &[out.len() / 3, 3],
+        Shape::Number => &[],
     };
     let refuse = |found: &str| {
-        let expected = tuple(expected);
-        let why =
-            format!("{name} returned {found}, where an array of shape {expected} is expected");
+        let wanted = match expected {
+            [] => "a number".into(),
+            shape => format!("an array of shape {}", tuple(shape)),
+        };
+        let why = format!("{name} returned {found}, where {wanted} is expected");
         wrong(result.py(), why)
     };
     let array = array(result).ok_or_else(|| refuse(&kind(result)))?;
@@ -170,8 +175,10 @@ fn read(result: &Bound<PyAny>, name: &str, shape: Shape, out: &mut [f64]) -> PyR
     // A slice of an array in Fortran's order has its numbers in another order.
     let numbers = readable.as_slice().ok().filter(|_| array.is_c_contiguous());
     match (shape, numbers) {
-        (Shape::Flat | Shape::Square, Some(numbers)) => out.copy_from_slice(numbers),
-        (Shape::Flat | Shape::Square, None) => {
+        (Shape::Flat | Shape::Square | Shape::Number, Some(numbers)) => {
+            out.copy_from_slice(numbers)
+        }
+        (Shape::Flat | Shape::Square | Shape::Number, None) => {
             for (out, number) in out.iter_mut().zip(readable.as_array()) {
                 *out = *number;
             }

@@ -24,7 +24,17 @@ pub fn scene(system: &Bound<PyAny>, raised: &Raised) -> PyResult<Scene> {
         let made = SecondOrder::of_particles(&masses, move |t, x, v, f: &mut [f64]| {
             forces.of_motion(t, x, v, f)
         });
-        let system_of = made.map_err(failed)?;
+        let mut system_of = made.map_err(failed)?;
+        let energy = system.getattr("_energy")?;
+        if !energy.is_none() {
+            let energy = Function::new(&energy, Shape::Number, raised)?;
+            system_of = system_of.with_energy(move |t, x, v| {
+                let mut found = [f64::NAN];
+                // The exception is kept, and raised at the end of the work.
+                let _ = energy.of_motion(t, x, v, &mut found);
+                found[0]
+            });
+        }
         if system.getattr("positional")?.extract()? {
             system_of.positional().into()
         } else {
@@ -45,6 +55,15 @@ pub fn scene(system: &Bound<PyAny>, raised: &Raised) -> PyResult<Scene> {
         if !jacobian.is_none() {
             let jacobian = Function::new(&jacobian, Shape::Square, raised)?;
             made = made.with_jacobian(move |t, y, out| jacobian.of_state(t, y, out));
+        }
+        let jumps: Vec<f64> = system.getattr("_jumps")?.extract()?;
+        made = made.with_jumps(jumps).map_err(failed)?;
+        let (count, quantities): (usize, Bound<PyAny>) =
+            system.getattr("_quantities")?.extract()?;
+        if !quantities.is_none() {
+            let quantities = Function::new(&quantities, Shape::Flat, raised)?;
+            let write = move |t: f64, y: &[f64], out: &mut [f64]| quantities.of_state(t, y, out);
+            made = made.with_quantities(count, write).map_err(failed)?;
         }
         if scales.is_empty() {
             made.into()

@@ -465,6 +465,81 @@ def test_one_number_counts_alone():
         a3.choose("chain", 1e-3, component=2)
 
 
+def test_a_function_of_the_state_counts():
+    """The radius of a turn falls by |1 + z + z^2 / 2 + z^3 / 6 + z^4 / 24|, z = ih, in each step of RK4."""
+
+    def turn(t, y):
+        return np.array([y[1], -y[0]])
+
+    def radius(t, y):
+        return math.hypot(*y)
+
+    system = a3.System(turn, [1.0, 0.0])
+    chart = a3.chart(system, ["rk4"], until=5.0, quantity=radius, at_end=True, progress=False)
+    checked = 0
+    for point in chart.points:
+        z, steps = 1j * point.setting, 5.0 / point.setting
+        shrinks = 1 - abs(1 + z + z**2 / 2 + z**3 / 6 + z**4 / 24) ** steps
+        if abs(steps - round(steps)) < 1e-9 and shrinks > 1e-9:
+            assert abs(point.error / shrinks - 1) < 0.01, (point, shrinks)
+            checked += 1
+    assert checked >= 2, [point.setting for point in chart.points]
+    # Both numbers together: the phase, which is wrong by h^5 / 120 a step, does not count.
+    chosen = [
+        a3.choose(system, 1e-6, methods=["rk4"], until=5.0, progress=False, **only)
+        for only in ({"quantity": radius}, {"quantity": lambda t, y: [radius(t, y), 2.0]}, {})
+    ]
+    assert chosen[0].setting > 1.3 * chosen[2].setting and chosen[1].setting >= chosen[0].setting
+    for wrong, words in [
+        ({"quantity": 3}, "a function is expected"),
+        ({"quantity": lambda t, y: []}, "at least one quantity"),
+        ({"quantity": radius, "component": 1}, "no quantity 1"),
+    ]:
+        with pytest.raises(a3.InputError, match=words):
+            a3.chart(system, ["rk4"], until=2.0, progress=False, **wrong)
+    with pytest.raises(ZeroDivisionError):
+        a3.chart(system, ["rk4"], until=2.0, progress=False, quantity=lambda t, y: 1 / 0 if t > 1 else y)
+    with pytest.raises(a3.InputError, match="has particles"):
+        a3.choose("chain", 1e-3, quantity=radius)
+
+
+def test_the_energy_of_an_own_system_is_charted():
+    """Verlet's energy of an oscillator swings by h^2 / 8 of it, and does not drift."""
+    system = a3.System.of_particles(
+        lambda t, x, v: -x,
+        [1.0],
+        [[1.0, 0.0, 0.0]],
+        positional=True,
+        energy=lambda t, x, v: 0.5 * float((x * x).sum() + (v * v).sum()),
+    )
+    for until in (10.0, 40.0):
+        chart = a3.chart(system, ["verlet"], error="energy", until=until, progress=False)
+        found = [point for point in chart.points if 0.001 < point.setting < 0.02]
+        assert found
+        for point in found:
+            assert 0.9 < point.error / (point.setting**2 / 8) < 1.1, point
+    assert a3.choose(system, 1e-6, of="energy", until=10.0, progress=False).error < 1e-6
+    plain = a3.System.of_particles(lambda t, x, v: -x, [1.0], [[1.0, 0.0, 0.0]])
+    with pytest.raises(a3.InputError, match="neither energy"):
+        a3.chart(plain, ["verlet"], error="energy", until=1.0, progress=False)
+    wrong = a3.System.of_particles(lambda t, x, v: -x, [1.0], [[1.0, 0.0, 0.0]], energy=lambda t, x, v: x)
+    with pytest.raises(a3.InputError, match="where a number is expected"):
+        a3.chart(wrong, ["verlet"], error="energy", until=1.0, progress=False)
+
+
+def test_a_pulse_from_rest_is_not_missed():
+    def pulse(t, y):
+        return [1.0 if 5.0 <= t < 5.001 else 0.0]
+
+    for method, control in (("dopri5", {"tolerance": 1e-6}), ("bdf", {"tolerance": 1e-6}), ("rk4", {"step": 0.3})):
+        run = a3.Simulation(a3.System(pulse, [0.0], tstops=[5.001, 5.0]), method, **control)
+        run.advance_to(9.9)
+        assert abs(run.state[0] - 1e-3) < 1e-9, (method, run.state)
+    for wrong in ([math.nan], "soon", [[1.0]]):
+        with pytest.raises(a3.InputError, match="tstops"):
+            a3.System(pulse, [0.0], tstops=wrong)
+
+
 def test_a_solver_of_another_library_is_charted():
     integrate = pytest.importorskip("scipy.integrate")
 

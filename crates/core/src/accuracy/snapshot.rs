@@ -32,9 +32,12 @@ pub(super) struct Snapshot {
     positions: Vec<f64>,
     /// Velocities (m/s): the rates of change of these.
     velocities: Vec<f64>,
-    /// The largest size of each number so far; empty with particles.
+    /// The system's own [quantities](crate::ParticleSystem::quantities), by which its states are
+    /// compared; empty if they are compared by their numbers.
+    quantities: Vec<f64>,
+    /// The largest size of each compared number so far; empty with particles.
     sizes: Vec<f64>,
-    /// Total energy (J); 0 for a first-order scene.
+    /// Total energy (J); 0 for a system that does not know it.
     energy: f64,
     /// Momentum of the particles that are not pinned (kg m/s); 0 for a first-order scene.
     momentum: Vector3<f64>,
@@ -51,16 +54,19 @@ impl Snapshot {
     pub fn of(model: &Model, t: f64, y: &[f64]) -> Self {
         let Some(network) = model.network() else {
             let (positions, velocities) = model.motion(t, y);
-            let plain = if model.particles() == 0 {
-                positions
-            } else {
-                &[]
+            let quantities = quantities(model, t, y);
+            let sizes = match model.particles() {
+                0 if quantities.is_empty() => sizes(positions, model.system().scales()),
+                0 => sizes(&quantities, &[]),
+                _ => vec![],
             };
             return Self {
                 particles: model.particles(),
                 positions: positions.to_vec(),
                 velocities: velocities.into_owned(),
-                sizes: sizes(plain, model.system().scales()),
+                energy: model.own_energy(t, y).unwrap_or(0.0),
+                quantities,
+                sizes,
                 ..Self::default()
             };
         };
@@ -144,6 +150,7 @@ impl Snapshot {
                 particles: model.particles(),
                 positions: x.to_vec(),
                 velocities: v.to_vec(),
+                quantities: quantities(model, t, x),
                 sizes: known[known.len() - 1].1.sizes.clone(),
                 ..Self::default()
             },
@@ -195,11 +202,11 @@ impl Snapshot {
     pub fn errors_of(&self, other: &Self, scope: Scope) -> Errors {
         let springs = self.strains.len().max(1) as f64;
         let stretch = self.strains.iter().zip(&other.strains);
-        let moved = || {
-            let pairs = self.positions.iter().zip(&other.positions);
-            pairs.map(|(own, other)| other - own)
-        };
-        let along = moved().zip(&self.velocities).map(|(d, v)| d * v);
+        fn moved<'a>(own: &'a [f64], other: &'a [f64]) -> impl Iterator<Item = f64> + Clone + 'a {
+            own.iter().zip(other).map(|(own, other)| other - own)
+        }
+        let positions = moved(&self.positions, &other.positions);
+        let along = positions.clone().zip(&self.velocities).map(|(d, v)| d * v);
         let (position, state) = match self.particles {
             0 => {
                 let largest = self
@@ -211,10 +218,12 @@ impl Snapshot {
                     _ if largest > 0.0 => largest,
                     _ => 1.0,
                 };
-                let relative = moved().zip(&self.sizes).map(|(d, size)| d / over(*size));
-                (0.0, self.mean(scope, relative.map(|d| d * d)).sqrt())
+                let [own, others] = [self, other].map(Self::compared);
+                let relative = moved(own, others).zip(&self.sizes);
+                let squares = relative.map(|(d, size)| (d / over(*size)).powi(2));
+                (0.0, mean(scope.particle, own.len(), squares).sqrt())
             }
-            _ => (self.mean(scope, moved().map(|d| d * d)).sqrt(), 0.0),
+            _ => (self.mean(scope, positions.map(|d| d * d)).sqrt(), 0.0),
         };
         Errors {
             position,
@@ -233,17 +242,23 @@ impl Snapshot {
         self.mean(scope, self.velocities.iter().map(|v| v * v))
     }
 
-    /// Returns the sum over the axes of the mean over the particles in the scope; without
-    /// particles, the mean.
-    fn mean(&self, scope: Scope, numbers: impl Iterator<Item = f64>) -> f64 {
-        let n = match self.particles {
-            0 => self.positions.len(),
-            n => n,
-        };
-        match scope.particle {
-            None => numbers.sum::<f64>() / n as f64,
-            Some(i) => numbers.skip(i).step_by(n).sum(),
+    /// Returns the numbers of a state without particles that are compared.
+    fn compared(&self) -> &[f64] {
+        match &self.quantities[..] {
+            [] => &self.positions,
+            quantities => quantities,
         }
+    }
+
+    /// Returns the sum over the axes of the mean over the particles in the scope; without
+    /// particles, the mean over the numbers in the scope, or over all if quantities are compared.
+    fn mean(&self, scope: Scope, numbers: impl Iterator<Item = f64>) -> f64 {
+        let (only, n) = match self.particles {
+            0 if !self.quantities.is_empty() => (None, self.positions.len()),
+            0 => (scope.particle, self.positions.len()),
+            n => (scope.particle, n),
+        };
+        mean(only, n, numbers)
     }
 
     /// Extrapolates each quantity to fine + (fine - coarse) * `share`.
@@ -260,10 +275,28 @@ impl Snapshot {
             energy: both(&coarse.energy, &fine.energy),
             momentum: fine.momentum + (fine.momentum - coarse.momentum) * share,
             strains: all(&coarse.strains, &fine.strains),
+            quantities: all(&coarse.quantities, &fine.quantities),
             sizes: fine.sizes.clone(),
             penetration: both(&coarse.penetration, &fine.penetration),
             impact: Impact::extrapolate(&coarse.impact, &fine.impact, both),
         }
+    }
+}
+
+/// Returns the system's own quantities of the state y of a model at time t (s).
+fn quantities(model: &Model, t: f64, y: &[f64]) -> Vec<f64> {
+    let system = model.system();
+    let mut all = vec![0.0; system.quantities()];
+    system.write_quantities(t, y, &mut all);
+    all
+}
+
+/// Returns the mean over n numbers for each axis, summed over the axes, or the sum of the numbers of
+/// the `only` one.
+fn mean(only: Option<usize>, n: usize, numbers: impl Iterator<Item = f64>) -> f64 {
+    match only {
+        None => numbers.sum::<f64>() / n as f64,
+        Some(i) => numbers.skip(i).step_by(n).sum(),
     }
 }
 
@@ -368,8 +401,8 @@ fn between([[xa, va], [xb, vb]]: [[&[f64]; 2]; 2], time: f64, s: f64, x: &mut [f
 /// Particles and times at which errors are taken.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Scope {
-    /// The only particle whose position and phase count, or the only number of a state without
-    /// particles; `None` for all of them.
+    /// The only particle whose position and phase count, or the only number or quantity of a state
+    /// without particles; `None` for all of them.
     pub particle: Option<usize>,
     /// Whether only the last frame counts, instead of the largest error of all frames.
     pub at_end: bool,
@@ -381,13 +414,19 @@ impl Scope {
     /// # Errors
     /// The model has no such particle or number.
     pub fn checked(self, model: &Model) -> Result<Self, Error> {
-        let (kind, count) = match model.particles() {
-            0 => ("number", model.system().dim()),
-            particles => ("particle", particles),
+        let system = model.system();
+        let (kind, count) = match (model.particles(), system.quantities()) {
+            (0, 0) => ("number", system.dim()),
+            (0, quantities) => ("quantity", quantities),
+            (particles, _) => ("particle", particles),
+        };
+        let kinds = match kind {
+            "quantity" => "quantities".into(),
+            kind => format!("{kind}s"),
         };
         match self.particle {
             Some(i) if i >= count => Err(Error::Invalid(format!(
-                "the scene has no {kind} {i}: its {kind}s are 0 to {}",
+                "the scene has no {kind} {i}: its {kinds} are 0 to {}",
                 count - 1
             ))),
             _ => Ok(self),
@@ -401,10 +440,11 @@ pub struct Errors {
     /// Root mean square over the particles of the distance from their reference positions (m); 0
     /// without particles.
     pub position: f64,
-    /// Root mean square over the numbers of a state without particles of their errors, each over
-    /// the largest size that the number has had in the reference; 0 with particles.
+    /// Root mean square over the numbers of a state without particles, or over its quantities, of
+    /// their errors, each over the largest size that the number has had in the reference; 0 with
+    /// particles.
     pub state: f64,
-    /// Absolute error of the total energy (J); 0 for a first-order scene.
+    /// Absolute error of the total energy (J); 0 for a system that does not know it.
     pub energy: f64,
     /// Root mean square over the structural springs of the error of length over rest length; 0
     /// without such springs.

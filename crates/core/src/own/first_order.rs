@@ -41,6 +41,9 @@ pub struct Ode {
     f: Box<Function>,
     jacobian: Option<Box<Function>>,
     scales: Vec<f64>,
+    quantities: Option<(usize, Box<Function>)>,
+    /// Times at which f jumps (s), in order.
+    jumps: Vec<f64>,
     evaluation_cost: f64,
     failure: Failure,
 }
@@ -63,6 +66,8 @@ impl Ode {
             f: Box::new(move |t, y, dydt| f(t, y, dydt).outcome()),
             jacobian: None,
             scales: vec![],
+            quantities: None,
+            jumps: vec![],
             evaluation_cost: evaluation_cost(dim),
             failure: Failure::default(),
         })
@@ -115,6 +120,46 @@ impl Ode {
         }
         Ok(Self { scales, ..self })
     }
+
+    /// Sets the times (s) at which f or one of its derivatives jumps: a step ends at each of them,
+    /// and no evaluation of it is at or after that time. So a short pulse is not missed, and each
+    /// method keeps its order.
+    ///
+    /// # Errors
+    /// A time is not finite.
+    pub fn with_jumps(self, mut times: Vec<f64>) -> Result<Self, Error> {
+        if let Some(time) = times.iter().find(|time| !time.is_finite()) {
+            let why = format!("f jumps at finite times (s), not at {time}");
+            return Err(Error::Invalid(why));
+        }
+        times.sort_unstable_by(f64::total_cmp);
+        Ok(Self {
+            jumps: times,
+            ..self
+        })
+    }
+
+    /// Sets `count` quantities by which states are compared in charts and choices, in place of their
+    /// own numbers: a function of t and y that writes them to its last argument, and may fail. The
+    /// error of each is relative to the largest size that it has had.
+    ///
+    /// # Errors
+    /// There are none.
+    pub fn with_quantities<R: Outcome>(
+        self,
+        count: usize,
+        quantities: impl Fn(f64, &[f64], &mut [f64]) -> R + Send + Sync + 'static,
+    ) -> Result<Self, Error> {
+        if count == 0 {
+            let why = "states need at least one quantity to be compared by";
+            return Err(Error::Invalid(why.into()));
+        }
+        let write = move |t: f64, y: &[f64], out: &mut [f64]| quantities(t, y, out).outcome();
+        Ok(Self {
+            quantities: Some((count, Box::new(write))),
+            ..self
+        })
+    }
 }
 
 impl ParticleSystem for Ode {
@@ -136,6 +181,21 @@ impl ParticleSystem for Ode {
 
     fn scales(&self) -> &[f64] {
         &self.scales
+    }
+
+    fn next_jump(&self, t: f64) -> f64 {
+        let next = self.jumps.partition_point(|time| *time <= t);
+        self.jumps.get(next).copied().unwrap_or(f64::INFINITY)
+    }
+
+    fn quantities(&self) -> usize {
+        self.quantities.as_ref().map_or(0, |(count, _)| *count)
+    }
+
+    fn write_quantities(&self, t: f64, y: &[f64], out: &mut [f64]) {
+        if let Some((_, write)) = &self.quantities {
+            self.failure.guard(out, |out| write(t, y, out));
+        }
     }
 
     fn evaluation_cost(&self) -> f64 {

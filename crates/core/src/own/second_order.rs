@@ -13,6 +13,9 @@ type Forces = dyn Fn(f64, &[f64], &[f64], &mut [f64]) -> Result<(), String> + Se
 type Tangents =
     dyn Fn(f64, &[f64], &[f64], &mut [f64], &mut [f64]) -> Result<(), String> + Send + Sync;
 
+/// Function of t, x and v that returns an energy.
+type Energy = dyn Fn(f64, &[f64], &[f64]) -> f64 + Send + Sync;
+
 /// System of second order, M x'' = F(t, x, v), whose F is a function: of n particles in space, or
 /// of any number of coordinates.
 ///
@@ -44,6 +47,7 @@ pub struct SecondOrder {
     seen: usize,
     forces: Box<Forces>,
     tangents: Option<Box<Tangents>>,
+    energy: Option<Box<Energy>>,
     reads_velocity: bool,
     failure: Failure,
 }
@@ -90,6 +94,7 @@ impl SecondOrder {
             seen,
             forces: Box::new(move |t, x, v, f| forces(t, x, v, f).outcome()),
             tangents: None,
+            energy: None,
             reads_velocity: true,
             failure: Failure::default(),
         })
@@ -117,6 +122,19 @@ impl SecondOrder {
             tangents: Some(Box::new(move |t, x, v, of_x, of_v| {
                 jacobian(t, x, v, of_x, of_v).outcome()
             })),
+            ..self
+        }
+    }
+
+    /// Adds the total energy E(t, x, v) (J), whose errors charts and choices can then measure; NaN
+    /// where it is not known.
+    #[must_use]
+    pub fn with_energy(
+        self,
+        energy: impl Fn(f64, &[f64], &[f64]) -> f64 + Send + Sync + 'static,
+    ) -> Self {
+        Self {
+            energy: Some(Box::new(energy)),
             ..self
         }
     }
@@ -153,6 +171,12 @@ impl Mechanics for SecondOrder {
         others.fill(0.0);
         let (x, v) = (&x[..self.seen], &v[..self.seen]);
         self.failure.guard(f, |f| (self.forces)(t, x, v, f));
+    }
+
+    fn energy(&self, t: f64, y: &[f64]) -> Option<f64> {
+        let (x, v) = y.split_at(y.len() / 2);
+        let energy = self.energy.as_ref()?;
+        Some(energy(t, &x[..self.seen], &v[..self.seen]))
     }
 
     fn is_positional(&self) -> bool {

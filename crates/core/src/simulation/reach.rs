@@ -58,16 +58,15 @@ impl Reach {
         t: f64,
         (target, none): (Option<f64>, f64),
     ) -> Self {
-        let mut reach = Self::default();
-        if let Some(network) = model.network() {
-            let until = next_known_time(network, t);
-            if until.is_finite() {
-                reach = Self::up_to(t, until);
-            }
-            if is_adaptive {
-                let longest = quarter_period(network, t, t + reach.longest.min(f64::MAX));
-                reach.limit(longest);
-            }
+        let network = model.network();
+        let until = match network {
+            Some(network) => next_known_time(network, t),
+            None => model.system().next_jump(t),
+        };
+        let mut reach = Self::up_to(t, until);
+        if let Some(network) = network.filter(|_| is_adaptive) {
+            let longest = quarter_period(network, t, t + reach.longest.min(f64::MAX));
+            reach.limit(longest);
         }
         if is_adaptive {
             reach.limit(limits.max_step.unwrap_or(f64::INFINITY));
@@ -90,17 +89,15 @@ impl Reach {
         }
     }
 
-    /// Returns the limits of a part of a fixed step of a network from time t (s) by a method that
+    /// Returns the limits of a part of a fixed step of a model from time t (s) by a method that
     /// locates no events. The part ends where the next pin lets go or, after more than `none` (s),
-    /// jumps, or at `target` (s).
-    pub fn of_part(network: &Network, t: f64, none: f64, target: Option<f64>) -> Self {
-        let until = next_break(network, t, none);
-        let reach = if until.is_finite() {
-            Self::up_to(t, until)
-        } else {
-            Self::default()
+    /// jumps, where f jumps, or at `target` (s).
+    pub fn of_part(model: &Model, t: f64, none: f64, target: Option<f64>) -> Self {
+        let until = match model.network() {
+            Some(network) => next_break(network, t, none),
+            None => model.system().next_jump(t + none),
         };
-        reach.or_before(t, target, none)
+        Self::up_to(t, until).or_before(t, target, none)
     }
 
     /// Returns these limits, or those of a step that ends at `target` (s), if that is not later, or
@@ -127,8 +124,11 @@ impl Reach {
     }
 
     /// Returns the limits of a step from t up to a time `until` (s) at which a motion changes. All
-    /// evaluations are before that time.
+    /// evaluations are before that time. There is no limit if it is infinite.
     fn up_to(t: f64, until: f64) -> Self {
+        if until.is_infinite() {
+            return Self::default();
+        }
         // Adding a short step to the time rounds it.
         let (mut longest, digit) = (until - t, 0.25 * (until - until.next_down()));
         while t + longest >= until && longest > 0.0 {

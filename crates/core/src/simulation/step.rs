@@ -110,9 +110,11 @@ impl Pipeline {
         let mut begin = state.end();
         let whole = state.control.step();
         let target = whole.map(|h| state.since + (state.taken + 1) as f64 * h);
-        let network = model.network().zip(target);
-        let breaks =
-            network.is_some_and(|(it, target)| breaks_between(it, [begin, target], state.sliver()));
+        let sliver = state.sliver();
+        let breaks = target.is_some_and(|target| match model.network() {
+            Some(network) => breaks_between(network, [begin, target], sliver),
+            None => model.system().next_jump(begin + sliver) <= target + sliver,
+        });
         let divides = target.is_some() && may_rebound(model);
         let in_parts = breaks || self.locator.splits(&self.stepper) || divides;
         for number in 1.. {
@@ -176,11 +178,11 @@ impl Pipeline {
         let locates = self.locator.serves(stepper);
         let network = model.network();
         // Where pins let go of springs alone, a part as short as a rounding error does no harm.
-        let is_constrained = network.is_some_and(Network::is_constrained);
-        let none = if is_constrained { state.sliver() } else { 0.0 };
-        let reach = match (locates, network.filter(|_| target.is_some())) {
+        let is_loose = network.is_some_and(|network| !network.is_constrained());
+        let none = if is_loose { 0.0 } else { state.sliver() };
+        let reach = match (locates, target) {
             (true, _) => Reach::of_step(model, flying, stepper.is_adaptive(), t, (target, none)),
-            (false, Some(network)) => Reach::of_part(network, t, none, target),
+            (false, Some(_)) => Reach::of_part(model, t, none, target),
             (false, None) => Reach::default(),
         };
         let reach = network.map_or(reach, |network| reach.before_jump(network, t, none));

@@ -9,7 +9,7 @@ use crate::common::method;
 use a3_core::accuracy::{Frames, Metric, Precision, Reference, Scope, choose, horizon, measure};
 use a3_core::stability::{Budget, Motion, largest_step, spectrum};
 use a3_core::{
-    Cause, Control, Error, Mechanics, Model, ParticleSystem, Refusal, Scene, Simulation,
+    Cause, Control, Error, Mechanics, Model, Ode, ParticleSystem, Refusal, Scene, Simulation,
     integrators,
 };
 
@@ -392,4 +392,41 @@ fn own_forces_and_masses_have_particles() {
     run.advance_to(0.3).unwrap();
     assert_relative_eq!(run.position(0).x, 0.6f64.cos(), epsilon = 1e-8);
     assert_relative_eq!(run.velocities()[1], 2.0 * 0.6f64.cos(), epsilon = 1e-7);
+}
+
+/// A pulse of 1 ms in ten seconds, from rest: adaptive steps, which grow there, and fixed ones of
+/// 0.3 s end at both of its edges, and the integral of the steps of f is exact by every method.
+#[test]
+fn known_jumps_end_steps() {
+    let pulse = |jumps: &[f64]| {
+        let f = |t: f64, _y: &[f64], dydt: &mut [f64]| {
+            dydt[0] = if (5.0..5.001).contains(&t) { 1.0 } else { 0.0 };
+        };
+        let ode = Ode::new(1, f).unwrap().with_jumps(jumps.to_vec()).unwrap();
+        Scene::new("pulse", ode, vec![0.0])
+    };
+    let mut tried = 0;
+    for method in integrators::METHODS {
+        let known = pulse(&[5.001, 5.0]);
+        if method.check(known.model.system()).is_err() {
+            continue;
+        }
+        let control = match method.is_adaptive() {
+            true => Control::Tolerance(1e-6),
+            false => Control::Step(0.3),
+        };
+        let end = |scene: Scene| {
+            let mut run = Simulation::new(scene, method, control).unwrap();
+            run.advance_to(9.9).unwrap();
+            run.state()[0]
+        };
+        let found = end(known);
+        assert!((found - 1e-3).abs() < 1e-9, "{}: {found}", method.name);
+        let missed = end(pulse(&[]));
+        assert!((missed - 1e-3).abs() > 1e-6, "{}: {missed}", method.name);
+        tried += 1;
+    }
+    assert!(tried > 10, "{tried}");
+    let wrong = Ode::new(1, |_, _: &[f64], _: &mut [f64]| {}).unwrap();
+    assert!(wrong.with_jumps(vec![f64::NAN]).is_err());
 }

@@ -90,6 +90,7 @@ pub fn check_metric(metric: Metric, scene: &Scene) -> Result<(), Failure> {
             scene.name
         ))),
         _ if network.is_some() => Ok(()),
+        Metric::Energy if scene.model.own_energy(0.0, &scene.state).is_some() => Ok(()),
         _ => Err(Failure::usage(format!(
             "the scene {} has neither energy nor momentum nor springs: ask for {} or phase",
             scene.name,

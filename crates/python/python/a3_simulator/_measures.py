@@ -14,7 +14,7 @@ import numpy as np
 from . import _a3
 from ._errors import InputError
 from ._given import given
-from ._own import Method, System, method_name
+from ._own import Derivative, Method, System, method_name
 from ._picture import write
 from ._progress import work as _work
 from ._scenes import SceneLike
@@ -336,6 +336,7 @@ def chart(
     error: Optional[str] = None,
     particle: Optional[int] = None,
     component: Optional[int] = None,
+    quantity: Optional[Derivative] = None,
     at_end: bool = False,
     work: str = "evaluations",
     spread: bool = False,
@@ -354,6 +355,8 @@ def chart(
             "momentum" (kg m/s), "phase" (s), "penetration", "impact" (s); "state" of systems without particles.
         particle: the only particle whose position counts.
         component: the only number that counts, of a system without particles.
+        quantity: function of t and y that returns a number, or an array, whose errors count in place of those of the
+            state, of a system without particles; each is relative to the largest size that it has had.
         at_end: whether the error at the end counts, instead of the largest one.
         work: what counts as the cost: "evaluations" of f, the same on every machine, or "time" on this one.
         spread: whether adaptive methods also run at neighbouring tolerances, to show how much their errors vary.
@@ -363,7 +366,7 @@ def chart(
         options: grid, wind, swing, self_collision and forces, as in `Simulation`.
     """
     names = _names(methods)
-    scene_given = given(scene, **options)
+    scene_given = given(_measured(scene, quantity), **options)
     one = _only(scene, particle, component)
     timed = _timed(work)
     source = _work(
@@ -385,6 +388,7 @@ def choose(
     until: Optional[float] = None,
     particle: Optional[int] = None,
     component: Optional[int] = None,
+    quantity: Optional[Derivative] = None,
     at_end: bool = False,
     work: str = "evaluations",
     progress: bool = True,
@@ -398,10 +402,10 @@ def choose(
         budget: computing time of a frame of 1/60 s (ms), in place of an error.
         methods: methods to choose among; by default all that support the scene.
         of: what counts as the error, as `error` of `chart`.
-        until, particle, component, at_end, work, progress, options: as in `chart`.
+        until, particle, component, quantity, at_end, work, progress, options: as in `chart`.
     """
     names = _names(methods)
-    scene_given = given(scene, **options)
+    scene_given = given(_measured(scene, quantity), **options)
     one = _only(scene, particle, component)
     timed = _timed(work)
     found, _, end, floor = _work(
@@ -504,6 +508,15 @@ def _only(scene: SceneLike, particle: Optional[int], component: Optional[int]) -
         if isinstance(value, bool) or value is not None and value < 0:
             raise InputError(f"{name}: a number from 0 is expected, not {value}")
     return component if is_plain else particle
+
+
+def _measured(scene: SceneLike, quantity: Optional[Derivative]) -> SceneLike:
+    """Returns a scene whose states are compared by a quantity, if there is one."""
+    if quantity is None:
+        return scene
+    if not isinstance(scene, System) or scene.masses is not None:
+        raise InputError(f"quantity: {getattr(scene, 'name', scene)} has particles: give error=, or particle=")
+    return scene._measured_by(quantity)
 
 
 def _timed(work: str) -> bool:

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import copy
 import math
-from typing import Any, Callable, Optional, Sequence, Union
+from typing import Any, Callable, Optional, Sequence, Tuple, Union
 
 import numpy as np
 import numpy.typing as npt
@@ -16,6 +17,8 @@ Floats = npt.NDArray[np.float64]
 Derivative = Callable[[float, Floats], npt.ArrayLike]
 #: F(t, x, v): the forces (N), (n, 3), at time t (s) on particles at x (m), (n, 3), that move at v (m/s), (n, 3).
 Forces = Callable[[float, Floats, Floats], npt.ArrayLike]
+#: E(t, x, v): the total energy (J).
+Energy = Callable[[float, Floats, Floats], float]
 #: step(f, t, y, h): the state at t + h, of the shape of y, from the state y at time t (s).
 Step = Callable[[Callable[[float, npt.ArrayLike], Floats], float, Floats, float], npt.ArrayLike]
 #: solve(f, times, y0, tol): the states at these times, a row for each, from the state y0 at time 0.
@@ -36,6 +39,7 @@ class System:
         jac: function of t and y that returns the Jacobian df/dy, (n, n), for stiff methods and stability. Without it,
             differences of f are taken; of a system of more than 1024 numbers they always are.
         args: further arguments of f and jac, after t and y.
+        tstops: times at which f or one of its derivatives jumps: a step of any method ends at each of them.
 
     Where a scene is expected, a system can stand. Arrays that f gets are its own: it may keep or change them.
     """
@@ -44,10 +48,16 @@ class System:
     masses: Optional[Floats] = None
     #: Whether forces depend on positions and time alone.
     positional = False
+    #: Function that returns the energy, if there is one.
+    _energy: Optional[Energy] = None
     #: Function that returns the Jacobian, if there is one.
     _jac: Optional[Derivative] = None
     #: Least size of each number to which errors are relative; empty where it is derived.
     _scales: Sequence[float] = ()
+    #: Times at which f jumps.
+    _jumps: Sequence[float] = ()
+    #: Number of quantities by which states are compared, and the function that returns them; 0 for the state's numbers.
+    _quantities: Tuple[int, Optional[Derivative]] = (0, None)
 
     def __init__(
         self,
@@ -58,6 +68,7 @@ class System:
         scale: Optional[npt.ArrayLike] = None,
         jac: Optional[Derivative] = None,
         args: Sequence[Any] = (),
+        tstops: npt.ArrayLike = (),
     ) -> None:
         self.f: Union[Derivative, Forces] = _with(args, f)
         self._jac = None if jac is None else _with(args, jac)
@@ -66,6 +77,7 @@ class System:
             raise InputError("y0: a system has at least one number")
         self.name = name or _name(f, "system")
         self._state = self.y0
+        self._jumps = _numbers("tstops", tstops, (-1,))
         if scale is not None:
             same = np.broadcast_to(scale, self.y0.shape) if np.ndim(scale) == 0 else scale
             self._scales = _numbers("scale", same, self.y0.shape)
@@ -81,6 +93,7 @@ class System:
         velocities: Optional[npt.ArrayLike] = None,
         *,
         positional: bool = False,
+        energy: Optional[Energy] = None,
         name: Optional[str] = None,
         args: Sequence[Any] = (),
     ) -> "System":
@@ -94,8 +107,9 @@ class System:
             velocities: velocities at t = 0 (m/s), (n, 3); by default 0.
             positional: whether the forces do not depend on v. Verlet's and Nystroem's methods then take fewer
                 evaluations.
+            energy: function of t, x and v that returns the total energy (J), for charts and choices of its error.
             name: name, for charts and errors; by default that of `forces`.
-            args: further arguments of `forces`, after t, x and v.
+            args: further arguments of `forces` and `energy`, after t, x and v.
         """
         system = cls.__new__(cls)
         system.f = _with(args, forces)
@@ -104,9 +118,23 @@ class System:
         x = _numbers("positions", positions, shape)
         v = np.zeros(shape) if velocities is None else _numbers("velocities", velocities, shape)
         system.positional = positional
+        system._energy = None if energy is None else _with(args, energy)
         system.name = name or _name(forces, "system")
         system.y0 = system._state = np.concatenate([x.T.ravel(), v.T.ravel()])
         return system
+
+    def _measured_by(self, quantity: Derivative) -> "System":
+        """Returns this system with states that are compared by a number, or an array, of t and y."""
+        if not callable(quantity):
+            raise InputError(f"quantity: a function is expected, not {type(quantity).__name__}")
+
+        def flat(t: float, y: Floats) -> Floats:
+            return np.ravel(quantity(t, y))
+
+        flat.__name__ = _name(quantity, "quantity")
+        measured = copy.copy(self)
+        measured._quantities = (flat(0.0, self.y0.copy()).size, flat)
+        return measured
 
     def __repr__(self) -> str:
         return f"<System {self.name} of {self.y0.size} numbers>"
