@@ -115,7 +115,9 @@ pub use pin::Pin;
 pub use products::{Products, SolverHints};
 pub use refusal::Refusal;
 pub use scene::{Disturbances, FirstOrder, Model, Scene, StepLimits, Swing};
-pub use simulation::{Balance, Checkpoint, Gain, Grabbed, Progress, RunState, Simulation, Span};
+pub use simulation::{
+    Balance, Checkpoint, Gain, Grabbed, Passage, Progress, RunState, Simulation, Span,
+};
 pub use spring::{Spring, SpringKind, SpringLaw};
 pub use system::{Compliant, Linearized, Mechanics, ParticleSystem, Splitting};
 

@@ -57,7 +57,7 @@ impl Raised {
     }
 }
 
-/// Shape of the arrays that a function gets and returns.
+/// Shape of the array that a function returns.
 #[derive(Clone, Copy)]
 pub enum Shape {
     /// A flat array.
@@ -66,7 +66,7 @@ pub enum Shape {
     Square,
     /// A row of three numbers for each particle, of what a3 has column by column.
     Rows,
-    /// Gets rows, and returns a number.
+    /// A number.
     Number,
 }
 
@@ -96,23 +96,21 @@ impl Function {
         })
     }
 
-    /// Writes the numbers that the function returns for a time (s) and an array to `out`.
+    /// Writes the numbers that the function returns for a time (s) and a flat array to `out`.
     ///
     /// # Errors
     /// It raised an exception, which is kept, or returned something else than so many numbers.
     pub fn of_state(&self, t: f64, y: &[f64], out: &mut [f64]) -> Result<(), String> {
-        Python::attach(|py| self.call(py, self.array(py, y).map(|y| (t, y)), out))
+        Python::attach(|py| self.call(py, Ok((t, arrays::numbers(py, y))), out))
     }
 
-    /// Writes the numbers that the function returns for a time (s) and two arrays to `out`.
+    /// Writes the numbers that the function returns for a time (s) and two arrays of rows to `out`.
     ///
     /// # Errors
     /// As [`of_state`](Self::of_state).
     pub fn of_motion(&self, t: f64, x: &[f64], v: &[f64], out: &mut [f64]) -> Result<(), String> {
         Python::attach(|py| {
-            let arrays = self
-                .array(py, x)
-                .and_then(|x| Ok((t, x, self.array(py, v)?)));
+            let arrays = arrays::rows(py, x).and_then(|x| Ok((t, x, arrays::rows(py, v)?)));
             self.call(py, arrays, out)
         })
     }
@@ -137,13 +135,6 @@ impl Function {
         drop(threads);
         let read = called.and_then(|result| read(&result, &self.name, self.shape, out));
         read.map_err(|error| self.raised.keep(error))
-    }
-
-    fn array<'py>(&self, py: Python<'py>, numbers: &[f64]) -> PyResult<Bound<'py, PyAny>> {
-        Ok(match self.shape {
-            Shape::Flat | Shape::Square => arrays::numbers(py, numbers).into_any(),
-            Shape::Rows | Shape::Number => arrays::rows(py, numbers)?.into_any(),
-        })
     }
 }
 

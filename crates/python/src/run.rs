@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use a3::embedded::{self, Look};
-use a3_core::{Checkpoint, Error, Network, Simulation, SpringKind, StepLimits, Vector3};
+use a3_core::{Checkpoint, Error, Network, Passage, Simulation, SpringKind, StepLimits, Vector3};
 use a3_scenes::Presentation;
 use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
@@ -12,7 +12,7 @@ use pyo3::types::PyBytes;
 use super::arrays::{indices, numbers, rows};
 use super::driving::{Driven, GoOn, advance, check_time, drive, take_steps};
 use super::errors::{of_error, of_failure, wrong};
-use super::function::Raised;
+use super::function::{Function, Raised, Shape};
 use super::open::{Given, Opened, setting};
 use super::own_method::raised_by;
 use super::tables::method;
@@ -134,6 +134,44 @@ impl Run {
         self.work(py, progress, move |run, go_on| {
             advance(run, time, calls, go_on)
         })
+    }
+
+    /// Advances to the first time at which a function of t and y passes through 0, or else to a
+    /// time (s). A `direction` above 0 is from below, one below 0 from above.
+    #[pyo3(signature = (function, time, direction=0))]
+    fn advance_until(
+        &self,
+        py: Python<'_>,
+        function: &Bound<PyAny>,
+        time: f64,
+        direction: i64,
+    ) -> PyResult<bool> {
+        check_time(self.simulation(py)?.time(), time).map_err(|why| wrong(py, why))?;
+        let function = Function::new(function, Shape::Number, &self.raised)?;
+        let passage = match direction.signum() {
+            0 => Passage::Either,
+            1 => Passage::Rising,
+            _ => Passage::Falling,
+        };
+        let mut found = false;
+        self.work(py, None, |run, _| {
+            let value = |t: f64, y: &[f64]| {
+                let mut value = [0.0];
+                function.of_state(t, y, &mut value)?;
+                Ok(value[0])
+            };
+            found = run
+                .advance_until(time, passage, value)
+                .map_err(|error| Box::new((error.clone(), error.to_string())))?;
+            Ok(())
+        })?;
+        Ok(found)
+    }
+
+    /// Continues from another state, at another time (s) or this one.
+    #[pyo3(signature = (state, time=None))]
+    fn set_state(&self, py: Python<'_>, state: Vec<f64>, time: Option<f64>) -> PyResult<()> {
+        self.change(py, |run| run.set_state(&state, time.unwrap_or(run.time())))
     }
 
     /// Goes back to the beginning.

@@ -527,6 +527,54 @@ def test_the_energy_of_an_own_system_is_charted():
         a3.chart(wrong, ["verlet"], error="energy", until=1.0, progress=False)
 
 
+def test_events_are_located():
+    """A ball that bounces: times of its bounces by all kinds of methods, against the closed form."""
+    g, kept = 9.81, 0.8
+    for method, control in (
+        ("dopri5", {"tolerance": 1e-9}),
+        ("radau", {"tolerance": 1e-9}),
+        ("rk4", {"step": 0.013}),
+        ("dop853", {"tolerance": 1e-9}),
+    ):
+        run = a3.Simulation(a3.System(lambda t, y: [y[1], -g], [1.0, 0.0]), method, **control)
+        times = []
+        while run.advance_until(lambda t, y: y[0], 3.0):
+            assert abs(run.state[0]) < 1e-12
+            times.append(run.time)
+            run.set_state([0.0, -kept * run.state[1]])
+        fall = math.sqrt(2 / g)
+        right = [fall * (1 + 2 * sum(kept**j for j in range(1, k + 1))) for k in range(20)]
+        right = [t for t in right if t < 3.0]
+        assert len(times) == len(right) and run.time == 3.0, (method, times, right)
+        assert np.allclose(times, right, rtol=0, atol=1e-8), (method, times, right)
+    # Passages one by one, also without a change; the run itself is as without them.
+    plain = a3.Simulation(a3.System(lambda t, y: [y[1], -y[0]], [1.0, 0.0]), "dop853", tolerance=1e-10)
+    asked = a3.Simulation(a3.System(lambda t, y: [y[1], -y[0]], [1.0, 0.0]), "dop853", tolerance=1e-10)
+    found = {0: [], 1: [], -1: []}
+    for direction, times in found.items():
+        asked.reset()
+        while asked.advance_until(lambda t, y: y[0], 10.0, direction):
+            times.append(asked.time)
+    assert np.allclose(found[0], [math.pi * (k + 0.5) for k in range(3)], atol=1e-8)
+    assert found[-1] == found[0][::2] and found[1] == found[0][1::2]
+    plain.advance_to(10.0)
+    assert (plain.state == asked.state).all()
+    asked.reset()
+    for wrong, error in [
+        (lambda t, y: y, a3.InputError),
+        (lambda t, y: math.nan, a3.InputError),
+        (lambda t, y: 1 / 0, ZeroDivisionError),
+        (3, a3.InputError),
+    ]:
+        with pytest.raises(error):
+            asked.advance_until(wrong, 1.0)
+    for wrong in ([1.0], [math.nan, 0.0]):
+        with pytest.raises(a3.InputError):
+            asked.set_state(wrong)
+    with pytest.raises(a3.InputError, match="one's own"):
+        a3.Simulation("chain").set_state([0.0])
+
+
 def test_a_pulse_from_rest_is_not_missed():
     def pulse(t, y):
         return [1.0 if 5.0 <= t < 5.001 else 0.0]

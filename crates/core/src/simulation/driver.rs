@@ -206,6 +206,28 @@ impl Driver {
         }
     }
 
+    /// Takes a step, unless the time shown is within one and before its end, so that any time from
+    /// the one shown to the end of the step can be [shown](Self::show). Returns both times (s).
+    ///
+    /// # Errors
+    /// The run blew up, or the step failed.
+    pub fn look_ahead(
+        &mut self,
+        model: &mut Model,
+        state: &mut RunState,
+    ) -> Result<[f64; 2], Failure> {
+        let begin = state.time();
+        if let Some(end) = self.within.until().filter(|end| begin < *end) {
+            return Ok([begin, end]);
+        }
+        self.arrive(model, state);
+        let begin = state.end();
+        self.within.begin(&state.y);
+        self.pipeline.step(model, state)?;
+        self.within.enter([begin, state.end()], &state.y);
+        Ok([begin, state.end()])
+    }
+
     /// Finishes the step that contains the time shown. Returns whether there was one.
     fn arrive(&mut self, model: &mut Model, state: &mut RunState) -> bool {
         state.shown = None;
@@ -223,7 +245,7 @@ impl Driver {
     /// Shows the state at a time (s) within the step: interpolated, then corrected for contact and
     /// pins as at the end of a step. If pins let go or jump in a fixed step, it is taken again up
     /// to there: no polynomial follows the motion past such a time.
-    fn show(&mut self, model: &mut Model, state: &mut RunState, time: f64) {
+    pub fn show(&mut self, model: &mut Model, state: &mut RunState, time: f64) {
         let Some([begin, end]) = self.within.times() else {
             return;
         };

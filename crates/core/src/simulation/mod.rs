@@ -26,5 +26,5 @@ pub use driver::Progress;
 pub use driver::Span;
 pub use pins::Grabbed;
 pub(crate) use resting::may_rest;
-pub use run::Simulation;
+pub use run::{Passage, Simulation};
 pub use state::RunState;

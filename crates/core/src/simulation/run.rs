@@ -48,7 +48,35 @@ pub struct Simulation {
     /// The last sound state, to go back to when a step fails.
     good: Checkpoint,
     blow_up: Option<BlowUp>,
+    /// Time at which a function last passed through 0 (s), if one did.
+    passed: Option<f64>,
 }
+
+/// Way in which a function passes through 0.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Passage {
+    Rising,
+    Falling,
+    #[default]
+    Either,
+}
+
+impl Passage {
+    /// Returns whether a function that was `before` and is `now` has passed through 0 in this way.
+    fn is_between(self, before: f64, now: f64) -> bool {
+        let rises = before < 0.0 && now >= 0.0;
+        let falls = before > 0.0 && now <= 0.0;
+        match self {
+            Self::Rising => rises,
+            Self::Falling => falls,
+            Self::Either => rises || falls,
+        }
+    }
+}
+
+/// Number of looks at a function in each step: one that passes through 0 and back between two of
+/// them is missed. SciPy and others look once.
+const LOOKS: u32 = 4;
 
 impl Simulation {
     /// Share of a step by which its end may miss a requested time, such as 1/60 s as 0.01666667.
@@ -73,6 +101,7 @@ impl Simulation {
             state,
             driver,
             blow_up: None,
+            passed: None,
         })
     }
 
@@ -89,7 +118,7 @@ impl Simulation {
         self.model = self.scene.model.clone();
         self.state = RunState::new(method, control, self.scene.state.clone());
         self.driver.pipeline.phases.contact.forget_impulses();
-        self.blow_up = None;
+        (self.blow_up, self.passed) = (None, None);
         // The first step is chosen as in a new run: one that was reset is the same run.
         if let Ok(stepper) = Stepper::new(method, &self.scene, self.model.system(), control) {
             self.driver.change_stepper(stepper);
@@ -174,6 +203,119 @@ impl Simulation {
             .driver
             .advance_to(&mut self.model, &mut self.state, time);
         gone.map_err(|failure| self.fail(failure))
+    }
+
+    /// Advances to the first time at which a function of t and y passes through 0, or else to
+    /// `until` (s). The time is found on the method's own polynomial, to rounding, and no step is
+    /// shortened. Returns whether it was found; the state shown is then that just after it.
+    ///
+    /// A ball falls from 1 m, and loses half of its speed in each bounce:
+    ///
+    /// ```
+    /// use a3_core::{Control, Ode, Passage, Scene, Simulation, integrators};
+    ///
+    /// let fall = Ode::new(2, |_t, y, dydt| (dydt[0], dydt[1]) = (y[1], -9.81))?;
+    /// let dopri5 = integrators::find("dopri5").unwrap();
+    /// let scene = Scene::new("ball", fall, vec![1.0, 0.0]);
+    /// let mut run = Simulation::new(scene, dopri5, Control::Tolerance(1e-9))?;
+    /// let mut bounces = vec![];
+    /// while run.advance_until(1.0, Passage::Falling, |_t, y| Ok(y[0]))? {
+    ///     bounces.push(run.time());
+    ///     run.set_state(&[0.0, -0.5 * run.state()[1]], run.time())?;
+    /// }
+    /// let fallen = (2.0 / 9.81_f64).sqrt();
+    /// assert!((bounces[0] - fallen).abs() < 1e-9 && (bounces[1] - 2.0 * fallen).abs() < 1e-9);
+    /// # Ok::<(), a3_core::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// The run blew up, now or earlier; `until` is not finite; or the function failed, or returned
+    /// NaN.
+    pub fn advance_until(
+        &mut self,
+        until: f64,
+        passage: Passage,
+        mut function: impl FnMut(f64, &[f64]) -> Result<f64, String>,
+    ) -> Result<bool, Error> {
+        let mut value = |t: f64, y: &[f64]| match function(t, y) {
+            Ok(value) if value.is_nan() => {
+                let why = format!("the function that is to pass through 0 is NaN at t = {t} s");
+                Err(Error::Invalid(why))
+            }
+            value => value.map_err(Error::Callback),
+        };
+        let mut now = self.time();
+        // Where a passage was found, rounding decides on which side the function is.
+        let mut before = match self.passed {
+            Some(passed) if passed == now => None,
+            _ => Some(value(now, &self.state.y)?),
+        };
+        while now < until {
+            self.save_if_sound()?;
+            let ahead = self.driver.look_ahead(&mut self.model, &mut self.state);
+            let [begin, end] = ahead.map_err(|failure| self.fail(failure))?;
+            let last = end.min(until);
+            for look in 1..=LOOKS {
+                let mut next = last;
+                if look < LOOKS {
+                    next = begin + (last - begin) * f64::from(look) / f64::from(LOOKS);
+                    self.show(next);
+                } else if last == until {
+                    self.advance_to(until)?;
+                } else {
+                    self.show(last);
+                }
+                let after = value(next, &self.state.y)?;
+                if before.is_some_and(|before| passage.is_between(before, after)) {
+                    let rises = after > before.unwrap_or_default();
+                    let mut ends = [now, next];
+                    loop {
+                        let middle = f64::midpoint(ends[0], ends[1]);
+                        if middle <= ends[0] || middle >= ends[1] {
+                            break;
+                        }
+                        self.show(middle);
+                        let found = value(middle, &self.state.y)?;
+                        let is_after = if rises { found >= 0.0 } else { found <= 0.0 };
+                        ends[usize::from(is_after)] = middle;
+                    }
+                    self.show(ends[1]);
+                    self.passed = Some(self.time());
+                    return Ok(true);
+                }
+                (now, before) = (next, Some(after));
+            }
+        }
+        self.advance_to(until)?;
+        Ok(false)
+    }
+
+    /// Shows the state at a time (s) within the step that the driver has looked ahead to.
+    fn show(&mut self, time: f64) {
+        self.driver.show(&mut self.model, &mut self.state, time);
+    }
+
+    /// Continues from another state of a system of one's own, at a time (s).
+    ///
+    /// # Errors
+    /// The scene is a network, which hands change; the state has another length than before; or a
+    /// number is not finite, or the time before 0. The run then continues as before.
+    pub fn set_state(&mut self, y: &[f64], time: f64) -> Result<(), Error> {
+        if self.model.network().is_some() {
+            let why = "only the state of a system of one's own can be set: hands change others";
+            return Err(Error::Invalid(why.into()));
+        }
+        let mut there = self.moment();
+        there.run.y = y.to_vec();
+        there.run.set_time(time);
+        there.check(self.state.y.len())?;
+        self.stop();
+        self.state.y.copy_from_slice(y);
+        self.state.set_time(time);
+        self.passed = self.passed.map(|_| time);
+        self.driver.forget();
+        self.continue_from_here();
+        Ok(())
     }
 
     /// Checks the energy at the end of a run, which may have blown up since the last check.

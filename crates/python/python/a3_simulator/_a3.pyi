@@ -127,6 +127,16 @@ class Run:
     def step(self, count: int = 1) -> None:
         """Takes steps. If the present time is within a step, that step is finished first, and counts."""
     def advance(self, time: float, progress: Optional[Callable[[float], object]] = None) -> None: ...
+    def advance_until(
+        self, function: Callable[[float, Floats], float], time: float, direction: int = 0
+    ) -> bool:
+        """Advances to the first time at which a function of t and the state passes through 0, or else to a time (s).
+
+        The time is found on the method's own polynomial, to rounding. Returns whether it was found; the state is then
+        that just after it. A direction above 0 is a passage from below, one below 0 from above.
+        """
+    def set_state(self, state: Sequence[float], time: Optional[float] = None) -> None:
+        """Continues from another state of a system of one's own, at another time or this one."""
     def reset(self) -> None:
         """Goes back to the beginning, and mends torn springs."""
     def checkpoint(self) -> bytes:

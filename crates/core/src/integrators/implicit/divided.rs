@@ -1,6 +1,7 @@
 //! Steps of a system of plain numbers, divided where their equations cannot be solved: the state at
 //! the beginning is then too far from the one at the end for Newton's method to find it.
 
+use super::super::integrator::{Integrator, check_dim};
 use super::stage::StageSolver;
 use crate::error::Error;
 use crate::system::{ParticleSystem, rigid_of};
@@ -11,7 +12,7 @@ use crate::work::Work;
 const MAX_HALVINGS: u32 = 16;
 
 /// Method with implicit stages.
-pub(super) trait Divisible {
+pub(super) trait Divisible: Send {
     /// Returns the solver of its stages.
     fn stage(&mut self) -> &mut StageSolver;
 
@@ -68,6 +69,19 @@ pub(super) trait Divisible {
         };
         self.stage().give_back(begun);
         taken
+    }
+}
+
+impl<M: Divisible> Integrator for M {
+    fn step(
+        &mut self,
+        system: &dyn ParticleSystem,
+        t: f64,
+        h: f64,
+        y: &mut [f64],
+    ) -> Result<Work, Error> {
+        check_dim(system.dim(), y)?;
+        self.divided(system, t, h, y)
     }
 }
 

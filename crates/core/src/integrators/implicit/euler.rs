@@ -2,7 +2,6 @@
 //! (Baraff, Witkin, *Large Steps in Cloth Simulation*, 1998). Any step is stable, and longer steps
 //! damp the motion more. Order 1.
 
-use super::super::integrator::{Integrator, check_dim};
 use super::super::method::{Create, Method, View};
 use super::divided::{Divisible, is_plain};
 use super::newton::Newton;
@@ -33,19 +32,6 @@ pub(crate) const METHOD: Method = Method {
 struct ImplicitEuler {
     stage: StageSolver,
     base: Vec<f64>,
-}
-
-impl Integrator for ImplicitEuler {
-    fn step(
-        &mut self,
-        system: &dyn ParticleSystem,
-        t: f64,
-        h: f64,
-        y: &mut [f64],
-    ) -> Result<Work, Error> {
-        check_dim(self.base.len(), y)?;
-        self.divided(system, t, h, y)
-    }
 }
 
 impl Divisible for ImplicitEuler {

@@ -7,7 +7,6 @@
 //! without it makes (symmetric projection: Hairer, *Symmetric projection methods for differential
 //! equations on manifolds*, BIT 40, 2000). So hardly any energy is lost.
 
-use super::super::integrator::{Integrator, check_dim};
 use super::super::method::{Create, Method, View};
 use super::divided::Divisible;
 use super::newton::Newton;
@@ -43,19 +42,6 @@ struct ImplicitMidpoint {
     /// End of the step without the part that is added to its beginning, and that part.
     end: Vec<f64>,
     part: Vec<f64>,
-}
-
-impl Integrator for ImplicitMidpoint {
-    fn step(
-        &mut self,
-        system: &dyn ParticleSystem,
-        t: f64,
-        h: f64,
-        y: &mut [f64],
-    ) -> Result<Work, Error> {
-        check_dim(self.base.len(), y)?;
-        self.divided(system, t, h, y)
-    }
 }
 
 impl Divisible for ImplicitMidpoint {

@@ -6,7 +6,7 @@
 
 use std::f64::consts::{FRAC_1_SQRT_2, SQRT_2};
 
-use super::super::integrator::{Integrator, check_dim};
+use super::super::integrator::Integrator;
 use super::super::method::{Create, Method, View};
 use super::divided::Divisible;
 use super::newton::Newton;
@@ -49,19 +49,6 @@ struct TrBdf2 {
     base: Vec<f64>,
     /// Base of the last stage.
     last: Vec<f64>,
-}
-
-impl Integrator for TrBdf2 {
-    fn step(
-        &mut self,
-        system: &dyn ParticleSystem,
-        t: f64,
-        h: f64,
-        y: &mut [f64],
-    ) -> Result<Work, Error> {
-        check_dim(self.base.len(), y)?;
-        self.divided(system, t, h, y)
-    }
 }
 
 impl Divisible for TrBdf2 {
