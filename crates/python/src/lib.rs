@@ -27,7 +27,7 @@ mod _a3 {
     #[pymodule_export]
     use super::monitor::Monitor;
     #[pymodule_export]
-    use super::own_method::{Derivative, add_foreign, add_method};
+    use super::own_method::{Derivative, add_foreign, add_method, add_tableau};
     #[pymodule_export]
     use super::program::main;
     #[pymodule_export]

@@ -87,6 +87,20 @@ pub fn add_method(
     Ok(())
 }
 
+/// Registers an explicit Runge-Kutta method by its tableau. Returns its order.
+#[pyfunction]
+pub fn add_tableau(
+    py: Python<'_>,
+    name: &str,
+    a: Vec<Vec<f64>>,
+    b: Vec<f64>,
+    b_hat: Option<Vec<f64>>,
+) -> PyResult<u32> {
+    let method = Method::from_tableau(name, &a, &b, b_hat.as_deref());
+    let method = method.map_err(|error| wrong(py, error.to_string()))?;
+    Ok(method.register().order)
+}
+
 /// Registers a solver of another library. `solve` is called with f, the times (s), the state at
 /// time 0 and a relative tolerance, and returns the states at these times, one after another.
 #[pyfunction]

@@ -1,5 +1,6 @@
 """Own systems, methods and forces: their results, and what they may do wrong."""
 
+import copy
 import math
 import pickle
 import re
@@ -525,6 +526,56 @@ def test_the_energy_of_an_own_system_is_charted():
     wrong = a3.System.of_particles(lambda t, x, v: -x, [1.0], [[1.0, 0.0, 0.0]], energy=lambda t, x, v: x)
     with pytest.raises(a3.InputError, match="where a number is expected"):
         a3.chart(wrong, ["verlet"], error="energy", until=1.0, progress=False)
+
+
+#: Weights of the pair of Dormand and Prince.
+PRINCE = [
+    [0, 0, 0, 0, 0, 0],
+    [1 / 5, 0, 0, 0, 0, 0],
+    [3 / 40, 9 / 40, 0, 0, 0, 0],
+    [44 / 45, -56 / 15, 32 / 9, 0, 0, 0],
+    [19372 / 6561, -25360 / 2187, 64448 / 6561, -212 / 729, 0, 0],
+    [9017 / 3168, -355 / 33, 46732 / 5247, 49 / 176, -5103 / 18656, 0],
+]
+ENDS = [35 / 384, 0, 500 / 1113, 125 / 192, -2187 / 6784, 11 / 84]
+OTHERS = [5179 / 57600, 0, 7571 / 16695, 393 / 640, -92097 / 339200, 187 / 2100, 1 / 40]
+
+
+def test_tableaux_are_methods():
+    def orbit(t, y):
+        r = math.hypot(y[0], y[1]) ** 3
+        return [y[2], y[3], -y[0] / r, -y[1] / r]
+
+    y0 = [0.5, 0.0, 0.0, math.sqrt(3.0)]
+    pair = a3.Method.tableau("my-prince", PRINCE, ENDS, OTHERS, c=[0, 0.2, 0.3, 0.8, 8 / 9, 1])
+    fixed = a3.Method.tableau("my-prince-fixed", PRINCE, ENDS)
+    assert (pair.order, fixed.order) == (5, 5)
+    runs = [a3.Simulation(a3.System(orbit, y0), method, tolerance=1e-8) for method in (pair, "dopri5")]
+    for run in runs:
+        run.advance_to(20.0)
+    assert runs[0].steps == runs[1].steps and runs[0].work.evaluations == runs[1].work.evaluations
+    assert np.allclose(runs[0].state, runs[1].state, rtol=0, atol=1e-4)
+    errors = []
+    for step in (0.02, 0.01):
+        run = a3.Simulation(a3.System(orbit, y0), fixed, step=step)
+        run.advance_to(2 * math.pi)
+        errors.append(np.abs(run.state - y0).max())
+    assert 4.5 < math.log2(errors[0] / errors[1]) < 6.5, errors
+    chart = a3.chart(a3.System(orbit, y0), [pair, "dopri5"], until=5.0, progress=False)
+    assert set(chart.methods) == {"my-prince", "dopri5"}
+    assert copy.copy(pair).name == pickle.loads(pickle.dumps(pair)).name
+    implicit = [[0.5]]
+    for wrong, words in [
+        ((implicit, [1.0]), "stage 0 of the tableau depends on stage 0"),
+        ((PRINCE, ENDS[:5]), "a row of A for each weight"),
+        ((PRINCE, ENDS, OTHERS[:5]), "as many weights as b"),
+        ((PRINCE, [0.2] * 6), "sum to 1"),
+        ((PRINCE, ENDS, ENDS), "estimates no error"),
+        ((PRINCE, ENDS, OTHERS, [0, 0.2, 0.3, 0.8, 0.9, 1]), "stage 4 is at 0.9"),
+        (([[math.nan]], [1.0]), "finite"),
+    ]:
+        with pytest.raises(a3.InputError, match=words):
+            a3.Method.tableau("my-wrong", *wrong)
 
 
 def test_events_are_located():

@@ -43,6 +43,8 @@ pub(super) enum Create {
     Adaptive(CreateStep, CreateTrial),
     /// Function of an own method.
     Own(&'static CreateOwn),
+    /// Embedded pair of an own method.
+    OwnPair(&'static Tableau),
     /// Function that runs a whole span of time.
     Foreign(&'static Solve),
 }
@@ -63,6 +65,7 @@ impl fmt::Debug for Create {
             Self::Step(_) => "Step",
             Self::Adaptive(..) => "Adaptive",
             Self::Own(_) => "Own",
+            Self::OwnPair(_) => "OwnPair",
             Self::Foreign(_) => "Foreign",
         })
     }
@@ -89,7 +92,7 @@ pub enum View {
 }
 
 /// Method of integration: a row of the table of methods, or an own method, made by
-/// [`new`](Self::new) or [`from_step`](Self::from_step).
+/// [`new`](Self::new), [`from_step`](Self::from_step) or [`from_tableau`](Self::from_tableau).
 #[derive(Debug)]
 pub struct Method {
     /// Name, as typed on the command line.
@@ -232,7 +235,9 @@ impl Method {
         Ok(match self.create {
             Create::RungeKutta(table) => Box::new(RungeKutta::new(table, system)),
             Create::Kicks(plan) => plan.integrator(system),
-            Create::Embedded(tableau) => Box::new(EmbeddedPair::new(tableau, system.dim())),
+            Create::Embedded(tableau) | Create::OwnPair(tableau) => {
+                Box::new(EmbeddedPair::new(tableau, system.dim()))
+            }
             Create::Nystrom(tableau) => Box::new(self.nystrom(tableau, system)),
             Create::Step(create) | Create::Adaptive(create, _) => create(system),
             Create::Own(create) => create(system),
@@ -256,7 +261,10 @@ impl Method {
     /// Returns whether the method is not of the table, but made by the caller of this library.
     #[must_use]
     pub fn is_own(&self) -> bool {
-        matches!(self.create, Create::Own(_) | Create::Foreign(_))
+        matches!(
+            self.create,
+            Create::Own(_) | Create::OwnPair(_) | Create::Foreign(_)
+        )
     }
 
     /// Returns whether the method is the solver of another library, see [`foreign`](Self::foreign).
@@ -290,7 +298,9 @@ impl Method {
     #[must_use]
     pub fn adaptive(&self, system: &dyn ParticleSystem, tolerance: Tolerance) -> Option<Adaptive> {
         let trial: Box<dyn Trial> = match self.create {
-            Create::Embedded(tableau) => Box::new(EmbeddedPair::new(tableau, system.dim())),
+            Create::Embedded(tableau) | Create::OwnPair(tableau) => {
+                Box::new(EmbeddedPair::new(tableau, system.dim()))
+            }
             Create::Nystrom(tableau) => Box::new(self.nystrom(tableau, system)),
             Create::Adaptive(_, create) => create(system),
             _ => return None,
@@ -303,7 +313,11 @@ impl Method {
     pub fn is_adaptive(&self) -> bool {
         matches!(
             self.create,
-            Create::Embedded(_) | Create::Nystrom(_) | Create::Adaptive(..) | Create::Foreign(_)
+            Create::Embedded(_)
+                | Create::Nystrom(_)
+                | Create::Adaptive(..)
+                | Create::OwnPair(_)
+                | Create::Foreign(_)
         )
     }
 

@@ -13,6 +13,7 @@ mod method;
 mod nystrom;
 mod nystrom_pairs;
 mod own;
+mod own_tableau;
 mod pairs;
 mod prediction;
 mod splitting;

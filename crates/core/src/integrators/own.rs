@@ -2,9 +2,11 @@
 //! libraries, from a function that runs a whole span of time.
 
 use super::derivative::Derivative;
+use super::embedded::{EmbeddedPair, Tableau};
 use super::integrator::{Integrator, check_dim};
 use super::method::add_own;
 use super::method::{Create, Method, View};
+use super::own_tableau::tableau_of;
 use super::table;
 use crate::control::Control;
 use crate::error::Error;
@@ -17,8 +19,8 @@ const MAX_ORDER: u32 = 50;
 const MAX_NAME: usize = 40;
 /// Default step of an own method (s).
 const DEFAULT_STEP: f64 = 1e-3;
-/// Default tolerance of another library's solver.
-const FOREIGN_TOLERANCE: f64 = 1e-6;
+/// Default tolerance of an own pair, and of another library's solver.
+const DEFAULT_TOLERANCE: f64 = 1e-6;
 
 /// Own methods.
 impl Method {
@@ -143,6 +145,53 @@ impl Method {
         })
     }
 
+    /// Creates an explicit Runge-Kutta method from its tableau: rows of the weights `a_ij` of each
+    /// stage, the weights b of y1, and those of another result, if there are some (b-hat), whose
+    /// difference from y1 estimates the error. Such a pair chooses its steps to a tolerance. There
+    /// may be one weight more of f at the end of the step. The order follows from the tableau, and
+    /// the times of the stages are the sums of their rows. Between the ends of a step, states are
+    /// on the cubic through both.
+    ///
+    /// The pair of Bogacki and Shampine, of order 3:
+    ///
+    /// ```
+    /// use a3_core::Method;
+    ///
+    /// let a = [vec![], vec![0.5], vec![0.0, 0.75]];
+    /// let b = [2.0 / 9.0, 1.0 / 3.0, 4.0 / 9.0];
+    /// let other = [7.0 / 24.0, 0.25, 1.0 / 3.0, 0.125];
+    /// let pair = Method::from_tableau("bs23", &a, &b, Some(&other))?;
+    /// assert!(pair.order == 3 && pair.is_adaptive());
+    /// # Ok::<(), a3_core::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// Those of [`new`](Self::new); or the tableau has a wrong shape, is implicit, has numbers that
+    /// are not finite, or weights that do not sum to 1, or both results are the same.
+    pub fn from_tableau(
+        name: impl Into<String>,
+        a: &[Vec<f64>],
+        b: &[f64],
+        estimate: Option<&[f64]>,
+    ) -> Result<Self, Error> {
+        let (tableau, order) = tableau_of(a, b, estimate)?;
+        let tableau: &'static Tableau = Box::leak(Box::new(tableau));
+        let method = match estimate {
+            Some(_) => Self::made(name.into(), order, Create::OwnPair(tableau))?,
+            None => Self::new(name, order, move |system| {
+                Box::new(EmbeddedPair::new(tableau, system.dim()))
+            })?,
+        };
+        let control = match estimate {
+            Some(_) => Control::Tolerance(DEFAULT_TOLERANCE),
+            None => Control::Step(DEFAULT_STEP),
+        };
+        Ok(Self {
+            default_control: control,
+            ..method.with_evaluations(b.len() as u32)
+        })
+    }
+
     /// Creates a method from a solver of another library, so that a chart measures it beside
     /// others. From the [`Derivative`] f, times (s), the state at time 0 and a relative tolerance,
     /// `solve` computes the state at each of these times, one after another. f counts its
@@ -165,7 +214,7 @@ impl Method {
         let create = Create::Foreign(Box::leak(Box::new(solve)));
         let method = Self::made(name.into(), 1, create)?;
         Ok(Self {
-            default_control: Control::Tolerance(FOREIGN_TOLERANCE),
+            default_control: Control::Tolerance(DEFAULT_TOLERANCE),
             ..method
         })
     }

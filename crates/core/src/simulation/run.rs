@@ -55,8 +55,11 @@ pub struct Simulation {
 /// Way in which a function passes through 0.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Passage {
+    /// From below.
     Rising,
+    /// From above.
     Falling,
+    /// In either way.
     #[default]
     Either,
 }

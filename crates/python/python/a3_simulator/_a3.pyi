@@ -21,6 +21,10 @@ def add_method(
     name: str, step: Callable[..., npt.ArrayLike], order: int, evaluations: int, default_step: float
 ) -> None: ...
 
+def add_tableau(
+    name: str, a: List[List[float]], b: List[float], b_hat: Optional[List[float]]
+) -> int: ...
+
 def add_foreign(name: str, solve: Callable[..., npt.ArrayLike]) -> None: ...
 
 class Derivative:

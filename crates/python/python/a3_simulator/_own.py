@@ -169,11 +169,58 @@ class Method:
         self.order, evaluations = _measure(step, name) if order is None else (order, order)
         _a3.add_method(name, step, self.order, evaluations, default_step)
 
+    @staticmethod
+    def tableau(
+        name: str,
+        A: npt.ArrayLike,
+        b: npt.ArrayLike,
+        b_hat: Optional[npt.ArrayLike] = None,
+        c: Optional[npt.ArrayLike] = None,
+    ) -> "Method":
+        """Returns the explicit Runge-Kutta method of a Butcher tableau, as fast as those of a3.
+
+        Args:
+            name: a word that no method of a3 has.
+            A: weights of the stages, (s, s), 0 from the diagonal on.
+            b: weights of the result, (s,).
+            b_hat: weights of another result, (s,), or (s + 1,) with that of f at the end of the step. The difference
+                of both estimates the error, and the method chooses its steps to a tolerance.
+            c: times of the stages, (s,), which are the sums of the rows of A.
+
+        The order follows from the tableau. Between the ends of a step, states are on the cubic through both.
+        """
+        return _Tableau(name, A, b, b_hat, c)
+
     def __reduce__(self) -> Any:
         return Method, (self.name, self.step, self.order)
 
     def __repr__(self) -> str:
         return f"<Method {self.name} of order {self.order}>"
+
+
+class _Tableau(Method):
+    """An explicit Runge-Kutta method of a tableau."""
+
+    def __init__(
+        self,
+        name: str,
+        A: npt.ArrayLike,
+        b: npt.ArrayLike,
+        b_hat: Optional[npt.ArrayLike],
+        c: Optional[npt.ArrayLike],
+    ) -> None:
+        rows, weights = _numbers("A", A, (-1, -1)), _numbers("b", b, (-1,))
+        other = None if b_hat is None else _numbers("b_hat", b_hat, (-1,))
+        if c is not None:
+            times, sums = _numbers("c", c, (len(rows),)), rows.sum(axis=1)
+            if (wrong := np.abs(times - sums) > 1e-9).any():
+                i = int(wrong.argmax())
+                raise InputError(f"c: stage {i} is at {times[i]}, but row {i} of A sums to {sums[i]}")
+        self.name, self._given = name, (A, b, b_hat, c)
+        self.order = _a3.add_tableau(name, rows.tolist(), weights.tolist(), other if other is None else other.tolist())
+
+    def __reduce__(self) -> Any:
+        return Method.tableau, (self.name, *self._given)
 
 
 class _Foreign(Method):
