@@ -1,15 +1,19 @@
-//! Contact of a pair in the collision safeguard: impulses along the normal, and Coulomb friction.
+//! Contact of a pair in the collision safeguard: what an impulse changes, and the impulse with the
+//! speed of separation and Coulomb friction that it has to have.
+
+use std::ops::Range;
 
 use nalgebra::{Matrix3, Vector3};
 
+use super::impulse::{across, change_in_impact, limited_to, restored};
 use super::listing::Candidate;
 use super::motion::Motion;
-use super::obstacle::{RESTORED_SHARE, change_in_impact};
+use super::response::{Joined, Response};
 use super::skin::Law;
-use super::solids::{Arm, Field, Masses, SAME_TOLERANCE, Solid};
+use super::solids::{Arm, Field, SAME_TOLERANCE, Solid};
 use super::surface::Surface;
 use crate::error::Vertex;
-use crate::geometry::{PairKind, weighted};
+use crate::geometry::weighted;
 
 /// Contact of a pair: the weights of its closest points, the normal from the second primitive to
 /// the first, and the sum of the weighted inverse masses (1/kg).
@@ -28,10 +32,11 @@ pub(super) struct ContactPair {
 /// Contact with a rigid body on at least one side, whose mobility depends on the direction.
 struct RigidContact {
     arms: [Option<Arm>; 2],
-    /// Change of the relative velocity of the closest points by an impulse (1/kg), and the inverse.
+    /// Change of the relative velocity of the closest points by an impulse (1/kg).
     mobility: Matrix3<f64>,
-    inverse: Matrix3<f64>,
     rolling: Option<Rolling>,
+    /// Changes by impulses in all directions that matter, if joints hold a body.
+    responses: Vec<Response>,
 }
 
 /// Resistance of a contact to turns of one side relative to the other.
@@ -45,6 +50,7 @@ struct Rolling {
 }
 
 impl ContactPair {
+    /// Returns the contact of a pair with these weights of its closest points at the end of a step.
     pub fn new(
         surface: &Surface,
         candidate: &Candidate,
@@ -53,8 +59,25 @@ impl ContactPair {
         motion: &Motion,
     ) -> Self {
         let points = candidate.points;
-        let inverse_masses = points.map(|i| motion.inverse_masses[i as usize]);
-        let terms = weights.iter().zip(inverse_masses).map(|(w, m)| w * w * m);
+        let arm = |side: Range<usize>, sign: f64| {
+            let side = (&points[side.clone()], &weights[side]);
+            Solid::arm(surface, &motion.solids, side, normal, sign)
+        };
+        let [first, second] = candidate.kind.sides();
+        let arms = [arm(first, 1.0), arm(second, -1.0)];
+        Self::with_arms((points, weights), normal, &motion.inverse_masses, arms)
+    }
+
+    /// Returns the contact of points with these weights, and of these sides that are rigid bodies,
+    /// whose points have no masses of their own (1/kg).
+    pub fn with_arms(
+        (points, weights): ([u32; 4], [f64; 4]),
+        normal: Vector3<f64>,
+        inverse_masses: &[f64],
+        arms: [Option<Arm>; 2],
+    ) -> Self {
+        let terms = weights.iter().zip(points);
+        let terms = terms.map(|(weight, i)| weight * weight * inverse_masses[i as usize]);
         let mut contact = Self {
             points,
             weights,
@@ -63,44 +86,62 @@ impl ContactPair {
             wanted: 0.0,
             rigid: None,
         };
-        if !motion.solids.is_empty() {
-            contact.find_arms(surface, candidate.kind, motion);
+        if arms.iter().any(Option::is_some) {
+            let mut mobility = Matrix3::identity() * contact.inverse_mass;
+            for arm in arms.iter().flatten() {
+                mobility += arm.mobility();
+            }
+            contact.inverse_mass = normal.dot(&(mobility * normal));
+            contact.rigid = Some(Box::new(RigidContact {
+                arms,
+                mobility,
+                rolling: None,
+                responses: vec![],
+            }));
         }
         contact
     }
 
-    /// Lets rigid bodies separate by a tenth of the distance that they lack. Nothing else would
-    /// restore what they lose in each step under pressure.
-    pub fn restore_separation(&mut self, law: Law, distance: f64) {
-        if self.rigid.is_some() {
-            self.wanted = RESTORED_SHARE * (law.max_kept() - distance).max(0.0);
+    /// Lets joints pass impulses on, if they hold a body that is struck.
+    pub fn join(&mut self, joined: Joined, is_smooth: bool, motion: &Motion) {
+        let solids = &motion.solids;
+        let Some(rigid) = &self.rigid else { return };
+        let mut arms = rigid.arms.iter().flatten();
+        if !arms.any(|arm| joined.joints.hold(solids[arm.solid].center)) {
+            return;
+        }
+        let across = self.normal.cross(&Vector3::ith(self.normal.iamin(), 1.0));
+        let across = across.normalize();
+        let mut all = vec![self.normal];
+        if !is_smooth {
+            all.extend([across, self.normal.cross(&across)]);
+        }
+        let pushed = self.points.iter().zip(self.weights);
+        let pushed = pushed.map(|(i, weight)| {
+            let i = *i as usize;
+            (i, weight * motion.inverse_masses[i])
+        });
+        let mut mobility = Matrix3::zeros();
+        let mut responses = vec![];
+        for direction in all {
+            let own = pushed.clone().map(|(i, share)| (i, direction * share));
+            let response = Response::new(joined, solids, direction, self.arms(), own);
+            let mut field = Field::still(motion.x0.len(), solids.len());
+            response.push(direction, &mut field);
+            mobility += self.relative(&field) * direction.transpose();
+            responses.push(response);
+        }
+        self.inverse_mass = self.normal.dot(&(mobility * self.normal));
+        if let Some(rigid) = &mut self.rigid {
+            (rigid.mobility, rigid.responses) = (mobility, responses);
         }
     }
 
-    fn find_arms(&mut self, surface: &Surface, kind: PairKind, motion: &Motion) {
-        let first = kind.first();
-        let side = |from: usize, to: usize, sign: f64| {
-            let side = (&self.points[from..to], &self.weights[from..to]);
-            Solid::arm(surface, &motion.solids, side, self.normal, sign)
-        };
-        let last = if kind == PairKind::VertexFloor { 2 } else { 4 };
-        let arms = [side(0, first, 1.0), side(first, last, -1.0)];
-        if arms.iter().all(Option::is_none) {
-            return;
+    /// Lets rigid bodies get back a part of the separation that they lack.
+    pub fn restore_separation(&mut self, law: Law, distance: f64) {
+        if self.rigid.is_some() {
+            self.wanted = restored(&law, distance);
         }
-        let mut mobility = Matrix3::identity() * self.inverse_mass;
-        for arm in arms.iter().flatten() {
-            mobility += motion.solids[arm.solid].mobility(arm);
-        }
-        self.inverse_mass = self.normal.dot(&(mobility * self.normal));
-        // Sides that cannot move along the normal get no impulse.
-        let inverse = mobility.try_inverse().unwrap_or_default();
-        self.rigid = Some(Box::new(RigidContact {
-            arms,
-            mobility,
-            inverse,
-            rolling: None,
-        }));
     }
 
     /// Lets the contact resist turns by an angular impulse of at most `most` (N m s).
@@ -109,9 +150,7 @@ impl ContactPair {
             return;
         };
         let arms = rigid.arms.iter().flatten();
-        let yields = arms.fold(Matrix3::zeros(), |sum, arm| {
-            sum + arm.inverse_inertia(&motion.solids)
-        });
+        let yields = arms.fold(Matrix3::zeros(), |sum, arm| sum + arm.inverse_inertia);
         let spin = |i: u32| match surface.vertex(i) {
             Vertex::Obstacle(k) => motion.spins[k],
             _ => Vector3::zeros(),
@@ -146,14 +185,14 @@ impl ContactPair {
     }
 
     /// Gives the first side an angular impulse (N m s), and the opposite to the second.
-    pub fn spin(&self, impulse: Vector3<f64>, masses: Masses, field: &mut Field) {
+    pub fn spin(&self, impulse: Vector3<f64>, field: &mut Field) {
         for arm in self.arms() {
-            arm.spin(impulse, masses.solids, field);
+            arm.spin(impulse, field);
         }
     }
 
     /// Returns the relative vector of the closest points.
-    fn relative(&self, field: &Field) -> Vector3<f64> {
+    pub fn relative(&self, field: &Field) -> Vector3<f64> {
         let relative = weighted(&self.weights, &self.points.map(|i| field[i as usize]));
         self.arms()
             .fold(relative, |sum, arm| sum + arm.beyond_points(field))
@@ -163,6 +202,11 @@ impl ContactPair {
     fn arms(&self) -> impl Iterator<Item = &Arm> {
         let arms = self.rigid.as_ref().map(|rigid| rigid.arms.iter());
         arms.into_iter().flatten().flatten()
+    }
+
+    /// Returns the arm of each side that is a rigid body.
+    pub fn both_arms(&self) -> [Option<Arm>; 2] {
+        self.rigid.as_ref().map_or([None; 2], |rigid| rigid.arms)
     }
 
     /// Returns whether a side is a rigid body.
@@ -175,27 +219,23 @@ impl ContactPair {
         self.arms().map(|arm| arm.solid)
     }
 
-    /// Returns the arms, if both sides are rigid bodies.
-    pub fn both_arms(&self) -> Option<[Arm; 2]> {
-        let [first, second] = self.rigid.as_ref()?.arms;
-        Some([first?, second?])
+    /// Returns whether joints pass its impulses on.
+    pub fn is_joined(&self) -> bool {
+        let rigid = self.rigid.as_ref();
+        rigid.is_some_and(|rigid| !rigid.responses.is_empty())
     }
 
-    /// Returns whether impulses at this contact have the same effect on two rigid bodies as those
-    /// at another.
+    /// Returns whether impulses at this contact have the same effect on the rigid bodies as those at
+    /// another one of the same bodies.
     pub fn is_at(&self, other: &Self) -> bool {
-        let arms = self.both_arms().zip(other.both_arms());
-        arms.is_some_and(|(own, others)| {
-            let mut both = own.iter().zip(&others);
-            (self.normal - other.normal).norm() < SAME_TOLERANCE && both.all(|(a, b)| a.is_at(b))
-        })
+        let mut arms = self.arms().zip(other.arms());
+        (self.normal - other.normal).norm() < SAME_TOLERANCE && arms.all(|(a, b)| a.is_at(b))
     }
 
     /// Returns the component, perpendicular to the normal, of the relative vector of the closest
     /// points.
     pub fn slip(&self, field: &Field) -> Vector3<f64> {
-        let relative = self.relative(field);
-        relative - self.normal * relative.dot(&self.normal)
+        across(self.relative(field), self.normal)
     }
 
     /// Returns the change of the relative velocity along a direction by an impulse along it (1/kg).
@@ -207,22 +247,36 @@ impl ContactPair {
         }
     }
 
+    /// Returns the change of the relative velocity (m/s) by an impulse (N s).
+    pub fn change(&self, impulse: Vector3<f64>) -> Vector3<f64> {
+        match &self.rigid {
+            Some(rigid) => rigid.mobility * impulse,
+            None => impulse * self.inverse_mass,
+        }
+    }
+
     /// Changes the relative vector of the closest points by `change`, along it.
-    pub fn apply(&self, change: Vector3<f64>, masses: Masses, field: &mut Field) {
-        self.push(change / self.mobility(change), masses, field);
+    pub fn apply(&self, change: Vector3<f64>, inverse_masses: &[f64], field: &mut Field) {
+        self.push(change / self.mobility(change), inverse_masses, field);
     }
 
     /// Gives the first primitive an impulse (N s), and the opposite to the second. The points of
     /// rigid bodies must be settled afterwards.
-    pub fn push(&self, impulse: Vector3<f64>, masses: Masses, field: &mut Field) {
+    pub fn push(&self, impulse: Vector3<f64>, inverse_masses: &[f64], field: &mut Field) {
+        if let Some(rigid) = self.rigid.as_ref().filter(|_| self.is_joined()) {
+            for response in &rigid.responses {
+                response.push(impulse, field);
+            }
+            return;
+        }
         for (i, weight) in self.points.iter().zip(self.weights) {
             let i = *i as usize;
-            if masses.inverse[i] > 0.0 && weight != 0.0 {
-                field[i] += impulse * (weight * masses.inverse[i]);
+            if inverse_masses[i] > 0.0 && weight != 0.0 {
+                field[i] += impulse * (weight * inverse_masses[i]);
             }
         }
         for arm in self.arms() {
-            masses.solids[arm.solid].push(arm, impulse, field);
+            arm.push(impulse, field);
         }
     }
 
@@ -237,54 +291,65 @@ impl ContactPair {
         &self,
         friction: f64,
         wanted: f64,
-        masses: Masses,
+        inverse_masses: &[f64],
         field: &mut Field,
     ) -> Vector3<f64> {
         let relative = self.relative(field) - self.normal * wanted;
-        let approach = -relative.dot(&self.normal);
-        if approach <= 0.0 {
+        if relative.dot(&self.normal) >= 0.0 {
             return Vector3::zeros();
         }
-        if let Some(rigid) = &self.rigid {
-            let impulse = self.rigid_impulse(rigid, friction, relative);
-            self.push(impulse, masses, field);
-            for arm in self.arms() {
-                masses.solids[arm.solid].settle(arm.solid, field);
-            }
-            return impulse;
+        if self.is_rigid() {
+            let least = Least {
+                before: Vector3::zeros(),
+                speed: wanted,
+                friction,
+            };
+            return self.press(Vector3::zeros(), &least, inverse_masses, field);
         }
         let change = change_in_impact(relative, self.normal, 0.0, friction);
         let impulse = change / self.inverse_mass;
-        self.push(impulse, masses, field);
+        self.push(impulse, inverse_masses, field);
         impulse
     }
 
-    /// Returns the impulse that stops approach and slip or, if friction is not large enough for
-    /// that, the approach alone (Guendelman, Bridson, Fedkiw, *Nonconvex rigid bodies with
-    /// stacking*, 2003).
-    fn rigid_impulse(
+    /// Returns the change of an impulse so far (N s) after which the closest points separate as fast
+    /// as they have to, and slip as little as friction allows; and applies it.
+    pub fn press(
         &self,
-        rigid: &RigidContact,
-        friction: f64,
-        relative: Vector3<f64>,
+        so_far: Vector3<f64>,
+        least: &Least,
+        inverse_masses: &[f64],
+        field: &mut Field,
     ) -> Vector3<f64> {
-        let normal = self.normal;
-        let sticking = -(rigid.inverse * relative);
-        let pressed = sticking.dot(&normal);
-        let across = sticking - normal * pressed;
-        if pressed > 0.0 && across.norm() <= friction * pressed {
-            return sticking;
+        let along = so_far.dot(&self.normal);
+        let relative = least.before + self.relative(field);
+        let lacks = least.speed - relative.dot(&self.normal);
+        let pressed = (along + lacks / self.inverse_mass).max(0.0);
+        let mut change = self.normal * (pressed - along);
+        self.push(change, inverse_masses, field);
+        if least.friction > 0.0 {
+            let rubbed = so_far - self.normal * along;
+            let slip = across(least.before + self.relative(field), self.normal);
+            let more = self.held(rubbed, slip, least.friction * pressed) - rubbed;
+            self.push(more, inverse_masses, field);
+            change += more;
         }
-        let slip = relative - normal * relative.dot(&normal);
-        let along = slip.try_normalize(0.0).unwrap_or_default();
-        let direction = normal - along * friction;
-        let stopped = normal.dot(&(rigid.mobility * direction));
-        // Friction that would make the bodies approach is left out.
-        let direction = if stopped > 0.1 * self.inverse_mass {
-            direction
-        } else {
-            normal
-        };
-        direction * (-relative.dot(&normal) / normal.dot(&(rigid.mobility * direction)))
+        change
     }
+
+    /// Returns the impulse of friction (N s), after `so_far`, that stops a slip (m/s) as far as the
+    /// largest one allows.
+    pub fn held(&self, so_far: Vector3<f64>, slip: Vector3<f64>, most: f64) -> Vector3<f64> {
+        limited_to(so_far - slip / self.mobility(slip), most)
+    }
+}
+
+/// Least separation after an impulse.
+pub(super) struct Least {
+    /// Relative velocity before all impulses (m/s).
+    pub before: Vector3<f64>,
+    /// Speed along the normal afterwards (m/s).
+    pub speed: f64,
+    /// Coefficient of friction.
+    pub friction: f64,
 }

@@ -19,11 +19,11 @@ use pulp::{Simd, WithSimd};
 
 use super::candidates::{Candidates, Linear};
 use super::contact_pair::ContactPair;
+use super::impulse::limited_to;
 use super::listing::Candidate;
 use super::motion::{Guarded, Motion};
-use super::obstacle::limited_to;
 use super::repulsion::Pair;
-use super::solids::{Field, Masses};
+use super::solids::Field;
 use super::surface::Surface;
 use crate::error::Vertex;
 use crate::geometry::weighted;
@@ -102,8 +102,9 @@ struct Pressed {
 
 impl Pressed {
     fn add(&mut self, contact: ContactPair, most: f64, spin: Vector3<f64>) {
-        if let Some(arms) = contact.both_arms() {
-            let known = self.between.entry(arms.map(|arm| arm.solid)).or_default();
+        if let [Some(first), Some(second)] = contact.both_arms() {
+            let bodies = [first.solid, second.solid];
+            let known = self.between.entry(bodies).or_default();
             let is_same = |k: &&usize| self.contacts[**k].0.is_at(&contact);
             if let Some(k) = known.iter().rev().take(SEARCHED_CONTACTS).find(is_same) {
                 let (known, of_known) = &mut self.contacts[*k];
@@ -132,10 +133,6 @@ fn solve(pressed: &Pressed, h: f64, motion: &mut Motion, guarded: &mut Guarded) 
         impulses,
         ..
     } = motion;
-    let masses = Masses {
-        inverse: inverse_masses,
-        solids,
-    };
     // Displacement per change of velocity in the step: half of the step for most methods, all of it
     // for implicit Euler.
     let delay = |begun: Vector3<f64>, end: Vector3<f64>, way: Vector3<f64>| {
@@ -158,10 +155,10 @@ fn solve(pressed: &Pressed, h: f64, motion: &mut Motion, guarded: &mut Guarded) 
         [slips, turns].map(|[begun, end, way]| delay(begun, end, way))
     };
     let delays: Vec<[f64; 2]> = pressed.iter().map(delays).collect();
-    let (all, turned) = hold(pressed, masses, v);
+    let (all, turned) = hold(pressed, inverse_masses, v);
     for (k, (contact, _)) in pressed.iter().enumerate() {
-        contact.push(all[k] * delays[k][0], masses, moves);
-        contact.spin(turned[k] * delays[k][1], masses, moves);
+        contact.push(all[k] * delays[k][0], inverse_masses, moves);
+        contact.spin(turned[k] * delays[k][1], moves);
         impulses.share(contact.points, contact.weights, all[k]);
     }
     let limit = |contact: &ContactPair, most: f64, slip| most * contact.mobility(slip);
@@ -194,13 +191,13 @@ fn solve(pressed: &Pressed, h: f64, motion: &mut Motion, guarded: &mut Guarded) 
             let Some((impulse, most)) = contact.turning(moves, h) else {
                 continue;
             };
-            contact.spin(limited_to(impulse, h * most), masses, moves);
+            contact.spin(limited_to(impulse, h * most), moves);
             still &= impulse.norm() <= STILL_TOLERANCE * h * most;
         }
         for ((contact, most), spin) in &stuck {
             let displaced = contact.slip(moves) + lead(contact, **spin, moves, h);
             let most = h * limit(contact, *most, displaced);
-            contact.apply(-limited_to(displaced, most), masses, moves);
+            contact.apply(-limited_to(displaced, most), inverse_masses, moves);
             still &= displaced.norm() <= STILL_TOLERANCE * most;
         }
         still
@@ -265,16 +262,16 @@ fn pass_until_still(mut pass: impl FnMut() -> bool) {
 /// angular impulse (N m s) of each. The points of rigid bodies must be settled afterwards.
 pub(super) fn hold(
     contacts: &[(ContactPair, f64)],
-    masses: Masses,
+    inverse_masses: &[f64],
     v: &mut Field,
 ) -> (Vec<Vector3<f64>>, Vec<Vector3<f64>>) {
     // Impulses of each contact so far, which a later pass may reduce.
     let mut all = vec![Vector3::zeros(); contacts.len()];
     let mut turned = all.clone();
-    let numbers = in_order(contacts, masses.inverse);
+    let numbers = in_order(contacts, inverse_masses);
     let mut soft: Vec<_> = numbers
         .iter()
-        .map(|number| Soft::new(&contacts[*number], masses.inverse))
+        .map(|number| Soft::new(&contacts[*number], inverse_masses))
         .collect();
     let rigid: Vec<_> = (0..contacts.len())
         .filter(|k| contacts[*k].0.is_rigid())
@@ -289,15 +286,15 @@ pub(super) fn hold(
         for k in &rigid {
             let (contact, most) = &contacts[*k];
             let slip = contact.slip(v);
-            let held = limited_to(all[*k] - slip / contact.mobility(slip), *most);
+            let held = contact.held(all[*k], slip, *most);
             let change = held - all[*k];
-            contact.push(change, masses, v);
+            contact.push(change, inverse_masses, v);
             all[*k] = held;
             still &= change.norm() <= STUCK_TOLERANCE * most;
             if let Some((stopping, most)) = contact.turning(v, 1.0) {
                 let held = limited_to(turned[*k] + stopping, most);
                 let change = held - turned[*k];
-                contact.spin(change, masses, v);
+                contact.spin(change, v);
                 turned[*k] = held;
                 still &= change.norm() <= STUCK_TOLERANCE * most;
             }

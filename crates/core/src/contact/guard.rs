@@ -13,12 +13,11 @@ use super::candidates::Candidates;
 use super::contact_pair::ContactPair;
 use super::cut::Pinched;
 use super::friction::apply_friction;
+use super::impulse::Impulses;
 use super::layer::{Buffers, ContactLayer};
 use super::listing::Candidate;
 use super::motion::{Guarded, Motion};
-use super::obstacle::Impulses;
 use super::response::{Joined, Joints};
-use super::solids::Masses;
 use super::strike::{find, strike};
 use super::surface::Surface;
 use crate::geometry::{Closest, closest};
@@ -245,12 +244,12 @@ fn push(
         impulses,
         ..
     } = motion;
-    let masses = Masses {
-        inverse: inverse_masses,
-        solids,
-    };
-    let by_move = contact.stop(friction, contact.wanted, masses, moves);
-    let by_speed = contact.stop(friction, 0.0, masses, v);
+    let by_move = contact.stop(friction, contact.wanted, inverse_masses, moves);
+    let by_speed = contact.stop(friction, 0.0, inverse_masses, v);
+    for k in contact.solids() {
+        solids[k].settle(k, moves);
+        solids[k].settle(k, v);
+    }
     impulses.share(contact.points, contact.weights, by_speed);
     guarded.impulses += 1;
     guarded.impulse += by_speed.norm().max(by_move.norm() / h);

@@ -13,10 +13,9 @@ use std::ops::Range;
 
 use nalgebra::Vector3;
 
+use super::impulse::{Impulses, across, change_in_impact, rebound_speed};
 use super::motion::Guarded;
-use super::obstacle::{
-    Course, Impulses, Obstacle, across, change_in_impact, rebound_speed, velocity,
-};
+use super::obstacle::{Course, Obstacle, velocity};
 use crate::columns::{row, set_row};
 use crate::geometry::Shape;
 use crate::geometry::closest::{Nearest, Separation};

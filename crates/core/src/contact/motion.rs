@@ -13,8 +13,8 @@ use serde::{Deserialize, Serialize};
 
 use super::advance::{are_apart, time_and_planes};
 use super::candidates::{Candidates, Stretch};
+use super::impulse::Impulses;
 use super::listing::Candidate;
-use super::obstacle::Impulses;
 use super::skin::Law;
 use super::solids::{Field, Solid};
 use super::surface::Surface;

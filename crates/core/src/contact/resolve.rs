@@ -4,11 +4,10 @@ use nalgebra::Vector3;
 
 use super::cut::Pinched;
 use super::guard::{Bodies, guard};
+use super::impulse::{Impulses, change_in_impact, rebound_speed, shortest_rebound};
 use super::layer::ContactLayer;
 use super::met::{Met, Noted, Statistics};
-use super::obstacle::{
-    Impulses, Obstacle, change_in_impact, rebound_speed, shortest_rebound, velocity,
-};
+use super::obstacle::{Obstacle, velocity};
 use crate::columns::{row, set_row};
 use crate::geometry::Shape;
 use crate::geometry::closest::{of_box, of_capsule, of_floor, of_sphere};

@@ -6,7 +6,7 @@
 
 use nalgebra::Vector3;
 
-use super::solids::{Field, Solid};
+use super::solids::{Arm, Field, Solid};
 use crate::rigid::{ROTATION, Rotation};
 
 /// Constraints that join rigid bodies.
@@ -29,12 +29,6 @@ pub(super) struct Joined<'a> {
     pub y: &'a [f64],
 }
 
-/// Changes of velocities (m/s) and angular velocities (rad/s) of all vertices and bodies.
-pub(super) struct Changes {
-    pub points: Vec<Vector3<f64>>,
-    pub solids: Vec<[Vector3<f64>; 2]>,
-}
-
 /// Changes by an impulse of 1 N s in a direction.
 pub(super) struct Response {
     direction: Vector3<f64>,
@@ -44,13 +38,12 @@ pub(super) struct Response {
 
 impl Response {
     /// Finds the response to an impulse of 1 N s in a direction on the first of two arms, and the
-    /// opposite on the second. An arm is given by the number of its body and by its lever (m). The
-    /// points change their velocities by `pushed` (m/s).
-    pub fn new(
+    /// opposite on the second. The points change their velocities by `pushed` (m/s).
+    pub fn new<'a>(
         joined: Joined,
         solids: &[Solid],
         direction: Vector3<f64>,
-        arms: impl Iterator<Item = (usize, Vector3<f64>, f64)>,
+        arms: impl Iterator<Item = &'a Arm>,
         pushed: impl Iterator<Item = (usize, Vector3<f64>)>,
     ) -> Self {
         let mut y = joined.y.to_vec();
@@ -63,10 +56,10 @@ impl Response {
         };
         let numbers = |k: usize| 6 * n + ROTATION * k..6 * n + ROTATION * (k + 1);
         let mut momenta = vec![Vector3::zeros(); solids.len()];
-        for (k, lever, sign) in arms {
-            let impulse = direction * sign;
-            add(&mut y, solids[k].center, solids[k].along(impulse));
-            momenta[k] += lever.cross(&impulse);
+        for arm in arms {
+            let (k, impulse) = (arm.solid, direction * arm.sign);
+            add(&mut y, solids[k].center, impulse * arm.inverse_mass);
+            momenta[k] += arm.lever.cross(&impulse);
         }
         for (i, change) in pushed.filter(|(i, _)| *i < n) {
             add(&mut y, i, change);
@@ -95,22 +88,10 @@ impl Response {
         }
     }
 
-    /// Adds the changes by an impulse (N s), as far as it is in this direction.
-    pub fn push(&self, impulse: Vector3<f64>, changes: &mut Changes) {
+    /// Changes a field by an impulse (N s), as far as it is in this direction. The points of the
+    /// bodies must be settled afterwards.
+    pub fn push(&self, impulse: Vector3<f64>, field: &mut Field) {
         let size = self.direction.dot(&impulse);
-        for (i, change) in &self.points {
-            changes.points[*i] += change * size;
-        }
-        for (k, [along, turned]) in &self.solids {
-            changes.solids[*k][0] += along * size;
-            changes.solids[*k][1] += turned * size;
-        }
-    }
-
-    /// Changes a field by an impulse (N s), as far as it is in this direction, times a span. The
-    /// points of the bodies must be settled afterwards.
-    pub fn apply(&self, impulse: Vector3<f64>, span: f64, field: &mut Field) {
-        let size = self.direction.dot(&impulse) * span;
         for (i, change) in &self.points {
             field[*i] += change * size;
         }

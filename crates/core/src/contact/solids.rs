@@ -29,6 +29,15 @@ struct Change {
 }
 
 impl Field {
+    /// Creates a field of zeros for n vertices and a number of bodies.
+    pub fn still(n: usize, solids: usize) -> Self {
+        Self {
+            points: vec![Vector3::zeros(); n],
+            turns: vec![Vector3::zeros(); solids],
+            changes: vec![Change::default(); solids],
+        }
+    }
+
     /// Forgets all bodies.
     pub fn forget_solids(&mut self) {
         self.turns.clear();
@@ -67,15 +76,6 @@ impl DerefMut for Field {
     }
 }
 
-/// Masses on which impulses act.
-#[derive(Clone, Copy)]
-pub(super) struct Masses<'a> {
-    /// Inverse mass of each vertex (1/kg).
-    pub inverse: &'a [f64],
-    /// Rigid bodies.
-    pub solids: &'a [Solid],
-}
-
 /// Rigid body at the end of a step.
 #[derive(Clone, Debug)]
 pub(super) struct Solid {
@@ -100,12 +100,15 @@ pub(super) struct Solid {
 pub(super) struct Arm {
     pub solid: usize,
     /// Point of contact relative to the centre (m).
-    lever: Vector3<f64>,
+    pub lever: Vector3<f64>,
     /// Point of contact relative to the closest point of the body's simplices (m): not 0 on round
     /// bodies.
-    round: Vector3<f64>,
+    pub round: Vector3<f64>,
     /// 1 for the first primitive of a pair, -1 for the second.
-    sign: f64,
+    pub sign: f64,
+    pub inverse_mass: f64,
+    /// Change of the angular velocity of the body by an angular impulse (1/(kg m2)).
+    pub inverse_inertia: Matrix3<f64>,
 }
 
 impl Solid {
@@ -156,27 +159,14 @@ impl Solid {
             lever: lever + round,
             round,
             sign,
+            inverse_mass: own.inverse_mass,
+            inverse_inertia: own.inverse_inertia,
         })
     }
 
     /// Returns whether the body is kinematic: its centre is pinned.
     pub fn is_kinematic(&self) -> bool {
         self.inverse_mass == 0.0
-    }
-
-    /// Returns the change of the velocity of a point of contact by an impulse there: a matrix
-    /// (1/kg).
-    pub fn mobility(&self, arm: &Arm) -> Matrix3<f64> {
-        let cross = arm.lever.cross_matrix();
-        Matrix3::identity() * self.inverse_mass - cross * self.inverse_inertia * cross
-    }
-
-    /// Changes the body's motion by an impulse (N s) at an arm, except that of its points, which
-    /// [`settle`](Self::settle) moves.
-    pub fn push(&self, arm: &Arm, impulse: Vector3<f64>, field: &mut Field) {
-        let change = &mut field.changes[arm.solid];
-        change.along += impulse * (arm.sign * self.inverse_mass);
-        change.turned += self.inverse_inertia * arm.lever.cross(&impulse) * arm.sign;
     }
 
     /// Returns the angular velocity (rad/s) and the inverse inertia (1/(kg m2)) `left` (s) and the
@@ -196,20 +186,6 @@ impl Solid {
         (inverse_inertia * momentum + lag, inverse_inertia)
     }
 
-    /// Changes the motion of this body, number k, by an impulse (N s) at the end of a lever (m),
-    /// times a span; except that of its points, which [`settle`](Self::settle) moves.
-    pub fn push_at(
-        &self,
-        k: usize,
-        lever: Vector3<f64>,
-        impulse: Vector3<f64>,
-        span: f64,
-        field: &mut Field,
-    ) {
-        let turned = self.inverse_inertia * lever.cross(&impulse) * span;
-        field.change(k, [self.along(impulse) * span, turned]);
-    }
-
     /// Returns the angular momentum (kg m2/s) of the body about a point (m) at the end of the step,
     /// with its centre at x (m).
     pub fn turning(
@@ -221,9 +197,10 @@ impl Solid {
         (x - about).cross(&(v / self.inverse_mass)) + self.inertia * spin
     }
 
-    /// Returns the change of the centre's velocity (m/s) by an impulse (N s).
-    pub fn along(&self, impulse: Vector3<f64>) -> Vector3<f64> {
-        impulse * self.inverse_mass
+    /// Returns the change of the angular velocity by an angular impulse at the end of the step
+    /// (1/(kg m2)).
+    pub fn inverse_inertia(&self) -> Matrix3<f64> {
+        self.inverse_inertia
     }
 
     /// Returns the angular velocity (rad/s) that an angular momentum (kg m2/s) gives the body.
@@ -300,21 +277,31 @@ impl Arm {
         field.turn(self.solid) * self.sign
     }
 
+    /// Returns the change of the velocity of the point of contact by an impulse there: a matrix
+    /// (1/kg).
+    pub fn mobility(&self) -> Matrix3<f64> {
+        let cross = self.lever.cross_matrix();
+        Matrix3::identity() * self.inverse_mass - cross * self.inverse_inertia * cross
+    }
+
+    /// Changes the body's motion by an impulse (N s) on its side, except that of its points, which
+    /// [`Solid::settle`] moves.
+    pub fn push(&self, impulse: Vector3<f64>, field: &mut Field) {
+        let turned = self.inverse_inertia * self.lever.cross(&impulse) * self.sign;
+        let along = impulse * (self.sign * self.inverse_mass);
+        field.change(self.solid, [along, turned]);
+    }
+
     /// Gives the body an angular impulse (N m s), with the sign of its side.
-    pub fn spin(&self, impulse: Vector3<f64>, solids: &[Solid], field: &mut Field) {
-        let turned = solids[self.solid].inverse_inertia * impulse * self.sign;
-        field.changes[self.solid].turned += turned;
+    pub fn spin(&self, impulse: Vector3<f64>, field: &mut Field) {
+        let turned = self.inverse_inertia * impulse * self.sign;
+        field.change(self.solid, [Vector3::zeros(), turned]);
     }
 
-    /// Returns the change of the angular velocity of the body by an angular impulse: a matrix
-    /// (1/(kg m2)).
-    pub fn inverse_inertia(&self, solids: &[Solid]) -> Matrix3<f64> {
-        solids[self.solid].inverse_inertia
-    }
-
-    /// Returns whether another arm of the body ends at the same point.
+    /// Returns whether another arm is of the same body, and ends at the same point.
     pub fn is_at(&self, other: &Self) -> bool {
-        (self.lever - other.lever).norm() < SAME_TOLERANCE * self.lever.norm()
+        self.solid == other.solid
+            && (self.lever - other.lever).norm() < SAME_TOLERANCE * self.lever.norm()
     }
 
     /// Returns the velocity of the point of contact beyond that of its body's points: by the turn

@@ -33,8 +33,9 @@ use super::impact::Impact;
 use super::listing::Candidate;
 use super::motion::{Guarded, Motion};
 use super::repulsion::Pair;
-use super::response::{Changes, Joined};
+use super::response::Joined;
 use super::skin::KEPT_SHARE;
+use super::solids::Field;
 use super::surface::Surface;
 use crate::geometry::{PairKind, closest, weighted};
 use crate::interval::Interval;
@@ -80,10 +81,7 @@ pub(super) fn strike(
                 impacts.push(impact);
             }
         }
-        let mut changes = Changes {
-            points: vec![Vector3::zeros(); motion.x0.len()],
-            solids: vec![[Vector3::zeros(); 2]; motion.solids.len()],
-        };
+        let mut changes = Field::still(motion.x0.len(), motion.solids.len());
         solve(&mut impacts, &mut changes, &motion.inverse_masses);
         impacts.retain(|impact| impact.impulse != Vector3::zeros());
         if impacts.is_empty() {
@@ -119,7 +117,7 @@ pub(super) fn strike(
 }
 
 /// Finds the impulses of all impacts of one time, and the changes of velocities.
-fn solve(impacts: &mut [Impact], changes: &mut Changes, inverse_masses: &[f64]) {
+fn solve(impacts: &mut [Impact], changes: &mut Field, inverse_masses: &[f64]) {
     for _ in 0..MAX_SWEEPS {
         let mut solved = true;
         for impact in &mut *impacts {

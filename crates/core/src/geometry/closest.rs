@@ -2,6 +2,8 @@
 //! *Real-Time Collision Detection*, 2005, 5.1), and nearest points of the surfaces of obstacles,
 //! in the obstacle's own frame.
 
+use std::ops::Range;
+
 use nalgebra::Vector3;
 
 /// Squared sine of the angle between two edges up to which their ends are also tried as closest
@@ -29,6 +31,13 @@ impl PairKind {
     #[must_use]
     pub fn first(self) -> usize {
         if self == Self::EdgeEdge { 2 } else { 1 }
+    }
+
+    /// Returns the numbers of the points of both primitives. A floor has one.
+    #[must_use]
+    pub fn sides(self) -> [Range<usize>; 2] {
+        let last = if self == Self::VertexFloor { 2 } else { 4 };
+        [0..self.first(), self.first()..last]
     }
 }
 
