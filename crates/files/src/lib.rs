@@ -17,6 +17,7 @@
     allow(clippy::unused_self, clippy::unnecessary_wraps)
 )]
 
+pub mod arguments;
 pub mod bounds;
 #[cfg(target_arch = "wasm32")]
 pub mod browser;

@@ -202,6 +202,16 @@ pub fn find(typed: &str, option: &str) -> Result<Source, Failure> {
     })
 }
 
+/// Checks the number of solvers that are compared.
+pub fn check_count(count: usize) -> Result<(), Failure> {
+    if (2..=4).contains(&count) {
+        return Ok(());
+    }
+    Err(Failure::usage(format!(
+        "compare takes 2 to 4 solvers, as in `a3 compare e:0.05 r:0.05`, not {count}"
+    )))
+}
+
 /// Checks that the step or the tolerance is within its range.
 pub fn check_control(method: &Method, control: Control) -> Result<(), Failure> {
     let range = bounds::of(control);

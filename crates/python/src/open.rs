@@ -1,7 +1,7 @@
 //! Scenes as Python gives them: by a kind and a text, or as a `System`; with options and forces.
 
-use a3::embedded::{OpenScene, SceneOptions};
 use a3_core::{Disturbances, Grid, Method, Scene};
+use a3_files::setup::SceneOptions;
 use a3_scenes::Setup;
 use pyo3::prelude::*;
 
@@ -9,6 +9,7 @@ use super::errors::{of_failure, wrong};
 use super::function::Raised;
 use super::own_method::raised_by;
 use super::own_system::{self, add_forces};
+use super::scene::OpenScene;
 use super::tables::origin;
 
 /// Arguments of Python that give a scene.

@@ -1,11 +1,12 @@
 //! The tables of scenes and methods, and the keys of a scene.
 
-use a3::embedded::{OpenScene, Origin, SceneOptions};
 use a3_core::{Control, Method, integrators};
+use a3_files::setup::SceneOptions;
 use a3_scenes::{SCENES, Setup};
 use pyo3::prelude::*;
 
 use super::errors::{of_failure, wrong};
+use super::scene::{OpenScene, Origin};
 
 /// Returns the names of the built-in scenes.
 #[pyfunction]

@@ -2,9 +2,10 @@
 
 use std::path::PathBuf;
 
+use a3_files::arguments::threads;
 use clap::Args;
 
-use super::values::{picture_size, threads};
+use super::values::picture_size;
 use crate::cli::share::Only;
 
 #[derive(Args)]

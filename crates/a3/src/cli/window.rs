@@ -3,15 +3,15 @@
 use std::path::PathBuf;
 
 use a3_core::Method;
+use a3_files::arguments::{particle, step};
 use a3_files::failure::Failure;
+use a3_files::setup::check_count;
 use a3_studio::session::Opening;
 use clap::Args;
 
 use super::drawing::Drawing;
 use super::run::{RunOptions, SceneArgs, StepOptions};
-use super::values::{
-    SOLVER_AND_STEP, SOLVER_OR_COMMAND, beginning, particle, rate, size, step, until,
-};
+use super::values::{SOLVER_AND_STEP, SOLVER_OR_COMMAND, beginning, rate, size, until};
 
 #[derive(Args)]
 pub struct WindowOptions {
@@ -156,12 +156,7 @@ impl Compare {
     /// # Errors
     /// There are fewer than two or more than four solvers.
     pub fn opening(&self) -> Result<Opening, Failure> {
-        let count = self.methods.len();
-        if !(2..=4).contains(&count) {
-            return Err(Failure::usage(format!(
-                "compare takes 2 to 4 solvers, as in `a3 compare e:0.05 r:0.05`, not {count}"
-            )));
-        }
+        check_count(self.methods.len())?;
         self.what.limit_threads();
         let methods = self.methods.iter();
         Ok(Opening {

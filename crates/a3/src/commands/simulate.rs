@@ -2,7 +2,7 @@
 //! and the summary of the run.
 
 use std::path::Path;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use a3_core::Simulation;
 use a3_files::checkpoint::{Energy, Extremes, Keeper, Kept};
@@ -15,7 +15,6 @@ use a3_files::{interrupt, progress, terminal, verdict};
 use a3_media::export;
 use a3_media::export::Export;
 use serde::Serialize;
-use web_time::Instant;
 
 use crate::cli::Simulate;
 

@@ -10,4 +10,4 @@ mod table;
 mod turns;
 mod value;
 
-pub use value::{LeanScene, ModelEffect, SceneRun, Simplified, SimplifyOptions, measure};
+pub use value::{LeanScene, ModelEffect, SceneRun, Simplified, SimplifyOptions, measure, simplify};

@@ -13,11 +13,13 @@ use a3_files::scene_file::Hash;
 use a3_studio::address::Address;
 use a3_studio::session::LessonRequest;
 use a3_studio::{Event, Settings, begin, follow_lesson, send, spawn};
+use wasm_bindgen::prelude::wasm_bindgen;
 use web_time::Instant;
 
-use crate::cli;
+use super::words::read;
 
 /// Starts the run that the address describes, or shows on the page why that is not possible.
+#[wasm_bindgen]
 pub fn start() {
     panic::set_hook(Box::new(|panic| {
         browser::log(&panic.to_string());
@@ -30,9 +32,9 @@ pub fn start() {
 
 fn begin() -> Result<(), Failure> {
     let address = Address::read(browser::words())?;
-    let opening = cli::read(&address.words)?;
+    let opening = read(&address.words)?;
     let mut session = begin::session(&opening)?;
-    session.scenes.reader = Some(cli::read);
+    session.scenes.reader = Some(read);
     let settings = if opening.no_settings || address.embedded {
         None
     } else {
@@ -52,10 +54,10 @@ fn begin() -> Result<(), Failure> {
 /// Takes steps of the run that a command line describes, as fast as possible. Returns a hash
 /// (FNV-1a) of the bits of positions and velocities, and the time of a step (µs), or an error
 /// message.
-#[must_use]
+#[wasm_bindgen]
 pub fn run_steps(words: &str, steps: u32) -> String {
     let words: Vec<_> = words.split_whitespace().map(str::to_owned).collect();
-    let session = cli::read(&words).and_then(|opening| begin::session(&opening));
+    let session = read(&words).and_then(|opening| begin::session(&opening));
     let session = session.map_err(|failure| failure.to_string());
     let begun = Instant::now();
     let run = session.and_then(|session| {
@@ -85,16 +87,19 @@ pub fn run_steps(words: &str, steps: u32) -> String {
 }
 
 /// Shows a message of the page.
+#[wasm_bindgen]
 pub fn say(words: &str) {
     send(Event::Say(words.into()));
 }
 
 /// Stores a file that the scenes of the page may name.
+#[wasm_bindgen]
 pub fn keep_file(name: &str, bytes: &[u8]) {
     files::keep(Path::new(name), bytes);
 }
 
 /// Opens a file that was dropped on the page.
+#[wasm_bindgen]
 pub fn open_file(name: &str, bytes: &[u8]) {
     files::keep(Path::new(name), bytes);
     send(Event::Open(name.into()));
