@@ -9,7 +9,7 @@ mod page;
 
 #[cfg(feature = "window")]
 use a3_files::failure::Failure;
-use a3_files::rows::{Row, text::read};
+use a3_files::rows::{Row, read};
 use a3_files::states::parse;
 use a3_lab::chart::record::Record;
 #[cfg(feature = "window")]

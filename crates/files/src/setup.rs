@@ -7,8 +7,8 @@ use a3_scenes::{Description, Presentation, Setup};
 
 use crate::bounds;
 use crate::failure::{Failure, InputError};
+use crate::platform::terminal;
 use crate::scene_file::Source;
-use crate::terminal;
 
 /// Options of a scene.
 #[derive(Clone, Copy, Debug, Default)]

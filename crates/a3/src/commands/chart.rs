@@ -5,9 +5,9 @@ use std::path::PathBuf;
 
 use a3_core::accuracy::{Metric, Scope};
 use a3_core::{Method, Scene};
+use a3_files::bar::Bar;
 use a3_files::failure::Failure;
 use a3_files::output;
-use a3_files::progress::Bar;
 use a3_files::setup::Request;
 use a3_files::{interrupt, terminal};
 use a3_lab::chart::asked::{check_metric, methods};

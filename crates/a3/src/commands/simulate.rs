@@ -5,11 +5,12 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 use a3_core::Simulation;
-use a3_files::checkpoint::{Energy, Extremes, Keeper, Kept};
+use a3_files::bar::Bar;
+use a3_files::checkpoint::{Energy, Extremes, Kept};
 use a3_files::failure::Failure;
 use a3_files::frames::{FrameTimes, Sequence};
+use a3_files::keeper::Keeper;
 use a3_files::output;
-use a3_files::progress::Bar;
 use a3_files::setup::{Request, Run};
 use a3_files::{interrupt, progress, terminal, verdict};
 use a3_media::export;

@@ -1,38 +1,44 @@
 //! Progress bars on the terminal.
 
-use a3_core::{Error, Simulation};
-use indicatif::{ProgressBar, ProgressStyle};
-use web_time::{Duration, Instant};
+use std::time::{Duration, Instant};
 
-use super::march::march;
+use indicatif::{ProgressBar, ProgressStyle};
+
+use super::{interrupt, terminal};
 use crate::failure::Failure;
 use crate::monitor::Monitor;
-use crate::{interrupt, terminal};
 
-/// Advances a simulation to `until` (s) in whole steps, the last one shortened, with a bar once it
-/// takes longer than a second. Calls `frame` about sixty times a simulated second.
-pub fn advance(
-    simulation: &mut Simulation,
-    until: f64,
-    mut frame: impl FnMut(&Simulation),
-) -> Result<(), Error> {
-    let begun = Instant::now();
-    let start = simulation.time();
-    let mut bar: Option<ProgressBar> = None;
-    let done = march(simulation, until, |simulation| {
-        frame(simulation);
-        if bar.is_none() && begun.elapsed() > Duration::from_secs(1) {
-            bar = Some(new_bar());
+/// The bar of a run, which is shown once it takes longer than a second.
+pub struct RunBar {
+    begun: Instant,
+    bar: Option<ProgressBar>,
+}
+
+impl RunBar {
+    /// Creates the bar of a run that begins now.
+    pub fn begin() -> Self {
+        Self {
+            begun: Instant::now(),
+            bar: None,
         }
-        if let Some(bar) = &bar {
-            bar.set_position((1000.0 * (simulation.time() - start) / (until - start)) as u64);
-        }
-        true
-    });
-    if let Some(bar) = bar {
-        bar.finish_and_clear();
     }
-    done.map(drop)
+
+    /// Shows the share of the run that is done.
+    pub fn show(&mut self, share: f64) {
+        if self.bar.is_none() && self.begun.elapsed() > Duration::from_secs(1) {
+            self.bar = Some(new_bar());
+        }
+        if let Some(bar) = &self.bar {
+            bar.set_position((1000.0 * share) as u64);
+        }
+    }
+
+    /// Removes the bar.
+    pub fn clear(self) {
+        if let Some(bar) = self.bar {
+            bar.finish_and_clear();
+        }
+    }
 }
 
 /// A bar that is shown at once, for work in any unit. Several threads may advance it.

@@ -14,8 +14,8 @@ use tempfile::NamedTempFile;
 
 use super::place::{folder, metadata, not_written, resolve, writable};
 use crate::failure::Failure;
-use crate::interrupt::{Cleanup, Temporary};
-use crate::{fault, interrupt};
+use crate::platform::interrupt::{Cleanup, Temporary};
+use crate::platform::{fault, interrupt};
 
 /// Length by which a draft is extended to find out whether the disk is full (bytes).
 const PROBE_LENGTH: u64 = 1 << 20;

@@ -4,8 +4,10 @@ use std::fs::{self, File};
 use std::io::{self, Read};
 use std::path::Path;
 
-use crate::output;
-use crate::terminal;
+use super::{output, terminal};
+
+/// Size of the largest checkpoint that is read (bytes).
+const MAX_CHECKPOINT: u64 = 4 << 30;
 
 /// Writes the error of a file that the system could not read.
 fn unreadable(error: &io::Error) -> String {
@@ -32,4 +34,23 @@ pub fn read(path: &Path, max_size: u64) -> Result<Vec<u8>, String> {
         return Err(too_long());
     }
     Ok(bytes)
+}
+
+/// Reads the bytes of a checkpoint, an ordinary file that is not too large.
+pub fn read_checkpoint(path: &Path) -> Result<Vec<u8>, String> {
+    let read = || -> io::Result<Option<Vec<u8>>> {
+        let file = File::open(path)?;
+        let there = file.metadata()?;
+        if !there.is_file() || there.len() > MAX_CHECKPOINT {
+            return Ok(None);
+        }
+        let mut bytes = vec![];
+        file.take(MAX_CHECKPOINT).read_to_end(&mut bytes)?;
+        Ok(Some(bytes))
+    };
+    match read() {
+        Ok(Some(bytes)) => Ok(bytes),
+        Ok(None) => Err("this is no checkpoint of a3".into()),
+        Err(error) => Err(unreadable(&error)),
+    }
 }

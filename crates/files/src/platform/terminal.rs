@@ -5,8 +5,9 @@ use std::collections::BTreeSet;
 use std::io::{self, IsTerminal, Write};
 use std::sync::{Mutex, PoisonError};
 
-use super::visible::is_shown;
+use super::fault;
 use crate::failure::Failure;
+use crate::visible::is_shown;
 
 /// Largest number of characters of a message.
 const MAX_MESSAGE_CHARS: usize = 1200;
@@ -30,7 +31,7 @@ pub fn send(data: &str) -> Result<(), Failure> {
 fn print(text: &str) -> Result<(), Failure> {
     let mut stdout = io::stdout().lock();
     check_write(
-        super::fault::point()
+        fault::point()
             .and_then(|()| stdout.write_all(text.as_bytes()))
             .and_then(|()| stdout.flush()),
     )

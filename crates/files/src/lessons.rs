@@ -1,3 +1,6 @@
+//! The lessons of the folder `lessons`, carried in the program: printed as they are, or followed
+//! step by step in the window.
+//!
 //! What the window takes from the page of a lesson. Below the heading `## In the window`, each
 //! `### Title` begins a step, whose paragraphs have these forms:
 //!
@@ -9,6 +12,51 @@
 //!   unit and `(within 2 %)`. The rest of the paragraph says why. Then come the replies to wrong
 //!   answers: `- *Choice.* Reply`, and for numbers `- *Otherwise.* Reply`.
 //! * Every other paragraph says what to look at.
+
+use std::sync::LazyLock;
+
+use super::failure::Failure;
+use super::platform::terminal;
+
+/// Number of lessons.
+pub const LESSONS: u8 = 8;
+
+macro_rules! carried {
+    ($($name:literal),* $(,)?) => {
+        [$(include_str!(concat!("../lessons/", $name))),*]
+    };
+}
+
+/// The pages: the index, then the lessons in their order.
+static PAGES: [&str; LESSONS as usize + 1] = carried![
+    "README.md",
+    "1-euler-spirals.md",
+    "2-heun-without-damping.md",
+    "3-stiffness-and-the-step.md",
+    "4-order-and-cost.md",
+    "5-symplectic-or-not.md",
+    "6-implicit-methods.md",
+    "7-contact-and-order.md",
+    "8-how-fine-a-cloth.md",
+];
+
+/// The lessons in their order, read from their pages.
+pub static ALL: LazyLock<Vec<Lesson>> = LazyLock::new(|| {
+    let pages = PAGES[1..].iter().enumerate();
+    pages
+        .map(|(k, page)| Lesson::read(page, PAGES[0], k + 1))
+        .collect()
+});
+
+/// Prints a lesson, or the index.
+pub fn print(lesson: Option<u8>) -> Result<(), Failure> {
+    terminal::send(PAGES[usize::from(lesson.unwrap_or(0))])
+}
+
+/// Returns the text of the scene that a lesson describes under a name, such as `spring.toml`.
+pub fn scene(name: &str) -> Option<&'static str> {
+    PAGES.iter().find_map(|page| scene_in(page, name))
+}
 
 /// A lesson, in steps.
 pub struct Lesson {
@@ -154,7 +202,7 @@ impl Question {
 }
 
 /// Returns the text of a block of TOML in a page whose first line begins with a name.
-pub(super) fn scene<'a>(page: &'a str, name: &str) -> Option<&'a str> {
+fn scene_in<'a>(page: &'a str, name: &str) -> Option<&'a str> {
     let blocks = page.split("```").skip(1).step_by(2);
     let scenes = blocks.filter_map(|block| block.strip_prefix("toml\n"));
     let mut named = scenes.filter(|scene| {
@@ -180,4 +228,50 @@ fn joined(block: &str) -> String {
 fn items(block: &str) -> Vec<String> {
     let block = format!("\n{}", block.trim());
     block.split("\n- ").skip(1).map(joined).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use std::fs;
+
+    use super::*;
+
+    /// Every heading of a step in a page is a step of the lesson, and says all that it needs.
+    #[test]
+    fn every_step_of_every_page_is_read_whole() {
+        let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/lessons");
+        let files = fs::read_dir(folder).unwrap().map(|it| it.unwrap().path());
+        let pages = files.filter(|path| path.is_file()).count();
+        assert_eq!((pages, ALL.len()), (PAGES.len(), usize::from(LESSONS)));
+        for (lesson, page) in ALL.iter().zip(&PAGES[1..]) {
+            let title = &lesson.title;
+            assert!(!title.is_empty() && !lesson.about.is_empty(), "{title}");
+            assert_eq!(lesson.steps.len(), page.matches("\n### ").count());
+            assert!(lesson.steps.len() >= 3, "{title}");
+            for step in &lesson.steps {
+                let (question, title) = (&step.question, &step.title);
+                assert!(step.run.starts_with("a3 ") && !step.look.is_empty());
+                assert!(question.words.ends_with('?'), "{title}");
+                assert!(question.why.len() > 40, "{title}");
+                match &question.answer {
+                    Answer::Choice { choices, right } => {
+                        assert!(*right < choices.len(), "{title}");
+                        for (k, choice) in choices.iter().enumerate() {
+                            assert_eq!(choice.reply.is_none(), k == *right, "{title}");
+                        }
+                    }
+                    Answer::Number { within, hint, .. } => {
+                        assert!(*within <= 0.05 && hint.len() > 20, "{title}");
+                    }
+                }
+            }
+        }
+        // A name means one scene, in whichever lesson it is.
+        for page in PAGES {
+            for name in page.split("```toml\n# ").skip(1) {
+                let name = name.split(':').next().unwrap();
+                assert_eq!(scene_in(page, name), scene(name), "{name}");
+            }
+        }
+    }
 }

@@ -3,10 +3,9 @@
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use super::file::bytes_of;
-use super::kept::{ENDING, Kept, TITLE};
-use crate::failure::Failure;
-use crate::output;
+use super::checkpoint::{ENDING, Kept, TITLE};
+use super::failure::Failure;
+use super::platform::{output, read_checkpoint};
 
 /// A file to which a run is saved periodically.
 pub struct Keeper {
@@ -22,7 +21,7 @@ impl Keeper {
     pub fn new(path: &Path, every: Duration) -> Result<Self, Failure> {
         output::check(path, &[ENDING])?;
         // Only checkpoints are overwritten. The name of the file does not matter.
-        if path.is_file() && !bytes_of(path).is_ok_and(|bytes| bytes.starts_with(TITLE)) {
+        if path.is_file() && !read_checkpoint(path).is_ok_and(|bytes| bytes.starts_with(TITLE)) {
             return Err(Failure::usage(format!(
                 "{}: this is no checkpoint of a3, and would be overwritten: give another name",
                 path.display()

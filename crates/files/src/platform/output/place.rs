@@ -1,14 +1,18 @@
-//! The path of the file that an output goes to: links are followed, and protected files refused.
+//! The place of a file that is written: links are followed, protected files refused, and folders
+//! locked, with which processes wait for one another.
 
-use std::fs::{self, Metadata};
+use std::fs::{self, File, Metadata, TryLockError};
 use std::io;
 use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
 
 use crate::failure::Failure;
-use crate::terminal::reason;
+use crate::platform::terminal::{reason, warn};
 
 /// Largest number of links in a row that are followed, as operating systems do.
 const MAX_LINKS: usize = 40;
+/// Times of waiting for another process: until a message says so, and until the wait fails.
+const WAITS: [Duration; 2] = [Duration::from_secs(1), Duration::from_secs(10)];
 
 /// Returns the folder of a file.
 pub fn folder(path: &Path) -> PathBuf {
@@ -91,4 +95,35 @@ fn no_folder(path: &Path, folder: &Path) -> Failure {
 pub fn not_written(path: &Path, error: &io::Error) -> Failure {
     let why = reason(error);
     Failure::run(format!("{}: could not be written: {why}", path.display()))
+}
+
+/// Locks the folder of a file until the returned value is dropped, so that no other process that
+/// locks it reads or replaces the file meanwhile. `None` where the system has no such locks; a
+/// failure if another process holds the lock for 10 s.
+pub fn lock(path: &Path) -> Result<Option<File>, Failure> {
+    let folder = resolve(path).and_then(|place| File::open(folder(&place)));
+    let Ok(folder) = folder else {
+        return Ok(None);
+    };
+    let (begun, mut is_said) = (Instant::now(), false);
+    loop {
+        match folder.try_lock() {
+            Ok(()) => return Ok(Some(folder)),
+            Err(TryLockError::Error(_)) => return Ok(None),
+            Err(TryLockError::WouldBlock) => {}
+        }
+        let (waited, place) = (begun.elapsed(), path.display());
+        if waited > WAITS[1] {
+            return Err(Failure::run(format!(
+                "{place}: another process has locked its folder for 10 s: end it, or give another name"
+            )));
+        }
+        if waited > WAITS[0] && !is_said {
+            is_said = true;
+            warn(&format!(
+                "{place}: waits for another process that has locked its folder"
+            ));
+        }
+        std::thread::sleep(Duration::from_millis(20));
+    }
 }

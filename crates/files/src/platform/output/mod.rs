@@ -1,7 +1,6 @@
 //! Writing of files: each is complete or absent, and none is also read.
 
 mod draft;
-mod lock;
 mod place;
 
 use std::fs;
@@ -14,8 +13,7 @@ pub use crate::visible::part_of_name;
 
 pub use draft::{Draft, Scratch};
 pub use draft::{files_read, is_read, refuse_read};
-pub use lock::lock;
-pub use place::not_written;
+pub use place::{lock, not_written};
 
 /// Largest number of numbered names of a scene.
 const MAX_NAMES: usize = 9999;

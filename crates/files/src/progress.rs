@@ -1,6 +1,8 @@
-//! A run to a given time, with an observer.
+//! Long runs, with a progress bar where there is a terminal.
 
 use a3_core::{Error, Simulation};
+
+use crate::platform::bar::RunBar;
 
 /// Simulated time between two calls of `frame` (s).
 const FRAME: f64 = 1.0 / 60.0;
@@ -39,4 +41,22 @@ pub fn march(
     }
     simulation.advance_to(until)?;
     Ok(frame(simulation))
+}
+
+/// Advances a simulation to `until` (s) as [`march`] does, without a way to stop, and shows how far
+/// it is.
+pub fn advance(
+    simulation: &mut Simulation,
+    until: f64,
+    mut frame: impl FnMut(&Simulation),
+) -> Result<(), Error> {
+    let start = simulation.time();
+    let mut bar = RunBar::begin();
+    let done = march(simulation, until, |simulation| {
+        frame(simulation);
+        bar.show((simulation.time() - start) / (until - start));
+        true
+    });
+    bar.clear();
+    done.map(drop)
 }

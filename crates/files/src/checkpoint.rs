@@ -11,13 +11,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::bounds;
 use crate::failure::Failure;
-use crate::output;
+use crate::platform::{output, read_checkpoint};
 use crate::scene_file::Source;
-
-#[cfg(not(target_arch = "wasm32"))]
-use super::file::bytes_of;
-#[cfg(target_arch = "wasm32")]
-use super::page::bytes_of;
 
 /// Ending of the files.
 pub const ENDING: &str = "checkpoint";
@@ -89,7 +84,7 @@ impl Kept {
     /// Reads a file.
     pub fn read(path: &Path) -> Result<Self, Failure> {
         let refuse = |why: String| Failure::usage(format!("{}: {why}", path.display()));
-        let bytes = bytes_of(path).map_err(refuse)?;
+        let bytes = read_checkpoint(path).map_err(refuse)?;
         Self::parse(&bytes).map_err(refuse)
     }
 
