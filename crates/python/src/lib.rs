@@ -10,7 +10,6 @@ mod errors;
 mod function;
 mod measures;
 mod monitor;
-mod open;
 mod own_method;
 mod own_system;
 #[cfg(feature = "program")]

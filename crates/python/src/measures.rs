@@ -16,7 +16,7 @@ use pyo3::types::PyBytes;
 use super::errors::{of_failure, wrong};
 use super::function::Raised;
 use super::monitor::Monitor;
-use super::open::{Given, Opened};
+use super::scene::{Given, Opened};
 use super::tables::{control, methods_named};
 
 /// Finds a metric by its name.

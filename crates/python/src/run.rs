@@ -17,8 +17,8 @@ use super::arrays::{indices, numbers, rows};
 use super::driving::{Driven, GoOn, advance, check_time, drive, take_steps};
 use super::errors::{of_error, of_failure, wrong};
 use super::function::Raised;
-use super::open::{Given, Opened, setting};
 use super::own_method::raised_by;
+use super::scene::{Given, Opened, setting};
 use super::tables::method;
 use super::turns::{Turn, Turns};
 

@@ -11,7 +11,7 @@ use pyo3::types::PyBytes;
 use super::errors::{of_failure, wrong};
 use super::measures::{drawn, work};
 use super::monitor::Monitor;
-use super::open::{Given, Opened};
+use super::scene::{Given, Opened};
 
 /// What a scene can do without.
 #[pyclass(frozen, module = "a3_simulator._a3")]

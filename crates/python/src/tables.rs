@@ -6,7 +6,7 @@ use a3_scenes::{SCENES, Setup};
 use pyo3::prelude::*;
 
 use super::errors::{of_failure, wrong};
-use super::scene::{OpenScene, Origin};
+use super::scene::{OpenScene, origin};
 
 /// Returns the names of the built-in scenes.
 #[pyfunction]
@@ -40,16 +40,6 @@ pub fn table(py: Python<'_>, kind: &str, text: &str) -> PyResult<String> {
     let scene = OpenScene::read(origin(py, kind, text)?, SceneOptions::default());
     let table = scene.and_then(|scene| scene.table());
     table.map_err(|failure| of_failure(py, &failure))
-}
-
-/// Returns the origin of a scene of this kind.
-pub fn origin<'a>(py: Python<'_>, kind: &str, text: &'a str) -> PyResult<Origin<'a>> {
-    match kind {
-        "named" => Ok(Origin::Named(text)),
-        "toml" => Ok(Origin::Toml(text)),
-        "table" => Ok(Origin::Table(text)),
-        _ => Err(wrong(py, format!("there is no kind of scene `{kind}`"))),
-    }
 }
 
 /// Finds a method by its name or its letter.

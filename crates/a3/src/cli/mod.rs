@@ -1,14 +1,11 @@
 //! The command line: its commands, arguments and help.
 
 mod command;
-#[cfg(feature = "window")]
-mod drawing;
 mod explain;
 mod judge;
 mod measures;
 mod run;
-pub mod share;
-mod sweep;
+pub mod sweep;
 pub mod values;
 #[cfg(feature = "window")]
 mod window;

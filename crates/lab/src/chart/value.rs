@@ -12,7 +12,7 @@ use a3_plot::{Figure, WorkPrecision};
 
 use super::asked::{check_methods, check_metric, check_scene};
 use super::data::Data;
-use super::each::Each;
+use super::data::Each;
 use super::measure::{Measured, Study, stiffened};
 use super::record::Record;
 use super::words::Label;

@@ -12,7 +12,7 @@ use a3_lab::chart::data::VERSION;
 use a3_lab::chart::record::Record;
 
 use super::plan::{Plan, Run};
-use crate::cli::share::Id;
+use crate::cli::sweep::Id;
 
 /// Largest size of the file of a run (bytes).
 const MAX_SIZE: u64 = 1 << 16;
