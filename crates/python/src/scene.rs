@@ -15,15 +15,22 @@ use super::function::Raised;
 use super::own_method::raised_by;
 use super::own_system::{self, add_forces};
 
-/// Origin of a scene.
-#[derive(Clone, Copy, Debug)]
-pub enum Origin<'a> {
-    /// Name of a built-in scene, or path of a file.
-    Named(&'a str),
-    /// Text in TOML.
-    Toml(&'a str),
-    /// Table of the keys of a scene file, as JSON.
-    Table(&'a str),
+/// Reads a scene. `kind` is one of "named" (a built-in scene by its name, or a file by its path),
+/// "toml" (its text), and "table" (the keys of a scene file, as JSON).
+///
+/// # Errors
+/// There is no such scene, or it has a fault.
+pub fn source(kind: &str, text: &str) -> Result<Source, Failure> {
+    Ok(match kind {
+        "named" => setup::find(text, "scene")?,
+        "toml" => Source::written(text)?,
+        "table" => Source::tabulated(text)?,
+        _ => {
+            return Err(Failure::usage(format!(
+                "there is no kind of scene `{kind}`"
+            )));
+        }
+    })
 }
 
 /// Scene that was read, or that a program has built.
@@ -38,42 +45,9 @@ enum Made {
 }
 
 impl OpenScene {
-    /// Reads a scene.
-    ///
-    /// # Errors
-    /// There is no such scene, or it has a fault.
-    pub fn read(origin: Origin, options: SceneOptions) -> Result<Self, Failure> {
-        let source = match origin {
-            Origin::Named(name) => setup::find(name, "scene")?,
-            Origin::Toml(text) => Source::written(text)?,
-            Origin::Table(json) => Source::tabulated(json)?,
-        };
-        let made = Made::Read(source);
-        Ok(Self { made, options })
-    }
-
-    /// Takes a scene that was built.
-    pub fn of(scene: Scene, options: SceneOptions) -> Self {
-        Self {
-            made: Made::Built(Box::new(scene)),
-            options,
-        }
-    }
-
     /// Returns whether a program has built the scene.
     pub fn is_built(&self) -> bool {
         matches!(self.made, Made::Built(_))
-    }
-
-    /// Returns the table of the scene's keys, as JSON.
-    ///
-    /// # Errors
-    /// The scene is not one with such keys.
-    pub fn table(&self) -> Result<String, Failure> {
-        match &self.made {
-            Made::Read(source) => source.table().map_err(Failure::Input),
-            Made::Built(_) => Err(Failure::usage("this scene was not read, so it has no keys")),
-        }
     }
 
     /// Builds the scene.
@@ -164,16 +138,6 @@ impl OpenScene {
     }
 }
 
-/// Returns the origin of a scene of this kind.
-pub fn origin<'a>(py: Python<'_>, kind: &str, text: &'a str) -> PyResult<Origin<'a>> {
-    match kind {
-        "named" => Ok(Origin::Named(text)),
-        "toml" => Ok(Origin::Toml(text)),
-        "table" => Ok(Origin::Table(text)),
-        _ => Err(wrong(py, format!("there is no kind of scene `{kind}`"))),
-    }
-}
-
 /// Arguments of Python that give a scene.
 #[derive(FromPyObject)]
 pub struct Given<'py> {
@@ -213,12 +177,11 @@ impl Opened {
         };
         let failed = |failure| of_failure(py, &failure);
         let raised = Raised::default();
-        let scene = match given.source.extract::<(String, String)>() {
-            Ok((kind, text)) => {
-                OpenScene::read(origin(py, &kind, &text)?, options).map_err(failed)?
-            }
-            Err(_) => OpenScene::of(own_system::scene(&given.source, &raised)?, options),
+        let made = match given.source.extract::<(String, String)>() {
+            Ok((kind, text)) => Made::Read(source(&kind, &text).map_err(failed)?),
+            Err(_) => Made::Built(Box::new(own_system::scene(&given.source, &raised)?)),
         };
+        let scene = OpenScene { made, options };
         let mut setup = py.detach(|| scene.build()).map_err(failed)?;
         add_forces(&mut setup.scene, &given.forces, &raised)?;
         Ok(Self {

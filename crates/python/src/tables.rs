@@ -1,12 +1,12 @@
 //! The tables of scenes and methods, and the keys of a scene.
 
 use a3_core::{Control, Method, integrators};
-use a3_files::setup::SceneOptions;
+use a3_files::failure::Failure;
 use a3_scenes::{SCENES, Setup};
 use pyo3::prelude::*;
 
 use super::errors::{of_failure, wrong};
-use super::scene::{OpenScene, origin};
+use super::scene::source;
 
 /// Returns the names of the built-in scenes.
 #[pyfunction]
@@ -37,8 +37,7 @@ pub fn methods() -> Vec<Row> {
 /// Returns the table of the keys of a scene, as JSON. `kind` is one of "named", "toml" and "table".
 #[pyfunction]
 pub fn table(py: Python<'_>, kind: &str, text: &str) -> PyResult<String> {
-    let scene = OpenScene::read(origin(py, kind, text)?, SceneOptions::default());
-    let table = scene.and_then(|scene| scene.table());
+    let table = source(kind, text).and_then(|source| source.table().map_err(Failure::Input));
     table.map_err(|failure| of_failure(py, &failure))
 }
 
