@@ -1,4 +1,4 @@
-//! a3: mass-spring systems in a window, on a page and without either. The window, pictures and
+//! a3: mass-spring systems in a window and without one. The window, pictures and
 //! films are the feature `window`.
 //!
 //! The commands that measure are functions of this library too. They take a scene, methods of the
@@ -9,7 +9,7 @@
 //! * [`stability()`]: the largest stable and accurate steps.
 //! * [`compare()`]: runs side by side, and their distances.
 //! * [`judge_states()`]: the errors of another program, and the method that it agrees with.
-//! * [`embedded::simplify()`]: what a scene can do without.
+//! * [`simplify()`]: what a scene can do without.
 //! * [`scene()`]: a scene by its name, or from a file.
 //!
 //! Heun's method as one's own, on a system of one's own, beside Euler's:
@@ -37,45 +37,25 @@
 //! ```
 
 #![forbid(unsafe_code)]
-// Some builds leave parts of shared modules unused; the native build with the window reports dead
-// code.
-#![cfg_attr(
-    any(not(feature = "window"), target_arch = "wasm32"),
-    allow(dead_code, unused_imports)
-)]
-// Functions that cannot fail on a page have the signatures of the native ones, which can.
-#![cfg_attr(
-    target_arch = "wasm32",
-    allow(clippy::unused_self, clippy::unnecessary_wraps)
-)]
 
 mod cli;
-#[cfg(not(target_arch = "wasm32"))]
 mod commands;
-#[cfg(not(target_arch = "wasm32"))]
-pub mod embedded;
 #[cfg(test)]
 mod hostile;
-#[cfg(target_arch = "wasm32")]
-pub mod page;
-#[cfg(not(target_arch = "wasm32"))]
 mod program;
 
-#[cfg(not(target_arch = "wasm32"))]
 pub use a3_files::{
     failure::{Failure, InputError},
     monitor::Monitor,
     quantity::Quantity,
-    setup::scene,
+    setup::{Request, SceneOptions, scene},
 };
-#[cfg(not(target_arch = "wasm32"))]
 pub use a3_lab::{
     chart::{Chart, ChartOptions, Record, chart},
     choose::{Choice, ChooseOptions, Chosen, Goal, choose},
     compare::{ComparedRun, Comparison, compare},
     judge::{JudgeOptions, StatesOf, Verdict, judge_states},
-    simplify::{LeanScene, ModelEffect, SceneRun, Simplified, SimplifyOptions},
+    simplify::{LeanScene, ModelEffect, SceneRun, Simplified, SimplifyOptions, simplify},
     stability::{MethodLimits, Stability, stability},
 };
-#[cfg(not(target_arch = "wasm32"))]
 pub use program::{main, run};

@@ -4,7 +4,7 @@ use std::ffi::{OsStr, OsString};
 use std::path::{Path, PathBuf};
 
 use crate::failure::Failure;
-use crate::output;
+use crate::platform::output;
 
 /// Largest number of frames of a run. More are refused as a mistake.
 const MAX_FRAMES: f64 = 1e6;

@@ -1,7 +1,5 @@
 //! Search for a step or a tolerance that holds, after a run with another one blew up.
 
-#[cfg(not(target_arch = "wasm32"))]
-use std::cell::Cell;
 use std::iter::successors;
 use std::ops::RangeInclusive;
 use std::time::Duration;
@@ -17,10 +15,6 @@ pub const MIN_HOLD_TIME: f64 = 10.0;
 
 /// Processor time of the trials while a window waits.
 const WINDOW_BUDGET: Duration = Duration::from_millis(300);
-
-/// Processor time of the trials at the end of a command.
-#[cfg(not(target_arch = "wasm32"))]
-const COMMAND_BUDGET: Duration = Duration::from_secs(3);
 
 /// Number of steps of a trial between two looks at the time.
 const STEPS_PER_LOOK: u64 = 4;
@@ -101,31 +95,25 @@ struct Trials<'a> {
 
 /// Seeks a step that holds until the time `until` (s) on the scene of a run with fixed steps: the
 /// longest of the trials that is shorter than its own. For a run to a tolerance that blew up, it
-/// seeks a smaller tolerance or, if the run found no step to meet it, a larger one.
-#[cfg(not(target_arch = "wasm32"))]
-pub fn seek(run: &Simulation, until: f64) -> Sought {
-    crate::interrupt::listen();
-    let begun = processor::time();
-    let bar = crate::progress::Bar::new(COMMAND_BUDGET.as_secs_f64());
-    bar.say("looking for a step that holds ");
-    let told = Cell::new(0.0);
+/// seeks a smaller tolerance or, if the run found no step to meet it, a larger one. Trials take the
+/// processor time `budget` at most, and go on as long as `may_continue` says.
+pub fn seek(
+    run: &Simulation,
+    until: f64,
+    budget: Duration,
+    may_continue: &dyn Fn() -> bool,
+) -> Sought {
     let trials = Trials {
         run,
         until,
-        end: begun + COMMAND_BUDGET,
-        may_continue: &|| {
-            let taken = processor::time().saturating_sub(begun).as_secs_f64();
-            bar.advance(taken - told.replace(taken));
-            crate::interrupt::go_on()
-        },
+        end: processor::time() + budget,
+        may_continue,
     };
     let modes = match run.control() {
         Control::Step(_) => spectrum(run.model().system(), 0.0, &run.scene().state),
         Control::Tolerance(_) => vec![],
     };
-    let sought = trials.seek(&modes);
-    bar.clear();
-    sought
+    trials.seek(&modes)
 }
 
 /// Returns a shorter step (s) for a run whose own fixed step does not hold on its scene; `None` if

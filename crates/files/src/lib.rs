@@ -17,6 +17,7 @@
     allow(clippy::unused_self, clippy::unnecessary_wraps)
 )]
 
+pub mod arguments;
 pub mod bounds;
 #[cfg(target_arch = "wasm32")]
 pub mod browser;
@@ -24,16 +25,14 @@ pub mod checkpoint;
 pub mod ending;
 pub mod failure;
 #[cfg(not(target_arch = "wasm32"))]
-pub mod fault;
-#[cfg(not(target_arch = "wasm32"))]
 pub mod frames;
 pub mod holding;
 #[cfg(not(target_arch = "wasm32"))]
-pub mod interrupt;
+pub mod keeper;
 pub mod lessons;
 pub mod monitor;
-#[cfg_attr(target_arch = "wasm32", path = "download.rs")]
-pub mod output;
+#[cfg_attr(target_arch = "wasm32", path = "page.rs")]
+mod platform;
 pub mod processor;
 pub mod progress;
 pub mod quantity;
@@ -45,8 +44,8 @@ pub mod scene_file;
 pub mod setup;
 #[cfg(not(target_arch = "wasm32"))]
 pub mod states;
-#[cfg_attr(target_arch = "wasm32", path = "console.rs")]
-pub mod terminal;
 #[cfg(not(target_arch = "wasm32"))]
 pub mod verdict;
 pub mod visible;
+
+pub use platform::*;

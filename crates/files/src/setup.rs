@@ -7,8 +7,8 @@ use a3_scenes::{Description, Presentation, Setup};
 
 use crate::bounds;
 use crate::failure::{Failure, InputError};
+use crate::platform::terminal;
 use crate::scene_file::Source;
-use crate::terminal;
 
 /// Options of a scene.
 #[derive(Clone, Copy, Debug, Default)]
@@ -200,6 +200,16 @@ pub fn find(typed: &str, option: &str) -> Result<Source, Failure> {
         InputError::Unknown(why) => Failure::usage(format!("`{option} {typed}`: {why}")),
         error => error.into(),
     })
+}
+
+/// Checks the number of solvers that are compared.
+pub fn check_count(count: usize) -> Result<(), Failure> {
+    if (2..=4).contains(&count) {
+        return Ok(());
+    }
+    Err(Failure::usage(format!(
+        "compare takes 2 to 4 solvers, as in `a3 compare e:0.05 r:0.05`, not {count}"
+    )))
 }
 
 /// Checks that the step or the tolerance is within its range.

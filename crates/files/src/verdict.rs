@@ -1,11 +1,19 @@
 //! Messages about failed runs without a window: a step that would have held, energy that nothing
 //! put in, and constraints that are not met.
 
+use std::cell::Cell;
+use std::time::Duration;
+
 use a3_core::{Cause, Control, Error, Rounded, Scene, Simulation, Unmet, Vector3};
 
-use crate::failure::Failure;
-use crate::holding::seek;
-use crate::terminal;
+use super::failure::Failure;
+use super::holding::{self, Sought};
+use super::platform::bar::Bar;
+use super::platform::{interrupt, terminal};
+use super::processor;
+
+/// Processor time of a search for a step that holds.
+const BUDGET: Duration = Duration::from_secs(3);
 
 /// Returns the failure of a run that was to last until the time `until` (s). `kept` is a clause
 /// that says what was written.
@@ -34,6 +42,22 @@ fn advice(run: &Simulation, error: &Error, until: f64) -> String {
         }
         _ => format!("; {}", seek(run, until).clause(until)),
     }
+}
+
+/// Seeks a step, or a tolerance, that holds until the time `until` (s), with a bar.
+fn seek(run: &Simulation, until: f64) -> Sought {
+    interrupt::listen();
+    let begun = processor::time();
+    let bar = Bar::new(BUDGET.as_secs_f64());
+    bar.say("looking for a step that holds ");
+    let told = Cell::new(0.0);
+    let sought = holding::seek(run, until, BUDGET, &|| {
+        let taken = processor::time().saturating_sub(begun).as_secs_f64();
+        bar.advance(taken - told.replace(taken));
+        interrupt::go_on()
+    });
+    bar.clear();
+    sought
 }
 
 /// Least depth of a particle inside an obstacle at the start, over the radius of the scene, that is

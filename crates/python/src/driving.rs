@@ -2,8 +2,8 @@
 
 use std::time::{Duration, Instant};
 
-use a3::embedded;
 use a3_core::{Error, Simulation};
+use a3_files::{progress, verdict};
 use pyo3::prelude::*;
 
 use super::errors::of_error;
@@ -81,13 +81,13 @@ pub fn take_steps(run: &mut Simulation, count: u64, go_on: GoOn) -> Driven {
 /// Advances to a time (s). If the run blows up, the message has advice, unless the run `calls`
 /// functions of Python: a search for a step that holds would call them too often.
 pub fn advance(run: &mut Simulation, time: f64, calls: bool, go_on: GoOn) -> Driven {
-    let gone = embedded::advance(run, time, go_on);
+    let gone = progress::march(run, time, go_on);
     let gone = gone.and_then(|arrived| if arrived { run.conclude() } else { Ok(()) });
     gone.map_err(|error| {
         let message = if calls {
             error.to_string()
         } else {
-            embedded::message(run, &error, time)
+            verdict::lost(run, &error, "", time).to_string()
         };
         Box::new((error, message))
     })

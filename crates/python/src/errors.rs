@@ -1,7 +1,7 @@
 //! Errors as Python exceptions, with the words of the program.
 
-use a3::Failure;
 use a3_core::{BlowUp, Cause, Error};
+use a3_files::failure::Failure;
 use pyo3::exceptions::PyKeyboardInterrupt;
 use pyo3::prelude::*;
 use pyo3::types::PyType;

@@ -10,11 +10,12 @@ mod errors;
 mod function;
 mod measures;
 mod monitor;
-mod open;
 mod own_method;
 mod own_system;
+#[cfg(feature = "program")]
 mod program;
 mod run;
+mod scene;
 mod simplify;
 mod tables;
 mod turns;
@@ -28,6 +29,7 @@ mod _a3 {
     use super::monitor::Monitor;
     #[pymodule_export]
     use super::own_method::{Derivative, add_foreign, add_method, add_tableau};
+    #[cfg(feature = "program")]
     #[pymodule_export]
     use super::program::main;
     #[pymodule_export]

@@ -2,10 +2,13 @@
 
 use std::path::PathBuf;
 
-use a3::{ChartOptions, ChooseOptions, Failure, Goal, JudgeOptions, StatesOf};
 use a3_core::accuracy::{Metric, SetBy};
 use a3_core::stability::Mode;
 use a3_core::{Control, Method};
+use a3_files::failure::Failure;
+use a3_lab::chart::ChartOptions;
+use a3_lab::choose::{ChooseOptions, Goal};
+use a3_lab::judge::{JudgeOptions, StatesOf};
 use numpy::PyArray1;
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
@@ -13,7 +16,7 @@ use pyo3::types::PyBytes;
 use super::errors::{of_failure, wrong};
 use super::function::Raised;
 use super::monitor::Monitor;
-use super::open::{Given, Opened};
+use super::scene::{Given, Opened};
 use super::tables::{control, methods_named};
 
 /// Finds a metric by its name.
@@ -74,7 +77,7 @@ pub fn drawn<'py>(
 
 /// A measured chart.
 #[pyclass(frozen, module = "a3_simulator._a3")]
-pub struct Chart(a3::Chart);
+pub struct Chart(a3_lab::chart::Chart);
 
 #[pymethods]
 impl Chart {
@@ -137,7 +140,7 @@ pub fn chart(
     let raised = opened.raised(methods.iter().copied());
     monitor.watch(&raised);
     work(py, &raised, || {
-        a3::chart(&scene, &methods, &options, monitor)
+        a3_lab::chart::chart(&scene, &methods, &options, monitor)
     })
     .map(Chart)
 }
@@ -194,9 +197,9 @@ pub fn choose(
     let raised = opened.raised(methods.iter().copied());
     monitor.watch(&raised);
     let choice = work(py, &raised, || {
-        a3::choose(&scene, &methods, &options, monitor)
+        a3_lab::choose::choose(&scene, &methods, &options, monitor)
     })?;
-    let chosen = |chosen: &a3::Chosen| {
+    let chosen = |chosen: &a3_lab::choose::Chosen| {
         let why = match chosen.set_by {
             SetBy::Accuracy => "accuracy",
             SetBy::Stability => "stability",
@@ -221,7 +224,7 @@ pub fn choose(
 
 /// Measured limits.
 #[pyclass(frozen, module = "a3_simulator._a3")]
-pub struct Stability(a3::Stability);
+pub struct Stability(a3_lab::stability::Stability);
 
 #[pymethods]
 impl Stability {
@@ -279,7 +282,10 @@ pub fn stability(
     let (scene, methods) = (opened.scene(py)?, methods_named(py, &methods)?);
     let raised = opened.raised(methods.iter().copied());
     monitor.watch(&raised);
-    work(py, &raised, || a3::stability(&scene, &methods, monitor)).map(Stability)
+    work(py, &raised, || {
+        a3_lab::stability::stability(&scene, &methods, monitor)
+    })
+    .map(Stability)
 }
 
 /// A run of a comparison: method, setting, states one after the other, energies (J), work, and the
@@ -317,7 +323,7 @@ pub fn compare<'py>(
     let raised = opened.raised(asked.iter().map(|(method, _)| *method));
     monitor.watch(&raised);
     let compared = work(py, &raised, || {
-        a3::compare(&scene, &asked, until, frames, monitor)
+        a3_lab::compare::compare(&scene, &asked, until, frames, monitor)
     })?;
     let runs = compared.runs.iter().map(|run| {
         (
@@ -368,7 +374,7 @@ pub fn judge(
     let raised = opened.raised([]);
     monitor.watch(&raised);
     let verdict = work(py, &raised, || {
-        a3::judge_states(&scene, states, &options, monitor)
+        a3_lab::judge::judge_states(&scene, states, &options, monitor)
     })?;
     Ok((verdict.text, verdict.json))
 }

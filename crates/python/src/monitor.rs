@@ -69,7 +69,7 @@ impl Monitor {
     }
 }
 
-impl a3::Monitor for Monitor {
+impl a3_files::monitor::Monitor for Monitor {
     fn go_on(&self) -> bool {
         !self.stopped.load(Ordering::Relaxed)
     }

@@ -2,9 +2,13 @@
 
 use std::sync::Arc;
 
-use a3::embedded::{self, Look};
 use a3_core::{Checkpoint, Error, Network, Passage, Simulation, SpringKind, StepLimits, Vector3};
+use a3_files::failure::Failure;
+use a3_files::output;
+use a3_media::painter::Painter;
+use a3_media::show::{Arrows, Manner, Quantity, Show, check_drawing, style};
 use a3_scenes::Presentation;
+use a3_studio::caption;
 use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
@@ -13,8 +17,8 @@ use super::arrays::{indices, numbers, rows};
 use super::driving::{Driven, GoOn, advance, check_time, drive, take_steps};
 use super::errors::{of_error, of_failure, wrong};
 use super::function::{Function, Raised, Shape};
-use super::open::{Given, Opened, setting};
 use super::own_method::raised_by;
+use super::scene::{Given, Opened, setting};
 use super::tables::method;
 use super::turns::{Turn, Turns};
 
@@ -404,20 +408,47 @@ impl Run {
         dark: bool,
         transparent: bool,
     ) -> PyResult<Bound<'py, PyBytes>> {
-        let look = Look {
-            colour,
-            arrows,
-            wireframe,
-            springs,
-            orthographic,
-            dark,
-            transparent,
-        };
         let mut simulation = self.simulation(py)?;
         let run = &mut *simulation;
-        let presentation = &self.presentation;
-        let drawn = py.detach(move || embedded::picture(run, presentation, look, (width, height)));
-        let png = drawn.map_err(|failure| of_failure(py, &failure))?;
+        let draw = move || {
+            let manner = Manner {
+                style: style(wireframe, springs),
+                springs_of: None,
+                orthographic,
+                dark,
+                colour: named(colour, "colour", &Quantity::ALL, Quantity::name)?,
+                arrows: named(arrows, "arrows", &Arrows::ALL, Arrows::name)?,
+            };
+            check_drawing(run, manner, false)?;
+            let mut show = Show::new(self.presentation.clone(), manner);
+            show.transparent = transparent;
+            let size = (width, height);
+            let mut painter = Painter::new(&show, run, size, caption(&show, size))?;
+            output::png(&painter.draw(&mut show, run)?, size)
+        };
+        let png = py
+            .detach(draw)
+            .map_err(|failure| of_failure(py, &failure))?;
         Ok(PyBytes::new(py, &png))
     }
+}
+
+/// Finds the choice of this name.
+fn named<T: Copy>(
+    name: Option<&str>,
+    option: &str,
+    all: &[T],
+    name_of: impl Fn(T) -> &'static str,
+) -> Result<Option<T>, Failure> {
+    let Some(name) = name else {
+        return Ok(None);
+    };
+    let found = all.iter().copied().find(|choice| name_of(*choice) == name);
+    found.map(Some).ok_or_else(|| {
+        let names: Vec<_> = all.iter().map(|choice| name_of(*choice)).collect();
+        Failure::usage(format!(
+            "{option} `{name}`: the choices are {}",
+            names.join(", ")
+        ))
+    })
 }

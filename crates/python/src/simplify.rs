@@ -2,19 +2,20 @@
 
 use std::path::PathBuf;
 
-use a3::embedded;
-use a3::{Failure, Quantity, SimplifyOptions};
+use a3_files::failure::Failure;
+use a3_files::quantity::Quantity;
+use a3_lab::simplify::SimplifyOptions;
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 
 use super::errors::{of_failure, wrong};
 use super::measures::{drawn, work};
 use super::monitor::Monitor;
-use super::open::{Given, Opened};
+use super::scene::{Given, Opened};
 
 /// What a scene can do without.
 #[pyclass(frozen, module = "a3_simulator._a3")]
-pub struct Simplified(a3::Simplified);
+pub struct Simplified(a3_lab::simplify::Simplified);
 
 #[pymethods]
 impl Simplified {
@@ -91,5 +92,8 @@ pub fn simplify(
         ..SimplifyOptions::new(error)
     };
     let scene = &opened.scene;
-    work(py, &[], || embedded::simplify(scene, &options, monitor)).map(Simplified)
+    work(py, &[], || {
+        a3_lab::simplify::simplify(&scene.described()?, &options, monitor)
+    })
+    .map(Simplified)
 }

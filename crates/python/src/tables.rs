@@ -1,11 +1,12 @@
 //! The tables of scenes and methods, and the keys of a scene.
 
-use a3::embedded::{OpenScene, Origin, SceneOptions};
 use a3_core::{Control, Method, integrators};
+use a3_files::failure::Failure;
 use a3_scenes::{SCENES, Setup};
 use pyo3::prelude::*;
 
 use super::errors::{of_failure, wrong};
+use super::scene::source;
 
 /// Returns the names of the built-in scenes.
 #[pyfunction]
@@ -36,19 +37,8 @@ pub fn methods() -> Vec<Row> {
 /// Returns the table of the keys of a scene, as JSON. `kind` is one of "named", "toml" and "table".
 #[pyfunction]
 pub fn table(py: Python<'_>, kind: &str, text: &str) -> PyResult<String> {
-    let scene = OpenScene::read(origin(py, kind, text)?, SceneOptions::default());
-    let table = scene.and_then(|scene| scene.table());
+    let table = source(kind, text).and_then(|source| source.table().map_err(Failure::Input));
     table.map_err(|failure| of_failure(py, &failure))
-}
-
-/// Returns the origin of a scene of this kind.
-pub fn origin<'a>(py: Python<'_>, kind: &str, text: &'a str) -> PyResult<Origin<'a>> {
-    match kind {
-        "named" => Ok(Origin::Named(text)),
-        "toml" => Ok(Origin::Toml(text)),
-        "table" => Ok(Origin::Table(text)),
-        _ => Err(wrong(py, format!("there is no kind of scene `{kind}`"))),
-    }
 }
 
 /// Finds a method by its name or its letter.

@@ -4,22 +4,19 @@ use std::path::PathBuf;
 
 use a3_core::accuracy::Metric;
 use a3_core::{Grid, Method};
+use a3_files::arguments::{grid, step};
 use a3_files::lessons::LESSONS;
 use a3_files::quantity::Quantity;
 use clap::builder::TypedValueParser;
 use clap::{Args, Parser, Subcommand};
-#[cfg(not(target_arch = "wasm32"))]
 use clap_complete::Shell;
 
-#[cfg(not(target_arch = "wasm32"))]
 use super::judge::Judge;
 use super::measures::{ErrorScope, WorkMeasure, metric};
 use super::run::{RunOptions, SceneArgs};
-#[cfg(not(target_arch = "wasm32"))]
 use super::sweep::Sweep;
 use super::values::{
-    SCENE, SOLVER_OR_ALL, budget, choice, error, factor, grid, horizon, pause, picture_size, rate,
-    step,
+    SCENE, SOLVER_OR_ALL, budget, choice, error, factor, horizon, pause, picture_size, rate,
 };
 #[cfg(feature = "window")]
 use super::window::{Compare, Render, WindowOptions};
@@ -85,10 +82,8 @@ pub enum Command {
     Simplify(Simplify),
     /// Judge results of other programs: their errors, their order, the solver that they agree with,
     /// and the usual mistakes
-    #[cfg(not(target_arch = "wasm32"))]
     Judge(Judge),
     /// Run scenes with many solvers, steps and values of their keys, in shares on many machines
-    #[cfg(not(target_arch = "wasm32"))]
     Sweep(Sweep),
     /// Compare two to four solvers side by side, in a window or as a picture
     #[cfg(feature = "window")]
@@ -105,13 +100,11 @@ pub enum Command {
         lesson: Option<u8>,
     },
     /// Print the completion script of a shell
-    #[cfg(not(target_arch = "wasm32"))]
     Completions {
         /// Shell that the script is for
         shell: Shell,
     },
     /// Print the manual as a man page, or write one page for each command
-    #[cfg(not(target_arch = "wasm32"))]
     Man {
         /// Folder for a3.1, a3-simulate.1, ...; by default, a single page goes to standard output
         #[arg(long, short, value_name = "FOLDER")]

@@ -2,10 +2,11 @@
 
 use std::path::PathBuf;
 
+use a3_files::arguments::step;
 use clap::Args;
 
 use super::run::SceneArgs;
-use super::values::{error, horizon, picture_size, seconds, step};
+use super::values::{error, horizon, picture_size, seconds};
 
 #[derive(Args)]
 #[command(

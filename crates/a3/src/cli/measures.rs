@@ -1,10 +1,11 @@
 //! The measures of the error and of the cost of a run.
 
 use a3_core::accuracy::{Metric, Scope};
+use a3_files::arguments::particle;
 use clap::builder::TypedValueParser;
 use clap::{Args, ValueEnum};
 
-use super::values::{choice, particle};
+use super::values::choice;
 
 /// Creates a parser of the metric of errors.
 pub fn metric() -> impl TypedValueParser<Value = Metric> {

@@ -1,11 +1,12 @@
 //! The options of runs: what is simulated, how, and until when.
 
 use a3_core::{Disturbances, Grid, Method, StepLimits};
+use a3_files::arguments::{absolute, grid, max_step, step, threads};
 use a3_files::failure::Failure;
 use a3_files::setup::{Request, Run, SceneOptions};
 use clap::Args;
 
-use super::values::{SCENE, SOLVER, absolute, grid, max_step, step, threads, until};
+use super::values::{SCENE, SOLVER, until};
 
 /// Options of a scene: its name or file, its grid, wind, swing and self-collision.
 #[derive(Args)]

@@ -1,17 +1,18 @@
-//! The options of windows, comparisons, pictures and films.
+//! The options of windows, comparisons, pictures and films, and of the look of a picture.
 
 use std::path::PathBuf;
 
 use a3_core::Method;
+use a3_files::arguments::{particle, step};
 use a3_files::failure::Failure;
+use a3_files::setup::check_count;
+use a3_media::show::{Arrows, Manner, Quantity, style};
 use a3_studio::session::Opening;
 use clap::Args;
+use clap::builder::TypedValueParser;
 
-use super::drawing::Drawing;
 use super::run::{RunOptions, SceneArgs, StepOptions};
-use super::values::{
-    SOLVER_AND_STEP, SOLVER_OR_COMMAND, beginning, particle, rate, size, step, until,
-};
+use super::values::{SOLVER_AND_STEP, SOLVER_OR_COMMAND, beginning, choice, rate, size, until};
 
 #[derive(Args)]
 pub struct WindowOptions {
@@ -156,12 +157,7 @@ impl Compare {
     /// # Errors
     /// There are fewer than two or more than four solvers.
     pub fn opening(&self) -> Result<Opening, Failure> {
-        let count = self.methods.len();
-        if !(2..=4).contains(&count) {
-            return Err(Failure::usage(format!(
-                "compare takes 2 to 4 solvers, as in `a3 compare e:0.05 r:0.05`, not {count}"
-            )));
-        }
+        check_count(self.methods.len())?;
         self.what.limit_threads();
         let methods = self.methods.iter();
         Ok(Opening {
@@ -170,5 +166,72 @@ impl Compare {
                 .collect(),
             ..self.look.opening(&self.what, &self.limits)
         })
+    }
+}
+
+/// Creates a parser of the quantity of colours.
+fn quantity() -> impl TypedValueParser<Value = Quantity> {
+    choice(&Quantity::ALL, |quantity| {
+        let help = match quantity {
+            Quantity::Speed => "Speed (m/s)",
+            Quantity::Strain => "Largest strain of the springs at a particle, or of its tetrahedra",
+            Quantity::Force => "Sum of the forces on a particle that is free (N)",
+            Quantity::Contact => "Force by which obstacles and surfaces touch a particle (N)",
+            Quantity::Error => "Distance from the reference of a comparison (m)",
+        };
+        (quantity.name(), help)
+    })
+}
+
+/// Creates a parser of the vector of arrows.
+fn arrows() -> impl TypedValueParser<Value = Arrows> {
+    choice(&Arrows::ALL, |arrows| {
+        let help = match arrows {
+            Arrows::Velocity => "Velocity (m/s)",
+            Arrows::Force => "Sum of the forces on a particle (N)",
+        };
+        (arrows.name(), help)
+    })
+}
+
+/// Options for the look of a picture.
+#[expect(clippy::struct_excessive_bools, reason = "each is an option")]
+#[derive(Args, Clone, Copy)]
+pub struct Drawing {
+    /// Draw the wireframe instead of the surface
+    #[arg(long, conflicts_with = "springs")]
+    pub wireframe: bool,
+    /// Draw all springs instead of the surface: structural, shear and bend springs, each in its
+    /// own colour and width
+    #[arg(long)]
+    pub springs: bool,
+    /// Draw in parallel projection instead of perspective
+    #[arg(long)]
+    pub orthographic: bool,
+    /// Draw light objects on a dark background, for this run only
+    #[arg(long, overrides_with = "light")]
+    pub dark: bool,
+    /// Draw on a light background, even if the panel of an earlier window chose the dark one
+    #[arg(long, overrides_with = "dark")]
+    pub light: bool,
+    /// Colour each particle by a quantity
+    #[arg(long, value_name = "QUANTITY", value_parser = quantity(), alias = "color")]
+    pub colour: Option<Quantity>,
+    /// Draw an arrow on each particle
+    #[arg(long, value_name = "VECTOR", value_parser = arrows())]
+    pub arrows: Option<Arrows>,
+}
+
+impl Drawing {
+    /// Returns the look of a picture, with the springs of a particle highlighted, if one is given.
+    pub fn of(self, springs_of: Option<usize>) -> Manner {
+        Manner {
+            style: style(self.wireframe, self.springs),
+            springs_of,
+            orthographic: self.orthographic,
+            dark: self.dark,
+            colour: self.colour,
+            arrows: self.arrows,
+        }
     }
 }

@@ -4,9 +4,9 @@ use a3_core::accuracy::Scope;
 
 use a3_files::failure::Failure;
 use a3_files::monitor::Monitor;
-use a3_lab::chart::{ChartOptions, chart, describe};
+use a3_lab::chart::{ChartOptions, chart};
 use a3_lab::choose::{self, ChooseOptions, Goal};
-use a3_lab::simplify::{self, SimplifyOptions};
+use a3_lab::simplify::{SimplifyOptions, simplify};
 use a3_lab::stability::stability;
 use a3_studio::session::{Answer, Diagram, Question, Task};
 
@@ -74,10 +74,8 @@ fn of_choice(task: &Task, monitor: &dyn Monitor) -> Result<Answer, Failure> {
 }
 
 fn of_simplification(task: &Task, monitor: &dyn Monitor) -> Result<Answer, Failure> {
-    let request = &task.request;
-    let title = describe(request.options.on, &request.scene()?);
     let options = SimplifyOptions::new(task.error);
-    let found = simplify::measure(request, &title, &options, monitor)?;
+    let found = simplify(&task.request, &options, monitor)?;
     let lean = found.lean.as_ref();
     let is_leaner = lean.filter(|lean| !lean.parts.is_empty() || lean.factor != 1.0);
     Ok(Answer {

@@ -5,14 +5,13 @@ use std::path::PathBuf;
 
 use a3_core::accuracy::{Metric, Scope};
 use a3_core::{Method, Scene};
+use a3_files::bar::Bar;
 use a3_files::failure::Failure;
 use a3_files::output;
-use a3_files::progress::Bar;
 use a3_files::setup::Request;
 use a3_files::{interrupt, terminal};
 use a3_lab::chart::asked::{check_metric, methods};
-use a3_lab::chart::data::Data;
-use a3_lab::chart::each::Each;
+use a3_lab::chart::data::{Data, Each};
 use a3_lab::chart::value::{Chart, ChartOptions};
 use a3_lab::chart::words::Label;
 use a3_lab::figure_file::{PICTURES, write_picture};

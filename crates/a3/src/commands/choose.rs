@@ -2,8 +2,8 @@
 
 use a3_core::Scene;
 use a3_core::accuracy::{Frames, Metric, Scope};
+use a3_files::bar::Bar;
 use a3_files::failure::Failure;
-use a3_files::progress::Bar;
 use a3_files::setup::Request;
 use a3_files::{interrupt, terminal};
 use a3_lab::chart::{check_metric, methods};

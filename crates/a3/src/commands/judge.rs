@@ -4,9 +4,9 @@ use std::path::Path;
 
 use a3_core::Scene;
 use a3_core::accuracy::Horizon;
+use a3_files::bar::Bar;
 use a3_files::failure::Failure;
 use a3_files::output;
-use a3_files::progress::Bar;
 use a3_files::states::{States, read};
 use a3_files::{interrupt, terminal};
 use a3_lab::chart::{Label, describe};

@@ -2,9 +2,9 @@
 
 use std::path::Path;
 
+use a3_files::bar::Bar;
 use a3_files::failure::Failure;
 use a3_files::output;
-use a3_files::progress::Bar;
 use a3_files::setup::Request;
 use a3_files::{interrupt, terminal};
 use a3_lab::chart::describe;

@@ -2,20 +2,20 @@
 //! and the summary of the run.
 
 use std::path::Path;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use a3_core::Simulation;
-use a3_files::checkpoint::{Energy, Extremes, Keeper, Kept};
+use a3_files::bar::Bar;
+use a3_files::checkpoint::{Energy, Extremes, Kept};
 use a3_files::failure::Failure;
 use a3_files::frames::{FrameTimes, Sequence};
+use a3_files::keeper::Keeper;
 use a3_files::output;
-use a3_files::progress::Bar;
 use a3_files::setup::{Request, Run};
 use a3_files::{interrupt, progress, terminal, verdict};
 use a3_media::export;
 use a3_media::export::Export;
 use serde::Serialize;
-use web_time::Instant;
 
 use crate::cli::Simulate;
 

@@ -3,9 +3,9 @@
 use std::path::{Path, PathBuf};
 
 use a3_core::Scene;
+use a3_files::bar::Bar;
 use a3_files::failure::Failure;
 use a3_files::output;
-use a3_files::progress::Bar;
 use a3_files::{interrupt, terminal};
 use a3_lab::chart::{Label, methods};
 use a3_lab::figure_file::{PICTURES, write_picture};

@@ -9,9 +9,9 @@ use std::path::Path;
 
 use a3_scenes::Mesh;
 
-use super::mesh;
+use super::files::{MESH_ENDINGS, MeshReader, load_mesh};
+use crate::platform::terminal;
 use crate::rounding::{MANY, round_up};
-use crate::terminal;
 
 /// Longest side of the mesh (m).
 const SIDE: f64 = 2.0;
@@ -26,7 +26,7 @@ const SOLID_DENSITY: f64 = 1000.0;
 
 /// Returns whether a file with this ending is a mesh.
 pub fn is_mesh(extension: &str) -> bool {
-    mesh::ENDINGS.contains(&extension)
+    MESH_ENDINGS.contains(&extension)
 }
 
 /// Writes the text of a scene in which the mesh of a file hangs: a cloth if it is made of
@@ -36,7 +36,7 @@ pub fn is_mesh(extension: &str) -> bool {
 /// # Errors
 /// The file cannot be read, or the mesh has no size.
 pub fn scene(path: &Path) -> Result<String, String> {
-    let mut mesh = mesh::load(path, &mut mesh::Reader::new(1))?;
+    let mut mesh = load_mesh(path, &mut MeshReader::new(1))?;
     if mesh.tetrahedra.is_empty() {
         mesh = mesh.welded();
     }

@@ -8,9 +8,8 @@ use a3_core::{Grid, Method, Scene, integrators};
 use a3_scenes::{Description, Fault, Places, Setup, parse_json, parse_toml};
 use serde_json::Value;
 
-use super::files::{beside, read_input, read_text};
-use super::hash::Hash;
-use super::{hung, mesh};
+use super::files::{Hash, MeshReader, beside, load_mesh, not_a_mesh, read_input, read_text};
+use super::hung;
 use crate::failure::InputError;
 
 /// Argument that stands for standard input, and its name in messages.
@@ -77,7 +76,7 @@ impl Source {
             }
             Some(extension) if path.is_file() => {
                 let scenes = "scenes are in files that end in .toml or .json";
-                let why = format!("{}; {scenes}", mesh::not_read(Some(extension)));
+                let why = format!("{}; {scenes}", not_a_mesh(Some(extension)));
                 return Err(wrong(typed, why));
             }
             _ => return Err(InputError::Unknown(unknown(typed))),
@@ -248,10 +247,10 @@ impl Source {
     /// Builds the scene, with its own grid of the first cloth or with another one.
     pub fn build(&self, grid: Option<Grid>) -> Result<Setup, InputError> {
         // With another grid, the scene is built twice: with its own grid too.
-        let mut reader = mesh::Reader::new(if grid.is_some() { 2 } else { 1 });
+        let mut reader = MeshReader::new(if grid.is_some() { 2 } else { 1 });
         let mut mesh = |name: &str| {
             let path = beside(self.path.as_deref(), name)?;
-            let loaded = mesh::load(&path, &mut reader);
+            let loaded = load_mesh(&path, &mut reader);
             loaded.map_err(|why| format!("{}: {why}", path.display()))
         };
         let built = self.description.build(grid, &mut mesh);

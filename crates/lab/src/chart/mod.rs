@@ -2,7 +2,6 @@
 
 pub mod asked;
 pub mod data;
-pub mod each;
 pub mod measure;
 pub mod picture;
 pub mod record;

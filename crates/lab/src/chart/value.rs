@@ -7,12 +7,12 @@ use a3_files::bounds::{FACTORS, HORIZONS};
 use a3_files::failure::Failure;
 use a3_files::monitor::Monitor;
 use a3_files::report::Report;
-use a3_files::rows::text;
+use a3_files::rows;
 use a3_plot::{Figure, WorkPrecision};
 
 use super::asked::{check_methods, check_metric, check_scene};
 use super::data::Data;
-use super::each::Each;
+use super::data::Each;
 use super::measure::{Measured, Study, stiffened};
 use super::record::Record;
 use super::words::Label;
@@ -323,7 +323,7 @@ impl Chart {
 
     fn text(&self, json: bool) -> Result<String, Failure> {
         let runs: Vec<_> = self.runs().cloned().collect();
-        text::write(&runs, json).map_err(Failure::run)
+        rows::write(&runs, json).map_err(Failure::run)
     }
 }
 

@@ -2,14 +2,11 @@
 //! order, the method that they agree with, and the usual mistakes.
 
 mod constant;
-mod finding;
 mod fit;
 mod grid;
 pub mod judgement;
-mod pace;
 pub mod picture;
 pub mod plain;
-mod quantity;
 mod rows;
 mod scheme;
 mod search;

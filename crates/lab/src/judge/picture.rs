@@ -4,8 +4,8 @@ use std::path::Path;
 
 use a3_core::Scene;
 use a3_core::accuracy::{Metric, Scope};
+use a3_files::bar::Bar;
 use a3_files::failure::Failure;
-use a3_files::progress::Bar;
 use a3_plot::{Mark, WorkPrecision};
 
 use super::judgement::Judgement;

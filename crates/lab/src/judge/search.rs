@@ -5,7 +5,7 @@ use a3_core::integrators::METHODS;
 
 use super::constant::Mistake;
 use super::grid::MIN_AT_STEPS;
-use super::pace::{Pace, paces};
+use super::grid::{Pace, paces};
 use super::scheme::Scheme;
 use super::trial::{Compared, Judged, Start, Trial, Way};
 

@@ -3,10 +3,10 @@
 use serde::Serialize;
 
 use super::constant::Mistake;
-use super::finding::{mistake, question};
 use super::judgement::{Drift, Judgement};
 use super::search::Agreement;
 use super::words::{difference, is_within};
+use super::words::{mistake, question};
 
 /// Judgement of a file, with the keys of the summary.
 #[derive(Serialize)]

@@ -5,7 +5,7 @@ use a3_core::{Control, Method, Scene, Simulation};
 use a3_files::monitor::Monitor;
 
 use super::constant::Mistake;
-use super::pace::Pace;
+use super::grid::Pace;
 use super::plain::{Forces, Plain};
 use super::rows::{Rows, columns, distance};
 use super::scheme::{PlainRun, Scheme};

@@ -9,8 +9,7 @@ use a3_core::{Control, Error, Method};
 use a3_files::failure::Failure;
 use a3_scenes::{Description, Part, regridded, without};
 
-use super::models::{Model, Models};
-use super::turns::in_turns;
+use super::models::{Model, Models, in_turns};
 use crate::chart::measure::time;
 use crate::motion::Motion;
 

@@ -7,7 +7,6 @@ mod chart;
 mod lean;
 mod models;
 mod table;
-mod turns;
 mod value;
 
-pub use value::{LeanScene, ModelEffect, SceneRun, Simplified, SimplifyOptions, measure};
+pub use value::{LeanScene, ModelEffect, SceneRun, Simplified, SimplifyOptions, measure, simplify};

@@ -1,16 +1,18 @@
 //! Models of a scene: without one of its parts, and on other grids.
 
 use std::cmp::Ordering;
+use std::time::Duration;
 
+use a3_core::accuracy::{self, Frames, GoOn};
 use a3_core::integrators::find;
-use a3_core::{Control, Method, Scene};
+use a3_core::{Control, Method, Scene, Simulation};
 use a3_files::failure::Failure;
 use a3_files::monitor::Monitor;
+use a3_files::processor;
 use a3_files::rows::Rows;
 use a3_files::setup::Request;
 use a3_scenes::{Description, Part, Regridded, parts, regridded, without};
 
-use super::turns::in_turns;
 use crate::motion::{Compared, Known, Motion, Places, Track, grid};
 
 /// Relative tolerances at which the whole scene is tried, the largest first. The first that is
@@ -282,4 +284,37 @@ pub fn measure_all(
         monitor.advance(weight(model));
     }
     Ok(true)
+}
+
+/// Least and largest number of turns.
+const TURNS: std::ops::Range<u32> = 3..200;
+/// Computing time of all turns after which no other follows.
+const ENOUGH: Duration = Duration::from_millis(300);
+
+/// Times two runs in turns, in processor time, so that other work of the machine slows both alike.
+/// The shortest time of each counts. `None` if `go_on` returned false.
+pub fn in_turns(
+    runs: [(&Scene, &'static Method, Control); 2],
+    frames: &Frames,
+    go_on: GoOn,
+) -> Result<Option<[Duration; 2]>, Failure> {
+    let (mut best, mut sum) = ([Duration::MAX; 2], Duration::ZERO);
+    for turn in 0..TURNS.end {
+        if turn >= TURNS.start && sum > ENOUGH {
+            break;
+        }
+        for ((scene, method, control), best) in runs.into_iter().zip(&mut best) {
+            let run = Simulation::new(scene.clone(), method, control);
+            let mut run = run.map_err(Failure::run)?;
+            let begun = processor::time();
+            let end = accuracy::run(&mut run, frames, go_on, None);
+            let elapsed = processor::time().saturating_sub(begun);
+            if end.map_err(Failure::run)?.is_none() {
+                return Ok(None);
+            }
+            *best = elapsed.min(*best);
+            sum += elapsed;
+        }
+    }
+    Ok(Some(best))
 }

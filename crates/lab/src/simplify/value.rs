@@ -17,7 +17,7 @@ use super::chart::chart;
 use super::lean::{Answer, LeanModel, MAX_TIME_RATIO, Solved, assemble, solve, time_in_turns};
 use super::models::{Model, Models, measure_all};
 use super::table;
-use crate::chart::{check_motion, look_ahead};
+use crate::chart::{check_motion, describe, look_ahead};
 use crate::motion::{Compared, open};
 
 /// Method that is often the cheapest, and is tried first.
@@ -176,7 +176,20 @@ impl Simplified {
     }
 }
 
-/// Finds what a scene can do without.
+/// Finds what a scene can do without for an error, as `a3 simplify` does.
+///
+/// # Errors
+/// Those of [`measure()`], and the scene has a fault.
+pub fn simplify(
+    given: &Request,
+    options: &SimplifyOptions,
+    monitor: &dyn Monitor,
+) -> Result<Simplified, Failure> {
+    let title = describe(given.options.on, &given.scene()?);
+    measure(&given.described(), &title, options, monitor)
+}
+
+/// Finds what a scene can do without, under a title.
 ///
 /// # Errors
 /// An option is out of range or makes no sense on the scene, nothing moves, no run is accurate

@@ -1,7 +1,6 @@
 //! Stability: the largest stable step of each solver, predicted and observed, and a chart of
 //! the stability regions that explain it.
 
-mod data;
 mod measure;
 mod table;
 mod value;

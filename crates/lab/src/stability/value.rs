@@ -9,8 +9,8 @@ use a3_files::report::Report;
 use a3_plot::{CurveStyle, Figure, Region, StabilityRegions};
 
 use super::measure::{MethodLimits, Stability, measure};
+use super::table;
 use super::table::{INTERVAL, is_interval, observation, step};
-use super::{data, table};
 use crate::chart::{Label, check_methods, check_scene, picture};
 
 /// Measures the largest steps of these methods on a scene, as `a3 stability` does; of all methods
@@ -63,7 +63,7 @@ impl Stability {
     /// # Errors
     /// Never for limits that were measured.
     pub fn json(&self) -> Result<String, Failure> {
-        data::json(&self.limits)
+        table::json(&self.limits)
     }
 
     /// Draws the stability regions on a sheet of this width and height (px, 96 to the inch), with

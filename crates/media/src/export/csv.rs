@@ -8,7 +8,7 @@ use a3_files::output::Draft;
 use a3_files::rounding::{DIGITS, short};
 
 use super::format::Export;
-use super::numbers::velocities;
+use super::format::velocities;
 
 /// Approximate size of a row (bytes).
 pub const ROW_SIZE: f64 = 150.0;

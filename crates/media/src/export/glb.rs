@@ -15,8 +15,8 @@ use a3_scenes::Surface;
 use serde_json::{Value, json};
 
 use super::format::Export;
+use super::format::rows;
 use super::geometry::{Geometry, positions};
-use super::numbers::rows;
 use crate::surfaces::Liquid;
 
 /// Largest number of frames. The animation has a weight for each morph target in each frame, so

@@ -11,7 +11,7 @@ use a3_files::terminal;
 use serde::{Serialize, Serializer};
 
 use super::format::Export;
-use super::numbers::velocities;
+use super::format::velocities;
 
 /// Approximate size of a particle (bytes).
 pub const ROW_SIZE: f64 = 130.0;

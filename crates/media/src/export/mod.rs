@@ -7,7 +7,6 @@ mod geometry;
 mod glb;
 mod json;
 mod npz;
-mod numbers;
 mod obj;
 mod pc2;
 mod usd;

@@ -16,7 +16,7 @@ use a3_files::rounding::{DIGITS, short};
 use crc32fast::Hasher;
 
 use super::format::Export;
-use super::numbers::velocities;
+use super::format::velocities;
 
 /// Alignment of the numbers, to which the header is padded (bytes).
 const ALIGNMENT: usize = 64;

@@ -18,8 +18,8 @@ use a3_files::terminal;
 use a3_scenes::Surface;
 
 use super::format::Export;
+use super::format::rows;
 use super::geometry::{Geometry, positions, vertices};
-use super::numbers::rows;
 use super::obj;
 
 /// A `PointCache2` file that is being written, with its mesh.

@@ -3,8 +3,9 @@
 use std::path::Path;
 
 use a3_core::Simulation;
+use a3_files::bar::Bar;
 use a3_files::failure::Failure;
-use a3_files::progress::{self, Bar};
+use a3_files::progress;
 use a3_files::{interrupt, verdict};
 
 use super::format::TimedFilm;

@@ -3,7 +3,7 @@
 use a3_core::Method;
 use a3_files::failure::Failure;
 use a3_files::output;
-use a3_files::rows::text;
+use a3_files::rows;
 use a3_files::terminal;
 use a3_lab::chart::picture;
 use a3_lab::chart::record::Record;
@@ -78,7 +78,7 @@ fn lines(sweep: &Sweep, plan: &Plan, records: &[(usize, Record)]) -> Result<Stri
     let mut all = String::new();
     for (k, (place, record)) in records.iter().enumerate() {
         let run = &plan.runs[*place];
-        let written = text::csv_lines(record, k == 0).map_err(Failure::run)?;
+        let written = rows::csv_lines(record, k == 0).map_err(Failure::run)?;
         let mut written = written.as_str();
         if let Some((head, line)) = written.split_once('\n').filter(|_| k == 0) {
             let names = sweep.names().into_iter().map(str::to_owned);

@@ -6,13 +6,13 @@ use std::path::{Path, PathBuf};
 
 use a3_files::failure::Failure;
 use a3_files::output;
-use a3_files::rows::text;
+use a3_files::rows;
 use a3_files::terminal;
 use a3_lab::chart::data::VERSION;
 use a3_lab::chart::record::Record;
 
 use super::plan::{Plan, Run};
-use crate::cli::share::Id;
+use crate::cli::sweep::Id;
 
 /// Largest size of the file of a run (bytes).
 const MAX_SIZE: u64 = 1 << 16;
@@ -83,7 +83,7 @@ impl Folder {
 
     /// Writes the outcome of a run, whole or not at all.
     pub fn write(&self, id: Id, record: Record) -> Result<(), Failure> {
-        let text = text::write(&[record], false).map_err(Failure::run)?;
+        let text = rows::write(&[record], false).map_err(Failure::run)?;
         output::write(&self.file(id), text.as_bytes())
     }
 
@@ -118,6 +118,6 @@ impl Folder {
 /// Reads the run in the text of a file, whose checksum must be there and correct.
 fn record_of(text: &str) -> Option<Record> {
     let names_checks = text.lines().next()?.ends_with(",check");
-    let mut records: Vec<Record> = text::read(text, false).ok().filter(|_| names_checks)?;
+    let mut records: Vec<Record> = rows::read(text, false).ok().filter(|_| names_checks)?;
     (records.len() == 1).then(|| records.remove(0))
 }

@@ -14,7 +14,7 @@ use serde_json::Value;
 use super::file::Sweep;
 use super::keys;
 use super::values::exact;
-use crate::cli::share::Id;
+use crate::cli::sweep::Id;
 
 /// Largest number of runs.
 const MAX_RUNS: u128 = 1_000_000;

@@ -3,9 +3,9 @@
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use a3_core::accuracy::{Frames, horizon};
+use a3_files::bar::Bar;
 use a3_files::failure::Failure;
 use a3_files::interrupt;
-use a3_files::progress::Bar;
 use a3_lab::chart::data::VERSION;
 use a3_lab::chart::measure::{compared, precision, reference};
 use a3_lab::chart::record::Record;
