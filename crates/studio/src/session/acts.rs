@@ -5,6 +5,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use a3_core::{Checkpoint, Network, Simulation, integrators};
+use a3_files::holding::Sought;
 use a3_media::show;
 use a3_scenes::Setup;
 
@@ -135,6 +136,16 @@ impl Session {
         self.readings.read_reference(self.runs.reference.as_ref());
         self.history.begin_again();
         self.begin_new_run();
+    }
+
+    /// Resets all runs, and gives that of a pane, which blew up, what would have held.
+    pub fn run_again(&mut self, at: usize) {
+        let sought = self.runs.panes[at].limit.sought();
+        if let Some(control) = sought.and_then(Sought::control) {
+            self.set_step_of(at, control.value());
+            self.reset();
+            self.readings.paused = false;
+        }
     }
 
     /// Pauses, and advances all runs by the longest step among them.
