@@ -110,9 +110,9 @@ fn body(session: &Session, at: Vector3<f64>, velocity: Vector3<f64>) -> (RigidBo
     (body, if is_ball { "ball" } else { "box" })
 }
 
-/// Throws a body from the eye so that it falls on the point under the pointer: from beside or behind
-/// earlier ones, which a reset throws again at the same time, and from where there is room. Surfaces
-/// that cross already are brought apart first.
+/// Throws a body from the eye so that it falls on the point under the pointer: from beside or
+/// behind earlier ones, which a reset throws again at the same time, and from where there is room.
+/// Surfaces that cross already are brought apart first.
 fn thrown(session: &mut Session, aim: &Aim, how: Throw) -> Result<String, String> {
     let network = session.runs.first().model().network();
     let count = network.map_or(0, |network| network.bodies().len());
