@@ -1,10 +1,11 @@
-//! Search for a step or a tolerance that holds, after a run with another one blew up.
+//! Search for a step or a tolerance that holds, before a run begins with one that does not, or
+//! after it blew up.
 
 use std::iter::successors;
 use std::ops::RangeInclusive;
 use std::time::Duration;
 
-use a3_core::stability::{Mode, largest_step, spectrum};
+use a3_core::stability::{Budget, Mode, largest_step, spectrum};
 use a3_core::{BlowUp, Cause, Control, Rounded, Simulation};
 
 use crate::bounds::{LARGEST_STEP, SMALLEST_STEP};
@@ -15,6 +16,10 @@ pub const MIN_HOLD_TIME: f64 = 10.0;
 
 /// Processor time of the trials while a window waits.
 const WINDOW_BUDGET: Duration = Duration::from_millis(300);
+
+/// Work of the trials of one step before a run begins: about 0.3 s of processor time. It is
+/// counted, so that a run begins with the same step on every machine.
+const BEGINNING_WORK: f64 = 1e7;
 
 /// Number of steps of a trial between two looks at the time.
 const STEPS_PER_LOOK: u64 = 4;
@@ -89,6 +94,8 @@ struct Trials<'a> {
     until: f64,
     /// Processor time of the program at which the search ends.
     end: Duration,
+    /// Work of all trials.
+    budget: Budget,
     /// Returns whether trials may continue.
     may_continue: &'a dyn Fn() -> bool,
 }
@@ -107,6 +114,7 @@ pub fn seek(
         run,
         until,
         end: processor::time() + budget,
+        budget: Budget::unlimited(),
         may_continue,
     };
     let modes = match run.control() {
@@ -116,34 +124,21 @@ pub fn seek(
     trials.seek(&modes)
 }
 
-/// Returns a shorter step (s) for a run whose own fixed step does not hold on its scene; `None` if
-/// that step was not found to fail. Scenes with contact or rigid bodies are judged by their modes
-/// alone, because trial runs of them take too long.
-pub fn shorter_step(run: &Simulation) -> Option<f64> {
+/// Shortens the step of a run that would blow up in its first ten seconds with its own, and returns
+/// the step that it had (s). Its limit at the start of the scene and trial runs of its first
+/// seconds show that. A step stays if no shorter one is found.
+pub fn shorten(run: &mut Simulation) -> Option<f64> {
     let step = run.control().step()?;
     let scene = run.scene();
     let modes = spectrum(scene.model.system(), 0.0, &scene.state);
     let limit = largest_step(run.method(), &modes).ok().flatten();
-    let past = limit.is_some_and(|limit| step > limit.step);
-    let network = run.model().network();
-    let slow = network.is_some_and(|n| n.contact_layer().is_some() || !n.bodies().is_empty());
-    let trials = Trials::of_window(run, MIN_HOLD_TIME);
-    let fails = past || !slow && matches!(trials.hold(run.control()), Tried::Fails);
-    let shorter = match slow {
-        true => limit.map(|limit| rounded(0.9 * limit.step)),
-        false if fails => would_hold(run, MIN_HOLD_TIME, &modes).step(),
-        false => None,
-    };
-    shorter.filter(|shorter| fails && (SMALLEST_STEP..step).contains(shorter))
-}
-
-/// Returns a shorter step (s), as [`shorter_step`] does, for a run whose own fixed step is beyond
-/// the limit of the modes at the start of its scene: without trials if it is not.
-pub fn step_within_limit(run: &Simulation) -> Option<f64> {
-    let step = run.control().step()?;
-    let modes = spectrum(run.model().system(), 0.0, &run.scene().state);
-    let limit = largest_step(run.method(), &modes).ok().flatten()?;
-    (step > limit.step).then(|| shorter_step(run)).flatten()
+    let is_past = limit.is_some_and(|limit| step > limit.step);
+    let own = || Trials::of_beginning(run).reach(run.control());
+    let fails = is_past || matches!(own(), Err(Tried::Fails));
+    let shorter = fails.then(|| Trials::of_beginning(run).seek(&modes).step());
+    let shorter = shorter.flatten().filter(|shorter| *shorter < step)?;
+    run.set_control(Control::Step(shorter)).ok()?;
+    Some(step)
 }
 
 /// Seeks a step, as [`seek`] does, that holds until the time `until` (s), at least for ten seconds.
@@ -155,12 +150,17 @@ pub fn would_hold(run: &Simulation, until: f64, modes: &[Mode]) -> Sought {
 }
 
 impl Sought {
-    /// Returns the step (s) that holds, as far as it was tried.
-    fn step(self) -> Option<f64> {
+    /// Returns the step or the tolerance that holds, as far as it was tried.
+    pub fn control(self) -> Option<Control> {
         match self {
-            Self::Holds(control) | Self::HeldUntil(control, _) => control.step(),
+            Self::Holds(control) | Self::HeldUntil(control, _) => Some(control),
             Self::Failed(_) | Self::Beyond(_) | Self::Untried => None,
         }
+    }
+
+    /// Returns the step (s) that holds, as far as it was tried.
+    fn step(self) -> Option<f64> {
+        self.control()?.step()
     }
 }
 
@@ -171,7 +171,17 @@ impl<'a> Trials<'a> {
             run,
             until,
             end: processor::time() + WINDOW_BUDGET,
+            budget: Budget::unlimited(),
             may_continue: &|| true,
+        }
+    }
+
+    /// Creates trials before a run begins.
+    fn of_beginning(run: &'a Simulation) -> Self {
+        Self {
+            end: Duration::MAX,
+            budget: Budget::new(BEGINNING_WORK),
+            ..Self::of_window(run, MIN_HOLD_TIME)
         }
     }
 
@@ -218,22 +228,32 @@ impl<'a> Trials<'a> {
     /// Finds out whether a run from the start of the scene does not diverge, gains no energy and
     /// meets its constraints.
     fn hold(&self, control: Control) -> Tried {
-        let Ok(mut again) = self.run.anew(self.run.method(), control) else {
-            return Tried::Fails;
+        let again = match self.reach(control) {
+            Ok(again) => again,
+            Err(tried) => return tried,
         };
-        while again.time() < self.until {
-            if again.take_steps(STEPS_PER_LOOK).is_err() {
-                return Tried::Fails;
-            }
-            if processor::time() > self.end || !(self.may_continue)() {
-                return Tried::Unended(again.time().min(self.until));
-            }
-        }
         let broken = again.worst_constraint().is_some_and(|c| c.is_visible());
-        if again.conclude().is_ok() && again.gained().is_none() && !broken {
+        if again.gained().is_none() && !broken {
             Tried::Holds
         } else {
             Tried::Fails
+        }
+    }
+
+    /// Runs from the start of the scene to the end of the trial, unless the run diverges.
+    fn reach(&self, control: Control) -> Result<Simulation, Tried> {
+        let again = self.run.anew(self.run.method(), control);
+        let mut again = again.map_err(|_| Tried::Fails)?;
+        while again.time() < self.until {
+            match self.budget.take(&mut again, STEPS_PER_LOOK) {
+                Some(false) => return Err(Tried::Fails),
+                Some(true) if processor::time() <= self.end && (self.may_continue)() => {}
+                _ => return Err(Tried::Unended(again.time().min(self.until))),
+            }
+        }
+        match again.conclude() {
+            Ok(()) => Ok(again),
+            Err(_) => Err(Tried::Fails),
         }
     }
 }
@@ -248,7 +268,44 @@ fn rounded(most: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use a3_core::integrators;
+    use a3_scenes::Description;
+
     use super::*;
+
+    /// Scenes of one's own, with bodies, contact and solids, begin with a step that holds.
+    #[test]
+    fn a_default_step_that_would_blow_up_is_shortened() {
+        let hammock = "[[cloth]]\ngrid = [12, 24]\nwidth = 2.3\ndensity = 0.4\nstiffness = [900, 300, 10]\n\
+            damping_ratio = 0.2\nat = [0, 1.5, -0.5]\ndown = [0, 0, 1]\npin = [{ at = ['left', 'right'] }]\n\
+            [[body]]\nparts = [{ ball = 0.15 }]\nmass = 1.5\nat = [0.1, 2, 0]\n";
+        let cube = "[[box]]\ncenter = [0.5, 0.1, 0]\nsize = [1, 0.2, 1]\n[[jelly]]\ngrid = [5, 5, 5]\n\
+            size = [0.4, 0.4, 0.4]\ndensity = 300\nstiffness = [1500, 800, 400]\nat = [0, 0.8, 0]\n";
+        let solid = "[[solid]]\ngrid = [5, 5, 5]\nsize = [0.4, 0.4, 0.4]\ndensity = 1000\nyoung = 1e5\n\
+            poisson = 0.4\nmodel = 'neo-hookean'\ndamping = 0.005\nat = [0.25, 0.8, 0]\n";
+        let soft = "[[cloth]]\ngrid = [8, 8]\nwidth = 1\ndensity = 0.3\nstiffness = [20, 10, 1]\n\
+            damping_ratio = 0.2\nat = [0, 1, 0]\npin = [{ at = ['top'] }]\n";
+        for (own, holds) in [
+            (hammock, false),
+            (cube, false),
+            (solid, false),
+            (soft, true),
+        ] {
+            let text = format!("gravity = [0, -9.81, 0]\nfloor = 0\n{own}");
+            let begun = || {
+                let scene = Description::parse(&text).unwrap();
+                let scene = scene.build(None, &mut |_| unreachable!()).unwrap().scene;
+                let method = integrators::find("trapezoid").unwrap();
+                let mut run = Simulation::new(scene, method, Control::Step(0.005)).unwrap();
+                (shorten(&mut run), run)
+            };
+            let (asked, mut run) = begun();
+            assert_eq!(asked, (!holds).then_some(0.005), "{own}");
+            // A machine's speed has no part in it.
+            assert_eq!(begun().1.control(), run.control());
+            run.advance_to(2.0).unwrap();
+        }
+    }
 
     #[test]
     fn steps_are_rounded_down_to_a_digit() {

@@ -4,6 +4,7 @@ use a3_core::{Disturbances, Grid, Method, StepLimits};
 use a3_files::arguments::{absolute, grid, max_step, step, threads};
 use a3_files::failure::Failure;
 use a3_files::setup::{Request, Run, SceneOptions};
+use a3_files::{holding, terminal};
 use clap::Args;
 
 use super::values::{SCENE, SOLVER, until};
@@ -108,7 +109,8 @@ pub struct RunOptions {
 
 impl RunOptions {
     /// Reads the scene and prepares its run: by the solver that the options name, or else by
-    /// `own`, or else by that of the scene.
+    /// `own`, or else by that of the scene. A default step that would not hold is shortened, and a
+    /// note says so.
     ///
     /// # Errors
     /// The scene has a fault or no end, or the options do not fit it.
@@ -133,7 +135,17 @@ impl RunOptions {
         let mut setup = request.build()?;
         let solver = request.source.solver_or(self.solver.or(own));
         setup.scene.limits = self.limits.given().or(setup.scene.limits);
-        let simulation = request.simulate(&setup, solver, self.step)?;
+        let mut simulation = request.simulate(&setup, solver, self.step)?;
+        let is_asked = self.step.or(request.source.description.step).is_some();
+        if !is_asked
+            && own.is_none()
+            && let Some(usual) = holding::shorten(&mut simulation)
+        {
+            let step = simulation.control().value();
+            terminal::note(&format!(
+                "step {step} s: a longer one, such as the default {usual} s, would not hold"
+            ));
+        }
         Ok(Run {
             request,
             simulation,

@@ -41,7 +41,23 @@ fn a_ball_is_thrown_at_the_cloth_and_deleted() {
     app.expect("cursor", "Crosshair");
     display.xdotool(&["click", "1"]);
     app.expect("particles", "403");
+    // With a tool that throws, a drag does.
+    display.xdotool(&["mousemove", "--window", &app.window, "391", "600"]);
+    app.expect_frames();
+    display.xdotool(&["click", "1"]);
+    display.xdotool(&["mousemove", "--window", &app.window, "300", "450"]);
+    app.expect("cursor", "Crosshair");
+    display.xdotool(&["mousedown", "1"]);
+    app.expect_frames();
+    display.xdotool(&["mousemove", "--window", &app.window, "400", "300"]);
+    app.expect_frames();
+    display.xdotool(&["mouseup", "1"]);
+    app.expect("particles", "405");
     app.press_for("Escape", "tools", "false");
+    // Without tools, a key throws, again and again.
+    app.press_for("F4", "particles", "407");
+    app.press_for("shift+F4", "particles", "409");
+    app.press_for("z", "particles", "407");
     app.quit();
 }
 

@@ -364,8 +364,8 @@ impl Budget {
     }
 
     /// Takes steps of a run. Returns whether the run holds; `None` once the budget is spent, and if
-    /// a callback fails, see [`check`](Self::check).
-    pub(super) fn take(&self, run: &mut Simulation, steps: u64) -> Option<bool> {
+    /// a callback fails.
+    pub fn take(&self, run: &mut Simulation, steps: u64) -> Option<bool> {
         let (mut left, mut portion) = (steps, 1);
         while left > 0 {
             let before = cost(run);

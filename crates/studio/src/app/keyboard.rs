@@ -19,6 +19,7 @@ pub fn action(key: &Key) -> Option<Action> {
         Key::Named(NamedKey::F1) => session::action("F1"),
         Key::Named(NamedKey::F3) => session::action("F3"),
         Key::Named(NamedKey::F2) => session::action("F2"),
+        Key::Named(NamedKey::F4) => session::action("F4"),
         Key::Character(text) if text == " " => session::action("Space"),
         Key::Character(text) if text.chars().count() == 1 => session::action(text),
         _ => None,
@@ -99,6 +100,7 @@ mod tests {
                     "F1" => Key::Named(NamedKey::F1),
                     "F3" => Key::Named(NamedKey::F3),
                     "F2" => Key::Named(NamedKey::F2),
+                    "F4" => Key::Named(NamedKey::F4),
                     key => Key::Character(key.into()),
                 };
                 assert_eq!(action(&typed), Some(binding.action));

@@ -225,7 +225,8 @@ impl Mouse {
         if self.pointer.is_click() && self.drag == Drag::Pan {
             return;
         }
-        if self.drag == Drag::Tool(None) && !self.pointer.is_click() {
+        let throws = session.panel.editor.tool.throws();
+        if self.drag == Drag::Tool(None) && !self.pointer.is_click() && !throws {
             self.drag = Drag::Orbit;
         }
         let ([x, y], [was_x, was_y]) = (tile.place(position), tile.place(self.pointer.position));

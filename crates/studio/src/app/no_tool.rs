@@ -9,6 +9,9 @@ use crate::session::Session;
 /// Does nothing.
 pub fn release(_: &Pointer, _: Option<usize>, _: &mut Session, _: &Screen, _: usize) {}
 
+/// Does nothing.
+pub fn throw(_: &Pointer, _: bool, _: &mut Session, _: &Screen, _: usize) {}
+
 /// Draws nothing.
 pub fn drag(_: &Pointer, _: usize, _: &mut Session, _: &Screen, _: usize) {}
 

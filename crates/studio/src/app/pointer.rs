@@ -60,6 +60,13 @@ impl Pointer {
         self.still
     }
 
+    /// Returns the length of the drag of the pressed button (px).
+    #[cfg(not(target_arch = "wasm32"))]
+    pub fn dragged(&self) -> f32 {
+        let [x, y] = [0, 1].map(|k| self.position[k] - self.pressed_at[k]);
+        if self.still { 0.0 } else { x.hypot(y) }
+    }
+
     /// Returns the pane under the pointer, or else the pane that it was over last.
     pub fn pane(&self, session: &Session, screen: &Screen) -> usize {
         let last = session.panel.pane.min(session.runs.panes.len() - 1);

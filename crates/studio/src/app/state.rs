@@ -18,7 +18,7 @@ use super::platform::Platform;
 use super::screen::Screen;
 use super::status::Status;
 use super::touch::Fingers;
-use super::{keyboard, platform};
+use super::{keyboard, platform, tool};
 use crate::hud::{lessons, panel, plotting};
 use crate::session::{Action, RunAction, Session, WindowAction};
 use crate::settings::Settings;
@@ -230,6 +230,11 @@ impl App {
             WindowAction::Undo | WindowAction::Redo => {
                 let again = action == WindowAction::Redo || self.modifiers.shift_key();
                 panel::undo(session, again);
+                None
+            }
+            WindowAction::Throw => {
+                let heavy = self.modifiers.shift_key();
+                tool::throw(&self.mouse.pointer, heavy, session, &self.screen, pane);
                 None
             }
             WindowAction::Follow => {

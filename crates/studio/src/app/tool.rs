@@ -7,9 +7,13 @@ use a3_render::Camera;
 use super::pick;
 use super::pointer::Pointer;
 use super::screen::Screen;
-use crate::hud::edit::{Aim, click, join};
+use crate::hud::edit::{self, Aim, Throw, click, join};
 use crate::session::{Session, Tool};
 
+/// Factor of the mass of a heavy ball.
+const HEAVY: f64 = 10.0;
+/// Factor of the speed that a drag by the height of the picture adds.
+const PULL: f32 = 4.0;
 /// Distance from the pointer within which a spring, a rod or a rope is found (points).
 const LINK_DISTANCE: f32 = 9.0;
 /// Share of a spring at either end in which its particle is found in its place.
@@ -44,8 +48,33 @@ pub fn release(
             let aim = aim(pointer, session, screen, at);
             click(session, &aim);
         }
+        None if session.panel.editor.tool.throws() => {
+            let height = screen.tile(session, at).height as f32;
+            let how = Throw {
+                speed: f64::from(1.0 + PULL * pointer.dragged() / height),
+                ..Throw::default()
+            };
+            let aim = sight(pointer.position, session, screen, at);
+            edit::throw(session, &aim, how);
+        }
         None => {}
     }
+}
+
+/// Throws a light or a heavy ball to the pointer or, if that is elsewhere, into the picture.
+pub fn throw(pointer: &Pointer, heavy: bool, session: &mut Session, screen: &Screen, at: usize) {
+    let tile = screen.tile(session, at);
+    let middle = [tile.x + tile.width / 2, tile.y + tile.height / 2].map(|px| px as f32);
+    let is_over = pointer.is_over_picture(session, screen);
+    let place = if is_over { pointer.position } else { middle };
+    let aim = sight(place, session, screen, at);
+    let mass = if heavy { HEAVY } else { 1.0 };
+    let how = Throw {
+        mass,
+        ..Throw::default()
+    };
+    session.panel.editor.tool = Tool::ThrowBall;
+    edit::throw(session, &aim, how);
 }
 
 /// Draws a line from particle i to the pointer, or to the particle under it.
@@ -79,7 +108,25 @@ pub fn target(pointer: &Pointer, session: &Session, screen: &Screen, at: usize) 
 /// Returns the particle, body, spring or obstacle under the pointer in pane `at`.
 fn aim(pointer: &Pointer, session: &Session, screen: &Screen, at: usize) -> Aim {
     let tile = screen.tile(session, at);
-    let (place, aspect) = (tile.place(pointer.position), tile.aspect());
+    let run = &session.runs.panes[at].simulation;
+    let target = pointer.hit(session, screen, at);
+    Aim {
+        target: target.map(|(target, _)| target),
+        link: link(
+            run,
+            &session.view.camera,
+            tile.place(pointer.position),
+            tile.aspect(),
+            LINK_DISTANCE * screen.scale() / tile.height as f32,
+        ),
+        ..sight(pointer.position, session, screen, at)
+    }
+}
+
+/// Returns where the line of sight through a place (px) in pane `at` ends.
+fn sight(place: [f32; 2], session: &Session, screen: &Screen, at: usize) -> Aim {
+    let tile = screen.tile(session, at);
+    let (place, aspect) = (tile.place(place), tile.aspect());
     let pane = &session.runs.panes[at];
     let (run, camera) = (&pane.simulation, &session.view.camera);
     let point = |depth: f32| Vector3::from(camera.unproject(place, depth, aspect)).cast::<f64>();
@@ -106,14 +153,8 @@ fn aim(pointer: &Pointer, session: &Session, screen: &Screen, at: usize) -> Aim 
             point
         }),
         normal: hit.map(|(_, normal)| normal * -normal.dot(&(ahead - eye)).signum()),
-        target: pointer.hit(session, screen, at).map(|(target, _)| target),
-        link: link(
-            run,
-            camera,
-            place,
-            aspect,
-            LINK_DISTANCE * screen.scale() / tile.height as f32,
-        ),
+        target: None,
+        link: None,
     }
 }
 

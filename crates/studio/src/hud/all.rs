@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use egui::{Context, TextureId};
 
 use super::panel::{self, Request};
-use super::{bar, edit, hint, lessons, list, measure, pane_buttons, plotting, text};
+use super::{bar, edit, hint, lessons, list, measure, offer, pane_buttons, plotting, text};
 use crate::session::Session;
 
 /// Draws text, panel, bar and the open list, with `pictures` of scenes by their names. Returns the
@@ -18,8 +18,7 @@ pub fn show_all(
     hint::show(ctx, session);
     let on_text = text::show(ctx, &session.runs.panes, &session.readings);
     let on_offer = plotting::offer(ctx, session);
-    #[cfg(not(target_arch = "wasm32"))]
-    let on_offer = super::offer::show(ctx, session).or(on_offer);
+    let on_offer = offer::show(ctx, session).or(on_offer);
     #[cfg(not(target_arch = "wasm32"))]
     super::ruler::show(ctx, session);
     let on_panel = panel::show(ctx, session);

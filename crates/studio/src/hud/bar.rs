@@ -189,6 +189,11 @@ fn others(session: &Session) -> Vec<Button> {
             "Plot particles, bodies and springs (F3)",
             run(RunAction::Plots),
         ),
+        (
+            "⚽",
+            "Throw a ball; with Shift, a heavy one (F4)",
+            window(WindowAction::Throw),
+        ),
         ("✏", "Throw, add, join, delete (F2)", run(RunAction::Edit)),
         ("⮪", "Undo (z)", window(WindowAction::Undo)),
         ("📷", "Save a picture (p)", window(WindowAction::Picture)),
@@ -215,7 +220,7 @@ fn is_there(session: &Session, action: Action) -> bool {
         }
         Action::Window(WindowAction::FullScreen) => is_page,
         Action::Run(RunAction::Plots) | Action::Window(WindowAction::Record) => !is_page,
-        Action::Run(RunAction::Edit) => {
+        Action::Run(RunAction::Edit) | Action::Window(WindowAction::Throw) => {
             !is_page && session.runs.first().model().network().is_some()
         }
         _ => true,

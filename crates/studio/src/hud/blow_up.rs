@@ -5,13 +5,15 @@ use a3_files::holding::MIN_HOLD_TIME;
 use egui::Ui;
 
 use super::style::{ALARM, text};
-use super::words::{digits, seconds};
+use super::words::{digits, seconds, time};
 use crate::session::Pane;
 
 /// Writes when the run blew up, which limit the step exceeded, and which step would have been
 /// stable.
 pub fn explain(ui: &mut Ui, pane: &Pane, blow_up: &BlowUp) {
     ui.label(ALARM.text(&format!("It {blow_up}.")).size(14.5).strong());
+    let shown = time(&pane.simulation);
+    ui.label(text(format!("The picture shows the time {shown}.")));
     let method = blow_up.method;
     let same = method == pane.simulation.method().title;
     let limit = pane.limit.limit().map(|limit| limit.step);
@@ -86,6 +88,7 @@ mod tests {
         for said in [
             "A step of 0.05 s was too long for classical Runge-Kutta: past its limit here of 3",
             "0.03 s would have held",
+            "The picture shows the time",
         ] {
             assert!(words.contains(said), "{said} in {words}");
         }

@@ -18,7 +18,6 @@ pub mod lessons;
 mod list;
 #[cfg_attr(target_arch = "wasm32", path = "no_measure.rs")]
 mod measure;
-#[cfg(not(target_arch = "wasm32"))]
 mod offer;
 mod overlay;
 mod pane_buttons;

@@ -131,7 +131,7 @@ fn caption(ui: &mut Ui, pane: &Pane, readings: &Readings, low: bool) {
             text(format!("{} s", words::seconds(run.control().value()))),
         ),
     };
-    let limit = words::limit(pane).map(|(words, mark)| ("limit", mark.text(&words)));
+    let limit = ("limit", words::limit_row(pane));
     let time = ("time", text(time(run)));
     let error = ("error", text(error(pane, readings)));
     let (name, value) = energy(pane);
@@ -145,7 +145,7 @@ fn caption(ui: &mut Ui, pane: &Pane, readings: &Readings, low: bool) {
     } else {
         vec![
             vec![step],
-            limit.into_iter().collect(),
+            vec![limit],
             vec![time],
             vec![error],
             vec![energy],

@@ -63,9 +63,7 @@ fn run(ui: &mut Ui, pane: &Pane, readings: &Readings) {
             if let Some(steps) = words::steps(simulation) {
                 row("steps", text(steps));
             }
-            if let Some((words, mark)) = words::limit(pane) {
-                row("limit", mark.text(&words));
-            }
+            row("limit", words::limit_row(pane));
             let (name, value) = words::energy(pane);
             row(name, text(value));
             if let Some(gained) = words::gained(simulation) {

@@ -109,6 +109,18 @@ pub fn limit(pane: &Pane) -> Option<(String, Mark)> {
     Some((words, mark))
 }
 
+/// Writes the largest stable step, or that none is known.
+pub fn limit_row(pane: &Pane) -> RichText {
+    if let Some((words, mark)) = limit(pane) {
+        return mark.text(&words);
+    }
+    let most = pane.limit.limit().map(|limit| limit.step);
+    let most = most.filter(|most| most.is_finite());
+    text(most.map_or("none is known".into(), |most| {
+        format!("at most {} ms", digits(1e3 * most))
+    }))
+}
+
 /// Returns the work of the collision safeguard since the start, if there was any: its impulses, the
 /// number of motions that it truncated, and the momentum that this removed.
 pub fn contact(simulation: &Simulation) -> Option<String> {
@@ -305,6 +317,8 @@ mod tests {
             pane.simulation.take_steps(1).unwrap();
             pane.read_state();
             assert!(limit(&pane).is_none_or(|(_, mark)| mark != SAFE));
+            let (words, _) = read(&[pane], &Readings::default(), [1280.0, 720.0]);
+            assert!(words.contains("limit\n"), "{words}");
         }
     }
 

@@ -5,6 +5,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use a3_core::{Checkpoint, Network, Simulation, integrators};
+use a3_files::holding::Sought;
 use a3_media::show;
 use a3_scenes::Setup;
 
@@ -135,6 +136,16 @@ impl Session {
         self.readings.read_reference(self.runs.reference.as_ref());
         self.history.begin_again();
         self.begin_new_run();
+    }
+
+    /// Resets all runs, and gives that of a pane, which blew up, what would have held.
+    pub fn run_again(&mut self, at: usize) {
+        let sought = self.runs.panes[at].limit.sought();
+        if let Some(control) = sought.and_then(Sought::control) {
+            self.set_step_of(at, control.value());
+            self.reset();
+            self.readings.paused = false;
+        }
     }
 
     /// Pauses, and advances all runs by the longest step among them.
@@ -392,12 +403,6 @@ pub fn toggle_touch(session: &mut Session) {
     let Err(why) = session.runs.toggle_touch() else {
         return;
     };
-    let crosses = |run: &Simulation| {
-        run.model().network().is_some_and(|network| {
-            let (x, _) = network.halves(run.state());
-            !network.crossed(run.time(), x).is_empty()
-        })
-    };
     if !is_page && session.runs.all().any(crosses) {
         session.readings.offer(why);
     } else {
@@ -405,21 +410,18 @@ pub fn toggle_touch(session: &mut Session) {
     }
 }
 
-/// Brings the surfaces of all runs apart and lets them touch, as one change that can be undone.
+/// Returns whether surfaces of a run cross.
+fn crosses(run: &Simulation) -> bool {
+    run.model().network().is_some_and(|network| {
+        let (x, _) = network.halves(run.state());
+        !network.crossed(run.time(), x).is_empty()
+    })
+}
+
+/// Brings the surfaces of all runs apart, and says so.
 fn bring_apart(session: &mut Session) {
-    if !session.runs.panes.iter().all(Pane::alive) {
-        let why = "A run has blown up: reset it (key r) before its surfaces come apart.";
-        return session.readings.say(why);
-    }
-    session.release();
-    session.runs.align();
-    let before = session.runs.moments();
-    let runs = session.runs.all();
-    let after: Result<Arc<[_]>, String> = runs.map(|run| apart(session, run).map(Some)).collect();
-    match after {
-        Ok(after) => {
-            go_to(session, &after);
-            session.history.record(Change::Apart, Some(before));
+    match come_apart(session) {
+        Ok(()) => {
             let plays = if session.readings.paused {
                 ", Space plays"
             } else {
@@ -431,6 +433,23 @@ fn bring_apart(session: &mut Session) {
         }
         Err(why) => session.readings.warn(why),
     }
+}
+
+/// Brings the surfaces of all runs apart and lets them touch, as one change that can be undone.
+/// Fails, and changes nothing, if a run has blown up or its surfaces do not come apart.
+pub fn come_apart(session: &mut Session) -> Result<(), String> {
+    if !session.runs.panes.iter().all(Pane::alive) {
+        let why = "A run has blown up: reset it (key r) before its surfaces come apart.";
+        return Err(why.into());
+    }
+    session.release();
+    session.runs.align();
+    let before = session.runs.moments();
+    let runs = session.runs.all();
+    let after: Result<Arc<[_]>, String> = runs.map(|run| apart(session, run).map(Some)).collect();
+    go_to(session, &after?);
+    session.history.record(Change::Apart, Some(before));
+    Ok(())
 }
 
 /// Goes to states in which surfaces touch, or to those before they came apart. If these are
@@ -496,12 +515,7 @@ mod tests {
 
     /// Returns whether surfaces cross in any run.
     fn crosses(session: &Session) -> bool {
-        let runs = session.runs.all();
-        runs.map(|run| (run, run.model().network().unwrap()))
-            .any(|(run, network)| {
-                let (x, _) = network.halves(run.state());
-                !network.crossed(run.time(), x).is_empty()
-            })
+        session.runs.all().any(super::crosses)
     }
 
     /// Returns the places (m) of all particles of the first run.

@@ -8,6 +8,8 @@ use a3_files::rounding::short;
 use a3_files::setup::{Request, SceneOptions};
 use a3_scenes::snapshot;
 
+use super::acts::toggle;
+use super::keys::RunAction;
 use super::panes;
 use super::question::{MethodSetting, Question, Task};
 use super::save;
@@ -23,6 +25,8 @@ pub enum MeasureRequest {
     Ask(Question),
     /// Measure the answer, or stop that.
     Toggle,
+    /// Show and measure which solver and step serve best.
+    Choose,
     /// Allow a tenth or the tenfold of the error.
     Error { finer: bool },
     /// Measure computing times, or evaluations.
@@ -51,6 +55,15 @@ pub fn apply(session: &mut Session, request: MeasureRequest, at: usize) -> bool 
             let begun = task(session, at).and_then(|(task, of)| session.measuring.begin(task, of));
             if let Err(why) = begun {
                 session.readings.warn(why);
+            }
+        }
+        MeasureRequest::Choose => {
+            measuring.question = Question::Choose;
+            if !measuring.open {
+                toggle(session, RunAction::Measure);
+            }
+            if session.measuring.progress().is_none() {
+                return apply(session, MeasureRequest::Toggle, at);
             }
         }
         MeasureRequest::Error { finer } => {

@@ -59,6 +59,8 @@ pub static GROUPS: [Group; 8] = [
             run(&["Tab"], RunAction::Panel, "tune and plot"),
             #[cfg(not(target_arch = "wasm32"))]
             run(&["F2"], RunAction::Edit, "throw, add, join, delete"),
+            #[cfg(not(target_arch = "wasm32"))]
+            window(&["F4"], WindowAction::Throw, "throw a ball; Shift, heavy"),
             run(&["d"], RunAction::Wind, "wind"),
             run(&["s"], RunAction::Swing, "swing the pins"),
             run(&["x"], RunAction::Touch, "self-collision"),
@@ -214,6 +216,8 @@ pub enum RunAction {
 pub enum WindowAction {
     Undo,
     Redo,
+    /// Throw a ball to the pointer.
+    Throw,
     /// Follow the particle under the pointer.
     Follow,
     Picture,

@@ -55,7 +55,14 @@ impl Origin {
     /// Edits the scene, whose network is `network`. Returns the edited scene, and how its particles
     /// and its rigid bodies are numbered. Fails if the scene does not allow that.
     pub fn edit(&self, edit: &Edit, network: &Network) -> Result<(Self, [Splice; 2]), String> {
-        let edited = edit.apply(&self.with_grid(), network)?;
+        let mut edited = edit.apply(&self.with_grid(), network)?;
+        if matches!(edit, Edit::AddBody(_)) && network.bodies().is_empty() {
+            // The first rigid body lets all surfaces touch: those that begin crossed come apart.
+            let mut touching = self.with_grid();
+            touching.self_collision = true;
+            let setup = self.source.described(touching).build(None);
+            edited.description.untangle |= setup.is_ok_and(|setup| begins_crossed(&setup.scene));
+        }
         let origin = Self {
             source: self.source.described(edited.description),
             grid: None,

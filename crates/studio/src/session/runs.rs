@@ -4,7 +4,7 @@
 use a3_core::{Control, Error, Method, Path, Simulation, integrators};
 use a3_files::bounds;
 use a3_files::failure::Failure;
-use a3_files::holding::{shorter_step, step_within_limit};
+use a3_files::holding::shorten;
 use a3_media::show::Quantity;
 use a3_scenes::{Defaults, Setup};
 use web_time::{Duration, Instant};
@@ -156,8 +156,7 @@ impl Runs {
         };
         let simulations: Result<Vec<_>, Error> = self.panes.iter().map(&mut start).collect();
         for (pane, mut simulation) in self.panes.iter_mut().zip(simulations?) {
-            let shorter = shorter_step(&simulation);
-            let (asked, why) = shortened(&mut simulation, shorter).unzip();
+            let (asked, why) = shortened(&mut simulation).unzip();
             pane.wanted_step = asked;
             said = why.or(said);
             pane.set_simulation(simulation, setup.presentation.clone());
@@ -168,13 +167,12 @@ impl Runs {
         Ok(said)
     }
 
-    /// Shortens steps that are beyond the limit at the start of the scene. Returns a message if one
-    /// was shortened.
+    /// Shortens steps that would not hold at the start of the scene. Returns a message if one was
+    /// shortened.
     pub fn fit_steps(&mut self) -> Option<String> {
         let mut said = None;
         for pane in &mut self.panes {
-            let shorter = step_within_limit(&pane.simulation);
-            if let Some((asked, why)) = shortened(&mut pane.simulation, shorter) {
+            if let Some((asked, why)) = shortened(&mut pane.simulation) {
                 pane.wanted_step = Some(asked);
                 pane.restart_cost();
                 said = Some(why);
@@ -280,10 +278,10 @@ impl Runs {
     }
 }
 
-/// Gives a run a shorter step (s), if there is one. Returns the step that it had (s), and why.
-fn shortened(run: &mut Simulation, shorter: Option<f64>) -> Option<(f64, String)> {
-    let (asked, shorter) = run.control().step().zip(shorter)?;
-    run.set_control(Control::Step(shorter)).ok()?;
+/// Gives a run a shorter step if its own would not hold. Returns the step that it had (s), and why.
+fn shortened(run: &mut Simulation) -> Option<(f64, String)> {
+    let asked = shorten(run)?;
+    let shorter = run.control().value();
     let solver = run.method().title;
     let why = format!("{solver}: the step is {shorter} s here, since {asked} s would blow up");
     Some((asked, why))

@@ -205,6 +205,11 @@ impl Tool {
         }
     }
 
+    /// Returns whether the tool throws, by a drag the faster.
+    pub fn throws(self) -> bool {
+        matches!(self, Self::ThrowBall | Self::ThrowBox)
+    }
+
     /// Returns whether the tool joins two particles by a drag.
     pub fn joins(self) -> bool {
         matches!(self, Self::Spring | Self::Rod | Self::Rope)
@@ -226,9 +231,13 @@ impl Editor {
     /// Shows the tools, or hides them.
     pub fn toggle(&mut self, runs: &Runs) {
         self.open = !self.open;
-        if self.open && self.values.is_none() {
-            self.values = Some(fitting(runs).map(|value| [value; 2]));
-        }
+        self.fit(runs);
+    }
+
+    /// Gives all quantities values that fit the scene, unless they have some.
+    pub fn fit(&mut self, runs: &Runs) {
+        let fit = || fitting(runs).map(|value| [value; 2]);
+        self.values.get_or_insert_with(fit);
     }
 
     /// Forgets all values, because the scene is another one.

@@ -5,8 +5,8 @@ use a3_files::rounding::short;
 use a3_media::show::Target;
 use a3_scenes::{ConstraintSpec, Edit, PartChange, PartSpec, RigidBody};
 
-use super::super::panel::{Turn, edit, of_one_body, turn_part};
-use crate::session::{Measure, Session, Tool, exchange};
+use super::super::panel::{Turn, edit, of_one_body, turn_part, undo};
+use crate::session::{Measure, Session, Tool, come_apart, exchange};
 
 /// Coefficient of friction of bodies that are added.
 const FRICTION: f64 = 0.4;
@@ -18,6 +18,12 @@ const DAMPING_RATIO: f64 = 0.1;
 const GAP: f64 = 0.05;
 /// Distance from the eye at which a throw begins, over the size of the body.
 const ARM: f64 = 2.0;
+/// Number of places in a row from which bodies are thrown.
+const ROW: usize = 5;
+/// Distance of these places, over the size of the body.
+const SPACING: f64 = 1.5;
+/// Number of places that are tried for a throw.
+const MAX_PLACES: usize = 4;
 /// Largest difference of the lengths that a rod would need, relative to its length.
 const ROD_TOLERANCE: f64 = 1e-3;
 
@@ -40,7 +46,7 @@ pub struct Aim {
 /// Does what the chosen tool does by a click, and shows a message.
 pub fn click(session: &mut Session, aim: &Aim) {
     let done = match session.panel.editor.tool {
-        Tool::ThrowBall | Tool::ThrowBox => throw(session, aim),
+        Tool::ThrowBall | Tool::ThrowBox => thrown(session, aim, Throw::default()),
         Tool::AddBall | Tool::AddBox => add_body(session, aim),
         Tool::Particle => add_particle(session, aim),
         Tool::Spring | Tool::Rod | Tool::Rope => {
@@ -54,6 +60,31 @@ pub fn click(session: &mut Session, aim: &Aim) {
 /// Joins two particles by a spring, a rod or a rope, and shows a message.
 pub fn join(session: &mut Session, ends: [usize; 2]) {
     let done = joined(session, ends);
+    session.readings.say(done.unwrap_or_else(|why| why));
+}
+
+/// A throw of the body of the chosen tool.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Throw {
+    /// Factor of the mass that is set.
+    pub mass: f64,
+    /// Factor of the speed that is set.
+    pub speed: f64,
+}
+
+impl Default for Throw {
+    fn default() -> Self {
+        Self {
+            mass: 1.0,
+            speed: 1.0,
+        }
+    }
+}
+
+/// Throws a body, and shows a message.
+pub fn throw(session: &mut Session, aim: &Aim, how: Throw) {
+    session.panel.editor.fit(&session.runs);
+    let done = thrown(session, aim, how);
     session.readings.say(done.unwrap_or_else(|why| why));
 }
 
@@ -79,12 +110,49 @@ fn body(session: &Session, at: Vector3<f64>, velocity: Vector3<f64>) -> (RigidBo
     (body, if is_ball { "ball" } else { "box" })
 }
 
-/// Throws a body from the eye so that it falls on the point under the pointer.
-fn throw(session: &mut Session, aim: &Aim) -> Result<String, String> {
+/// Throws a body from the eye so that it falls on the point under the pointer: from beside or
+/// behind earlier ones, which a reset throws again at the same time, and from where there is room.
+/// Surfaces that cross already are brought apart first.
+fn thrown(session: &mut Session, aim: &Aim, how: Throw) -> Result<String, String> {
+    let network = session.runs.first().model().network();
+    let count = network.map_or(0, |network| network.bodies().len());
+    let touched = network.is_none_or(|network| network.contact_layer().is_some());
+    let own = session.scenes.unedited().source.description.body.len();
+    let first = count.saturating_sub(own);
+    let mut done = Err(String::new());
+    for place in first..first + MAX_PLACES {
+        if done.is_err() {
+            done = thrown_from(session, aim, how, place);
+        }
+    }
+    // What lies on an obstacle without thickness may cross it.
+    if touched || done.is_ok() || come_apart(session).is_err() {
+        return done.map(|name| format!("A {name} flies."));
+    }
+    let done = thrown_from(session, aim, how, first).inspect_err(|_| undo(session, false))?;
+    Ok(format!(
+        "A {done} flies. The surfaces of the scene came apart for it, and touch now."
+    ))
+}
+
+/// Throws a body from a place, by its number in rows beside the eye.
+fn thrown_from(
+    session: &mut Session,
+    aim: &Aim,
+    how: Throw,
+    place: usize,
+) -> Result<&'static str, String> {
     let editor = &session.panel.editor;
-    let (size, speed) = (editor.value(Measure::Size), editor.value(Measure::Speed));
+    let size = editor.value(Measure::Size);
+    let speed = how.speed * editor.value(Measure::Speed);
     let way = aim.point - aim.eye;
-    let mut start = aim.eye + way * (ARM * size / way.norm()).min(0.5);
+    let right = way.cross(&Vector3::y());
+    let right = right.try_normalize(0.0).unwrap_or_else(Vector3::x);
+    // The middle of a row, then right and left in turn.
+    let (row, column) = (place / ROW, place % ROW);
+    let sideways = [1.0, -1.0][column % 2] * column.div_ceil(2) as f64;
+    let arm = (ARM * size).min(0.5 * way.norm()) - SPACING * size * row as f64;
+    let mut start = aim.eye + way.normalize() * arm + right * (SPACING * size * sideways);
     let show = &session.runs.panes[0].show;
     if let Some(ground) = show.ground() {
         start.y = start.y.max(ground + size);
@@ -93,10 +161,11 @@ fn throw(session: &mut Session, aim: &Aim) -> Result<String, String> {
     let gravity = network.and_then(Network::gravity).unwrap_or_default();
     let time = (aim.point - start).norm() / speed;
     let velocity = (aim.point - start) / time - 0.5 * time * gravity;
-    let (body, name) = body(session, start, velocity);
+    let (mut body, name) = body(session, start, velocity);
+    body.mass = body.mass.map(|mass| short(how.mass * mass, 2));
     edit(session, &Edit::AddBody(body), &format!("throw of a {name}"))?;
     session.pulled = true;
-    Ok(format!("A {name} flies."))
+    Ok(name)
 }
 
 /// Puts a body on the surface under the pointer.

@@ -3,7 +3,7 @@
 mod act;
 mod palette;
 
-pub use act::{Aim, click, join};
+pub use act::{Aim, Throw, click, join, throw};
 pub use palette::show;
 
 #[cfg(test)]

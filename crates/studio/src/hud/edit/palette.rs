@@ -169,8 +169,8 @@ fn name(tool: Tool) -> &'static str {
 /// Says how a tool is used.
 fn help(tool: Tool) -> &'static str {
     match tool {
-        Tool::ThrowBall => "Click where the ball shall hit.",
-        Tool::ThrowBox => "Click where the box shall hit.",
+        Tool::ThrowBall => "Click where the ball shall hit; drag there to throw it faster.",
+        Tool::ThrowBox => "Click where the box shall hit; drag there to throw it faster.",
         Tool::AddBall => "Click on what the ball shall lie.",
         Tool::AddBox => "Click on what the box shall stand.",
         Tool::Particle => "Click where the particle shall be.",

@@ -6,7 +6,7 @@ use a3_core::{Simulation, Vector3};
 use a3_files::scene_file::Source;
 use a3_media::show::Target;
 
-use super::{Aim, click, join};
+use super::{Aim, Throw, click, join, throw};
 use crate::hud::panel;
 use crate::session::{Measure, RunAction, Session, Tool, compared, frames, session, write_scene};
 
@@ -405,4 +405,81 @@ fn a_dragged_obstacle_moves_on_about_its_new_place() {
             "{k}"
         );
     }
+}
+
+/// Throws a light and a heavy ball from the eye at what the camera looks at, and returns what is
+/// said.
+fn throw_two(session: &mut Session) -> [String; 2] {
+    [1.0, 10.0].map(|mass| {
+        let camera = &session.view.camera;
+        let [eye, point] =
+            [camera.eye(), camera.target()].map(|it| Vector3::from(it.coords).cast::<f64>());
+        let aim = Aim {
+            eye,
+            point,
+            ..at([0.0; 3])
+        };
+        throw(session, &aim, Throw { mass, speed: 1.5 });
+        session.readings.message.clone().unwrap()
+    })
+}
+
+fn bodies(session: &Session) -> usize {
+    let network = session.runs.first().model().network();
+    network.map_or(0, |network| network.bodies().len())
+}
+
+/// Into every built-in scene balls are thrown, again and again and at any time, or a line says why
+/// not, and the runs stay finite.
+#[test]
+fn balls_are_thrown_into_every_scene() {
+    for entry in a3_scenes::SCENES {
+        for start in [0.0, 2.0] {
+            let mut session = crate::session::session(&["--scene", entry.name]);
+            let before = bodies(&session);
+            frames(&mut session, start);
+            let said = throw_two(&mut session);
+            let added = match entry.name {
+                "simple" | "drop" | "dam-break" => 0,
+                _ => 2,
+            };
+            assert_eq!(bodies(&session), before + added, "{}: {said:?}", entry.name);
+            let came_apart = said.iter().any(|said| said.contains("came apart"));
+            assert!(!came_apart || entry.name == "mit-sphere", "{said:?}");
+            let flies = said.iter().filter(|said| said.starts_with("A ball flies."));
+            assert_eq!(flies.count(), added, "{}: {said:?}", entry.name);
+            frames(&mut session, 1.0);
+            let lost = session.runs.first().blow_up().map(|lost| lost.to_string());
+            assert_eq!(lost, None, "{}", entry.name);
+            // A reset throws them again.
+            session.act(RunAction::Reset, 0);
+            assert_eq!(bodies(&session), before + added);
+            for _ in 0..3 {
+                panel::undo(&mut session, false);
+            }
+            assert_eq!(bodies(&session), before, "{}", entry.name);
+            assert!(!session.scenes.shown.edited);
+        }
+    }
+}
+
+/// Surfaces that begin crossed come apart for a ball, at once and after a reset; without room at
+/// the eye, a throw begins beside it.
+#[test]
+fn a_throw_finds_room() {
+    let folder = tempfile::tempdir().unwrap();
+    let crossed = "gravity = [0, -9.81, 0]\n\
+        [[box]]\ncenter = [0, 0, 0]\nsize = [1, 0.2, 1]\n\
+        [[cloth]]\ngrid = [6, 6]\nwidth = 2\nmass = 0.05\nstiffness = [40, 20, 5]\ndamping = 0.01\n\
+        at = [0, 0.05, -1]\ndown = [0, 0, 1]\n[camera]\neye = [0, 3, 9]\ntarget = [0, 0, 0]\n";
+    let mut session = open(folder.path(), crossed);
+    let said = throw_two(&mut session);
+    assert!(said[0].contains("came apart"), "{said:?}");
+    assert_eq!(bodies(&session), 2, "{said:?}");
+    session.act(RunAction::Reset, 0);
+    frames(&mut session, 0.5);
+    assert!(session.runs.any_alive());
+    let masses = session.runs.first().model().network().unwrap();
+    let [light, heavy] = [0, 1].map(|k| masses.masses()[masses.bodies()[k].center()]);
+    assert!((heavy - 10.0 * light).abs() < 1e-9 * heavy);
 }

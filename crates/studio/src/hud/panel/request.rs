@@ -43,6 +43,8 @@ pub enum PanelRequest {
     AddPane(usize),
     /// Remove the pane of a number.
     RemovePane(usize),
+    /// Reset all runs, and give that of a pane, which blew up, what would have held.
+    RunAgain(usize),
     /// Choose a tool.
     #[cfg_attr(
         target_arch = "wasm32",
@@ -179,6 +181,7 @@ pub fn apply(session: &mut Session, request: PanelRequest) -> bool {
         PanelRequest::Measure(request) => return asking::apply(session, request, at),
         PanelRequest::AddPane(pane) => session.toggle_list(Topic::Beside { pane }),
         PanelRequest::RemovePane(pane) => return panes::remove(session, pane),
+        PanelRequest::RunAgain(pane) => session.run_again(pane),
         PanelRequest::Tool(tool) => session.panel.editor.tool = tool,
         PanelRequest::SetMeasure(measure, value) => session.panel.editor.set(measure, value),
     }
