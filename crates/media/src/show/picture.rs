@@ -166,7 +166,6 @@ impl Show {
     }
 
     /// Returns the height of the floor or the ground in the picture composed last (m).
-    #[cfg(not(target_arch = "wasm32"))]
     pub fn ground(&self) -> Option<f64> {
         self.floor.as_ref().map(|floor| f64::from(floor.height))
     }
