@@ -136,8 +136,8 @@ impl Camera {
         }
     }
 
-    /// Turns the eye around the target (rad), but no further down than to a height (m), unless it is
-    /// below that already.
+    /// Turns the eye around the target (rad), but no further down than to a height (m), unless it
+    /// is below that already.
     pub fn orbit_above(&mut self, yaw: f32, pitch: f32, height: f32) {
         let sine = (height - self.target.y) / self.distance;
         let least = sine.clamp(-1.0, 1.0).asin().min(self.pitch);

@@ -139,7 +139,7 @@ impl Mouse {
         self.finish(session, screen);
     }
 
-    /// Returns when a finger that has not moved since it came down has pressed for long, which pins.
+    /// Returns when a finger that has not moved since it came down has pressed for long, and pins.
     pub fn long_press_at(&self) -> Option<Instant> {
         let is_still = matches!(self.drag, Drag::Pull(_) | Drag::Orbit) && self.pointer.is_click();
         is_still.then(|| self.pointer.pressed() + LONG_PRESS)

@@ -3,12 +3,15 @@
 use a3_files::lessons::{ALL, Answer};
 use egui::{Event, Modifiers, PointerButton, Pos2, RawInput, Rect, SafeAreaInsets};
 
-use super::super::layout;
 use super::super::panel::PanelKey::{self, Down, Left, Right, Toggle, Up};
 use super::super::style::context;
+use super::place::PLACE;
 use super::{apply, press_text, request, show};
 use crate::begin;
 use crate::session::{LessonRequest, RunAction, Session, TextKey, read, session};
+
+/// Height of the bar (points).
+const BAR: f32 = 48.0;
 
 /// What a question asks for, by lesson and step.
 const ASKED: [(usize, usize, Asked); 15] = [
@@ -127,17 +130,13 @@ fn the_right_choices_are_what_happens() {
     assert!((energy(&of(8, 3, 10.0), 0) + 4.9723).abs() < 2e-4);
 }
 
-/// Returns what lessons and bar take on the right and below, in a window of a size (points).
-fn insets(session: &Session, [width, height]: [f32; 2]) -> [f32; 2] {
-    layout::insets(session, (width as u32, height as u32), 1.0)
-}
-
 /// Draws the lessons in a window of a size (points), and clicks on the text that begins with
 /// `words`, if there is any. Returns the text, and the request.
 fn draw(session: &Session, size: [f32; 2], words: Option<&str>) -> (String, Option<LessonRequest>) {
     let ctx = context();
     let window = Rect::from_min_size(Pos2::ZERO, size.into());
-    let [right, bottom] = insets(session, size);
+    let [right, below] = PLACE.taken(size);
+    let bottom = below + BAR;
     let (mut said, mut request, mut at) = (String::new(), None, Pos2::new(3.0, 3.0));
     for pressed in [None, None, None, Some(true), Some(false)] {
         let press = pressed.map(|pressed| Event::PointerButton {
@@ -189,8 +188,8 @@ fn every_step_is_drawn_in_windows_and_on_phones() {
             ALL.iter().all(|lesson| said.contains(&lesson.title)),
             "{said}"
         );
-        let [right, bottom] = insets(&session, size);
-        let picture = [size[0] - right, size[1] - bottom];
+        let [right, below] = PLACE.taken(size);
+        let picture = [size[0] - right, size[1] - below - BAR];
         assert!(picture.iter().all(|side| *side >= 390.0), "{picture:?}");
         for lesson in 0..ALL.len() {
             for step in 0..ALL[lesson].steps.len() {

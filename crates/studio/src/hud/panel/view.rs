@@ -69,8 +69,8 @@ pub fn show(ctx: &Context, session: &Session) -> Option<Request> {
     })
 }
 
-/// Draws rows from the top of a room, in which they scroll if they do not fit. Returns the bottom of
-/// the last row, and the request of the mouse.
+/// Draws rows from the top of a room, in which they scroll if they do not fit. Returns the bottom
+/// of the last row, and the request of the mouse.
 fn scrolled(
     ui: &mut Ui,
     room: Rect,

@@ -4,10 +4,9 @@ use egui::vec2;
 
 use super::opened::{changed, dials, every_scene, opened};
 use super::screen::Screen;
-use crate::hud::layout::picture_size;
 use crate::hud::panel::dial::DialScale;
 use crate::hud::panel::request::rows;
-use crate::hud::panel::view::PLACE;
+use crate::hud::panel::view::{PLACE, place};
 use crate::session::RunAction;
 
 const SIZES: [[f32; 2]; 2] = [[1280.0, 720.0], [800.0, 600.0]];
@@ -107,10 +106,10 @@ fn the_chosen_row_is_visible() {
 #[test]
 fn the_help_hides_the_panel() {
     let mut session = opened(&["r", "0.005"]);
-    assert_eq!(picture_size(&session, (1280, 720), 1.0), (976, 680));
-    assert_eq!(picture_size(&session, (2560, 1440), 2.0), (1952, 1360));
+    assert!(place(&session).is_some());
+    assert_eq!(PLACE.taken([1280.0, 720.0]), [304.0, 0.0]);
     session.act(RunAction::Help, 0);
-    assert_eq!(picture_size(&session, (1280, 720), 1.0), (1280, 680));
+    assert!(place(&session).is_none());
     assert!(
         !Screen::new(SIZES[0])
             .read(&session)

@@ -2,9 +2,8 @@
 
 use egui::{Context, Event, PointerButton, Pos2, RawInput, Rect, Shape, pos2};
 
-use crate::hud::layout::insets;
 use crate::hud::panel::request::{Request, apply};
-use crate::hud::panel::view::{MARGIN, PLACE, show};
+use crate::hud::panel::view::{MARGIN, PLACE, place, show};
 use crate::hud::style;
 use crate::session::Session;
 
@@ -36,8 +35,8 @@ impl Screen {
         events: Vec<Event>,
     ) -> (egui::FullOutput, Option<Request>) {
         self.time += 0.05;
-        let px = self.size.map(|side| side as u32);
-        let [right, bottom] = insets(session, px.into(), 1.0);
+        let shown = place(session).map(|place| place.taken(self.size));
+        let [right, bottom] = shown.unwrap_or_default();
         let input = RawInput {
             screen_rect: Some(Rect::from_min_size(Pos2::ZERO, self.size.into())),
             safe_area_insets: Some(egui::SafeAreaInsets(egui::epaint::MarginF32 {
