@@ -136,6 +136,14 @@ impl Camera {
         }
     }
 
+    /// Turns the eye around the target (rad), but no further down than to a height (m), unless it
+    /// is below that already.
+    pub fn orbit_above(&mut self, yaw: f32, pitch: f32, height: f32) {
+        let sine = (height - self.target.y) / self.distance;
+        let least = sine.clamp(-1.0, 1.0).asin().min(self.pitch);
+        self.orbit(yaw, pitch.max(least - self.pitch));
+    }
+
     /// Moves eye and target parallel to the picture, by fractions of its height.
     pub fn pan(&mut self, right: f32, up: f32) {
         let height = 2.0 * self.distance * (0.5 * FIELD_OF_VIEW).tan() / self.focus[3];
@@ -308,6 +316,21 @@ mod tests {
             camera.zoom_at(f32::NAN, at, aspect);
             assert!(camera.eye().coords.iter().all(|c| c.is_finite()));
         }
+    }
+
+    #[test]
+    fn the_eye_turns_down_to_the_floor_and_no_further() {
+        let mut camera = Camera::look_at([3.0, 2.0, 5.0], [0.1, 1.0, -0.2]);
+        camera.orbit_above(0.1, -9.0, 0.25);
+        assert!((camera.eye().y - 0.25).abs() < 1e-4, "{}", camera.eye());
+        camera.orbit_above(0.1, 0.5, 0.25);
+        assert!(camera.eye().y > 1.0);
+        // One that is below stays where it is, and turns up.
+        let mut below = Camera::look_at([3.0, -1.0, 5.0], [0.1, 1.0, -0.2]);
+        below.orbit_above(0.0, -0.1, 0.25);
+        assert!((below.eye().y + 1.0).abs() < 1e-4, "{}", below.eye());
+        below.orbit_above(0.0, 0.1, 0.25);
+        assert!(below.eye().y > -0.9);
     }
 
     #[test]

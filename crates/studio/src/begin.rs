@@ -20,6 +20,9 @@ pub fn session(opening: &Opening) -> Result<Session, Failure> {
     session_on(source, opening)
 }
 
+/// Time whose motion the camera of a step without an end takes in (s).
+const SEEN_TIME: f64 = 10.0;
+
 /// Creates the session of a step of a lesson, which pauses at the time of the step. Fails if its
 /// command line does not fit its scene.
 pub fn step(step: &Step, read: Reader) -> Result<Session, Failure> {
@@ -32,6 +35,8 @@ pub fn step(step: &Step, read: Reader) -> Result<Session, Failure> {
     let mut session = session_on(source, &opening)?;
     let own = session.tuning.defaults.duration;
     session.tuning.defaults.duration = step.until.or(own);
+    let until = step.until.unwrap_or(SEEN_TIME);
+    session.view.see_motion(&mut session.runs.panes, until);
     Ok(session)
 }
 

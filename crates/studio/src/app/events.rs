@@ -176,7 +176,7 @@ fn change(app: &mut App, touch: &Touch, taken: bool) {
     let (session, screen, mouse) = (&mut app.session, &app.screen, &mut app.mouse);
     let is_down = !matches!(touch.phase, TouchPhase::Ended | TouchPhase::Cancelled);
     session.history.set_button_held(is_down);
-    session.panel.touch = true;
+    session.readings.touch = true;
     let (id, at) = (touch.id, position(touch));
     match app.fingers.change(id, touch.phase, at, taken) {
         Effect::Nothing => {}

@@ -31,6 +31,12 @@ impl App {
         if let Some(graphics) = &self.screen.graphics {
             session.view.camera.set_focus(graphics.focus(session));
         }
+        let long_press = self.mouse.long_press_at();
+        let mut long_press = long_press.filter(|_| self.fingers.is_pressing());
+        if long_press.take_if(|at| *at <= now).is_some() {
+            self.fingers.end_press();
+            self.mouse.long_press(session, &self.screen);
+        }
         self.mouse.pull(session, &self.screen);
         session.tick(self.platform.films.time_to_advance(session, real));
         session.view.track_followed(&session.runs.panes);
@@ -81,7 +87,8 @@ impl App {
                     Some(now + frame_time)
                 } else {
                     let again = again.map(|delay| now + delay.max(frame_time));
-                    [again, message_ends, measured, self.platform.next_check()]
+                    let checked = self.platform.next_check();
+                    [again, message_ends, measured, long_press, checked]
                         .into_iter()
                         .flatten()
                         .min()

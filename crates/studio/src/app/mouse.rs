@@ -3,6 +3,7 @@
 use a3_core::Vector3;
 use a3_media::show::{self, Target};
 use egui::CursorIcon;
+use web_time::{Duration, Instant};
 use winit::dpi::PhysicalPosition;
 use winit::event::{MouseButton, MouseScrollDelta};
 
@@ -13,8 +14,14 @@ use super::tool;
 use crate::hud::plotting;
 use crate::session::{RulerEnd, Selection, Session, looks};
 
+/// Largest motion of the pointer during a click of the mouse, and of a finger (points).
+const MAX_CLICK_DISTANCES: [f32; 2] = [4.0, 10.0];
 /// Angle by which the camera turns when the pointer moves by the height of the picture (rad).
 const ORBIT_ANGLE: f32 = 4.0;
+/// Least height of the eye above the ground to which a drag turns it, in units of length.
+const ABOVE_GROUND: f32 = 0.05;
+/// Time after which a finger that has not moved pins.
+const LONG_PRESS: Duration = Duration::from_millis(550);
 /// Smooth scrolling that counts as a notch of the wheel (px).
 const PIXELS_PER_NOTCH: f32 = 50.0;
 
@@ -132,6 +139,23 @@ impl Mouse {
         self.finish(session, screen);
     }
 
+    /// Returns when a finger that has not moved since it came down has pressed for long, and pins.
+    pub fn long_press_at(&self) -> Option<Instant> {
+        let is_still = matches!(self.drag, Drag::Pull(_) | Drag::Orbit) && self.pointer.is_click();
+        is_still.then(|| self.pointer.pressed() + LONG_PRESS)
+    }
+
+    /// Pins or frees the particle under a finger that has pressed for long, and ends its drag.
+    pub fn long_press(&mut self, session: &mut Session, screen: &Screen) {
+        let pulled = session.runs.panes[self.pane].simulation.grabbed();
+        let hit = self.pointer.hit(session, screen, self.pane);
+        let particle = pulled.or(hit.and_then(|(target, _)| target.particle()));
+        self.finish(session, screen);
+        if let Some(i) = particle {
+            session.toggle_pin(i);
+        }
+    }
+
     /// Ends the drag: pins or frees the particles in the box, and releases a grabbed particle or
     /// obstacle.
     pub fn finish(&mut self, session: &mut Session, screen: &Screen) {
@@ -221,7 +245,8 @@ impl Mouse {
         screen.redraw();
         let tile = screen.tile(session, self.pane);
         // Do not move the camera until the pointer is too far for a click.
-        self.pointer.update_click(position, screen.scale());
+        let still = MAX_CLICK_DISTANCES[usize::from(session.readings.touch)];
+        self.pointer.update_click(position, still * screen.scale());
         if self.pointer.is_click() && self.drag == Drag::Pan {
             return;
         }
@@ -238,7 +263,14 @@ impl Mouse {
         }
         let camera = &mut session.view.camera;
         match self.drag {
-            Drag::Orbit => camera.orbit(-ORBIT_ANGLE * dx * aspect, ORBIT_ANGLE * dy),
+            Drag::Orbit => {
+                // From below, the lines of the floor would lie over the scene.
+                let ground = session.runs.panes[self.pane].show.ground();
+                let lowest = ground.map_or(f32::MIN, |height| {
+                    height as f32 + ABOVE_GROUND * camera.unit()
+                });
+                camera.orbit_above(-ORBIT_ANGLE * dx * aspect, ORBIT_ANGLE * dy, lowest);
+            }
             Drag::Pan => camera.pan(-dx * aspect, dy),
             Drag::Select { .. } => self.show_selection(session, screen),
             Drag::Tool(Some(i)) => tool::drag(&self.pointer, i, session, screen, self.pane),

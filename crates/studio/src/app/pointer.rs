@@ -10,8 +10,6 @@ use crate::session::Session;
 
 /// Distance from the pointer within which a particle is picked (points).
 const PICK_DISTANCE: f32 = 18.0;
-/// Largest motion of the pointer during a click (points).
-const MAX_CLICK_DISTANCE: f32 = 4.0;
 /// Longest time between the two presses of a double click.
 const MAX_DOUBLE_CLICK_TIME: Duration = Duration::from_millis(400);
 
@@ -48,11 +46,16 @@ impl Pointer {
         double
     }
 
-    /// Makes the click a drag if `position` (px) is too far from where the button was pressed.
-    /// There are `scale` pixels per point.
-    pub fn update_click(&mut self, position: [f32; 2], scale: f32) {
+    /// Makes the click a drag if `position` is farther (px) than `most` from where the button was
+    /// pressed.
+    pub fn update_click(&mut self, position: [f32; 2], most: f32) {
         let [x, y] = [0, 1].map(|k| position[k] - self.pressed_at[k]);
-        self.still &= x.hypot(y) <= MAX_CLICK_DISTANCE * scale;
+        self.still &= x.hypot(y) <= most;
+    }
+
+    /// Returns when the button was pressed.
+    pub fn pressed(&self) -> Instant {
+        self.pressed
     }
 
     /// Returns whether the pressed button has not dragged so far.

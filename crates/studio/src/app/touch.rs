@@ -1,4 +1,5 @@
-//! Fingers: one pulls, pushes or turns, as the left button does; two move and zoom the view.
+//! Fingers: one pulls, pushes or turns, as the left button does, or pins by a long press; two move
+//! and zoom the view.
 
 use a3_render::{Camera, Tile};
 use winit::event::{Touch, TouchPhase};
@@ -43,6 +44,16 @@ impl Fingers {
     /// Returns whether a touch is of the first finger, which comes down.
     pub fn begins(&self, touch: &Touch) -> bool {
         self.down.is_empty() && touch.phase == TouchPhase::Started
+    }
+
+    /// Returns whether one finger does what the left button would do.
+    pub fn is_pressing(&self) -> bool {
+        self.gesture == Gesture::Press
+    }
+
+    /// Ends what the finger does, until it is lifted.
+    pub fn end_press(&mut self) {
+        self.gesture = Gesture::None;
     }
 
     /// Handles a change of a finger at a place (px), which is `taken` if text or a button is there.
@@ -132,6 +143,13 @@ mod tests {
         assert_eq!(fingers.change(8, Ended, a, false), Effect::Nothing);
         // A finger on a button is egui's, wherever it goes.
         assert_eq!(fingers.change(7, Started, a, true), Effect::Nothing);
+        assert_eq!(fingers.change(7, Moved, b, false), Effect::Nothing);
+        assert_eq!(fingers.change(7, Ended, b, false), Effect::Nothing);
+        assert_eq!(fingers.change(7, Started, a, false), Effect::Press);
+        // After a long press, the finger does nothing until it is lifted.
+        assert!(fingers.is_pressing());
+        fingers.end_press();
+        assert!(!fingers.is_pressing());
         assert_eq!(fingers.change(7, Moved, b, false), Effect::Nothing);
         assert_eq!(fingers.change(7, Ended, b, false), Effect::Nothing);
         assert_eq!(fingers.change(7, Started, a, false), Effect::Press);

@@ -3,9 +3,9 @@
 use egui::{Align2, Color32, Context, FontId, Id, Rect, Response, Sense, Ui, pos2, vec2};
 
 use super::docked::docked;
-use super::panel::{Request, is_shown};
+use super::panel::Request;
 use super::style::{ALARM, FAINT, TEXT};
-use super::{layout, measure, timeline};
+use super::{layout, timeline};
 use crate::session::{Action, RunAction, Session, WindowAction};
 
 /// Width of a button with a symbol, for the mouse and for fingers (points).
@@ -76,14 +76,17 @@ impl Button {
 pub fn show(ctx: &Context, session: &Session) -> Option<Request> {
     let (window, picture) = (ctx.viewport_rect(), ctx.content_rect());
     let height = layout::bar_height(session, [window.width(), window.height()]);
-    let beside = is_shown(session) || measure::is_shown(session);
-    let covered = beside && picture.right() >= window.right();
-    if height == 0.0 || covered {
+    if height == 0.0 {
         return None;
     }
+    let right = if layout::is_bar_whole(session, window.width()) {
+        window.right()
+    } else {
+        picture.right()
+    };
     let rect = Rect::from_min_max(
         pos2(picture.left(), window.bottom() - height),
-        pos2(picture.right(), window.bottom()),
+        pos2(right, window.bottom()),
     );
     docked(ctx, "controls", rect, |ui| {
         contents(ui, rect.shrink2(vec2(8.0, 0.0)), session)
@@ -100,7 +103,7 @@ fn contents(ui: &Ui, rect: Rect, session: &Session) -> Option<Request> {
         }
     };
     let (mut left, mut right) = (rect.left(), rect.right());
-    let touch = session.panel.touch;
+    let touch = session.readings.touch;
     let symbol = SYMBOL_WIDTHS[usize::from(touch)];
     let few = touch && rect.width() < MIN_WIDTH_OF_ALL;
     for (k, button) in running(session).iter().enumerate() {
@@ -332,7 +335,7 @@ mod tests {
         }
         // Fingers have larger buttons, and on a phone the lessons are among them.
         let mut touched = rewound();
-        touched.panel.touch = true;
+        touched.readings.touch = true;
         for width in [360.0, 390.0, 844.0] {
             let (words, places, _) = draw(&ctx, &touched, [width, 600.0], away);
             assert!(words.contains('📖') && words.contains('▶'), "{words}");

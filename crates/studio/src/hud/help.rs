@@ -8,7 +8,9 @@ use egui::{
 use super::list::pressed_at;
 use super::panel::Request;
 use super::style::{MARGIN, TEXT, sheet, title};
-use crate::session::{Action, Binding, GROUPS, Group, MOUSE, RunAction, WindowAction};
+use crate::session::{
+    Action, Binding, FINGERS, GROUPS, Group, LEFT_OUT, MOUSE, RunAction, WindowAction,
+};
 
 /// Width of a window above which the help has three columns (points).
 const THREE_COLUMN_WIDTH: f32 = 900.0;
@@ -21,7 +23,7 @@ const WIDTHS: [f32; 3] = [58.0, 128.0, 190.0];
 
 /// Shows the help, for one pane or `several`, and returns the request of the mouse. In a small
 /// window it scrolls by the wheel.
-pub fn help(ctx: &Context, several: bool) -> Option<Request> {
+pub fn help(ctx: &Context, several: bool, touch: bool) -> Option<Request> {
     let window = ctx.content_rect().shrink(MARGIN);
     let mut request = None;
     let area = Area::new(Id::unique("help"))
@@ -36,7 +38,8 @@ pub fn help(ctx: &Context, several: bool) -> Option<Request> {
                     .max_height(room.y.max(40.0))
                     .min_scrolled_height(room.y.max(40.0))
                     .show(ui, |ui| {
-                        request = columns(ui, several, window.width() > THREE_COLUMN_WIDTH);
+                        let wide = window.width() > THREE_COLUMN_WIDTH;
+                        request = columns(ui, several, touch, wide);
                     });
             });
         });
@@ -50,20 +53,21 @@ pub fn help(ctx: &Context, several: bool) -> Option<Request> {
 
 /// Writes all groups in three columns, or below one another in a narrow window. Returns the request
 /// of the mouse.
-fn columns(ui: &mut Ui, several: bool, wide: bool) -> Option<Request> {
+fn columns(ui: &mut Ui, several: bool, touch: bool, wide: bool) -> Option<Request> {
     let [running, choose, change, show, look, measure, keep, window] = &GROUPS;
     let mut request = None;
     let mut column = |ui: &mut Ui, groups: &[&Group], mouse: bool, numbered: bool| {
         ui.vertical(|ui| {
             ui.spacing_mut().item_spacing.y = 0.0;
             if mouse {
-                gestures(ui);
+                gestures(ui, touch);
             }
             for group in groups {
                 request = bindings(ui, group).or(request);
             }
             if numbered {
                 request = solvers(ui, several).or(request);
+                left_out(ui);
             }
         });
     };
@@ -88,10 +92,15 @@ fn heading(ui: &mut Ui, words: &str) {
     ui.add_space(2.0);
 }
 
-/// Writes what the mouse does.
-fn gestures(ui: &mut Ui) {
-    heading(ui, "Mouse");
-    for (gesture, does) in MOUSE {
+/// Writes what the mouse does, or fingers if they are used.
+fn gestures(ui: &mut Ui, touch: bool) {
+    let (by, gestures) = if touch {
+        ("Fingers", FINGERS)
+    } else {
+        ("Mouse", MOUSE)
+    };
+    heading(ui, by);
+    for (gesture, does) in gestures {
         row(ui, [gesture, does], WIDTHS[1], None);
     }
 }
@@ -125,6 +134,16 @@ fn solvers(ui: &mut Ui, several: bool) -> Option<Request> {
         request = row(ui, [&key, method.title], WIDTHS[0], Some(action)).or(request);
     }
     request
+}
+
+/// Writes what a page leaves out of the window of the program.
+fn left_out(ui: &mut Ui) {
+    if cfg!(target_arch = "wasm32") {
+        heading(ui, "Only in the program");
+        for (what, does) in LEFT_OUT {
+            row(ui, [what, does], WIDTHS[1], None);
+        }
+    }
 }
 
 /// Writes a key and its effect, and returns its action if the row was clicked.
@@ -203,7 +222,7 @@ mod tests {
                         ..Default::default()
                     };
                     let mut output = ctx.run_ui(input, |ui| {
-                        let _ = help(ui.ctx(), false);
+                        let _ = help(ui.ctx(), false, false);
                     });
                     output.textures_delta.set.clear();
                     output.textures_delta.free.clear();

@@ -2,6 +2,7 @@
 
 use a3_render::Tile;
 
+use super::docked::Place;
 use super::{lessons, measure, panel, plotting};
 use crate::session::Session;
 
@@ -18,32 +19,43 @@ const TOUCH_BAR_HEIGHT: f32 = 48.0;
 pub fn bar_height(session: &Session, [width, height]: [f32; 2]) -> f32 {
     if width < 280.0 || height < 240.0 {
         0.0
-    } else if session.panel.touch {
+    } else if session.readings.touch {
         TOUCH_BAR_HEIGHT
     } else {
         BAR_HEIGHT
     }
 }
 
-/// Returns the size (px) of the picture beside the panel, the lessons or the plots, and above the
-/// bar, in a window of `size` (px) at `scale` pixels per point.
+/// Returns the place of what is open beside the picture: the panel, the questions, the lessons or
+/// the plots.
+fn beside(session: &Session) -> Option<&'static Place> {
+    panel::place(session)
+        .or(measure::place(session))
+        .or(lessons::place(session))
+        .or(plotting::place(session))
+}
+
+/// Returns whether the bar is below what is open beside the picture too, in a window of a width
+/// (points).
+pub fn is_bar_whole(session: &Session, width: f32) -> bool {
+    beside(session).is_some_and(|place| place.is_narrow(width))
+}
+
+/// Returns whether what is open covers the picture, in a window of a size (points).
+pub fn is_covered(session: &Session, window: [f32; 2]) -> bool {
+    beside(session).is_some_and(|place| place.covers(window))
+}
+
+/// Returns the size (px) of the picture beside what is open, and above the bar, in a window of
+/// `size` (px) at `scale` pixels per point.
 pub fn picture_size(session: &Session, size: (u32, u32), scale: f32) -> (u32, u32) {
-    let (width, height) = if measure::is_shown(session) {
-        measure::picture_size(size, scale)
-    } else {
-        panel::picture_size(session, size, scale)
-    };
     let window = [size.0, size.1].map(|side| side as f32 / scale);
-    let beside = [
-        lessons::taken(session, window),
-        plotting::taken(session, window),
-    ];
-    let [right, below] = [0, 1].map(|k| beside[0][k] + beside[1][k]);
+    let [right, below] = beside(session).map_or([0.0; 2], |place| place.taken(window));
     let [right, below] =
         [right, below + bar_height(session, window)].map(|a| (a * scale).round() as u32);
     (
-        width.saturating_sub(right).max(1),
-        height.saturating_sub(below).max(1),
+        size.0.saturating_sub(right).max(1),
+        size.1.saturating_sub(below).max(1),
     )
 }
 
@@ -106,24 +118,65 @@ pub fn tiles(panes: usize, size: (u32, u32), scale: f32) -> Vec<Tile> {
 
 /// Width and height of the readings of a single pane (points).
 const READINGS: [f32; 2] = [300.0, 235.0];
+/// Height of the most important ones, and of the time alone (points).
+const FEW_READINGS: [f32; 2] = [84.0, 62.0];
 /// Smallest width of the caption of one of several panes (points), and its share of the pane's
 /// width.
 const CAPTION_WIDTH: (f32, f32) = (210.0, 0.42);
-/// Height of the caption of one of several panes, and in a low pane (points).
-const CAPTION_HEIGHTS: [f32; 2] = [180.0, 76.0];
-/// Height of a pane below which its caption is low (points).
-const MIN_FULL_HEIGHT: f32 = 230.0;
-/// Share of the shorter side of a pane that its free part has at least.
-const MIN_FREE: f32 = 0.55;
+/// Heights of the caption of one of several panes: of all text, the most important one, and a name
+/// (points).
+const CAPTION_HEIGHTS: [f32; 3] = [180.0, 84.0, 44.0];
+/// Smallest width of a pane with more than a name (points).
+const MIN_CAPTION_WIDTH: f32 = 150.0;
+/// Share of the shorter side of a pane that its free part has at least beside each amount of text.
+const MIN_FREE: [f32; 3] = [0.65, 0.42, 0.4];
+
+/// Amount of text in a pane.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Text {
+    Whole,
+    /// The most important text.
+    Few,
+    /// The name of what is shown.
+    Name,
+}
+
+impl Text {
+    /// Returns how much text each of a number of panes of a size (points) has room for.
+    pub fn of(panes: usize, pane: [f32; 2]) -> Self {
+        let fits = |text: &Self| {
+            let size = text.size(panes, pane);
+            let [beside, below] = free(pane, size);
+            let is_free = beside.max(below) >= MIN_FREE[*text as usize] * pane[0].min(pane[1]);
+            is_free && size[1] <= pane[1]
+        };
+        let few = Some(Self::Few).filter(|_| pane[0] >= MIN_CAPTION_WIDTH);
+        let more = [Some(Self::Whole), few].into_iter().flatten().find(fits);
+        more.unwrap_or(Self::Name)
+    }
+
+    /// Returns the size of the text in each of a number of panes of a size (points).
+    fn size(self, panes: usize, [width, _]: [f32; 2]) -> [f32; 2] {
+        match (self, panes) {
+            (Self::Whole, 1) => READINGS,
+            (Self::Few, 1) => [width, FEW_READINGS[0]],
+            (Self::Name, 1) => [width, FEW_READINGS[1]],
+            (Self::Whole, _) => [caption_width(width), CAPTION_HEIGHTS[0]],
+            (Self::Few, _) => [width, CAPTION_HEIGHTS[1]],
+            (Self::Name, _) => [width, CAPTION_HEIGHTS[2]],
+        }
+    }
+}
 
 /// Returns the width and height of a part of a target (points), at `scale` pixels per point.
 pub fn points(tile: Tile, scale: f32) -> [f32; 2] {
     [tile.width, tile.height].map(|side| side as f32 / scale)
 }
 
-/// Returns whether a pane of a height (points) has a low and wide caption.
-pub fn is_low(height: f32) -> bool {
-    height < MIN_FULL_HEIGHT
+/// Returns the width and the height beside and below a text of a size in a pane of a size (points),
+/// each of them no longer than the other side of the pane.
+fn free([width, height]: [f32; 2], [wide, high]: [f32; 2]) -> [f32; 2] {
+    [(width - wide).min(height), width.min(height - high)]
 }
 
 /// Returns the width of the caption of one of several panes, in a pane of a width (points).
@@ -134,14 +187,12 @@ pub fn caption_width(width: f32) -> f32 {
 /// Returns the part of each of a number of panes of a size (points) in which no text hides the
 /// scene: left, top, width and height, as shares of the pane. It is beside the text or below it,
 /// whichever is larger, or the whole pane if neither has room.
-pub fn focus(panes: usize, [width, height]: [f32; 2]) -> [f32; 4] {
-    let [wide, high] = match panes {
-        1 => READINGS,
-        _ if is_low(height) => [width, CAPTION_HEIGHTS[1]],
-        _ => [caption_width(width), CAPTION_HEIGHTS[0]],
-    };
-    let (beside, below) = ((width - wide).min(height), width.min(height - high));
-    if beside.max(below) < MIN_FREE * width.min(height) {
+pub fn focus(panes: usize, pane: [f32; 2]) -> [f32; 4] {
+    let [width, height] = pane;
+    let text = Text::of(panes, pane);
+    let [wide, high] = text.size(panes, pane);
+    let [beside, below] = free(pane, [wide, high]);
+    if beside.max(below) < MIN_FREE[text as usize] * width.min(height) {
         [0.0, 0.0, 1.0, 1.0]
     } else if beside >= below {
         [wide / width, 0.0, 1.0 - wide / width, 1.0]
@@ -188,7 +239,9 @@ mod tests {
         assert!(near(focus(1, [500.0, 940.0]), [0.0, 0.25, 1.0, 0.75]));
         assert!(near(focus(2, [640.0, 720.0]), [0.0, 0.25, 1.0, 0.75]));
         assert!(near(focus(4, [1280.0, 400.0]), [0.42, 0.0, 0.58, 1.0]));
-        assert!(near(focus(1, [320.0, 240.0]), [0.0, 0.0, 1.0, 1.0]));
+        assert!(near(focus(1, [320.0, 240.0]), [0.0, 0.35, 1.0, 0.65]));
+        assert!(near(focus(1, [160.0, 120.0]), [0.0, 0.52, 1.0, 0.48]));
+        assert!(near(focus(1, [100.0, 60.0]), [0.0, 0.0, 1.0, 1.0]));
     }
 
     #[test]

@@ -2,12 +2,13 @@
 
 use std::collections::HashMap;
 
-use egui::text::LayoutJob;
+use egui::text::{LayoutJob, TextWrapping};
 use egui::{
     Align, Align2, Area, Color32, Context, CornerRadius, FontId, Frame, Id, Margin, Order, Pos2,
-    Rect, ScrollArea, Sense, TextureId, Ui, vec2,
+    Rect, ScrollArea, Sense, TextureId, Ui, pos2, vec2,
 };
 
+use super::docked::keep_in_sight;
 use super::panel::PanelRequest;
 use super::style::{FAINT, MARGIN, PAPER, TEXT, faint, text, title};
 use crate::session::{Entry, Session, Topic};
@@ -61,13 +62,15 @@ pub fn show(
                 ui.horizontal(|ui| {
                     ui.label(title(heading));
                     ui.with_layout(egui::Layout::right_to_left(Align::Center), |ui| {
-                        ui.label(faint("Esc"));
+                        if !session.readings.touch {
+                            ui.label(faint("Esc"));
+                        }
                     });
                 });
-                let typed = if list.filter.is_empty() {
-                    faint("type to search; choose by arrows and Enter, or by a click")
-                } else {
-                    text(format!("{}_", list.filter))
+                let typed = match &*list.filter {
+                    "" if session.readings.touch => faint("tap one"),
+                    "" => faint("type to search; choose by arrows and Enter, or by a click"),
+                    typed => text(format!("{typed}_")),
                 };
                 ui.label(typed);
                 ui.add_space(4.0);
@@ -136,11 +139,8 @@ fn row(
     let height = ENTRY_HEIGHTS[usize::from(scenes)];
     let (rect, response) =
         ui.allocate_exact_size(vec2(ui.available_width(), height), Sense::click());
-    // Scroll to the chosen entry only when it changes, so that the wheel can scroll.
-    let was = Id::unique("chosen entry");
-    if chosen && ui.data(|data| data.get_temp(was)) != Some(entry.number) {
-        ui.data_mut(|data| data.insert_temp(was, entry.number));
-        response.scroll_to_me(None);
+    if chosen {
+        keep_in_sight(ui, "entries", rect, entry.number);
     }
     if chosen || response.hovered() {
         let alpha = if chosen { 0.16 } else { 0.07 };
@@ -173,7 +173,12 @@ fn line(ui: &Ui, rect: Rect, entry: &Entry) {
     write(8.0, mark, 11.0, FAINT);
     let name = write(26.0, &entry.name, 13.5, TEXT);
     let about = (name.right() - rect.left() + 14.0).max(26.0 + NAME_WIDTH);
-    write(about, &entry.about, 12.5, FAINT);
+    let font = FontId::proportional(12.5);
+    let mut words = LayoutJob::simple_singleline(entry.about.clone(), font, FAINT);
+    words.wrap = TextWrapping::truncate_at_width(rect.width() - about);
+    let words = ui.painter().layout_job(words);
+    let at = pos2(rect.left() + about, rect.center().y - 0.5 * words.size().y);
+    ui.painter().galley(at, words, FAINT);
 }
 
 /// Draws an entry with its picture, and its description below its name.

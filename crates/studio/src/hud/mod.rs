@@ -32,6 +32,8 @@ mod question;
 mod ruler;
 mod selection;
 mod single;
+#[cfg(test)]
+mod small;
 mod style;
 mod text;
 mod timeline;

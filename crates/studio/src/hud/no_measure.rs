@@ -2,17 +2,13 @@
 
 use egui::Context;
 
+use super::docked::Place;
 use super::panel::Request;
 use crate::session::Session;
 
-/// Returns whether they are visible.
-pub fn is_shown(_: &Session) -> bool {
-    false
-}
-
-/// Returns the size (px) of the picture beside them, in a window of `size` (px).
-pub fn picture_size(size: (u32, u32), _: f32) -> (u32, u32) {
-    size
+/// Returns that they have no place.
+pub fn place(_: &Session) -> Option<&'static Place> {
+    None
 }
 
 /// Draws nothing.

@@ -3,12 +3,13 @@
 use a3_files::failure::Failure;
 use egui::Context;
 
+use super::docked::Place;
 use super::panel::{PanelKey, Request};
 use crate::session::{PlotRequest, Session};
 
-/// Returns the width and the height that they take.
-pub fn taken(_: &Session, _: [f32; 2]) -> [f32; 2] {
-    [0.0, 0.0]
+/// Returns that they have no place.
+pub fn place(_: &Session) -> Option<&'static Place> {
+    None
 }
 
 /// Returns whether they are visible.

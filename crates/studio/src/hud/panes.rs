@@ -5,7 +5,7 @@ use egui::{Area, Context, Frame, Id, Margin, Pos2, Rect, Ui};
 use super::blow_up::explain;
 use super::layout;
 use super::legend::legend;
-use super::style::{PAPER, faint, sheet, text, title};
+use super::style::{ALARM, PAPER, faint, sheet, text, title};
 use super::words::{self, digits, energy, frames, scene, speed, states, time};
 use crate::session::{Pane, Readings};
 
@@ -33,14 +33,15 @@ pub fn show(ctx: &Context, panes: &[Pane], readings: &Readings) {
     }
     for (k, (pane, rect)) in panes.iter().zip(rects).enumerate() {
         within(ctx, &format!("pane {k}"), rect, |ui| {
-            let low = layout::is_low(rect.height());
+            let size = layout::Text::of(panes.len(), rect.size().into());
+            let low = size != layout::Text::Whole;
             // A narrow sheet hides little of the picture, but in a low pane the text needs a wide
             // one.
             let narrow = layout::caption_width(rect.width());
             ui.set_max_width(if low { rect.width() } else { narrow });
             Frame::new()
                 .outer_margin(MARGIN)
-                .show(ui, |ui| sheet(ui, |ui| caption(ui, pane, readings, low)));
+                .show(ui, |ui| sheet(ui, |ui| caption(ui, pane, readings, size)));
         });
     }
 }
@@ -63,6 +64,10 @@ fn bar(ui: &mut Ui, panes: &[Pane], readings: &Readings) {
     let run = &panes[0].simulation;
     let (rect, width) = (ui.clip_rect(), ui.max_rect().width());
     ui.painter().rect_filled(rect, 0.0, PAPER);
+    // In a small window, the help is over the bar.
+    if readings.help {
+        return;
+    }
     Frame::new()
         .inner_margin(Margin::symmetric(12, 5))
         .show(ui, |ui| {
@@ -102,17 +107,28 @@ fn bar(ui: &mut Ui, panes: &[Pane], readings: &Readings) {
                 if let Some(without) = words::without(readings) {
                     say(text(without));
                 }
-                if readings.in_window {
+                if readings.in_window && !readings.touch {
                     say(faint("h  help"));
                 }
             });
         });
 }
 
-/// Writes the readings of a pane, a line for each. In a low pane, writes only the most important
-/// ones, some of them side by side.
-fn caption(ui: &mut Ui, pane: &Pane, readings: &Readings, low: bool) {
+/// Writes the readings of a pane, a line for each. In a small pane, writes only the most important
+/// ones, some of them side by side, or the method alone.
+fn caption(ui: &mut Ui, pane: &Pane, readings: &Readings, size: layout::Text) {
     let run = &pane.simulation;
+    if size == layout::Text::Name {
+        let name = format!("{}  {}", run.method().name, run.control());
+        let name = title(name).size(13.0);
+        let name = match run.blow_up() {
+            Some(_) => name.color(ALARM.colour),
+            None => name,
+        };
+        ui.add(egui::Label::new(name).truncate());
+        return;
+    }
+    let low = size == layout::Text::Few;
     ui.label(title(run.method().title).size(14.0));
     if let Some(blow_up) = run.blow_up() {
         return explain(ui, pane, &blow_up);

@@ -6,11 +6,14 @@ use a3_media::show;
 use egui::{Align2, Context, RichText, Ui};
 
 use super::blow_up::{advice, explain};
+use super::layout;
 use super::legend::legend;
-use super::style::{MARGIN, column, faint, sheet, text, title};
+use super::style::{MARGIN, SAFE, column, faint, sheet, text, title};
 use super::words::{self, digits};
 use crate::session::{Pane, Readings};
 
+/// Width of the names of readings (points).
+const NAME_WIDTH: f32 = 84.0;
 /// Largest number of springs that are listed.
 const MAX_LISTED_SPRINGS: usize = 12;
 
@@ -18,11 +21,18 @@ const MAX_LISTED_SPRINGS: usize = 12;
 pub fn show(ctx: &Context, pane: &Pane, readings: &Readings) {
     column(ctx, "run", Align2::LEFT_TOP, [MARGIN, MARGIN], |ui| {
         ui.set_max_width(ui.available_width().min(460.0));
-        sheet(ui, |ui| run(ui, pane, readings));
+        let size = layout::Text::of(1, ctx.content_rect().size().into());
+        sheet(ui, |ui| match size {
+            layout::Text::Whole => run(ui, pane, readings),
+            layout::Text::Few => brief(ui, pane, readings),
+            layout::Text::Name => least(ui, pane, readings),
+        });
         if let Some(blow_up) = pane.simulation.blow_up() {
             sheet(ui, |ui| {
                 explain(ui, pane, &blow_up);
-                ui.label(text(advice(&blow_up)));
+                if size == layout::Text::Whole {
+                    ui.label(text(advice(&blow_up)));
+                }
             });
         }
         if let Some(film) = &readings.film {
@@ -39,6 +49,40 @@ pub fn show(ctx: &Context, pane: &Pane, readings: &Readings) {
     });
 }
 
+/// Writes the most important readings of the run, for a small window.
+fn brief(ui: &mut Ui, pane: &Pane, readings: &Readings) {
+    let simulation = &pane.simulation;
+    ui.label(title(words::scene(simulation)).size(15.0));
+    ui.label(text(words::method(simulation)));
+    ui.label(text(time(simulation, readings)));
+    if simulation.blow_up().is_some() {
+        return;
+    }
+    let limit = words::limit(pane).filter(|(_, mark)| *mark != SAFE);
+    let warnings = [
+        limit.map(|(words, mark)| mark.text(&words)),
+        words::gained(simulation),
+        words::worst_constraint(simulation),
+    ];
+    for warning in warnings.into_iter().flatten() {
+        ui.label(warning);
+    }
+    legend(ui, &pane.show);
+}
+
+/// Writes the name of the scene and the time, for a tiny window.
+fn least(ui: &mut Ui, pane: &Pane, readings: &Readings) {
+    let name = pane.simulation.scene().name.clone();
+    ui.add(egui::Label::new(title(name).size(14.0)).truncate());
+    ui.label(text(time(&pane.simulation, readings)));
+}
+
+/// Returns the time, and whether the run is paused.
+fn time(simulation: &Simulation, readings: &Readings) -> String {
+    let paused = if readings.paused { "   paused" } else { "" };
+    format!("{}{paused}", words::time(simulation))
+}
+
 /// Writes the readings of the run.
 fn run(ui: &mut Ui, pane: &Pane, readings: &Readings) {
     let simulation = &pane.simulation;
@@ -47,6 +91,7 @@ fn run(ui: &mut Ui, pane: &Pane, readings: &Readings) {
     egui::Grid::new("readings")
         .num_columns(2)
         .spacing([14.0, 3.0])
+        .max_col_width((ui.available_width() - NAME_WIDTH).max(60.0))
         .show(ui, |ui| {
             let mut row = |name: &str, value: RichText| {
                 ui.label(faint(name));

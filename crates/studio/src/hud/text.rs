@@ -4,7 +4,7 @@ use egui::Context;
 
 use super::help::help;
 use super::panel::Request;
-use super::{panes, question, selection, single};
+use super::{panes, selection, single};
 use crate::session::{Pane, Readings};
 
 /// Draws all text over the picture, and returns the request of the mouse. Sheets are below one
@@ -18,8 +18,8 @@ pub fn show(ctx: &Context, panes: &[Pane], readings: &Readings) -> Option<Reques
     if let Some(selection) = &readings.selection {
         selection::show(ctx, selection);
     }
-    if readings.help {
-        return help(ctx, panes.len() > 1);
-    }
-    readings.asks_to_quit.then(|| question::show(ctx)).flatten()
+    readings
+        .help
+        .then(|| help(ctx, panes.len() > 1, readings.touch))
+        .flatten()
 }

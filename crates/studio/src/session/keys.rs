@@ -131,6 +131,25 @@ pub static MOUSE: &[(&str, &str)] = &[
     ("wheel", "zoom to the pointer"),
 ];
 
+/// Actions of fingers, for the help.
+pub static FINGERS: &[(&str, &str)] = &[
+    ("on the scene", "pull or push"),
+    ("elsewhere", "turn"),
+    ("two fingers", "move and zoom"),
+    ("long press", "pin, or release"),
+    ("double tap", "list springs"),
+];
+
+/// What a page leaves out of the window of the program, for its help.
+pub static LEFT_OUT: &[(&str, &str)] = &[
+    ("measure (q)", "charts, limits, choice"),
+    ("plots (F3)", "particles, springs"),
+    ("tools (F2)", "throw, add, join, delete"),
+    ("films (m, n)", "MP4, GIF, WebM, PNG"),
+    ("comparisons", "from a command line"),
+    ("threads", "large scenes are slower"),
+];
+
 /// Returns all keys except the digits.
 pub fn bindings() -> impl Iterator<Item = &'static Binding> {
     GROUPS.iter().flat_map(|group| group.bindings)

@@ -7,6 +7,8 @@ use a3_files::lessons::{ALL, Answer, Lesson, Step};
 /// A request of the user to the pane of lessons.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum LessonRequest {
+    /// Hide the lessons.
+    Close,
     /// Show the list of lessons.
     Contents,
     /// Choose a lesson in the list.

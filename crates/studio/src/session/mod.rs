@@ -42,7 +42,7 @@ pub use continued::continue_from;
 pub use effects::{Deviation, Effect, Job, Situation};
 pub use history::{Change, EditChange, Recorded};
 pub use keys::{Action, RunAction, WindowAction};
-pub use keys::{Binding, GROUPS, Group, MOUSE, action};
+pub use keys::{Binding, FINGERS, GROUPS, Group, LEFT_OUT, MOUSE, action};
 pub use lessons::{Given, LessonRequest, Lessons};
 pub use list::{Entry, TextKey, Topic};
 pub use measuring::Progress;

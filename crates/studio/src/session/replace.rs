@@ -18,6 +18,7 @@ pub fn replace(session: &mut Session, next: Session) {
     session.measuring.answerer = former.measuring.answerer;
     session.scenes.adopt(former.scenes);
     session.readings.in_window = former.readings.in_window;
+    session.readings.touch = former.readings.touch;
     session.readings.film = former.readings.film;
 }
 

@@ -448,6 +448,8 @@ pub struct Readings {
     pub film: Option<FilmProgress>,
     /// Whether there is a window, with keys to press.
     pub in_window: bool,
+    /// Whether fingers are used, for which buttons are larger.
+    pub touch: bool,
     /// Reason why the errors of the panes are unknown, if they are.
     pub no_error: Option<&'static str>,
     /// Time past which the errors say little (s), if the scene is known to be chaotic.

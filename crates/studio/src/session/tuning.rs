@@ -75,8 +75,6 @@ pub struct PanelState {
     pub hidden: Hidden,
     /// The pane of plots, which opens in its place too.
     pub plotting: PlotSettings,
-    /// Whether fingers are used, for which buttons are larger.
-    pub touch: bool,
     /// Number of the chosen row in the table of knobs, which keys turn.
     pub row: usize,
     /// Whether the dark theme is on, if the panel chose it.
@@ -102,7 +100,6 @@ impl Default for PanelState {
             lessons: Lessons::default(),
             hidden: Hidden::default(),
             plotting: PlotSettings::default(),
-            touch: false,
             row: 0,
             dark: None,
             typed: None,

@@ -2,10 +2,12 @@
 
 use std::f32::consts::FRAC_PI_2;
 
-use a3_core::{Network, Vector3};
+use std::sync::Arc;
+
+use a3_core::{Control, Network, Simulation, Vector3, integrators};
 use a3_media::show;
 use a3_render::Camera;
-use a3_scenes::{Splice, surroundings};
+use a3_scenes::{Splice, Viewpoint, surroundings};
 
 use super::pane::Pane;
 
@@ -16,6 +18,13 @@ const VIEWS: [([f32; 2], &str); 3] = [
     // The camera stops just before the pole.
     ([0.0, FRAC_PI_2], "The view is from above."),
 ];
+
+/// Time between two states of a run whose motion is looked at (s).
+const SEEN_EVERY: f64 = 1.0 / 30.0;
+/// Most work of such a run: evaluations times particles.
+const MAX_WORK: f64 = 1e6;
+/// Room around the motion, for methods that err.
+const MARGIN: f64 = 1.2;
 
 /// The camera, which all panes share, and the particle that it follows.
 pub struct View {
@@ -138,6 +147,49 @@ impl View {
         self.camera.see(show::to_f32(middle), radius as f32);
     }
 
+    /// Moves the camera of a scene that begins, without turning it, so that the motion until a time
+    /// (s) fills most of the picture. The motion is that of an accurate run, as far as a short
+    /// computation gets.
+    pub fn see_motion(&mut self, panes: &mut [Pane], until: f64) {
+        let scene = panes[0].simulation.scene().clone();
+        let (Some(method), tolerance) = (integrators::find("dop853"), Control::Tolerance(1e-5))
+        else {
+            return;
+        };
+        let Ok(mut run) = Simulation::new(scene, method, tolerance) else {
+            return;
+        };
+        let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
+        loop {
+            for point in (0..run.particles()).map(|i| run.position(i)) {
+                for axis in 0..3 {
+                    low[axis] = low[axis].min(point[axis]);
+                    high[axis] = high[axis].max(point[axis]);
+                }
+            }
+            let work = run.work().evaluations as f64 * run.particles() as f64;
+            let next = run.time() + SEEN_EVERY;
+            if next > until || work > MAX_WORK || run.advance_to(next).is_err() {
+                break;
+            }
+        }
+        let [low, high] = [low, high].map(Vector3::from);
+        let (middle, radius) = (0.5 * (low + high), 0.5 * MARGIN * (high - low).norm());
+        if radius == 0.0 {
+            return;
+        }
+        let mut camera = self.camera;
+        camera.see(show::to_f32(middle), radius as f32);
+        let viewpoint = Viewpoint {
+            eye: camera.eye().coords.cast(),
+            target: camera.target().coords.cast(),
+        };
+        for pane in &mut *panes {
+            Arc::make_mut(&mut pane.show.presentation).viewpoint = viewpoint;
+        }
+        self.set_camera(panes[0].show.camera());
+    }
+
     /// Turns the camera to the next view (from the front, from the right, or from above), and
     /// returns a message.
     pub fn next_view(&mut self) -> &'static str {
@@ -155,7 +207,12 @@ impl View {
 
 #[cfg(test)]
 mod tests {
-    use crate::session::{RunAction, Session, frames, session};
+    use a3_core::{Control, Simulation, integrators};
+    use a3_files::lessons::ALL;
+    use a3_media::show;
+
+    use crate::begin;
+    use crate::session::{RunAction, Session, frames, read, session};
 
     #[test]
     fn the_camera_follows_a_particle_forth_and_back() {
@@ -199,6 +256,39 @@ mod tests {
         session.act(RunAction::Projection, 0);
         session.act(RunAction::NextScene, 0);
         assert!(!session.view.camera.is_parallel());
+    }
+
+    /// In every step of a lesson, what moves fills half of the picture and does not leave it.
+    #[test]
+    fn the_motion_of_a_lesson_fills_its_picture() {
+        for lesson in ALL.iter() {
+            for step in &lesson.steps {
+                let session = begin::step(step, read).unwrap();
+                let aspect = 1.2;
+                let project = session.view.camera.projection(aspect);
+                let scene = session.runs.first().scene().clone();
+                let method = integrators::find("dop853").unwrap();
+                let mut run = Simulation::new(scene, method, Control::Tolerance(1e-6)).unwrap();
+                let (mut low, mut high) = ([1f32; 2], [0f32; 2]);
+                for k in 0..60 {
+                    let until = step.until.unwrap_or(10.0).min(10.0);
+                    run.advance_to(until * f64::from(k) / 60.0).unwrap();
+                    for i in 0..run.particles() {
+                        let (at, _) = project(show::to_f32(run.position(i))).unwrap();
+                        for axis in 0..2 {
+                            low[axis] = low[axis].min(at[axis]);
+                            high[axis] = high[axis].max(at[axis]);
+                        }
+                    }
+                }
+                let [wide, tall] = [high[0] - low[0], high[1] - low[1]];
+                assert!(
+                    wide.max(tall) > 0.5 && low[0].min(low[1]) > 0.0 && high[0].max(high[1]) < 1.0,
+                    "{}: {low:?} to {high:?}",
+                    step.title
+                );
+            }
+        }
     }
 
     #[test]

@@ -11,12 +11,12 @@ use super::super::panel::{Dial, DialScale, INK, PanelRequest, Turn, slider};
 use super::super::style::{FAINT, TEXT};
 use crate::session::{Measure, Session, Tool};
 
-/// Width and height of a button (points).
-const BUTTON: [f32; 2] = [62.0, 46.0];
+/// Smallest and largest width of a button, and its height (points).
+const BUTTON: [f32; 3] = [49.0, 62.0, 46.0];
 /// Height of the row of sliders (points).
 const SLIDERS: f32 = 28.0;
-/// Width of a slider with its name and its value (points).
-const SLIDER: f32 = 184.0;
+/// Smallest and largest width of a slider with its name and its value (points).
+const SLIDER: [f32; 2] = [140.0, 184.0];
 /// Distance from the contents to the edge (points).
 const PAD: f32 = 6.0;
 /// Distance from the bar and from the sides of the picture (points).
@@ -36,13 +36,19 @@ pub fn show(ctx: &Context, session: &Session) -> Option<PanelRequest> {
     }
     let room = ctx.content_rect().shrink(GAP);
     let count = Tool::ALL.len();
-    let columns = (((room.width() - 2.0 * PAD) / BUTTON[0]) as usize).clamp(1, count);
+    let inside = room.width() - 2.0 * PAD;
+    let button_size = vec2(
+        (inside / count as f32).clamp(BUTTON[0], BUTTON[1]),
+        BUTTON[2],
+    );
+    let columns = ((inside / button_size.x) as usize).clamp(1, count);
     let rows = count.div_ceil(columns);
-    let width = columns as f32 * BUTTON[0] + 2.0 * PAD;
+    let width = columns as f32 * button_size.x + 2.0 * PAD;
     let measures = editor.tool.measures();
-    let beside = (((width - 2.0 * PAD) / SLIDER) as usize).clamp(1, 3);
+    let beside = (((width - 2.0 * PAD) / SLIDER[0]) as usize).clamp(1, 3);
+    let slider_width = ((width - 2.0 * PAD) / beside as f32).min(SLIDER[1]);
     let lines = measures.len().div_ceil(beside).max(1);
-    let height = rows as f32 * BUTTON[1] + lines as f32 * SLIDERS + 2.0 * PAD;
+    let height = rows as f32 * BUTTON[2] + lines as f32 * SLIDERS + 2.0 * PAD;
     let left = room.center().x - 0.5 * width;
     let place = Rect::from_min_size(pos2(left, room.bottom() - height), vec2(width, height));
     let mut request = None;
@@ -58,20 +64,21 @@ pub fn show(ctx: &Context, session: &Session) -> Option<PanelRequest> {
             let inside = place.shrink(PAD);
             for (k, tool) in Tool::ALL.into_iter().enumerate() {
                 let cell = vec2(
-                    (k % columns) as f32 * BUTTON[0],
-                    (k / columns) as f32 * BUTTON[1],
+                    (k % columns) as f32 * button_size.x,
+                    (k / columns) as f32 * button_size.y,
                 );
-                let rect = Rect::from_min_size(inside.min + cell, BUTTON.into());
+                let rect = Rect::from_min_size(inside.min + cell, button_size);
                 if button(ui, rect, tool, tool == editor.tool) {
                     request = Some(PanelRequest::Tool(tool));
                 }
             }
-            let top = inside.top() + rows as f32 * BUTTON[1];
-            let all = measures.len().min(beside) as f32 * SLIDER;
+            let top = inside.top() + rows as f32 * button_size.y;
+            let all = measures.len().min(beside) as f32 * slider_width;
             let left = inside.center().x - 0.5 * all;
             for (k, measure) in measures.iter().enumerate() {
-                let cell = vec2((k % beside) as f32 * SLIDER, (k / beside) as f32 * SLIDERS);
-                let rect = Rect::from_min_size(pos2(left, top) + cell, vec2(SLIDER, SLIDERS));
+                let size = vec2(slider_width, SLIDERS);
+                let cell = vec2((k % beside) as f32, (k / beside) as f32) * size;
+                let rect = Rect::from_min_size(pos2(left, top) + cell, size);
                 request = quantity(ui, rect, session, *measure).or(request);
             }
             if measures.is_empty() {
@@ -100,7 +107,7 @@ fn button(ui: &Ui, rect: Rect, tool: Tool, chosen: bool) -> bool {
     let colour = if chosen { INK } else { TEXT };
     draw(painter, tool, rect.center() - vec2(0.0, 7.0), colour);
     let at = pos2(rect.center().x, rect.bottom() - 11.0);
-    let font = FontId::proportional(11.0);
+    let font = FontId::proportional(if rect.width() < 56.0 { 9.5 } else { 11.0 });
     painter.text(at, Align2::CENTER_CENTER, name(tool), font, colour);
     let response = response.on_hover_cursor(CursorIcon::PointingHand);
     response.on_hover_text(help(tool)).clicked()

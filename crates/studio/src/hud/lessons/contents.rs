@@ -3,6 +3,7 @@
 use a3_files::lessons::{ALL, Lesson};
 use egui::{CornerRadius, CursorIcon, Id, Painter, Pos2, Sense, Stroke, Ui, pos2, vec2};
 
+use super::super::docked::keep_in_sight;
 use super::super::panel::{CHOSEN, HOVERED, INK, TRACK};
 use super::super::style::{FAINT, TEXT};
 use super::marked::job;
@@ -60,18 +61,9 @@ fn row(ui: &mut Ui, lessons: &Lessons, number: usize, lesson: &Lesson) -> bool {
         dot(&painter, pos2(x, middle), lessons.is_done(number, step));
     }
     if lessons.chosen == number && lessons.step.is_none() {
-        keep_in_sight(ui, &response, number);
+        keep_in_sight(ui, "lessons", rect, number);
     }
     response.on_hover_cursor(CursorIcon::PointingHand).clicked()
-}
-
-/// Scrolls to the chosen lesson when another one is chosen, so that the wheel can scroll.
-fn keep_in_sight(ui: &Ui, response: &egui::Response, number: usize) {
-    let was = Id::unique("chosen lesson");
-    if ui.data(|data| data.get_temp(was)) != Some(number) {
-        ui.data_mut(|data| data.insert_temp(was, number));
-        response.scroll_to_me(None);
-    }
 }
 
 /// Draws a dot: full if its step is done.

@@ -8,7 +8,7 @@ mod request;
 mod step;
 mod view;
 
-pub use place::taken;
+pub use place::place;
 pub use request::{apply, press_text, request};
 pub use view::show;
 

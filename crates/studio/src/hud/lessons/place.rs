@@ -8,6 +8,7 @@ pub const PLACE: Place = Place {
     width: (330.0, 470.0, 0.3),
     min_width_beside: 600.0,
     share_below: 0.47,
+    narrow: Some(236.0),
 };
 
 /// Returns whether the lessons are visible: they are open, and the help does not hide them.
@@ -15,12 +16,7 @@ pub fn is_shown(session: &Session) -> bool {
     session.panel.lessons.open && !session.readings.help
 }
 
-/// Returns the width on the right and the height below the picture that the lessons take, in a
-/// window of a size (points).
-pub fn taken(session: &Session, window: [f32; 2]) -> [f32; 2] {
-    if is_shown(session) {
-        PLACE.taken(window)
-    } else {
-        [0.0, 0.0]
-    }
+/// Returns the place of the lessons, if they are visible.
+pub fn place(session: &Session) -> Option<&'static Place> {
+    is_shown(session).then_some(&PLACE)
 }

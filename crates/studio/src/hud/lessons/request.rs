@@ -12,6 +12,7 @@ pub fn apply(session: &mut Session, request: LessonRequest) -> bool {
     let lessons = &mut session.panel.lessons;
     lessons.typing &= matches!(request, LessonRequest::Letter(_));
     match request {
+        LessonRequest::Close => lessons.open = false,
         LessonRequest::Contents => lessons.step = None,
         LessonRequest::Choose(lesson) => lessons.chosen = lesson,
         LessonRequest::Open(lesson, step) => {

@@ -22,9 +22,19 @@ const CHECK_WIDTH: f32 = 84.0;
 const HEIGHTS: [f32; 2] = [32.0, 42.0];
 /// The keys of the keypad, for fingers; `<` erases.
 const KEYPAD: [&str; 2] = ["12345-<", "67890.e"];
+/// The face of the key that erases.
+pub const ERASE: char = '⬅';
+/// Height of a key (points).
+const KEY_HEIGHT: f32 = 42.0;
 
-/// Draws a step, and returns the request of the mouse.
-pub fn show(ui: &mut Ui, session: &Session, lesson: &Lesson, step: &Step) -> Option<LessonRequest> {
+/// Draws a step, with the keypad if `keys`, and returns the request of the mouse.
+pub fn show(
+    ui: &mut Ui,
+    session: &Session,
+    lesson: &Lesson,
+    step: &Step,
+    keys: bool,
+) -> Option<LessonRequest> {
     let (lessons, width) = (&session.panel.lessons, ui.available_width());
     let given = lessons.given();
     let mut request = stations(ui, session, lesson);
@@ -49,6 +59,11 @@ pub fn show(ui: &mut Ui, session: &Session, lesson: &Lesson, step: &Step) -> Opt
         Answer::Number { unit, .. } => number(ui, session, &given, unit),
     };
     request = asked.or(request);
+    if keys {
+        let size = vec2(width, keypad_height(session));
+        let (room, _) = ui.allocate_exact_size(size, Sense::hover());
+        request = keypad(ui, room).or(request);
+    }
     request = reply(ui, &given, step).or(request);
     ui.add_space(12.0);
     request
@@ -57,7 +72,7 @@ pub fn show(ui: &mut Ui, session: &Session, lesson: &Lesson, step: &Step) -> Opt
 /// Draws the steps of the lesson as a row of numbers, between which a click changes.
 fn stations(ui: &mut Ui, session: &Session, lesson: &Lesson) -> Option<LessonRequest> {
     let lessons = &session.panel.lessons;
-    let size = HEIGHTS[usize::from(session.panel.touch)] - 4.0;
+    let size = HEIGHTS[usize::from(session.readings.touch)] - 4.0;
     let (row, _) = ui.allocate_exact_size(vec2(ui.available_width(), size), Sense::hover());
     let mut request = None;
     for k in 0..lesson.steps.len() {
@@ -115,7 +130,7 @@ fn choose(
     choices: &[Choice],
     right: usize,
 ) -> Option<LessonRequest> {
-    let least = HEIGHTS[usize::from(session.panel.touch)];
+    let least = HEIGHTS[usize::from(session.readings.touch)];
     let mut request = None;
     for (k, choice) in choices.iter().enumerate() {
         let width = ui.available_width();
@@ -159,7 +174,7 @@ fn choose(
 /// Draws the field for a number with its button, and a keypad for fingers. Returns the request of
 /// the mouse.
 fn number(ui: &mut Ui, session: &Session, given: &Given, unit: &str) -> Option<LessonRequest> {
-    let height = HEIGHTS[usize::from(session.panel.touch)];
+    let height = HEIGHTS[usize::from(session.readings.touch)];
     let (row, _) = ui.allocate_exact_size(vec2(ui.available_width(), height), Sense::hover());
     let typing = session.panel.lessons.typing;
     let field = row.with_max_x(row.right() - CHECK_WIDTH - 8.0);
@@ -192,9 +207,7 @@ fn number(ui: &mut Ui, session: &Session, given: &Given, unit: &str) -> Option<L
     let is_due = !given.typed.is_empty() && given.right.is_none();
     button(ui, place, &check, "Check", is_due);
     ui.add_space(5.0);
-    let mut request = (session.panel.touch && !given.done)
-        .then(|| keypad(ui, height))
-        .flatten();
+    let mut request = None;
     if response.on_hover_cursor(CursorIcon::Text).clicked() {
         request = Some(LessonRequest::Type(true));
     } else if check.clicked() {
@@ -203,24 +216,34 @@ fn number(ui: &mut Ui, session: &Session, given: &Given, unit: &str) -> Option<L
     request
 }
 
-/// Draws the keys of numbers, and returns the request of the mouse.
-fn keypad(ui: &mut Ui, height: f32) -> Option<LessonRequest> {
+/// Returns the height of the keypad (points), which fingers have while a number is asked for.
+pub fn keypad_height(session: &Session) -> f32 {
+    let lessons = &session.panel.lessons;
+    let asked = lessons.shown().map(|(_, step)| &step.question.answer);
+    let asks_number = matches!(asked, Some(Answer::Number { .. }));
+    if asks_number && session.readings.touch && !lessons.given().done {
+        KEYPAD.len() as f32 * KEY_HEIGHT
+    } else {
+        0.0
+    }
+}
+
+/// Draws the keys of numbers, if their room has a height. Returns the request of the mouse.
+pub fn keypad(ui: &Ui, room: Rect) -> Option<LessonRequest> {
     let mut request = None;
-    for keys in KEYPAD {
-        let (row, _) = ui.allocate_exact_size(vec2(ui.available_width(), height), Sense::hover());
-        let width = row.width() / keys.len() as f32;
+    for (line, keys) in KEYPAD.iter().enumerate().filter(|_| room.height() > 0.0) {
+        let size = vec2(room.width() / keys.len() as f32, KEY_HEIGHT);
         for (k, key) in keys.chars().enumerate() {
-            let at = pos2(row.left() + width * k as f32, row.top());
-            let rect = Rect::from_min_size(at, vec2(width, height)).shrink(2.0);
+            let at = room.min + vec2(k as f32, line as f32) * size;
+            let rect = Rect::from_min_size(at, size).shrink(2.0);
             let response = ui.interact(rect, Id::unique(("keypad", key)), Sense::click());
-            let face = if key == '<' { '⌫' } else { key };
+            let face = if key == '<' { ERASE } else { key };
             button(ui, rect, &response, &face.to_string(), false);
             if response.clicked() {
                 request = Some(LessonRequest::Letter(Some(key).filter(|key| *key != '<')));
             }
         }
     }
-    ui.add_space(5.0);
     request
 }
 

@@ -5,7 +5,8 @@ use egui::{Event, Modifiers, PointerButton, Pos2, RawInput, Rect, SafeAreaInsets
 
 use super::super::panel::PanelKey::{self, Down, Left, Right, Toggle, Up};
 use super::super::style::context;
-use super::{apply, press_text, request, show, taken};
+use super::place::PLACE;
+use super::{apply, press_text, request, show};
 use crate::begin;
 use crate::session::{LessonRequest, RunAction, Session, TextKey, read, session};
 
@@ -134,7 +135,7 @@ fn the_right_choices_are_what_happens() {
 fn draw(session: &Session, size: [f32; 2], words: Option<&str>) -> (String, Option<LessonRequest>) {
     let ctx = context();
     let window = Rect::from_min_size(Pos2::ZERO, size.into());
-    let [right, below] = taken(session, size);
+    let [right, below] = PLACE.taken(size);
     let bottom = below + BAR;
     let (mut said, mut request, mut at) = (String::new(), None, Pos2::new(3.0, 3.0));
     for pressed in [None, None, None, Some(true), Some(false)] {
@@ -181,13 +182,13 @@ fn every_step_is_drawn_in_windows_and_on_phones() {
     let mut session = session(&["t", "0.01", "--paused"]);
     session.act(RunAction::Lessons, 0);
     for size in [[1000.0, 560.0], [1280.0, 800.0], [390.0, 844.0]] {
-        session.panel.touch = size[0] < 500.0;
+        session.readings.touch = size[0] < 500.0;
         let (said, _) = draw(&session, size, None);
         assert!(
             ALL.iter().all(|lesson| said.contains(&lesson.title)),
             "{said}"
         );
-        let [right, below] = taken(&session, size);
+        let [right, below] = PLACE.taken(size);
         let picture = [size[0] - right, size[1] - below - BAR];
         assert!(picture.iter().all(|side| *side >= 390.0), "{picture:?}");
         for lesson in 0..ALL.len() {

@@ -5,11 +5,11 @@ use egui::{
     vec2,
 };
 
-use super::super::docked::docked;
+use super::super::docked::{close, docked};
 use super::super::panel::INK;
-use super::super::style::{FAINT, TEXT};
+use super::super::style::TEXT;
 use super::button::button;
-use super::place::{PLACE, is_shown};
+use super::place::place;
 use super::request::{next, previous};
 use super::{contents, step};
 use crate::session::{LessonRequest, Session};
@@ -18,24 +18,29 @@ use crate::session::{LessonRequest, Session};
 const MARGIN: f32 = 16.0;
 /// Height of the heading (points).
 const HEADING_HEIGHT: f32 = 44.0;
+/// Width of the button that closes the lessons (points).
+const CLOSE_WIDTH: f32 = 28.0;
+/// Height of a pane whose keypad scrolls with the text (points).
+const LOW: f32 = 300.0;
 /// Height of the buttons and of their margins, with the mouse and with fingers (points).
 const BUTTONS_HEIGHTS: [f32; 2] = [48.0, 58.0];
 
 /// Draws the lessons, if they are visible, and returns the request of the mouse.
 pub fn show(ctx: &Context, session: &Session) -> Option<LessonRequest> {
-    if !is_shown(session) {
-        return None;
-    }
-    let rect = PLACE.rect(ctx);
+    let rect = place(session)?.rect(ctx);
     let lessons = &session.panel.lessons;
     docked(ctx, "lessons", rect, |ui| {
         let inner = rect.shrink2(vec2(MARGIN, 0.0));
         let mut request = heading(ui, inner, session);
         let shown = lessons.shown();
-        let foot = match shown {
-            Some(_) => BUTTONS_HEIGHTS[usize::from(session.panel.touch)],
-            None => 8.0,
+        let buttons_height = BUTTONS_HEIGHTS[usize::from(session.readings.touch)];
+        let below = rect.height() > LOW;
+        let keys = if below {
+            step::keypad_height(session)
+        } else {
+            0.0
         };
+        let foot = shown.map_or(8.0, |_| buttons_height + keys);
         let body = Rect::from_min_max(
             pos2(inner.left(), inner.top() + HEADING_HEIGHT),
             pos2(inner.right() + MARGIN - 4.0, inner.bottom() - foot),
@@ -49,7 +54,7 @@ pub fn show(ctx: &Context, session: &Session) -> Option<LessonRequest> {
                     ui.set_width(inner.width());
                     ui.spacing_mut().item_spacing = vec2(0.0, 0.0);
                     match shown {
-                        Some((lesson, step)) => step::show(ui, session, lesson, step),
+                        Some((lesson, step)) => step::show(ui, session, lesson, step, !below),
                         None => contents::show(ui, lessons),
                     }
                 })
@@ -57,8 +62,10 @@ pub fn show(ctx: &Context, session: &Session) -> Option<LessonRequest> {
         });
         request = scrolled.inner.or(request);
         if shown.is_some() {
-            let row = inner.with_min_y(inner.bottom() - foot);
+            let row = inner.with_min_y(inner.bottom() - buttons_height);
             request = buttons(ui, row.shrink2(vec2(0.0, 8.0)), session).or(request);
+            let room = Rect::from_min_max(pos2(inner.left(), row.top() - keys), row.right_top());
+            request = step::keypad(ui, room).or(request);
         }
         request
     })
@@ -74,16 +81,20 @@ fn heading(ui: &Ui, inner: Rect, session: &Session) -> Option<LessonRequest> {
         let painter = ui.painter();
         painter.text(at, Align2::LEFT_CENTER, words, font, colour)
     };
-    let at = pos2(inner.right(), line);
-    let font = FontId::proportional(12.5);
-    ui.painter()
-        .text(at, Align2::RIGHT_CENTER, "F1", font, FAINT);
+    let top = inner.with_max_y(inner.top() + HEADING_HEIGHT - 2.0);
+    let closed = close(ui, top, "F1").then_some(LessonRequest::Close);
     let Some((lesson, _)) = lessons.shown() else {
         write(inner.left(), "Lessons", 17.0, TEXT);
-        return None;
+        return closed;
     };
     let arrow = Rect::from_center_size(pos2(inner.left() + 5.0, line), vec2(34.0, 34.0));
-    let title = write(inner.left() + 18.0, &lesson.title, 17.0, TEXT);
+    let font = FontId::proportional(17.0);
+    let words = ui
+        .painter()
+        .layout_no_wrap(lesson.title.clone(), font, TEXT);
+    let fit = (inner.width() - 18.0 - CLOSE_WIDTH) / words.size().x;
+    let size = 17.0 * fit.min(1.0);
+    let title = write(inner.left() + 18.0, &lesson.title, size, TEXT);
     let id = Id::unique("back to the lessons");
     let response = ui.interact(arrow.union(title), id, Sense::click());
     let stroke = Stroke::new(1.8, if response.hovered() { TEXT } else { INK });
@@ -93,7 +104,8 @@ fn heading(ui: &Ui, inner: Rect, session: &Session) -> Option<LessonRequest> {
     let response = response
         .on_hover_cursor(CursorIcon::PointingHand)
         .on_hover_text("All lessons");
-    response.clicked().then_some(LessonRequest::Contents)
+    let back = response.clicked().then_some(LessonRequest::Contents);
+    back.or(closed)
 }
 
 /// Draws the buttons that go back, run the step again, and go on. Returns the request of the mouse.

@@ -6,4 +6,4 @@ mod diagram;
 mod view;
 
 pub use chip::chip;
-pub use view::{is_shown, picture_size, show};
+pub use view::{place, show};

@@ -2,64 +2,41 @@
 
 use egui::{Align2, Color32, Context, FontId, Id, Rect, Sense, Ui, pos2, vec2};
 
-use super::super::docked::docked;
+use super::super::docked::{Place, close, docked};
 use super::super::panel::{PanelRequest, Request, button};
 use super::super::style::{FAINT, TEXT};
 use super::answer;
 use super::chip::{INK, chip};
 use crate::session::{MeasureRequest, Progress, Question, Session};
 
-/// Smallest and largest width of the pane (points), and its share of the window's width between
-/// them.
-const WIDTH: (f32, f32, f32) = (420.0, 860.0, 0.46);
-/// Smallest width of a window with the pane beside the picture (points). In a narrower one, the
-/// pane covers the picture.
-const MIN_WIDTH_BESIDE: f32 = 700.0;
+/// The place of the pane.
+const PLACE: Place = Place {
+    width: (420.0, 860.0, 0.46),
+    min_width_beside: 700.0,
+    share_below: 0.62,
+    narrow: None,
+};
 /// Distance of the contents from the edges (points).
 const MARGIN: f32 = 16.0;
 /// Height of the title, of a row of buttons, and distance between rows (points).
 const HEIGHTS: [f32; 3] = [38.0, 28.0, 7.0];
 /// Width of the pane above which the questions are in one row (points).
 const ONE_ROW_WIDTH: f32 = 640.0;
+/// Width of all settings (points).
+const SETTINGS_WIDTH: f32 = 322.0;
+/// Smallest and largest width of the button that measures (points).
+const BUTTON_WIDTHS: [f32; 2] = [92.0, 108.0];
 /// Colour of the track of a progress.
 const TRACK: Color32 = Color32::from_rgb(200, 202, 207);
 
-/// Returns whether the pane is visible: it is open, and the help does not hide it.
-pub fn is_shown(session: &Session) -> bool {
-    session.measuring.open && !session.readings.help
-}
-
-/// Returns the width of the pane in a window of a width (points).
-fn width(window: f32) -> f32 {
-    let (least, most, share) = WIDTH;
-    if window < MIN_WIDTH_BESIDE {
-        window
-    } else {
-        (share * window).round().clamp(least, most)
-    }
-}
-
-/// Returns the size (px) of the picture beside the pane, in a window of `size` (px) at `scale`
-/// pixels per point.
-pub fn picture_size(size: (u32, u32), scale: f32) -> (u32, u32) {
-    let window = size.0 as f32 / scale;
-    if window < MIN_WIDTH_BESIDE {
-        return size;
-    }
-    let taken = (width(window) * scale).round() as u32;
-    (size.0.saturating_sub(taken).max(1), size.1)
+/// Returns the place of the pane, if it is visible: it is open, and the help does not hide it.
+pub fn place(session: &Session) -> Option<&'static Place> {
+    (session.measuring.open && !session.readings.help).then_some(&PLACE)
 }
 
 /// Draws the pane, if it is visible, and returns the request of the mouse.
 pub fn show(ctx: &Context, session: &Session) -> Option<Request> {
-    if !is_shown(session) {
-        return None;
-    }
-    let window = ctx.viewport_rect();
-    let rect = Rect::from_min_max(
-        pos2(window.right() - width(window.width()), window.top()),
-        window.right_bottom(),
-    );
+    let rect = place(session)?.rect(ctx);
     let request = docked(ctx, "measure", rect, |ui| {
         ui.set_clip_rect(rect);
         contents(ui, rect.shrink2(vec2(MARGIN, 0.0)), session)
@@ -120,16 +97,7 @@ fn head(ui: &Ui, rect: Rect) -> Option<MeasureRequest> {
         font,
         TEXT,
     );
-    let place = Rect::from_center_size(rect.right_center() + vec2(-8.0, 2.0), vec2(24.0, 24.0));
-    let response = ui.interact(place, Id::unique("hide measure"), Sense::click());
-    let colour = if response.hovered() { TEXT } else { FAINT };
-    let at = place.center();
-    let font = FontId::proportional(14.0);
-    painter.text(at, Align2::CENTER_CENTER, "✖", font, colour);
-    let at = place.left_center() - vec2(8.0, 0.0);
-    let font = FontId::proportional(12.5);
-    painter.text(at, Align2::RIGHT_CENTER, "q", font, FAINT);
-    response.clicked().then_some(MeasureRequest::Close)
+    close(ui, rect.translate(vec2(0.0, 2.0)), "q").then_some(MeasureRequest::Close)
 }
 
 /// Draws a row of questions. Returns the request of the mouse.
@@ -160,9 +128,12 @@ fn settings(ui: &Ui, rect: Rect, session: &Session) -> Option<MeasureRequest> {
     let measuring = &session.measuring;
     let mut request = None;
     let mut left = rect.left();
+    // In a narrow pane, all is narrower.
+    let fit = ((rect.width() - BUTTON_WIDTHS[0] - 6.0) / SETTINGS_WIDTH).min(1.0);
     let mut place = |width: f32| {
-        let place = Rect::from_min_size(pos2(left, rect.top()), vec2(width, rect.height()));
-        left += width;
+        let size = vec2(fit * width, rect.height());
+        let place = Rect::from_min_size(pos2(left, rect.top()), size);
+        left += size.x;
         place
     };
     for (words, on) in [("from now", false), ("the start", true)] {
@@ -206,7 +177,8 @@ fn settings(ui: &Ui, rect: Rect, session: &Session) -> Option<MeasureRequest> {
         }
         Question::Stability => {}
     }
-    let width = (rect.right() - place(0.0).left()).clamp(92.0, 108.0);
+    let [least, most] = BUTTON_WIDTHS;
+    let width = (rect.right() - place(6.0).right()).clamp(least, most);
     let place = Rect::from_min_max(pos2(rect.right() - width, rect.top()), rect.max);
     let response = ui.interact(place, Id::unique("measure it"), Sense::click());
     let words = match (measuring.progress(), measuring.known()) {

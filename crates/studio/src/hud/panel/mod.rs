@@ -20,7 +20,7 @@ pub use measure::update;
 #[cfg(not(target_arch = "wasm32"))]
 pub use parts::turn as turn_part;
 pub use plots::csv;
-pub use request::{PanelKey, PanelRequest, Request, apply, is_shown, press, press_text};
+pub use request::{PanelKey, PanelRequest, Request, apply, press, press_text};
 #[cfg(not(target_arch = "wasm32"))]
 pub use row::slider;
 pub use row::{CHOSEN, HOVERED, INK, TRACK, button};
@@ -28,7 +28,7 @@ pub use tune::{tune, tuned};
 pub use undo::undo;
 #[cfg(not(target_arch = "wasm32"))]
 pub use undo::{edit, of_one_body};
-pub use view::{picture_size, show};
+pub use view::{place, show};
 
 #[cfg(test)]
 mod tests;

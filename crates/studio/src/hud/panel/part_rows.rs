@@ -3,6 +3,7 @@
 use a3_files::rounding::short;
 use egui::{Align2, FontId, Id, Rect, Sense, Ui, pos2, vec2};
 
+use super::super::docked::keep_in_sight;
 use super::super::style::{FAINT, TEXT};
 use super::dial::Turn;
 use super::parts::{effect_in_words, is_as_in_scene, is_in};
@@ -17,8 +18,8 @@ const MEASURING_HEIGHT: f32 = 34.0;
 /// Distance of the name from the left edge (points).
 const NAME_LEFT: f32 = 46.0;
 
-/// Draws the rows of the parts from the top of a room, as many as fit, including the chosen one.
-/// Returns the bottom of the last row, and the request of the mouse.
+/// Draws the rows of the parts from the top of a room. Returns the bottom of the last row, and the
+/// request of the mouse.
 pub fn show(ui: &Ui, room: Rect, session: &Session) -> (f32, Option<PanelRequest>) {
     let mut request = None;
     let mut top = room.top();
@@ -31,9 +32,12 @@ pub fn show(ui: &Ui, room: Rect, session: &Session) -> (f32, Option<PanelRequest
     }
     let count = session.tuning.parts.len();
     let chosen = session.panel.row.saturating_sub(part_row(0)).min(count - 1);
-    let fit = (((room.bottom() - top) / HEIGHT) as usize).max(1);
-    for part in ((chosen + 1).saturating_sub(fit)..count).take(fit) {
-        request = row(ui, place(top, HEIGHT), session, part).or(request);
+    for part in 0..count {
+        let place = place(top, HEIGHT);
+        if part == chosen {
+            keep_in_sight(ui, "parts", place, part);
+        }
+        request = row(ui, place, session, part).or(request);
         top += HEIGHT;
     }
     (top, request)

@@ -1,8 +1,10 @@
 //! Drawing of the panel: a row for each knob, plots if they fit, and buttons.
 
-use egui::{Align2, Context, FontId, Id, Rect, Sense, Stroke, pos2, vec2};
+use egui::{
+    Align2, Context, FontId, Id, Rect, ScrollArea, Sense, Stroke, Ui, UiBuilder, pos2, vec2,
+};
 
-use super::super::docked::docked;
+use super::super::docked::{Place, close, docked, keep_in_sight};
 use super::super::style::{FAINT, TEXT};
 use super::request::{self, PanelRequest, Request, is_shown, rows};
 use super::row::{self, Row};
@@ -10,12 +12,13 @@ use super::values::pane;
 use super::{part_rows, plots};
 use crate::session::{Action, RunAction, Session, WindowAction};
 
-/// Smallest and largest width of the panel (points), and its share of the window's width between
-/// them.
-const WIDTH: (f32, f32, f32) = (304.0, 460.0, 0.2);
-/// Smallest width of a window with the panel beside the picture (points). In a narrower one, the
-/// panel covers the picture.
-const MIN_WIDTH_BESIDE: f32 = 480.0;
+/// The place of the panel.
+pub(super) const PLACE: Place = Place {
+    width: (304.0, 460.0, 0.2),
+    min_width_beside: 600.0,
+    share_below: 0.5,
+    narrow: Some(292.0),
+};
 /// Distance of the rows from the edges of the panel (points).
 pub(super) const MARGIN: f32 = 14.0;
 /// Height of the title (points).
@@ -24,55 +27,35 @@ const TITLE_HEIGHT: f32 = 36.0;
 const TITLE_GAP: f32 = 18.0;
 /// Height of the buttons and their margins (points).
 const BUTTONS_HEIGHT: f32 = 46.0;
+/// The action that closes the panel.
+const CLOSE: Action = Action::Run(RunAction::Panel);
 /// Distance between groups of rows (points).
 const GROUP_GAP: f32 = 7.0;
 
-/// Returns the width of the panel in a window of a width (points).
-pub(super) fn width(window: f32) -> f32 {
-    let (least, most, share) = WIDTH;
-    if window < MIN_WIDTH_BESIDE {
-        window
-    } else {
-        (share * window).round().clamp(least, most)
-    }
-}
-
-/// Returns the size (px) of the picture beside the panel, in a window of `size` (px) at `scale`
-/// pixels per point.
-pub fn picture_size(session: &Session, size: (u32, u32), scale: f32) -> (u32, u32) {
-    if !is_shown(session) {
-        return size;
-    }
-    let window = size.0 as f32 / scale;
-    if window < MIN_WIDTH_BESIDE {
-        return size;
-    }
-    let taken = (width(window) * scale).round() as u32;
-    (size.0.saturating_sub(taken).max(1), size.1)
+/// Returns the place of the panel, if it is visible.
+pub fn place(session: &Session) -> Option<&'static Place> {
+    is_shown(session).then_some(&PLACE)
 }
 
 /// Draws the panel, if it is visible, and returns the request of the mouse.
 pub fn show(ctx: &Context, session: &Session) -> Option<Request> {
-    if !is_shown(session) {
-        return None;
-    }
-    let window = ctx.viewport_rect();
-    let rect = Rect::from_min_max(
-        pos2(window.right() - width(window.width()), window.top()),
-        window.right_bottom(),
-    );
+    let rect = place(session)?.rect(ctx);
     docked(ctx, "panel", rect, |ui| {
         let inner = rect.shrink2(vec2(MARGIN, 0.0));
-        let request = title(ui, inner, session).map(Request::Change);
+        let heading = inner.with_max_y(inner.top() + TITLE_HEIGHT);
+        let closed = close(ui, heading, "Tab").then_some(Request::Act(CLOSE));
+        let request = title(ui, inner, session).map(Request::Change).or(closed);
         let room = Rect::from_min_max(
             pos2(inner.left(), inner.top() + TITLE_HEIGHT),
             pos2(inner.right(), inner.bottom() - BUTTONS_HEIGHT),
         );
-        let (top, turned) = if request::shows_parts(session) {
-            part_rows::show(ui, room, session)
-        } else {
-            knobs(ui, room, session)
-        };
+        let (top, turned) = scrolled(ui, room, |ui, room| {
+            if request::shows_parts(session) {
+                part_rows::show(ui, room, session)
+            } else {
+                knobs(ui, room, session)
+            }
+        });
         let request = turned.map(Request::Change).or(request);
         let request = buttons(ui, inner, session).or(request);
         let room = Rect::from_min_max(
@@ -86,23 +69,46 @@ pub fn show(ctx: &Context, session: &Session) -> Option<Request> {
     })
 }
 
+/// Draws rows from the top of a room, in which they scroll if they do not fit. Returns the bottom
+/// of the last row, and the request of the mouse.
+fn scrolled(
+    ui: &mut Ui,
+    room: Rect,
+    rows: impl FnOnce(&Ui, Rect) -> (f32, Option<PanelRequest>),
+) -> (f32, Option<PanelRequest>) {
+    // The row under the pointer and the chosen one are wider than the room.
+    let wide = room.expand2(vec2(6.0, 0.0));
+    ui.scope_builder(UiBuilder::new().max_rect(wide), |ui| {
+        ScrollArea::vertical()
+            .id_salt("rows")
+            .auto_shrink([false, false])
+            .show(ui, |ui| {
+                let top = ui.cursor().top();
+                let (bottom, request) = rows(ui, room.translate(vec2(0.0, top - room.top())));
+                ui.allocate_space(vec2(wide.width(), bottom - top));
+                (bottom, request)
+            })
+            .inner
+    })
+    .inner
+}
+
 /// Draws the rows of the knobs from the top of a room. Returns the bottom of the last row, and the
 /// request of the mouse.
-fn knobs(ui: &egui::Ui, room: Rect, session: &Session) -> (f32, Option<PanelRequest>) {
+fn knobs(ui: &Ui, room: Rect, session: &Session) -> (f32, Option<PanelRequest>) {
     let mut request = None;
     let rows = rows(session);
     let chosen = rows.iter().rposition(|(k, ..)| *k <= session.panel.row);
     let chosen = chosen.unwrap_or(0);
-    // In a low window, draw as many rows as fit, including the chosen one.
-    let fit = ((room.height() / row::HEIGHT) as usize).max(1);
-    let gap = if fit > rows.len() { GROUP_GAP } else { 0.0 };
-    let first = (chosen + 1).saturating_sub(fit);
     let mut top = room.top();
-    for (n, (k, knob, dial)) in rows.iter().enumerate().skip(first).take(fit) {
-        if knob.starts_group && n > first {
-            top += gap;
+    for (n, (k, knob, dial)) in rows.iter().enumerate() {
+        if knob.starts_group && n > 0 {
+            top += GROUP_GAP;
         }
         let place = Rect::from_min_size(pos2(room.left(), top), vec2(room.width(), row::HEIGHT));
+        if n == chosen {
+            keep_in_sight(ui, "knobs", place, *k);
+        }
         let row = Row {
             number: *k,
             knob,
@@ -118,7 +124,7 @@ fn knobs(ui: &egui::Ui, room: Rect, session: &Session) -> (f32, Option<PanelRequ
 
 /// Draws the titles of the knobs and of the parts, between which a click changes. Returns the
 /// request of the mouse.
-fn title(ui: &egui::Ui, inner: Rect, session: &Session) -> Option<PanelRequest> {
+fn title(ui: &Ui, inner: Rect, session: &Session) -> Option<PanelRequest> {
     let painter = ui.painter();
     let line = inner.top() + 19.0;
     let named = match session.runs.panes.len() {
@@ -151,20 +157,12 @@ fn title(ui: &egui::Ui, inner: Rect, session: &Session) -> Option<PanelRequest> 
         }
         left = rect.right() + TITLE_GAP;
     }
-    let at = pos2(inner.right(), line);
-    painter.text(
-        at,
-        Align2::RIGHT_CENTER,
-        "Tab",
-        FontId::proportional(12.5),
-        FAINT,
-    );
     request
 }
 
 /// Draws the buttons: write a scene file, write the plots, start or stop a live film, and film the
 /// last seconds.
-fn buttons(ui: &egui::Ui, inner: Rect, session: &Session) -> Option<Request> {
+fn buttons(ui: &Ui, inner: Rect, session: &Session) -> Option<Request> {
     let last = format!("last {} s", session.panel.film_seconds);
     let live = session.readings.film.as_ref().is_some_and(|film| film.live);
     let record = if live { "stop" } else { "film" };

@@ -7,5 +7,5 @@ mod rows;
 mod view;
 
 pub use request::write;
-pub use request::{apply, begin_scene, is_shown, offer, pick, press, taken};
+pub use request::{apply, begin_scene, is_shown, offer, pick, place, press};
 pub use view::show;

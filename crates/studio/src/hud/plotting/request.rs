@@ -17,6 +17,7 @@ pub const PLACE: Place = Place {
     width: (380.0, 800.0, 0.4),
     min_width_beside: 700.0,
     share_below: 0.55,
+    narrow: None,
 };
 
 /// Returns whether the plots are visible: they are open, and the help does not hide them.
@@ -24,14 +25,9 @@ pub fn is_shown(session: &Session) -> bool {
     session.panel.plotting.open && !session.readings.help
 }
 
-/// Returns the width on the right and the height below the picture that the plots take, in a window
-/// of a size (points).
-pub fn taken(session: &Session, window: [f32; 2]) -> [f32; 2] {
-    if is_shown(session) {
-        PLACE.taken(window)
-    } else {
-        [0.0, 0.0]
-    }
+/// Returns the place of the plots, if they are visible.
+pub fn place(session: &Session) -> Option<&'static Place> {
+    is_shown(session).then_some(&PLACE)
 }
 
 /// Draws a button that plots the particle whose springs are listed, below that list, unless the

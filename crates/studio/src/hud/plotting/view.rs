@@ -2,11 +2,11 @@
 
 use egui::{Align2, Context, FontId, Id, Rect, Sense, Ui, pos2, vec2};
 
-use super::super::docked::docked;
+use super::super::docked::{close, docked};
 use super::super::measure::chip;
-use super::super::style::{FAINT, TEXT};
+use super::super::style::TEXT;
 use super::draw;
-use super::request::{PLACE, is_shown};
+use super::request::place;
 use super::rows::Rows;
 use crate::session::{Mode, PlotFile, PlotRequest, SPANS, Session};
 
@@ -19,10 +19,7 @@ const GAP: f32 = 7.0;
 
 /// Draws the pane, if it is visible, and returns the request of the mouse.
 pub fn show(ctx: &Context, session: &Session) -> Option<PlotRequest> {
-    if !is_shown(session) {
-        return None;
-    }
-    let rect = PLACE.rect(ctx);
+    let rect = place(session)?.rect(ctx);
     docked(ctx, "plots", rect, |ui| {
         ui.set_clip_rect(rect);
         contents(ui, rect.shrink2(vec2(MARGIN, 0.0)), session)
@@ -56,7 +53,7 @@ fn contents(ui: &Ui, room: Rect, session: &Session) -> Option<PlotRequest> {
         pos2(room.left(), top + 2.0),
         pos2(room.right(), below - GAP),
     );
-    if !is_empty {
+    if !is_empty && place.height() > 0.0 {
         draw::show(ui, place, session);
     }
     let place = Rect::from_x_y_ranges(room.x_range(), below..=below + buttons);
@@ -69,15 +66,7 @@ fn head(ui: &Ui, rect: Rect) -> Option<PlotRequest> {
     let at = rect.left_center() + vec2(0.0, 2.0);
     let font = FontId::proportional(17.0);
     painter.text(at, Align2::LEFT_CENTER, "Plots", font, TEXT);
-    let place = Rect::from_center_size(rect.right_center() + vec2(-8.0, 2.0), vec2(24.0, 24.0));
-    let response = ui.interact(place, Id::unique("hide plots"), Sense::click());
-    let colour = if response.hovered() { TEXT } else { FAINT };
-    let font = FontId::proportional(14.0);
-    painter.text(place.center(), Align2::CENTER_CENTER, "✖", font, colour);
-    let at = place.left_center() - vec2(8.0, 0.0);
-    let font = FontId::proportional(12.5);
-    painter.text(at, Align2::RIGHT_CENTER, "F3", font, FAINT);
-    response.clicked().then_some(PlotRequest::Close)
+    close(ui, rect.translate(vec2(0.0, 2.0)), "F3").then_some(PlotRequest::Close)
 }
 
 /// Draws the modes. Returns the request of the mouse.

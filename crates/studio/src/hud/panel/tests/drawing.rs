@@ -6,7 +6,7 @@ use super::opened::{changed, dials, every_scene, opened};
 use super::screen::Screen;
 use crate::hud::panel::dial::DialScale;
 use crate::hud::panel::request::rows;
-use crate::hud::panel::view::{picture_size, width};
+use crate::hud::panel::view::{PLACE, place};
 use crate::session::RunAction;
 
 const SIZES: [[f32; 2]; 2] = [[1280.0, 720.0], [800.0, 600.0]];
@@ -65,7 +65,7 @@ fn nothing_is_cut_off_or_overlaps() {
         for screen in &mut screens {
             let size = screen.size;
             let texts = screen.read(&session);
-            let edge = size[0] - width(size[0]);
+            let edge = size[0] - PLACE.taken(size)[0];
             for (k, (words, rect)) in texts.iter().enumerate() {
                 let inside = rect.left() > edge + 4.0 && rect.right() < size[0] - 4.0;
                 assert!(inside || rect.right() < edge, "{words} in {name}, {size:?}");
@@ -106,10 +106,10 @@ fn the_chosen_row_is_visible() {
 #[test]
 fn the_help_hides_the_panel() {
     let mut session = opened(&["r", "0.005"]);
-    assert_eq!(picture_size(&session, (1280, 720), 1.0), (976, 720));
-    assert_eq!(picture_size(&session, (2560, 1440), 2.0), (1952, 1440));
+    assert!(place(&session).is_some());
+    assert_eq!(PLACE.taken([1280.0, 720.0]), [304.0, 0.0]);
     session.act(RunAction::Help, 0);
-    assert_eq!(picture_size(&session, (1280, 720), 1.0), (1280, 720));
+    assert!(place(&session).is_none());
     assert!(
         !Screen::new(SIZES[0])
             .read(&session)

@@ -5,7 +5,7 @@ use super::screen::Screen;
 use crate::hud::panel::dial::Turn;
 use crate::hud::panel::knobs::row_of;
 use crate::hud::panel::request::{PanelKey, PanelRequest, apply, measuring_row, numbers, part_row};
-use crate::hud::panel::view::width;
+use crate::hud::panel::view::PLACE;
 use crate::hud::panel::{parts, update};
 use crate::session::{Deviation, Effect, RunAction, Session, frames};
 
@@ -100,10 +100,15 @@ fn rows_of_parts_fit() {
     ] {
         let mut screen = Screen::new(size);
         let texts = screen.written(&session);
-        let edge = size[0] - width(size[0]);
+        let edge = size[0] - PLACE.taken(size)[0];
         let panel = texts.iter().filter(|(_, rect, _)| rect.left() > edge);
         for (words, rect, seen) in panel.clone() {
-            assert!(seen.contains_rect(*rect), "{words} in {size:?}");
+            // In a low window, rows scroll.
+            let across = seen.x_range();
+            assert!(
+                across.contains(rect.left()) && across.contains(rect.right()),
+                "{words} in {size:?}"
+            );
             assert!(rect.right() < size[0] - 8.0, "{words} in {size:?}");
         }
         let said = |what: &str| panel.clone().any(|(words, ..)| words.contains(what));

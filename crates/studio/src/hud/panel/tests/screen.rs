@@ -3,7 +3,7 @@
 use egui::{Context, Event, PointerButton, Pos2, RawInput, Rect, Shape, pos2};
 
 use crate::hud::panel::request::{Request, apply};
-use crate::hud::panel::view::{MARGIN, picture_size, show, width};
+use crate::hud::panel::view::{MARGIN, PLACE, place, show};
 use crate::hud::style;
 use crate::session::Session;
 
@@ -23,6 +23,11 @@ impl Screen {
         }
     }
 
+    /// Returns the width of the panel (points).
+    fn width(&self) -> f32 {
+        PLACE.taken(self.size)[0]
+    }
+
     /// Runs a frame, and returns the drawing and the request of the mouse.
     pub fn frame(
         &mut self,
@@ -30,12 +35,13 @@ impl Screen {
         events: Vec<Event>,
     ) -> (egui::FullOutput, Option<Request>) {
         self.time += 0.05;
-        let px = self.size.map(|side| side as u32);
-        let right = (px[0] - picture_size(session, px.into(), 1.0).0) as f32;
+        let shown = place(session).map(|place| place.taken(self.size));
+        let [right, bottom] = shown.unwrap_or_default();
         let input = RawInput {
             screen_rect: Some(Rect::from_min_size(Pos2::ZERO, self.size.into())),
             safe_area_insets: Some(egui::SafeAreaInsets(egui::epaint::MarginF32 {
                 right,
+                bottom,
                 ..Default::default()
             })),
             time: Some(self.time),
@@ -53,6 +59,7 @@ impl Screen {
 
     /// Returns all text, with its rectangle and the visible part of the screen.
     pub fn written(&mut self, session: &Session) -> Vec<(String, Rect, Rect)> {
+        self.frame(session, vec![]);
         self.frame(session, vec![]);
         self.time += 10.0;
         let (output, _) = self.frame(session, vec![]);
@@ -103,14 +110,14 @@ impl Screen {
     /// Returns the position of a row's value, and the ends of its slider.
     pub fn place(&mut self, session: &Session, name: &str) -> (Pos2, [Pos2; 2]) {
         let texts = self.read(session);
-        let left = self.size[0] - width(self.size[0]);
+        let left = self.size[0] - self.width();
         let (_, row) = texts
             .iter()
             .find(|(words, rect)| words == name && rect.left() > left)
             .unwrap();
         let y = row.center().y;
         let at = |x: f32| pos2(left + MARGIN + x, y);
-        let wide = width(self.size[0]) - 2.0 * MARGIN;
+        let wide = self.width() - 2.0 * MARGIN;
         (at(wide - 10.0), [at(82.0), at(wide - 86.0)])
     }
 }
