@@ -109,6 +109,7 @@ fn knobs(ui: &egui::Ui, room: Rect, session: &Session) -> (f32, Option<PanelRequ
             dial,
             chosen: n == chosen,
             typed: session.panel.typed.as_deref().filter(|_| n == chosen),
+            is_marked: session.panel.all_marked,
         };
         request = row.show(ui, place).or(request);
         top += row::HEIGHT;
