@@ -23,7 +23,32 @@ use crate::commands::{
 #[must_use]
 pub fn main() -> ExitCode {
     let args: Vec<_> = std::env::args_os().collect();
+    #[cfg(all(target_os = "linux", feature = "window"))]
+    name_runtime_folder(&args);
     ExitCode::from(run(&args))
+}
+
+/// Replaces the program by itself with a name for the folder of the session's sockets, if it draws
+/// and no session has named one: Mesa's layer of Vulkan complains about that on standard error,
+/// although nothing is missing.
+#[cfg(all(target_os = "linux", feature = "window"))]
+fn name_runtime_folder(args: &[OsString]) {
+    use std::os::unix::process::CommandExt;
+    use std::process;
+    const NAME: &str = "XDG_RUNTIME_DIR";
+    let command = Cli::try_parse_from(args).map(|cli| cli.command);
+    let draws = matches!(
+        command,
+        Ok(None | Some(Command::Compare(_) | Command::Render(_)))
+    );
+    if draws
+        && std::env::var_os(NAME).is_none()
+        && let (Ok(own), [name, rest @ ..]) = (std::env::current_exe(), args)
+    {
+        // This returns only if it fails.
+        let mut again = process::Command::new(own);
+        let _ = again.arg0(name).args(rest).env(NAME, "/dev/null").exec();
+    }
 }
 
 /// Runs the command of a command line, which begins with the name of the program, and returns the
@@ -52,7 +77,7 @@ pub fn run(args: &[OsString]) -> u8 {
             Some(Command::Sweep(options)) => sweep::run(&options),
             Some(Command::Scenes(options)) => list::scenes(&options),
             Some(Command::Solvers(options)) => solvers::run(&options),
-            Some(Command::Lessons { lesson }) => lessons::print(lesson),
+            Some(Command::Lessons { lesson, answers }) => lessons::print(lesson, answers),
             Some(Command::Completions { shell }) => manual::completions(shell),
             Some(Command::Man { output }) => manual::run(output.as_deref()),
         },

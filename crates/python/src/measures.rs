@@ -205,9 +205,7 @@ pub fn choose(
             SetBy::Stability => "stability",
             SetBy::Nothing => "nothing",
         };
-        let command = opened
-            .scene
-            .command(chosen.method, chosen.control, choice.until);
+        let command = opened.scene.command(chosen.method, chosen.control);
         (
             chosen.method.name,
             chosen.control.value(),

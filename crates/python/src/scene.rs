@@ -76,13 +76,13 @@ impl OpenScene {
         setup::disturbed(setup.scene.clone(), self.options.on)
     }
 
-    /// Returns the command line that runs the scene with a method at a step or a tolerance until a
-    /// time (s); `None` for a scene or a method that the program does not know.
-    pub fn command(&self, method: &Method, control: Control, until: f64) -> Option<String> {
+    /// Returns the command line that runs the scene with a method at a step or a tolerance; `None`
+    /// for a scene or a method that the program does not know.
+    pub fn command(&self, method: &Method, control: Control) -> Option<String> {
         match &self.made {
             Made::Read(source) if source.is_named() && !method.is_own() => {
                 let request = self.request(source);
-                Some(command(&request, method, control, until))
+                Some(command(&request, method, control))
             }
             _ => None,
         }

@@ -31,6 +31,8 @@ pub enum Edit {
     RemoveParticle(usize),
     /// A rigid body is removed, by its number, with all that is joined to it.
     RemoveBody(usize),
+    /// All bodies that can be of a material become of it.
+    NameMaterial(&'static str),
 }
 
 /// An edited scene, and the numbers of its particles and rigid bodies.
@@ -85,6 +87,10 @@ impl Edit {
                 edited.description.constraint.push(link.clone());
             }
             Self::Disjoin(ends) => edited.disjoin(*ends, network)?,
+            Self::NameMaterial(name) => {
+                let named = edited.description.name_material(name);
+                named.map_err(|fault| fault.to_string())?;
+            }
             Self::RemoveParticle(i) => edited.remove_particle(*i, network)?,
             Self::RemoveBody(k) => {
                 let body = network.bodies().get(*k).ok_or("There is no such body.")?;

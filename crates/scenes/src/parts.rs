@@ -3,6 +3,7 @@
 use crate::assemble::damping_time;
 use crate::change::Change;
 use crate::description::{Chain, Description, Floor, FloorSpec, Jelly, Solid, WindSpec};
+use crate::material::lattice;
 
 /// Part of a scene that can be left out or replaced by a simpler one.
 #[derive(Clone, Debug, PartialEq)]
@@ -23,12 +24,6 @@ const SPRINGS: [&str; 3] = ["structural springs", "shear springs", "bend springs
 const AIR_DENSITY: f64 = 1.2;
 /// Default drag coefficient of a wind.
 const AIR_DRAG: f64 = 1.2;
-
-/// Stiffness of the structural and the shear springs of a cubic lattice, over Young's modulus times
-/// the spacing. With these, the lattice is isotropic: sums over the springs of a cell give
-/// C11 = (k1 + 10/3 ks) / a and C12 = C44 = 7/3 ks / a, so C11 - C12 = 2 C44 if k1 = 11/3 ks, and
-/// E = 5/2 C44.
-const LATTICE: (f64, f64) = (22.0 / 35.0, 6.0 / 35.0);
 
 /// Lists the parts of the scene that can be left out or replaced by simpler ones.
 #[must_use]
@@ -293,12 +288,11 @@ fn replace_solids(scene: &mut Description) {
         );
         let cell = |axis: usize| size[axis] / (grid[axis].max(2) - 1) as f64;
         let spacing = (cell(0) * cell(1) * cell(2)).cbrt();
-        let [structural, shear] = [LATTICE.0, LATTICE.1].map(|k| k * solid.young * spacing);
         scene.jelly.push(Jelly {
             grid,
             size,
             density: Some(solid.density),
-            stiffness: [structural, shear, 0.0],
+            stiffness: lattice(solid.young, spacing),
             damping: Some(solid.damping),
             at: solid.at,
             rotation: solid.rotation,

@@ -152,7 +152,7 @@ mod tests {
         let wanted = opened.runs.panes[0].wanted_step.unwrap();
         let step = opened.runs.first().control().step().unwrap();
         let said = opened.readings.message.clone().unwrap();
-        let why = format!("the step is {step} s here, since {wanted} s would blow up");
+        let why = format!("the step is {step} s here, since {wanted} s would not hold");
         assert!(step < wanted && said.contains(&why), "{said}");
         frames(&mut opened, 0.2);
         assert!(opened.runs.any_alive());

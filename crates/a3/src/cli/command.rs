@@ -98,6 +98,9 @@ pub enum Command {
         /// Number of the lesson
         #[arg(value_parser = lesson)]
         lesson: Option<u8>,
+        /// Print the answer at once, instead of after a key
+        #[arg(long, requires = "lesson")]
+        answers: bool,
     },
     /// Print the completion script of a shell
     Completions {
@@ -141,6 +144,9 @@ pub struct Chart {
     /// Picture to write, ending in .svg, .pdf or .png; by default a3-chart-SCENE.svg
     #[arg(long, short, value_name = "FILE")]
     pub output: Option<PathBuf>,
+    /// Show the picture in the desktop's viewer
+    #[arg(long)]
+    pub open: bool,
     /// File for all runs, ending in .csv or .json; if it exists, the chart continues from it
     #[arg(long, value_name = "FILE")]
     pub data: Option<PathBuf>,
@@ -225,6 +231,9 @@ pub struct Simplify {
     /// .pdf or .png
     #[arg(long, value_name = "FILE")]
     pub chart: Option<PathBuf>,
+    /// Show the chart in the desktop's viewer; without --chart it is a3-simplify-SCENE.svg
+    #[arg(long)]
+    pub open: bool,
     /// Width and height of the chart in pixels, 96 to the inch, or `column`, 340x360, for a column
     /// of a paper
     #[arg(long, value_name = "WxH", default_value = "1200x800", value_parser = picture_size, allow_hyphen_values = true)]
@@ -300,6 +309,9 @@ pub struct Stability {
     /// Picture to write, ending in .svg, .pdf or .png; by default a3-stability-SCENE.svg
     #[arg(long, short, value_name = "FILE")]
     pub output: Option<PathBuf>,
+    /// Show the picture in the desktop's viewer
+    #[arg(long)]
+    pub open: bool,
     /// File for all limits in seconds, ending in .json
     #[arg(long, value_name = "FILE")]
     pub data: Option<PathBuf>,
@@ -324,4 +336,7 @@ pub struct Scenes {
     /// Print the JSON Schema of scene files, with which editors complete and check them
     #[arg(long, conflicts_with = "print")]
     pub schema: bool,
+    /// List the materials that cloths, solids and bodies of scene files may name
+    #[arg(long, conflicts_with_all = ["print", "schema"])]
+    pub materials: bool,
 }

@@ -14,9 +14,10 @@ use a3_lab::chart::asked::{check_metric, methods};
 use a3_lab::chart::data::{Data, Each};
 use a3_lab::chart::value::{Chart, ChartOptions};
 use a3_lab::chart::words::Label;
-use a3_lab::figure_file::{PICTURES, write_picture};
+use a3_lab::figure_file::PICTURES;
 use a3_lab::motion;
 
+use super::picture;
 use crate::cli::{Chart as Options, WorkMeasure};
 
 /// Measures, prints and draws what the command line asks for.
@@ -133,7 +134,6 @@ impl<'a> Asked<'a> {
                 Failure::Interrupted(format!("interrupted: {why}"))
             }
         })?;
-        write_picture(&self.picture, &figure)?;
-        terminal::say(&format!("chart: {}\n", self.picture.display()))
+        picture::finish(&self.picture, &figure, self.options.open)
     }
 }

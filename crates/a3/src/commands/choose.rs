@@ -67,7 +67,7 @@ impl<'a> Asked<'a> {
         let (best, request, goal) = (choice.best(), &self.request, self.wanted.goal);
         let report = report(request.options.on, &self.scene, (goal, self.scope), choice);
         terminal::say(&report.text())?;
-        let line = command(request, best.method, best.control, choice.until);
+        let line = command(request, best.method, best.control);
         terminal::say(&format!("run it:  {line}\n"))?;
         self.print_grid_error(choice)
     }

@@ -1,10 +1,11 @@
-//! `a3 scenes`: the built-in scenes.
+//! `a3 scenes`: the built-in scenes, and the materials.
 
+use a3_core::Rounded;
 use a3_files::failure::Failure;
 use a3_files::report::table;
 use a3_files::setup::find;
 use a3_files::terminal;
-use a3_scenes::{Description, List};
+use a3_scenes::{Description, List, MATERIALS, Stuff};
 
 use crate::cli::Scenes;
 
@@ -21,6 +22,9 @@ pub fn scenes(options: &Scenes) -> Result<(), Failure> {
     }
     if options.schema {
         return terminal::send(&(Description::schema() + "\n"));
+    }
+    if options.materials {
+        return terminal::say(&materials());
     }
     let heading = [
         "scene",
@@ -52,4 +56,46 @@ pub fn scenes(options: &Scenes) -> Result<(), Failure> {
         ]);
     }
     terminal::say(&table(&rows))
+}
+
+/// Returns the tables of the materials: fabrics, and solids.
+fn materials() -> String {
+    let fabrics = [
+        "fabric",
+        " kg/m2",
+        " stretch N/m",
+        " shear N/m",
+        " bending N m",
+        "what it is",
+    ];
+    let solids = [
+        "solid",
+        " kg/m3",
+        " Young Pa",
+        " Poisson",
+        " loss",
+        "what it is",
+    ];
+    let [mut fabrics, mut solids] =
+        [fabrics, solids].map(|row| vec![row.map(String::from).to_vec()]);
+    for material in &MATERIALS {
+        let (rows, numbers) = match material.stuff {
+            Stuff::Fabric {
+                density,
+                stretch,
+                shear,
+                bending,
+            } => (&mut fabrics, [density, stretch, shear, bending]),
+            Stuff::Matter {
+                density,
+                young,
+                poisson,
+                loss,
+            } => (&mut solids, [density, young, poisson, loss]),
+        };
+        let numbers = numbers.iter().map(|number| Rounded(*number).to_string());
+        let name = std::iter::once(material.name.to_owned());
+        rows.push(name.chain(numbers).chain([material.about.into()]).collect());
+    }
+    format!("{}\n{}", table(&fabrics), table(&solids))
 }

@@ -7,6 +7,7 @@ pub mod choose;
 pub mod judge;
 pub mod list;
 pub mod manual;
+mod picture;
 #[cfg(feature = "window")]
 pub mod render;
 pub mod simplify;

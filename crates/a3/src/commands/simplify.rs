@@ -8,9 +8,10 @@ use a3_files::output;
 use a3_files::setup::Request;
 use a3_files::{interrupt, terminal};
 use a3_lab::chart::describe;
-use a3_lab::figure_file::{PICTURES, write_picture};
+use a3_lab::figure_file::PICTURES;
 use a3_lab::simplify::{Simplified, SimplifyOptions, measure};
 
+use super::picture;
 use crate::cli::Simplify;
 
 /// Measures models of a scene, prints them, and writes the leanest.
@@ -18,9 +19,12 @@ pub fn run(options: &Simplify) -> Result<(), Failure> {
     interrupt::listen();
     let given = options.what.request()?;
     // This refuses options that the scene does not support.
-    let title = describe(given.options.on, &given.scene()?);
+    let scene = given.scene()?;
+    let title = describe(given.options.on, &scene);
+    let default = || format!("a3-simplify-{}.svg", output::part_of_name(&scene.name)).into();
+    let chart = options.chart.clone().or_else(|| options.open.then(default));
     let request = given.described();
-    check_files(options, &request)?;
+    check_files(options, chart.as_deref(), &request)?;
     let bar = Bar::new(1.0);
     let asked = SimplifyOptions {
         error: options.error,
@@ -29,13 +33,13 @@ pub fn run(options: &Simplify) -> Result<(), Failure> {
         particle: options.scope.particle,
         at_end: options.scope.at_end,
         data: options.data.clone(),
-        chart: options.chart.is_some(),
+        chart: chart.is_some(),
     };
     let found = measure(&request, &title, &asked, &bar)?;
     bar.clear();
     interrupt::write_on();
-    if let Some(path) = &options.chart {
-        draw(path, options.size, &found)?;
+    if let Some(path) = &chart {
+        draw(path, options, &found)?;
     }
     terminal::say(&found.text())?;
     match (&found.lean, &options.output) {
@@ -51,12 +55,10 @@ pub fn run(options: &Simplify) -> Result<(), Failure> {
 }
 
 /// Draws the chart of models, and says where it is.
-fn draw(path: &Path, (width, height): (u32, u32), found: &Simplified) -> Result<(), Failure> {
+fn draw(path: &Path, options: &Simplify, found: &Simplified) -> Result<(), Failure> {
+    let (width, height) = options.size;
     match found.figure(width, height)? {
-        Some(figure) => {
-            write_picture(path, &figure)?;
-            terminal::say(&format!("chart: {}\n", path.display()))
-        }
+        Some(figure) => picture::finish(path, &figure, options.open),
         None if found.lean.is_some() => terminal::say(
             "no chart: the scene has one grid only, or grids differ by more than the motion\n",
         ),
@@ -65,8 +67,8 @@ fn draw(path: &Path, (width, height): (u32, u32), found: &Simplified) -> Result<
 }
 
 /// Checks that the chart and the leanest scene can be written.
-fn check_files(options: &Simplify, request: &Request) -> Result<(), Failure> {
-    if let Some(path) = &options.chart {
+fn check_files(options: &Simplify, chart: Option<&Path>, request: &Request) -> Result<(), Failure> {
+    if let Some(path) = chart {
         output::check(path, PICTURES)?;
     }
     if let Some(path) = &options.output {

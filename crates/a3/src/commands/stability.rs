@@ -1,6 +1,6 @@
 //! The command `a3 stability`: measures the limits, prints the table, and draws the chart.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use a3_core::Scene;
 use a3_files::bar::Bar;
@@ -8,9 +8,10 @@ use a3_files::failure::Failure;
 use a3_files::output;
 use a3_files::{interrupt, terminal};
 use a3_lab::chart::{Label, methods};
-use a3_lab::figure_file::{PICTURES, write_picture};
-use a3_lab::stability::{Stability, measure};
+use a3_lab::figure_file::PICTURES;
+use a3_lab::stability::measure;
 
+use super::picture;
 use crate::cli::Stability as Options;
 
 /// Measures, prints and draws what the command line asks for.
@@ -19,7 +20,7 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     let request = options.what.request()?;
     let scene = request.scene()?;
     let methods = methods(&scene, &options.solvers)?;
-    let picture = check_outputs(options, &scene)?;
+    let path = check_outputs(options, &scene)?;
     let label = Label::asked(request.options.on, &scene, scene.name.clone());
     let found = measure(&scene, &label, &methods, &Bar::new(1.0))?;
     interrupt::write_on();
@@ -27,7 +28,9 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     if let Some(data) = &options.data {
         output::write(data, found.json()?.as_bytes())?;
     }
-    draw(options, &found, &picture)?;
+    let (width, height) = options.size;
+    let figure = found.figure(options.step, width, height)?;
+    picture::finish(&path, &figure, options.open)?;
     if let Some(data) = &options.data {
         terminal::say(&format!("data: {}\n", data.display()))?;
     }
@@ -51,11 +54,4 @@ fn check_outputs(options: &Options, scene: &Scene) -> Result<PathBuf, Failure> {
         output::check(data, &["json"])?;
     }
     Ok(picture)
-}
-
-/// Draws the chart, writes it to its file, and prints the path.
-fn draw(options: &Options, found: &Stability, path: &Path) -> Result<(), Failure> {
-    let (width, height) = options.size;
-    write_picture(path, &found.figure(options.step, width, height)?)?;
-    terminal::say(&format!("chart: {}\n", path.display()))
 }

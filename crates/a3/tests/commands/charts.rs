@@ -346,3 +346,63 @@ fn wrong_usage_is_one_line() {
     }
     assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 2);
 }
+
+/// `--open` gives the picture, by its whole path, to the program of the desktop.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_chart_opens_in_the_viewer() {
+    let folder = tempfile::tempdir().unwrap();
+    let viewer = folder.path().join("xdg-open");
+    fs::write(
+        &viewer,
+        "#!/bin/sh\n/bin/cp \"$1\" shown.tmp && /bin/mv shown.tmp shown\n",
+    )
+    .unwrap();
+    let runs = std::os::unix::fs::PermissionsExt::from_mode(0o700);
+    fs::set_permissions(&viewer, runs).unwrap();
+    let shown = folder.path().join("shown");
+    let chart = ["--solvers", "r", "--until", "0.1", "--no-model"];
+    let hung = "gravity = [0, -9.81, 0]\ndrag_per_mass = 4\n[[cloth]]\ngrid = [9, 9]\nwidth = 1\ndensity = 1\n\
+        stiffness = [200, 0, 0]\nat = [0, 0, 0]\npin = [{ at = [\"top\"] }]\n";
+    fs::write(folder.path().join("hung.toml"), hung).unwrap();
+    let simplify = "simplify --scene hung.toml --error 1e-2 --until 1";
+    for (words, file) in [
+        ([&CHAIN[..], &chart].concat(), "a3-chart-chain.svg"),
+        (
+            vec!["stability", "--scene", "simple", "--solvers", "r"],
+            "a3-stability-simple.svg",
+        ),
+        (simplify.split(' ').collect(), "a3-simplify-hung.svg"),
+    ] {
+        let words = [&words[..], &["--open"]].concat();
+        let output = command(folder.path(), &words)
+            .env("PATH", folder.path())
+            .output()
+            .unwrap();
+        let [said, why] = [output.stdout, output.stderr].map(|it| String::from_utf8(it).unwrap());
+        assert!(said.contains(&format!("chart: {file}")), "{said}{why}");
+        let begun = std::time::Instant::now();
+        while !shown.exists() {
+            assert!(
+                begun.elapsed() < Duration::from_secs(20),
+                "{words:?}: {why}"
+            );
+            std::thread::sleep(Duration::from_millis(10));
+        }
+        let picture = fs::read(folder.path().join(file)).unwrap();
+        assert!(fs::read(&shown).unwrap() == picture, "{file}");
+        fs::remove_file(&shown).unwrap();
+    }
+    fs::remove_file(viewer).unwrap();
+    let words = ["stability", "--scene", "simple", "--solvers", "r", "--open"];
+    let output = command(folder.path(), &words)
+        .env("PATH", folder.path())
+        .output()
+        .unwrap();
+    let why = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(1), "{why}");
+    assert!(
+        why.starts_with("error: a3-stability-simple.svg: it is written, but no viewer"),
+        "{why}"
+    );
+}

@@ -97,13 +97,23 @@ fn the_lessons_are_true() {
 fn a_lesson_is_printed() {
     let folder = tempfile::tempdir().unwrap();
     for (words, beginning) in [
-        (&["lessons"][..], "# Lessons"),
-        (&["lessons", "1"], "# 1. Euler spirals"),
-        (&["lessons", "8"], "# 8. How fine a cloth?"),
+        (&["lessons"][..], "Lessons\n-------\n"),
+        (&["lessons", "1"], "1. Euler spirals\n-----"),
+        (&["lessons", "8"], "8. How fine a cloth?\n-----"),
     ] {
         let output = a3(folder.path(), words);
         assert!(text(&output.stdout).starts_with(beginning), "{words:?}");
     }
+    let said = |words: &[&str]| text(&a3(folder.path(), words).stdout).to_owned();
+    let (asked, told) = (
+        said(&["lessons", "2"]),
+        said(&["lessons", "2", "--answers"]),
+    );
+    assert!(asked.contains("Answer: a3 lessons 2 --answers") && !asked.contains("Yes: 56 ms"));
+    assert!(
+        told.contains("Yes: 56 ms") && !told.contains("--answers"),
+        "{told}"
+    );
     let line = refused(folder.path(), &["lessons", "9"], 2);
     assert!(line.contains("`9`: lessons are numbered 1 to 8"), "{line}");
 }

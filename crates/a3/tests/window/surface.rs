@@ -68,3 +68,23 @@ fn sizes_minimising_a_lost_device_and_closing() {
         .unwrap();
     assert!(app.exit().success());
 }
+
+/// Nothing is wrong where no session has named a folder for sockets, and nothing is said of it.
+#[test]
+fn a_picture_is_drawn_without_a_word_on_sockets() {
+    let Some(display) = Display::open() else {
+        return;
+    };
+    let folder = tempfile::tempdir().unwrap();
+    let output = display
+        .command(env!("CARGO_BIN_EXE_a3"))
+        .args(["render", "--until", "0.1", "--output", "x.png"])
+        .current_dir(folder.path())
+        .env_remove("XDG_RUNTIME_DIR")
+        .stderr(std::process::Stdio::piped())
+        .output()
+        .unwrap();
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(said.is_empty() && output.status.success(), "{said}");
+    assert!(folder.path().join("x.png").exists());
+}

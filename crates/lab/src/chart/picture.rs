@@ -340,7 +340,7 @@ fn of(letter: char) -> CurveStyle {
         'f' => ("#cc79a7", ADAPTIVE, Star(4, 0.4)),
         'a' => ("#a03494", ADAPTIVE, Star(5, 0.42)),
         'x' => ("#000000", ADAPTIVE, Star(6, 0.45)),
-        'u' => ("#aa3377", ADAPTIVE, Star(5, 0.25)),
+        'u' => ("#aa3377", ADAPTIVE, Star(2, 0.5)),
         'k' => ("#6699cc", SYMPLECTIC, Polygon(5, 0.5)),
         'd' => ("#ee6677", ADAPTIVE, Star(3, 0.35)),
         'g' => ("#997700", ADAPTIVE, Star(8, 0.5)),
@@ -471,6 +471,19 @@ mod tests {
                         other.colour
                     );
                 }
+            }
+        }
+    }
+
+    /// The area of each star, over the square of its radius: thinner ones are lost in their line.
+    #[test]
+    fn every_marker_is_seen() {
+        for method in METHODS {
+            let marker = of(method.letter.unwrap()).marker;
+            if let Marker::Star(n, dent) = marker {
+                let area = f64::from(n) * 1.35_f64.powi(2) * dent;
+                let area = area * (std::f64::consts::PI / f64::from(n)).sin();
+                assert!(area > 1.5, "{}: {area}", method.name);
             }
         }
     }

@@ -92,8 +92,9 @@ pub fn advice(study: &Study) -> Option<String> {
     let until = (1e2 * time).floor() / 1e2;
     (whole > MAX_UNCERTAINTY * study.motion && until >= MIN_DURATION_RATIO * study.frames.until).then(|| {
         format!(
-            "positions are known to {whole:.0e} m only, because of what happens after {time:.2} s, such as an \
-             impact: with --until {until} they are known to {floor:.0e} m\n"
+            "what happens after {time:.2} s, such as an impact, limits the reference: with --until {until} \
+             it is exact enough for errors of positions above {:.0e} m\n",
+            10.0 * floor
         )
     })
 }
@@ -112,6 +113,11 @@ pub fn reports(
         metric => format!(" {}", unit(metric)),
     };
     let unit = &unit;
+    // Longer ones would make the table too wide.
+    let (of_errors, of_column) = match unit.len() {
+        0..=2 => (String::new(), &**unit),
+        _ => (format!(" ({})", unit.trim()), ""),
+    };
     let what = if timed {
         "computing time (ms)"
     } else {
@@ -126,10 +132,10 @@ pub fn reports(
         let until = study.frames.until;
         Report {
             head: format!(
-                "\n{what} for {until} s of {}{of}, to keep the error within\n",
+                "\n{what} for {until} s of {}{of}, to keep the error{of_errors} within\n",
                 study.scene.name,
             ),
-            rows: rows(study, data, methods, metric, timed, unit),
+            rows: rows(study, data, methods, metric, timed, of_column),
             foot: winners(study, data, methods, metric, timed, unit),
         }
     });

@@ -16,6 +16,9 @@ use crate::motion::words as scope_in_words;
 /// Error that is shown at any time, over the one at 60 frames a second, from which on it is told.
 const MAX_RATIO: f64 = 1.05;
 
+/// Largest numerator of a step that is written as a fraction.
+const MAX_NUMERATOR: f64 = 100.0;
+
 /// Says why the best candidate's step or tolerance is not larger.
 fn set_by(best: &Chosen) -> String {
     let what = if best.control.step().is_some() {
@@ -81,8 +84,8 @@ pub fn report(on: Disturbances, scene: &Scene, goal: (Goal, Scope), choice: &Cho
             ["best", "runner-up", "then"][k.min(2)].into(),
             c.method.title.into(),
             match c.control {
-                Control::Step(_) => format!("step {} s", typed(c.control, until)),
-                Control::Tolerance(_) => format!("tolerance {}", typed(c.control, until)),
+                Control::Step(_) => format!("step {} s", typed(c.control)),
+                Control::Tolerance(_) => format!("tolerance {}", typed(c.control)),
             },
             format!("{:.1e}", c.error),
             format!("{:.0}", c.work / until),
@@ -114,18 +117,16 @@ pub fn report(on: Disturbances, scene: &Scene, goal: (Goal, Scope), choice: &Cho
     }
 }
 
-/// Writes a step or a tolerance for a command line. A step of a run of `until` (s) is exact: a
-/// fraction if it has too many decimals. A tolerance has four digits and is rounded down, so that
-/// the run is no less accurate.
-fn typed(control: Control, until: f64) -> String {
+/// Writes a step or a tolerance for a command line. A step is exact: a fraction if it has too many
+/// decimals. A tolerance has four digits and is rounded down, so that the run is no less accurate.
+fn typed(control: Control) -> String {
     let value = control.value();
     if let Control::Step(step) = control {
         let short = format!("{step}");
         if short.len() <= 6 {
             return short;
         }
-        let count = (until / step).round();
-        return fraction(step, until).unwrap_or_else(|| format!("{until}/{count}"));
+        return fraction(step, MAX_NUMERATOR).unwrap_or(short);
     }
     let power = 10f64.powi(3 - value.log10().floor() as i32);
     let rounded = (value * power * (1.0 + 1e-12)).floor() / power;
@@ -137,10 +138,10 @@ fn typed(control: Control, until: f64) -> String {
 }
 
 /// Writes the command line that runs the scene with a method at a step or a tolerance.
-pub fn command(request: &Request, method: &Method, control: Control, until: f64) -> String {
+pub fn command(request: &Request, method: &Method, control: Control) -> String {
     let solver = method.letter.map(String::from);
     let solver = solver.unwrap_or_else(|| method.name.into());
-    let mut words = format!("a3 {solver} {}", typed(control, until));
+    let mut words = format!("a3 {solver} {}", typed(control));
     let (typed, SceneOptions { grid, on }) = (&request.source.typed, request.options);
     if typed != "cloth" {
         let _ = write!(words, " --scene {typed}");
@@ -174,10 +175,10 @@ mod tests {
             (3.0 / 4.5, "2/3"),
             (0.5, "0.5"),
         ] {
-            assert_eq!(typed(Control::Step(value), 3.0), expected);
+            assert_eq!(typed(Control::Step(value)), expected);
         }
-        assert_eq!(typed(Control::Step(0.3 / 37.0), 0.3), "0.3/37");
-        assert_eq!(typed(Control::Tolerance(1.7783e-5), 3.0), "1.778e-5");
-        assert_eq!(typed(Control::Tolerance(0.1), 3.0), "0.1");
+        assert_eq!(typed(Control::Step(0.3 / 37.0)), "3/370");
+        assert_eq!(typed(Control::Tolerance(1.7783e-5)), "1.778e-5");
+        assert_eq!(typed(Control::Tolerance(0.1)), "0.1");
     }
 }

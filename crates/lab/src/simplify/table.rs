@@ -76,7 +76,7 @@ fn rows(
     let heading = [
         "left out or changed",
         &changes,
-        " of the motion",
+        " of motion",
         " saves",
         "verdict",
     ];

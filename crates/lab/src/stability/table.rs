@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use a3_core::stability::{Limit, Mode, Observation};
 use a3_files::failure::Failure;
-use a3_files::report::Report;
+use a3_files::report::{Report, table};
 use serde::Serialize;
 
 use super::measure::{MethodLimits, Stability};
@@ -50,10 +50,10 @@ pub fn report(found: &Stability) -> Report {
     let rows = &found.limits;
     let heading = [
         "solver",
-        " at rest: bounded",
+        " at rest",
         " tenfold",
         " observed",
-        " moving: bounded",
+        " moving",
         " accurate",
     ];
     let mut cells = vec![heading.map(String::from).to_vec()];
@@ -87,27 +87,39 @@ pub fn report(found: &Stability) -> Report {
         let _ = write!(head, "; errors of constraints decay at {rate:.1} / s");
     }
     head += "\n\nlargest step (ms), that of the fixed step for adaptive solvers\n";
-    let mut foot = format!(
-        "bounded   nothing grows without end: at rest by all modes, moving as runs show\n\
-         tenfold   a disturbance at rest grows tenfold in 10 s, or in 1000 steps if that is longer\n\
-         accurate  errors stay below a hundredth of the motion in the first {:.2} s\n",
-        found.predictable,
+    let predictable = format!(
+        "errors stay below a hundredth of the motion in the first {:.2} s",
+        found.predictable
     );
+    let mut meanings = vec![
+        ("at rest", "nothing grows without end, by all modes"),
+        (
+            "tenfold",
+            "a disturbance at rest grows tenfold in 10 s, or in 1000 steps if that is longer",
+        ),
+        ("observed", "the same, as runs show"),
+        ("moving", "nothing grows without end, as runs show"),
+        ("accurate", &predictable),
+    ];
     if any_observed(rows, is_interval) {
-        let _ = writeln!(foot, "a\u{2013}b       {INTERVAL}");
+        meanings.push(("a\u{2013}b", INTERVAL));
     }
     if any_observed(rows, Observation::is_open) {
-        foot += ">         no longer step was tried\n";
+        meanings.push((">", "no longer step was tried"));
     }
     let short: Vec<_> = rows.iter().filter(|row| row.is_short).collect();
+    let names: Vec<_> = short.iter().map(|row| row.method.name).collect();
+    let why = format!(
+        "the runs were shorter than 10 s, or too few to tell more, because they take long: {}",
+        names.join(", ")
+    );
     if !short.is_empty() {
-        let names: Vec<_> = short.iter().map(|row| row.method.name).collect();
-        let _ = writeln!(
-            foot,
-            "short     the runs were shorter than 10 s, or too few to tell more, because they take long: {}",
-            names.join(", ")
-        );
+        meanings.push(("short", &why));
     }
+    let meanings = meanings
+        .iter()
+        .map(|(word, meaning)| vec![(*word).into(), (*meaning).into()]);
+    let foot = table(&meanings.collect::<Vec<_>>());
     Report {
         head,
         rows: cells,

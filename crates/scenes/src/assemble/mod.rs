@@ -30,7 +30,7 @@ use a3_core::{Control, Grid, Model, Scene, Swing, Vector3, integrators};
 
 use crate::budget::Budget;
 use crate::check::{at, at_least, key_of, positive};
-use crate::description::Description;
+use crate::description::{Cloth, Description};
 use crate::fault::Fault;
 use crate::mesh::Mesh;
 use crate::setup::{Defaults, Presentation, Setup, Viewpoint};
@@ -70,6 +70,13 @@ impl Description {
         let own_mass = own.checked_mass().map_err(in_cloth)?;
         let mut other = self.clone();
         other.cloth[0].grid = [grid.rows(), grid.cols()];
+        // Strips of a material are as wide as a cell.
+        let spacings = [own, &other.cloth[0]].map(Cloth::checked_spacing);
+        let [was, is] = spacings.map(|spacing| spacing.map_err(in_cloth));
+        let widened = is? / was?;
+        if let (Some(_), Some(strip)) = (&own.material, &mut other.cloth[0].buckling) {
+            strip.bending *= widened;
+        }
         let mass = other.cloth[0].checked_mass().map_err(in_cloth)?;
         let mut setup = other.assemble(Some(grid), mesh)?;
         // Its springs are equally stiff, so its highest frequency is proportional to the root of 1

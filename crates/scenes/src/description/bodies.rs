@@ -1,10 +1,12 @@
 //! Bodies of particles: cloths, jellies, meshes, solids, chains and single particles; and their
 //! springs, the wind and the swing.
 
-use schemars::JsonSchema;
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::{Deserialize, Serialize};
+use serde_json::{Value, json};
 
 use super::motion::{Pin, Shift, Sine, Triple, Turn, is_default};
+use crate::material;
 
 /// Keys of the skin of a body, which say how its surface touches others.
 #[derive(Clone, Copy, Default)]
@@ -84,9 +86,9 @@ macro_rules! bodies {
         $(#[$about_pins:meta])*
         with pin $(, $key:ident)*
     )*) => {$(
-    $(#[$about])*
     #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
     #[serde(deny_unknown_fields)]
+    $(#[$about])*
     pub struct $body {
         $($own)*
         /// Distance up to which its surface repels others where surfaces touch (m).
@@ -112,6 +114,31 @@ macro_rules! bodies {
 }
 pub(super) use share_keys;
 
+/// Returns the schema of the name of a fabric.
+fn fabrics(_: &mut SchemaGenerator) -> Schema {
+    json_schema!({ "type": "string", "enum": material::names(true) })
+}
+
+/// Returns the schema of the name of a solid.
+pub(super) fn solids(_: &mut SchemaGenerator) -> Schema {
+    json_schema!({ "type": "string", "enum": material::names(false) })
+}
+
+/// Says in a schema that a body needs either some keys or a material.
+fn or_material(schema: &mut Schema) {
+    let Some(Value::Array(required)) = schema.get_mut("required") else {
+        return;
+    };
+    let of_material = |key: &Value| {
+        key.as_str()
+            .is_some_and(|key| material::KEYS.contains(&key))
+    };
+    let (given, rest): (Vec<_>, Vec<_>) = required.drain(..).partition(of_material);
+    *required = rest;
+    let either = json!([{ "required": given }, { "required": ["material"] }]);
+    schema.insert("anyOf".into(), either);
+}
+
 /// First-order system of one particle whose velocity is its position turned by a right angle.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -123,6 +150,7 @@ pub struct Circle {
 bodies! {
 
 /// Rectangular cloth: rows x columns of particles at equal spacing, numbered row by row.
+#[schemars(transform = or_material)]
 pub struct Cloth {
     /// Numbers of rows and columns, each at least 2.
     pub grid: [usize; 2],
@@ -130,6 +158,10 @@ pub struct Cloth {
     pub width: Option<f64>,
     /// Distance between neighbouring particles (m). An alternative is `width`.
     pub spacing: Option<f64>,
+    /// Material: a fabric by its name, which gives the keys that are not there.
+    #[schemars(schema_with = "fabrics")]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub material: Option<String>,
     /// Mass per area (kg/m2), in equal shares for all particles. An alternative is `mass`.
     pub density: Option<f64>,
     /// Mass of each particle (kg). An alternative is `density`.
@@ -169,11 +201,16 @@ pub struct Cloth {
 with pin, stiffness, damping, damping_ratio, strain_limit, buckling
 
 /// Box of jelly: a lattice of particles, joined along edges, across faces and across cells.
+#[schemars(transform = or_material)]
 pub struct Jelly {
     /// Numbers of particles along x, y and z, each at least 2.
     pub grid: [usize; 3],
     /// Lengths of the edges (m).
     pub size: Triple,
+    /// Material: a solid by its name, which gives the keys that are not there.
+    #[schemars(schema_with = "solids")]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub material: Option<String>,
     /// Mass per volume (kg/m3). An alternative is `mass`.
     pub density: Option<f64>,
     /// Mass of each particle (kg). An alternative is `density`.
@@ -200,6 +237,7 @@ with pin, stiffness, damping, damping_ratio, strain_limit
 
 /// Cloth from a file of triangles: particles at their corners, structural springs on their edges,
 /// bend springs across these.
+#[schemars(transform = or_material)]
 pub struct MeshCloth {
     /// A file (.obj, .gltf, .glb, .stl, .ply) in the scene's folder or in one below it.
     pub file: String,
@@ -209,6 +247,10 @@ pub struct MeshCloth {
     pub at: Option<Triple>,
     /// Rotation vector: its direction is the axis, its length the angle (rad).
     pub rotation: Option<Triple>,
+    /// Material: a fabric by its name, which gives the keys that are not there.
+    #[schemars(schema_with = "fabrics")]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub material: Option<String>,
     /// Mass per area (kg/m2): each particle has a third of the mass of its triangles.
     pub density: f64,
     /// Stiffness of structural and bend springs (N/m).
@@ -237,6 +279,7 @@ pub struct MeshCloth {
 with pin, stiffness, damping, damping_ratio, strain_limit, tension_only
 
 /// Elastic solid of tetrahedra: a box, or the mesh of a file.
+#[schemars(transform = or_material)]
 pub struct Solid {
     /// Numbers of particles of a box along x, y and z, each at least 2. An alternative is `file`.
     pub grid: Option<[usize; 3]>,
@@ -247,6 +290,10 @@ pub struct Solid {
     pub file: Option<String>,
     /// Unit of length of the file (m); 1 if not given.
     pub scale: Option<f64>,
+    /// Material: a solid by its name, which gives the keys that are not there.
+    #[schemars(schema_with = "solids")]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub material: Option<String>,
     /// Mass per volume (kg/m3): each particle has a quarter of the mass of its tetrahedra.
     pub density: f64,
     /// Young's modulus (Pa).

@@ -8,10 +8,12 @@ mod obstacles;
 mod rigid;
 
 use schemars::JsonSchema;
+use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
 use crate::budget::check_text;
 use crate::fault::Fault;
+use crate::material;
 use crate::reader::{self, Places};
 
 use bodies::SharedKeys;
@@ -184,6 +186,16 @@ pub fn parse_toml(text: &str) -> Result<(Description, Places), Fault> {
     reader::read_toml(text)
 }
 
+/// Makes a body of a material.
+fn made_of<T: Serialize + DeserializeOwned>(body: &mut T, name: &str) -> Result<(), Fault> {
+    let table = toml::Table::try_from(&*body);
+    let mut table = table.map_err(|why| Fault::new("", why))?;
+    table.retain(|key, _| !material::KEYS.contains(&key));
+    table.insert("material".into(), name.into());
+    *body = reader::read(&table.to_string())?;
+    Ok(())
+}
+
 impl Description {
     /// Reads a description from TOML.
     ///
@@ -205,6 +217,44 @@ impl Description {
         let all = self.cloth.iter_mut().map(Keys::shared);
         let all = all.chain(jellies).chain(meshes).chain(solids);
         all.chain(chains).chain(particles).chain(rigid)
+    }
+
+    /// Returns the names of the materials that some of its bodies can be of.
+    #[must_use]
+    pub fn materials(&self) -> Vec<&'static str> {
+        let cloths = self.cloth.len() + self.mesh.len();
+        let solids = self.jelly.len() + self.solid.len() + self.body.len();
+        let all = [(true, cloths), (false, solids)].into_iter();
+        let some = all.filter(|(_, count)| *count > 0);
+        some.flat_map(|(of_fabrics, _)| material::names(of_fabrics))
+            .collect()
+    }
+
+    /// Returns the name of the material of its first body that has one.
+    #[must_use]
+    pub fn named_material(&self) -> Option<&str> {
+        let cloths = self.cloth.iter().map(|it| &it.material);
+        let meshes = self.mesh.iter().map(|it| &it.material);
+        let jellies = self.jelly.iter().map(|it| &it.material);
+        let solids = self.solid.iter().map(|it| &it.material);
+        let bodies = self.body.iter().map(|it| &it.material);
+        let all = cloths.chain(meshes).chain(jellies).chain(solids);
+        all.chain(bodies).flatten().map(String::as_str).next()
+    }
+
+    /// Names the material of all bodies that can be of it, in place of their own keys.
+    ///
+    /// # Errors
+    /// There is no such material.
+    pub(crate) fn name_material(&mut self, name: &str) -> Result<(), Fault> {
+        if material::names(true).contains(&name) {
+            self.cloth.iter_mut().try_for_each(|it| made_of(it, name))?;
+            self.mesh.iter_mut().try_for_each(|it| made_of(it, name))
+        } else {
+            self.jelly.iter_mut().try_for_each(|it| made_of(it, name))?;
+            self.solid.iter_mut().try_for_each(|it| made_of(it, name))?;
+            self.body.iter_mut().try_for_each(|it| made_of(it, name))
+        }
     }
 
     /// Writes TOML that [`parse`](Self::parse) reads as the same description.

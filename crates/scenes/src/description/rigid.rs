@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::bodies::{Keys, SharedKeys, SkinKeys, share_keys};
+use super::bodies::{Keys, SharedKeys, SkinKeys, share_keys, solids};
 use super::motion::{Pin, Triple, is_default};
 
 /// Rigid body of one or several parts.
@@ -13,6 +13,10 @@ pub struct RigidBody {
     /// Parts of which the body is made, seen from its origin. Where parts overlap, mass counts
     /// twice.
     pub parts: Vec<PartSpec>,
+    /// Material: a solid by its name, which gives the density, unless that or the mass is there.
+    #[schemars(schema_with = "solids")]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub material: Option<String>,
     /// Mass per volume (kg/m3). An alternative is `mass`.
     pub density: Option<f64>,
     /// Mass of the body (kg). An alternative is `density`.

@@ -3,13 +3,14 @@
 
 use std::vec;
 
-use serde::de::value::StrDeserializer;
+use serde::de::value::{MapDeserializer, SeqDeserializer, StrDeserializer};
 use serde::de::{self, DeserializeSeed, Expected, IntoDeserializer, Unexpected, Visitor};
-use serde::{Deserializer, forward_to_deserialize_any};
+use serde::{Deserialize, Deserializer, forward_to_deserialize_any};
 
 use super::value::{Entry, Found, Value};
 use crate::check::{beyond, within};
 use crate::fault::Fault;
+use crate::material::{self, Given};
 use crate::text::line;
 use crate::wording::{
     WHOLE, list_of, missing, quoted, too_large, unknown_choice, unknown_key, wrong_length,
@@ -54,7 +55,7 @@ impl<'de> Deserializer<'de> for Value<'de> {
             Found::Date(date) => visitor.visit_str(&date),
             Found::Null => visitor.visit_unit(),
             Found::List(items) => visitor.visit_seq(Items::new(items)),
-            Found::Table(entries) => visitor.visit_map(Entries::new(self.text, entries)),
+            Found::Table(entries) => visitor.visit_map(Entries::new(self.text, entries, vec![])),
         }
     }
 
@@ -138,12 +139,15 @@ impl<'de> Deserializer<'de> for Value<'de> {
 
     fn deserialize_struct<V: Visitor<'de>>(
         self,
-        _: &'static str,
+        kind: &'static str,
         keys: &'static [&'static str],
         visitor: V,
     ) -> Result<V::Value, Fault> {
         match self.found()? {
-            Found::Table(entries) => visitor.visit_map(Entries::new(self.text, entries)),
+            Found::Table(entries) => {
+                let given = of_material(kind, &entries)?;
+                visitor.visit_map(Entries::new(self.text, entries, given))
+            }
             other => {
                 let wanted = format!("a table with keys among {}", keys.join(", "));
                 Err(self.wrong(&wanted, &other))
@@ -221,19 +225,63 @@ impl<'de> de::SeqAccess<'de> for Items<'de> {
     }
 }
 
-/// Entries of a table, one after another.
+/// Returns the keys that the material of a table of this kind gives, if it has one.
+fn of_material(kind: &str, entries: &[Entry]) -> Result<Vec<(&'static str, Given)>, Fault> {
+    let find = |key: &str| entries.iter().find(|entry| entry.key == key);
+    // What is wrong with a value is said where it is read.
+    let numbers = |key: &str| {
+        let value = &find(key)?.value;
+        let one = || f64::deserialize(value.clone()).map(|x| vec![x]);
+        let all = Vec::deserialize(value.clone()).or_else(|_| one());
+        Some(all.unwrap_or_default())
+    };
+    let named = find("material").map(|entry| (entry, String::deserialize(entry.value.clone())));
+    let Some((entry, Ok(name))) = named else {
+        return Ok(vec![]);
+    };
+    material::keys(kind, &name, &numbers)
+        .map_err(|why| Fault::new("material", why).at(|| line(entry.value.text, entry.at)))
+}
+
+impl<'de> Deserializer<'de> for Given {
+    type Error = Fault;
+
+    fn deserialize_any<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Fault> {
+        match self {
+            Self::Number(number) => visitor.visit_f64(number),
+            Self::List(numbers) => visitor.visit_seq(SeqDeserializer::new(numbers.into_iter())),
+            Self::Table(numbers) => visitor.visit_map(MapDeserializer::new(numbers.into_iter())),
+        }
+    }
+
+    fn deserialize_option<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Fault> {
+        visitor.visit_some(self)
+    }
+
+    forward_to_deserialize_any! {
+        bool i8 i16 i32 i64 i128 u8 u16 u32 u64 u128 f32 f64 char str string bytes byte_buf unit
+        unit_struct newtype_struct seq tuple tuple_struct map struct enum identifier ignored_any
+    }
+}
+
+/// Entries of a table, one after another, and then those that its material gives.
 struct Entries<'a> {
     text: &'a str,
     rest: vec::IntoIter<Entry<'a>>,
+    given: vec::IntoIter<(&'static str, Given)>,
+    /// Value that the material gives, and that comes next.
+    next_given: Option<Given>,
     /// Entry whose value comes next.
     entry: Option<Entry<'a>>,
 }
 
 impl<'a> Entries<'a> {
-    fn new(text: &'a str, entries: Vec<Entry<'a>>) -> Self {
+    fn new(text: &'a str, entries: Vec<Entry<'a>>, given: Vec<(&'static str, Given)>) -> Self {
         Self {
             text,
             rest: entries.into_iter(),
+            given: given.into_iter(),
+            next_given: None,
             entry: None,
         }
     }
@@ -248,7 +296,12 @@ impl<'de> de::MapAccess<'de> for Entries<'de> {
     ) -> Result<Option<S::Value>, Fault> {
         self.entry = self.rest.next();
         let Some(Entry { key, at, .. }) = &self.entry else {
-            return Ok(None);
+            let Some((key, given)) = self.given.next() else {
+                return Ok(None);
+            };
+            self.next_given = Some(given);
+            let key: StrDeserializer<'_, Fault> = key.into_deserializer();
+            return seed.deserialize(key).map(Some);
         };
         let key: StrDeserializer<'_, Fault> = key.as_ref().into_deserializer();
         let read = seed.deserialize(key);
@@ -257,6 +310,9 @@ impl<'de> de::MapAccess<'de> for Entries<'de> {
     }
 
     fn next_value_seed<S: DeserializeSeed<'de>>(&mut self, seed: S) -> Result<S::Value, Fault> {
+        if let Some(given) = self.next_given.take() {
+            return seed.deserialize(given);
+        }
         let Some(Entry { key, at, value }) = self.entry.take() else {
             return Err(Fault::new("", "a key has no value"));
         };

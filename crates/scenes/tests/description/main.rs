@@ -7,6 +7,7 @@ mod fluids;
 mod joints;
 mod json;
 mod masses;
+mod materials;
 mod solids;
 mod words;
 

@@ -91,6 +91,7 @@ impl Writer<'_> {
     fn is_there(&mut self, table: &str, key: &str) -> bool {
         match (table, key) {
             ("", key) if NUMBERED.contains(&key) || key == "circle" => false,
+            (_, "material") => false,
             ("", "gravity") | ("HingeSpec" | "SliderSpec", _) => self.chance.once_in(2),
             ("", key) if BODIES.contains(&key) => self.chance.once_in(5),
             ("", _) => self.chance.once_in(6),
@@ -101,8 +102,11 @@ impl Writer<'_> {
     /// Chooses the keys of a table: the required ones, and others by chance.
     fn choose<'a>(&mut self, name: &str, schema: &'a Value) -> Vec<&'a str> {
         let all = || schema["properties"].as_object().unwrap().keys();
-        let required = schema["required"].as_array();
-        let is_required = |key: &&str| required.is_some_and(|all| all.iter().any(|r| r == *key));
+        // What a material may give is there, too.
+        let required = [&schema["required"], &schema["anyOf"][0]["required"]];
+        let required = required.map(|all| all.as_array().into_iter().flatten());
+        let required: Vec<_> = required.into_iter().flatten().collect();
+        let is_required = |key: &&str| required.iter().any(|r| *r == *key);
         let mut keys: Vec<&str> = all()
             .map(String::as_str)
             .filter(|key| is_required(key) || self.is_there(name, key))

@@ -20,7 +20,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::thread;
 use std::time::{Duration, Instant};
 
-use a3_scenes::{Description, Mesh, Setup};
+use a3_scenes::{Description, MATERIALS, Material, Mesh, Setup, Stuff};
 use serde_json::Value;
 
 use chance::Chance;
@@ -86,6 +86,26 @@ struct Trial {
     text: String,
 }
 
+/// Names a material in each body of a scene that can have one, and adds these keys.
+fn name_materials(scene: &mut Value, k: usize, keys: &mut BTreeSet<String>) {
+    for (kind, table) in [
+        ("cloth", "Cloth"),
+        ("mesh", "MeshCloth"),
+        ("jelly", "Jelly"),
+        ("solid", "Solid"),
+        ("body", "RigidBody"),
+    ] {
+        let of_cloth = table.contains("Cloth");
+        let is_for_it = |it: &&Material| matches!(it.stuff, Stuff::Fabric { .. }) == of_cloth;
+        let all: Vec<_> = MATERIALS.iter().filter(is_for_it).collect();
+        let bodies = scene.get_mut(kind).and_then(Value::as_array_mut);
+        for body in bodies.into_iter().flatten() {
+            body["material"] = all[k % all.len()].name.into();
+            keys.insert(format!("{table}.material"));
+        }
+    }
+}
+
 /// Creates scene k and runs it. A finding is an error.
 fn try_scene(
     k: usize,
@@ -96,6 +116,9 @@ fn try_scene(
     let show = |text: &str| trial.lock().unwrap().text = format!("# scene {k}\n{text}");
     let mut chance = Chance(k as u64);
     let (mut scene, mut keys) = grammar.table("", &mut chance);
+    if k.is_multiple_of(4) {
+        name_materials(&mut scene, k, &mut keys);
+    }
     let write = |scene: &Value| toml::to_string(scene).unwrap();
     let mut text = write(&scene);
     show(&text);

@@ -51,6 +51,11 @@ pub fn control_action(key: &Key) -> Option<Action> {
     Some(Action::Window(action))
 }
 
+/// Returns whether a key marks the whole text with Ctrl, while text is typed.
+pub fn marks_all(key: &Key) -> bool {
+    matches!(key, Key::Character(text) if text.eq_ignore_ascii_case("a"))
+}
+
 /// Returns the meaning of a key in the panel, if it has one.
 pub fn panel_key(key: &Key) -> Option<PanelKey> {
     match key {

@@ -20,7 +20,7 @@ use super::status::Status;
 use super::touch::Fingers;
 use super::{keyboard, platform, tool};
 use crate::hud::{lessons, panel, plotting};
-use crate::session::{Action, RunAction, Session, WindowAction};
+use crate::session::{Action, RunAction, Session, TextKey, WindowAction};
 use crate::settings::Settings;
 use crate::{command_line, keep};
 
@@ -120,6 +120,9 @@ impl App {
             }
         }
         if self.modifiers.control_key() || self.modifiers.super_key() {
+            if keyboard::marks_all(&event.logical_key) && self.type_key(TextKey::MarkAll) {
+                return;
+            }
             return self.press_with_control(event_loop, &event.logical_key);
         }
         if self.modifiers.alt_key() {
@@ -132,10 +135,7 @@ impl App {
             }
             return;
         }
-        if typed.is_some_and(|key| panel::press_text(&mut self.session, key)) {
-            return;
-        }
-        if typed.is_some_and(|key| lessons::press_text(&mut self.session, key)) {
+        if typed.is_some_and(|key| self.type_key(key)) {
             return;
         }
         let key = keyboard::panel_key(&event.logical_key);
@@ -167,6 +167,12 @@ impl App {
         if !event.repeat || repeats {
             self.act(event_loop, action);
         }
+    }
+
+    /// Handles a key while a value or an answer is typed, and returns whether one is.
+    fn type_key(&mut self, key: TextKey) -> bool {
+        let session = &mut self.session;
+        panel::press_text(session, key) || lessons::press_text(session, key)
     }
 
     /// Handles a key that is pressed with Ctrl, which never has the effect of the key alone.

@@ -102,7 +102,7 @@ fn bar(ui: &mut Ui, panes: &[Pane], readings: &Readings) {
                     say(text(format!("{frames},  {each}")));
                 }
                 if width > 600.0 {
-                    say(states(run, readings));
+                    states(run, readings).map(&mut say);
                 }
                 if let Some(without) = words::without(readings) {
                     say(text(without));

@@ -128,7 +128,9 @@ fn run(ui: &mut Ui, pane: &Pane, readings: &Readings) {
                 row("each", text(each));
             }
         });
-    ui.label(words::states(simulation, readings));
+    if let Some(states) = words::states(simulation, readings) {
+        ui.label(states);
+    }
     if let Some(without) = words::without(readings) {
         ui.label(text(without));
     }
@@ -227,14 +229,20 @@ mod tests {
             ..Readings::default()
         };
         let (words, _) = read(&circle, &slow, [1280.0, 720.0]);
-        for said in [
-            "1.000000 m",
-            "0.0000000 s",
-            "5.0e-4 × real time",
-            "no wind, no swing",
-        ] {
+        for said in ["1.000000 m", "0.0000000 s", "5.0e-4 × real time"] {
             assert!(words.contains(said), "{said} in\n{words}");
         }
+        // There is no wind on a circle to be off.
+        assert!(
+            !words.contains("wind") && !words.contains("swing"),
+            "{words}"
+        );
+        let (words, _) = read(
+            &[crate::hud::pane("cloth", "t", 0.01)],
+            &slow,
+            [1280.0, 720.0],
+        );
+        assert!(words.contains("no wind, no swing"), "{words}");
     }
 
     #[test]

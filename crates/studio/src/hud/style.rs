@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use egui::{
-    Align2, Area, Color32, Context, FontData, FontDefinitions, FontTweak, Frame, Id, Margin,
-    RichText, Ui,
+    Align2, Area, Color32, Context, FontData, FontDefinitions, FontId, FontTweak, Frame, Id,
+    Margin, Painter, Pos2, RichText, Ui,
 };
 use epaint_default_fonts::EMOJI_ICON;
 
@@ -29,6 +29,8 @@ pub const ALARM: Mark = Mark {
     symbol: '✖',
     colour: Color32::from_rgb(170, 22, 30),
 };
+/// Ground of marked text.
+const MARKED: Color32 = Color32::from_rgb(176, 208, 246);
 /// Distance of sheets from the edge of the window (points).
 pub const MARGIN: f32 = 12.0;
 
@@ -136,6 +138,18 @@ pub fn text(words: impl Into<String>) -> RichText {
 /// Returns a name or a note, in small faint text.
 pub fn faint(words: impl Into<String>) -> RichText {
     RichText::new(words).color(FAINT).size(12.5)
+}
+
+/// Draws text that is typed, marked or with a cursor at its end.
+pub fn typed(painter: &Painter, at: Pos2, align: Align2, typed: &str, is_marked: bool) {
+    let end = if is_marked { "" } else { "_" };
+    let (words, font) = (format!("{typed}{end}"), FontId::proportional(14.0));
+    let line = painter.layout_no_wrap(words, font, Color32::BLACK);
+    let place = align.anchor_size(at, line.size());
+    if is_marked {
+        painter.rect_filled(place.expand(1.0), 1.0, MARKED);
+    }
+    painter.galley(place.min, line, Color32::BLACK);
 }
 
 #[cfg(test)]

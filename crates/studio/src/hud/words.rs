@@ -217,8 +217,9 @@ pub fn film(ui: &mut Ui, film: &FilmProgress) {
     });
 }
 
-/// Returns the states that are on: paused, wind, swing, pulling.
-pub fn states(simulation: &Simulation, readings: &Readings) -> RichText {
+/// Returns the states that are on: paused, wind, swing, pulling. If none is, it returns those of
+/// wind and swing that the scene has; `None` if it has neither.
+pub fn states(simulation: &Simulation, readings: &Readings) -> Option<RichText> {
     let states = [
         (readings.paused, "paused"),
         (simulation.windy(), "wind"),
@@ -233,11 +234,16 @@ pub fn states(simulation: &Simulation, readings: &Readings) -> RichText {
         .filter(|(on, _)| *on)
         .map(|(_, name)| *name)
         .collect();
-    if on.is_empty() {
-        faint("no wind, no swing")
-    } else {
-        text(on.join("   ")).strong()
+    if !on.is_empty() {
+        return Some(text(on.join("   ")).strong());
     }
+    let scene = simulation.scene();
+    let off = [
+        scene.wind.map(|_| "no wind"),
+        scene.swing.map(|_| "no swing"),
+    ];
+    let off: Vec<_> = off.into_iter().flatten().collect();
+    (!off.is_empty()).then(|| faint(off.join(", ")))
 }
 
 /// Returns simulated time over real time, once it was measured.

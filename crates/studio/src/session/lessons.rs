@@ -107,9 +107,9 @@ impl Lessons {
         }
     }
 
-    /// Types a letter of a number, or erases the last one if it is `None`. Returns false if there
-    /// is no number to type, or the letter belongs to none.
-    pub fn type_letter(&mut self, letter: Option<char>) -> bool {
+    /// Types a letter of a number, or erases the last one if it is `None`; either replaces all, if
+    /// that `is_marked`. Returns false if there is no number to type, or the letter is of none.
+    pub fn type_letter(&mut self, letter: Option<char>, is_marked: bool) -> bool {
         let asked = self.shown().map(|(_, step)| &step.question.answer);
         let fits = letter.is_none_or(|it| it.is_ascii_digit() || "+-.,e".contains(it));
         if !matches!(asked, Some(Answer::Number { .. })) || !fits {
@@ -119,6 +119,9 @@ impl Lessons {
             return false;
         };
         given.right = None;
+        if is_marked {
+            given.typed.clear();
+        }
         match letter {
             // A comma is a decimal point, and no number needs more letters.
             Some(letter) if given.typed.len() < 12 => {
@@ -131,7 +134,7 @@ impl Lessons {
     }
 
     /// Checks the typed number. Something that is no number is a wrong answer only if it is not
-    /// empty.
+    /// empty, and is not counted.
     pub fn check(&mut self) {
         let Some((_, step)) = self.shown() else {
             return;
@@ -140,9 +143,13 @@ impl Lessons {
         if let Answer::Number { value, within, .. } = step.question.answer
             && !typed.is_empty()
         {
-            let number = typed.parse::<f64>();
-            let near = |number: f64| (number - value).abs() <= within * value.abs();
-            self.answer(number.is_ok_and(near), None);
+            let Ok(number) = typed.parse::<f64>() else {
+                if let Some(given) = self.given_mut() {
+                    given.right = Some(false);
+                }
+                return;
+            };
+            self.answer((number - value).abs() <= within * value.abs(), None);
         }
     }
 
@@ -225,15 +232,15 @@ mod tests {
         };
         let try_number = |lessons: &mut Lessons, number: f64| {
             while !lessons.given().typed.is_empty() {
-                lessons.type_letter(None);
+                lessons.type_letter(None, false);
             }
             for letter in format!("{number:.7}").replace('.', ",").chars() {
-                assert!(lessons.type_letter(Some(letter)));
+                assert!(lessons.type_letter(Some(letter), false));
             }
             lessons.check();
             lessons.given().right
         };
-        assert!(!lessons.type_letter(Some('k')));
+        assert!(!lessons.type_letter(Some('k'), false));
         lessons.check();
         assert_eq!(lessons.given(), Given::default());
         assert_eq!(
@@ -245,7 +252,7 @@ mod tests {
             Some(true)
         );
         // What is done can no longer be typed over.
-        assert!(lessons.given().done && !lessons.type_letter(Some('1')));
+        assert!(lessons.given().done && !lessons.type_letter(Some('1'), false));
         let mut other = at(place(true));
         other.reveal();
         assert!(other.given().done && other.given().typed == value.to_string());

@@ -43,6 +43,8 @@ pub enum TextKey {
     /// Move down by a number of entries, or up if it is negative.
     Move(isize),
     Type(char),
+    /// Mark the whole text, which the next letter replaces.
+    MarkAll,
     Erase,
     Accept,
     Cancel,
@@ -81,7 +83,7 @@ impl List {
             TextKey::Type(letter) => self.edit(Some(letter)),
             TextKey::Erase => self.edit(None),
             TextKey::Accept => return self.entries().nth(self.chosen).map(|entry| entry.number),
-            TextKey::Cancel => {}
+            TextKey::MarkAll | TextKey::Cancel => {}
         }
         None
     }

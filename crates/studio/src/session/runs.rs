@@ -1,7 +1,7 @@
 //! The runs of a session and their common time: the panes and the reference, and the steps and
 //! tolerances that the keys + and - choose.
 
-use a3_core::{Control, Error, Method, Path, Simulation, integrators};
+use a3_core::{Control, Error, Method, Path, Rounded, Simulation, integrators};
 use a3_files::bounds;
 use a3_files::failure::Failure;
 use a3_files::holding::shorten;
@@ -143,14 +143,14 @@ impl Runs {
     /// Starts another scene, and keeps solvers and steps that can integrate it. Returns a message
     /// if a solver or step had to be replaced. Fails, and changes nothing, if no solver can.
     pub(super) fn set_scene(&mut self, setup: &Setup) -> Result<Option<String>, Error> {
-        let mut said = None;
+        let mut said = vec![];
         let mut start = |pane: &Pane| {
             let own = pane.simulation.control();
             let control = pane.wanted_step.map_or(own, Control::Step);
             let start = |method| Simulation::new(setup.scene.clone(), method, control);
             // The explicit trapezoid can integrate every scene.
             start(pane.wanted).or_else(|why| {
-                said = Some(format!("{why}: the explicit trapezoid steps in"));
+                said.push(format!("{why}: the explicit trapezoid steps in"));
                 start(integrators::find("trapezoid").unwrap_or(pane.wanted))
             })
         };
@@ -158,27 +158,27 @@ impl Runs {
         for (pane, mut simulation) in self.panes.iter_mut().zip(simulations?) {
             let (asked, why) = shortened(&mut simulation).unzip();
             pane.wanted_step = asked;
-            said = why.or(said);
+            said.extend(why);
             pane.set_simulation(simulation, setup.presentation.clone());
         }
         self.touched = false;
         // The reference does not fail where the panes did not.
         self.reference = ReferenceRun::new(&self.panes).ok().flatten();
-        Ok(said)
+        Ok(joined(said))
     }
 
     /// Shortens steps that would not hold at the start of the scene. Returns a message if one was
     /// shortened.
     pub fn fit_steps(&mut self) -> Option<String> {
-        let mut said = None;
+        let mut said = vec![];
         for pane in &mut self.panes {
             if let Some((asked, why)) = shortened(&mut pane.simulation) {
                 pane.wanted_step = Some(asked);
                 pane.restart_cost();
-                said = Some(why);
+                said.push(why);
             }
         }
-        said
+        joined(said)
     }
 
     /// Resets the runs to the initial state of their scene.
@@ -278,12 +278,19 @@ impl Runs {
     }
 }
 
+/// Joins what is said of several panes, the same only once.
+fn joined(mut said: Vec<String>) -> Option<String> {
+    said.dedup();
+    (!said.is_empty()).then(|| said.join("; "))
+}
+
 /// Gives a run a shorter step if its own would not hold. Returns the step that it had (s), and why.
 fn shortened(run: &mut Simulation) -> Option<(f64, String)> {
     let asked = shorten(run)?;
     let shorter = run.control().value();
     let solver = run.method().title;
-    let why = format!("{solver}: the step is {shorter} s here, since {asked} s would blow up");
+    let wanted = Rounded(asked);
+    let why = format!("{solver}: the step is {shorter} s here, since {wanted} s would not hold");
     Some((asked, why))
 }
 
@@ -351,6 +358,22 @@ mod tests {
             .map(|p| p.simulation.steps())
             .collect();
         assert_eq!(steps, [1, 5]);
+    }
+
+    #[test]
+    fn each_solver_whose_step_is_shortened_is_named() {
+        let mut session = compared(&["t:0.05", "r:0.05", "--scene", "pendulum"], 0.1);
+        let both = |panes: &[Pane]| panes.iter().all(|pane| pane.wanted_step.is_some());
+        let mut scenes = 0..a3_scenes::SCENES.len();
+        assert!(scenes.any(|_| {
+            session.act(RunAction::NextScene, 0);
+            both(&session.runs.panes)
+        }));
+        let said = session.readings.message.unwrap().to_lowercase();
+        for run in session.runs.panes.iter().map(|pane| &pane.simulation) {
+            let title = run.method().title.to_lowercase();
+            assert!(said.contains(&title), "{said}");
+        }
     }
 
     #[test]

@@ -318,7 +318,7 @@ mod tests {
             if heun.1 < 0.02 {
                 shortened += 1;
                 let said = session.readings.message.clone().unwrap();
-                let step = format!("the step is {} s here, since 0.02 s would blow up", heun.1);
+                let step = format!("the step is {} s here, since 0.02 s would not hold", heun.1);
                 assert!(said.contains(&step), "{}: {said}", heun.0);
                 if !["boxes", "dominoes", "ball-on-cloth", "t-handle", "drop"].contains(&&*heun.0) {
                     let run = &session.runs.panes[0].simulation;

@@ -81,6 +81,10 @@ pub struct PanelState {
     pub dark: Option<bool>,
     /// Text typed so far for the value of the chosen row; `None` while none is typed.
     pub typed: Option<String>,
+    /// Whether the text that is typed is marked as a whole: the next letter replaces it.
+    pub all_marked: bool,
+    /// Index of the material that was just chosen for the scene.
+    pub material: Option<usize>,
     /// Largest frame rate (1/s), or 0 for that of the screen.
     pub frame_limit: u32,
     /// The format of films.
@@ -103,6 +107,8 @@ impl Default for PanelState {
             row: 0,
             dark: None,
             typed: None,
+            all_marked: false,
+            material: None,
             frame_limit: 0,
             film: Ending::default(),
             film_seconds: DEFAULT_FILM_SECONDS,

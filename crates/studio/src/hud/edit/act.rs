@@ -230,9 +230,13 @@ fn joined(session: &mut Session, [i, j]: [usize; 2]) -> Result<String, String> {
                 .find(|it| (*it - now).abs() > ROD_TOLERANCE * now);
             if let Some(other) = other {
                 let [now, other] = [now, *other].map(|length| short(length, 3));
+                let elsewhere = match session.runs.panes.len() {
+                    1 => "at the start",
+                    _ => "at the start or in another pane",
+                };
                 return Err(format!(
-                    "A rod never changes its length, but its ends would be {now} m apart here and {other} m at the \
-                     start or in another pane: reset the scene (r) first, or take a spring or a rope."
+                    "A rod never changes its length, but its ends would be {now} m apart here and {other} m \
+                     {elsewhere}: reset the scene (r) first, or take a spring or a rope."
                 ));
             }
             (

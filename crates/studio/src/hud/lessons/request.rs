@@ -9,6 +9,7 @@ use crate::session::{LessonRequest, Session, TextKey, replace};
 
 /// Carries out a request, and returns whether that changed the scene.
 pub fn apply(session: &mut Session, request: LessonRequest) -> bool {
+    let is_marked = std::mem::take(&mut session.panel.all_marked);
     let lessons = &mut session.panel.lessons;
     lessons.typing &= matches!(request, LessonRequest::Letter(_));
     match request {
@@ -25,9 +26,12 @@ pub fn apply(session: &mut Session, request: LessonRequest) -> bool {
             lessons.marked = choice;
             lessons.choose(choice);
         }
-        LessonRequest::Type(typing) => lessons.typing = typing && !lessons.given().done,
+        LessonRequest::Type(typing) => {
+            lessons.typing = typing && !lessons.given().done;
+            session.panel.all_marked = lessons.typing;
+        }
         LessonRequest::Letter(letter) => {
-            lessons.type_letter(letter);
+            lessons.type_letter(letter, is_marked);
         }
         LessonRequest::Check => lessons.check(),
         LessonRequest::Reveal => lessons.reveal(),
@@ -121,6 +125,10 @@ pub fn press_text(session: &mut Session, key: TextKey) -> bool {
         TextKey::Erase => LessonRequest::Letter(None),
         TextKey::Accept => LessonRequest::Check,
         TextKey::Cancel => LessonRequest::Type(false),
+        TextKey::MarkAll => {
+            session.panel.all_marked = true;
+            return true;
+        }
         TextKey::Move(_) => return true,
     };
     apply(session, request);

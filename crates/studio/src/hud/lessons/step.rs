@@ -7,7 +7,7 @@ use egui::{
 
 use super::super::docked::EDGE;
 use super::super::panel::{CHOSEN, HOVERED, INK, TRACK};
-use super::super::style::{FAINT, SAFE, TEXT, WARNING};
+use super::super::style::{self, FAINT, SAFE, TEXT, WARNING};
 use super::button::button;
 use super::marked::job;
 use crate::session::{Given, LessonRequest, Session};
@@ -188,16 +188,18 @@ fn number(ui: &mut Ui, session: &Session, given: &Given, unit: &str) -> Option<L
         Stroke::new(1.2, edge),
         StrokeKind::Inside,
     );
-    let (words, colour) = match (&given.typed[..], typing) {
-        ("", false) => ("your answer".to_owned(), FAINT),
-        (typed, true) => (format!("{typed}_"), Color32::BLACK),
-        (typed, false) => (typed.to_owned(), Color32::BLACK),
-    };
     let write = |at, align, words: &str, colour| {
         painter.text(at, align, words, FontId::proportional(14.0), colour);
     };
     let left = field.left_center() + vec2(11.0, 0.0);
-    write(left, Align2::LEFT_CENTER, &words, colour);
+    match (&given.typed[..], typing) {
+        ("", false) => write(left, Align2::LEFT_CENTER, "your answer", FAINT),
+        (typed, false) => write(left, Align2::LEFT_CENTER, typed, Color32::BLACK),
+        (typed, true) => {
+            let is_marked = session.panel.all_marked;
+            style::typed(painter, left, Align2::LEFT_CENTER, typed, is_marked);
+        }
+    }
     let right = field.right_center() - vec2(11.0, 0.0);
     if !unit.is_empty() {
         write(right, Align2::RIGHT_CENTER, unit, FAINT);
@@ -259,6 +261,9 @@ fn reply(ui: &mut Ui, given: &Given, step: &Step) -> Option<LessonRequest> {
     let words = match &step.question.answer {
         _ if right => &step.question.why,
         Answer::Choice { choices, .. } => choices[given.choice?].reply.as_ref()?,
+        Answer::Number { .. } if given.typed.parse::<f64>().is_err() => {
+            &format!("{} is no number.", given.typed)
+        }
         Answer::Number { hint, .. } => hint,
     };
     let width = ui.available_width();

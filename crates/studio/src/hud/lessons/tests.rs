@@ -238,9 +238,37 @@ fn a_lesson_is_gone_through_by_clicks() {
     );
     click("your answer", false);
     assert!(session.panel.lessons.typing && session.pulled && session.panel.pane == 0);
-    for key in "1,65".chars().map(TextKey::Type).chain([TextKey::Accept]) {
-        assert!(press_text(&mut session, key));
-    }
+    let mut answer = |begin: &[TextKey], number: &str| {
+        if !session.panel.lessons.typing {
+            let again = request(&session, Toggle).unwrap();
+            apply(&mut session, again);
+        }
+        let letters = number.chars().map(TextKey::Type);
+        for key in begin
+            .iter()
+            .copied()
+            .chain(letters)
+            .chain([TextKey::Accept])
+        {
+            assert!(press_text(&mut session, key), "{number}");
+        }
+        let (said, _) = draw(&session, size, None);
+        (session.panel.lessons.given(), said)
+    };
+    // What is no number is no wrong answer either.
+    let (given, said) = answer(&[], "1.51.65");
+    assert!(
+        given.wrong == 0 && said.contains("1.51.65 is no number."),
+        "{said}"
+    );
+    // An answer that is tried again replaces the one before, and so does one after Ctrl+A.
+    assert_eq!(answer(&[], "2").0.typed, "2");
+    assert_eq!(
+        answer(&[TextKey::Type('7'), TextKey::MarkAll], "1,65")
+            .0
+            .typed,
+        "1.65"
+    );
     assert!(session.panel.lessons.given().done && !session.panel.lessons.typing);
     assert!(!press_text(&mut session, TextKey::Type('1')));
     // The scenes of before are still there, and so is the progress.

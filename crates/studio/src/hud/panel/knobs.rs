@@ -9,8 +9,8 @@ use a3_scenes::PartChange;
 use super::dial::{Dial, DialScale, Turn};
 use super::seen::{arrows, colour, film, film_seconds, frame_limit, full_colour, style};
 use super::values::{
-    damping, drag, floor, gravity, gusts, network, own, radii, solver, sphere, springs_of, step,
-    stiffness, strain_limit, strain_limits, switch,
+    damping, drag, floor, gravity, gusts, material, network, own, radii, solver, sphere,
+    springs_of, step, stiffness, strain_limit, strain_limits, switch,
 };
 use crate::session::{Change, RunAction, Session, Tuning, looks};
 
@@ -77,7 +77,13 @@ pub static KNOBS: &[Knob] = &[
             session.set_step_of(at, value);
         },
     ),
-    starts_group(tunes_scene(knob(
+    starts_group(knob(
+        "material",
+        "What cloths, or solids and bodies, are made of: their density, stiffness and damping.",
+        material,
+        |session, _, k| session.panel.material = Some(k as usize),
+    )),
+    tunes_scene(knob(
         "stiffness",
         "Stiffness of all springs and, in a liquid, square of the speed of sound, as a multiple of the scene's own.",
         stiffness,
@@ -85,7 +91,7 @@ pub static KNOBS: &[Knob] = &[
             session.tuning.stiffness = factor;
             set_springs(session);
         },
-    ))),
+    )),
     tunes_scene(knob(
         "damping",
         "Damping of all springs, and viscosity of a liquid, as a multiple of the scene's own.",
@@ -361,6 +367,10 @@ impl Knob {
         };
         if to != dial.value {
             (self.set)(session, at, to);
+            // A material is an edit of the scene.
+            if session.panel.material.is_some() {
+                return;
+            }
             let change = Change::Knob {
                 row: row_of(self.name),
                 pane: at,

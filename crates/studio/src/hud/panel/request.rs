@@ -1,7 +1,10 @@
 //! Requests of keys and mouse to the panel and to the open list.
 
+use a3_scenes::{Edit, MATERIALS, Material};
+
 use super::dial::{Dial, Turn};
 use super::knobs::{KNOBS, Knob, is_left_out};
+use super::undo::edit;
 use super::values::pane;
 use super::{measure, parts};
 use crate::session::{
@@ -164,7 +167,7 @@ pub fn press(session: &mut Session, key: PanelKey, other: bool) -> bool {
 pub fn apply(session: &mut Session, request: PanelRequest) -> bool {
     let at = pane(session);
     // Discard a value that was typed but not accepted.
-    session.panel.typed = None;
+    (session.panel.typed, session.panel.all_marked) = (None, false);
     match request {
         PanelRequest::Type(row) => {
             session.panel.row = row;
@@ -191,7 +194,11 @@ pub fn apply(session: &mut Session, request: PanelRequest) -> bool {
 /// Turns the knob or the switch of a row.
 fn turn_row(session: &mut Session, at: usize, row: usize, turn: Turn) {
     if let Some(knob) = KNOBS.get(row) {
-        return knob.turn(session, at, turn);
+        knob.turn(session, at, turn);
+        if let Some(material) = session.panel.material.take().and_then(|k| MATERIALS.get(k)) {
+            name_material(session, material);
+        }
+        return;
     }
     let Some(part) = row.checked_sub(part_row(0)) else {
         return measure::toggle(session);
@@ -204,6 +211,23 @@ fn turn_row(session: &mut Session, at: usize, row: usize, turn: Turn) {
     }
 }
 
+/// Makes the bodies of the scene that can be of a material of it, while the motion goes on.
+fn name_material(session: &mut Session, material: &Material) {
+    let Material { name, about, .. } = material;
+    let said = match edit(
+        session,
+        &Edit::NameMaterial(name),
+        &format!("material {name}"),
+    ) {
+        Err(why) => why,
+        Ok(()) => match session.runs.fit_steps() {
+            None => format!("{name}: {about}."),
+            Some(step) => format!("{name}: {about}. {step}"),
+        },
+    };
+    session.readings.say(said);
+}
+
 /// Handles a key while a value is typed for the chosen row, and returns whether one is.
 pub fn press_text(session: &mut Session, key: TextKey) -> bool {
     if !is_shown(session) {
@@ -212,8 +236,14 @@ pub fn press_text(session: &mut Session, key: TextKey) -> bool {
     let Some(typed) = &mut session.panel.typed else {
         return false;
     };
+    if std::mem::take(&mut session.panel.all_marked)
+        && matches!(key, TextKey::Type(_) | TextKey::Erase)
+    {
+        typed.clear();
+    }
     match key {
         TextKey::Type(letter) => typed.push(letter),
+        TextKey::MarkAll => session.panel.all_marked = true,
         TextKey::Erase => drop(typed.pop()),
         TextKey::Cancel => session.panel.typed = None,
         TextKey::Move(_) => {}

@@ -6,7 +6,7 @@ use egui::{
 };
 
 use super::super::docked::{EDGE, SHEET};
-use super::super::style::{FAINT, TEXT};
+use super::super::style::{self, FAINT, TEXT};
 use super::dial::{Dial, DialScale, Turn};
 use super::knobs::Knob;
 use super::request::PanelRequest;
@@ -36,6 +36,8 @@ pub struct Row<'a> {
     pub chosen: bool,
     /// Text typed so far for the value.
     pub typed: Option<&'a str>,
+    /// Whether that text is marked.
+    pub is_marked: bool,
 }
 
 impl Row<'_> {
@@ -96,7 +98,8 @@ impl Row<'_> {
             let field = rect.expand2(vec2(4.0, -1.0));
             let stroke = Stroke::new(1.2, INK);
             painter.rect(field, 3.0, Color32::WHITE, stroke, egui::StrokeKind::Inside);
-            write(&format!("{typed}_"), Color32::BLACK);
+            let right = field.right_center() - vec2(4.0, 0.0);
+            style::typed(painter, right, Align2::RIGHT_CENTER, typed, self.is_marked);
         } else {
             write(&dial.words, colour);
         }

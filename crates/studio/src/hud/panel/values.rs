@@ -6,6 +6,7 @@ use a3_core::contact::{Obstacle, Shape};
 use a3_core::{Control, Network, Sheet, integrators};
 use a3_files::bounds;
 use a3_files::rounding::{FEW, round_up, short};
+use a3_scenes::MATERIALS;
 
 use super::dial::{Dial, DialScale};
 use crate::session::Session;
@@ -54,6 +55,27 @@ pub fn solver(session: &Session, at: usize) -> Option<Dial> {
                 .collect(),
         ),
         words: run.method().title.into(),
+    })
+}
+
+/// Returns the dial of the material of the bodies, by its index; past the last one for none.
+pub fn material(session: &Session, _: usize) -> Option<Dial> {
+    let scene = &session.scenes.shown.source.description;
+    let place = |name: &str| MATERIALS.iter().position(|it| it.name == name);
+    let mut all: Vec<_> = scene.materials().into_iter().filter_map(place).collect();
+    if all.is_empty() {
+        return None;
+    }
+    let now = scene.named_material().and_then(place);
+    let value = now.unwrap_or_else(|| {
+        all.push(MATERIALS.len());
+        MATERIALS.len()
+    }) as f64;
+    Some(Dial {
+        value,
+        own: value,
+        scale: DialScale::Choice(all.iter().map(|k| *k as f64).collect()),
+        words: now.map_or("own", |k| MATERIALS[k].name).into(),
     })
 }
 

@@ -115,6 +115,7 @@ fn knobs(ui: &Ui, room: Rect, session: &Session) -> (f32, Option<PanelRequest>) 
             dial,
             chosen: n == chosen,
             typed: session.panel.typed.as_deref().filter(|_| n == chosen),
+            is_marked: session.panel.all_marked,
         };
         request = row.show(ui, place).or(request);
         top += row::HEIGHT;

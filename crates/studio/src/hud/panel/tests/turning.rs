@@ -2,14 +2,15 @@
 
 use a3_core::contact::Shape;
 use a3_core::{Control, Network, Path, Vector3};
+use a3_scenes::MATERIALS;
 
 use super::opened::{changed, dials, every_scene, opened, type_key};
 use super::screen::Screen;
 use crate::hud::panel::dial::Turn;
-use crate::hud::panel::knobs::KNOBS;
+use crate::hud::panel::knobs::{KNOBS, row_of};
 use crate::hud::panel::request::{PanelKey, PanelRequest, apply, numbers, press, press_text, rows};
 use crate::hud::panel::undo;
-use crate::session::{RunAction, Session, TextKey, compared};
+use crate::session::{RunAction, Session, TextKey, compared, frames};
 
 #[test]
 fn keys_reach_every_row_and_turn_only_that() {
@@ -27,6 +28,8 @@ fn keys_reach_every_row_and_turn_only_that() {
             }
             // Another solver may take a tolerance instead of a step.
             now.retain(|other| row != "solver" || *other != "step");
+            // Another material is another scene.
+            now.retain(|other| row != "material" || *other == "material");
             assert_eq!(now, [row], "row {k} of {name}");
             type_key(&mut session, PanelKey::Toggle, false);
             let back = dials(&session)[k].1;
@@ -224,6 +227,10 @@ fn values_are_typed() {
         screen.time += 1.0;
         screen.click(session, value, value);
         assert_eq!(session.panel.typed.as_deref(), Some(""));
+        // Ctrl+A marks what was typed, and the next letter replaces it.
+        for key in [TextKey::Type('7'), TextKey::Type('7'), TextKey::MarkAll] {
+            assert!(press_text(session, key));
+        }
         for letter in words.chars() {
             assert!(press_text(session, TextKey::Type(letter)));
         }
@@ -233,6 +240,9 @@ fn values_are_typed() {
         assert!(!press_text(session, TextKey::Type('1')));
         typing
     };
+    assert!(type_value(&mut session, "gravity", "1.51.65"));
+    let said = session.readings.message.take().unwrap();
+    assert!(said.contains("Gravity: must be a number"), "{said}");
     assert!(!type_value(&mut session, "gravity", "3.21"));
     let gravity = session
         .runs
@@ -289,7 +299,10 @@ fn turns_are_undone_and_redone() {
                 "{} of {name}",
                 KNOBS[row].name
             );
-            assert_eq!(changed(&before, &session), [""; 0], "{name}");
+            let mut others = changed(&before, &session);
+            // A step that was shortened for a material stays so.
+            others.retain(|other| KNOBS[row].name != "material" || *other != "step");
+            assert_eq!(others, [""; 0], "{name}");
             undo(&mut session, true);
             assert_eq!(there(&session), turned, "{} of {name}", KNOBS[row].name);
             undo(&mut session, false);
@@ -310,4 +323,39 @@ fn a_liquid_has_no_row_of_springs() {
     let [liquid, cloth] = ["dam-break", "cloth"].map(names);
     assert!(liquid.contains(&"stiffness") && !liquid.contains(&"springs of"));
     assert!(cloth.contains(&"springs of"));
+}
+
+/// Bodies become of a material while the motion goes on, and get their own keys back.
+#[test]
+fn a_material_is_chosen_and_undone() {
+    let mut session = opened(&["t", "0.01", "--scene", "cloth"]);
+    let own = session.scenes.shown.source.description.clone();
+    frames(&mut session, 0.2);
+    let time = session.runs.first().time();
+    let row = row_of("material");
+    let dial = |session: &Session| (KNOBS[row].read)(session, 0).unwrap();
+    assert_eq!(dial(&session).words, "own");
+    let denim = MATERIALS.iter().position(|it| it.name == "denim").unwrap();
+    apply(
+        &mut session,
+        PanelRequest::Turn(row, Turn::Exactly(denim as f64)),
+    );
+    let said = session.readings.message.take().unwrap();
+    assert!(
+        said.starts_with("Denim: jeans of 11 oz. ") && said.contains("would not hold"),
+        "{said}"
+    );
+    assert_eq!(dial(&session).words, "denim");
+    let cloth = &session.scenes.shown.source.description.cloth[0];
+    assert_eq!((cloth.density, cloth.stiffness[0]), (Some(0.324), 610.0));
+    assert!(session.runs.first().time() >= time);
+    frames(&mut session, 0.2);
+    assert!(session.runs.any_alive());
+    undo(&mut session, false);
+    assert!(
+        session.scenes.shown.source.description == own,
+        "{:?}",
+        session.readings.message
+    );
+    assert_eq!(dial(&session).words, "own");
 }

@@ -1,5 +1,5 @@
-//! The lessons of the folder `lessons`, carried in the program: printed as they are, or followed
-//! step by step in the window.
+//! The lessons of the folder `lessons`, carried in the program: printed as text, or followed step
+//! by step in the window.
 //!
 //! What the window takes from the page of a lesson. Below the heading `## In the window`, each
 //! `### Title` begins a step, whose paragraphs have these forms:
@@ -13,7 +13,12 @@
 //!   answers: `- *Choice.* Reply`, and for numbers `- *Otherwise.* Reply`.
 //! * Every other paragraph says what to look at.
 
+mod plain;
+
+use std::io::{self, IsTerminal};
 use std::sync::LazyLock;
+
+use plain::{Piece, pieces};
 
 use super::failure::Failure;
 use super::platform::terminal;
@@ -23,7 +28,7 @@ pub const LESSONS: u8 = 8;
 
 macro_rules! carried {
     ($($name:literal),* $(,)?) => {
-        [$(include_str!(concat!("../lessons/", $name))),*]
+        [$(include_str!(concat!("../../lessons/", $name))),*]
     };
 }
 
@@ -48,9 +53,29 @@ pub static ALL: LazyLock<Vec<Lesson>> = LazyLock::new(|| {
         .collect()
 });
 
-/// Prints a lesson, or the index.
-pub fn print(lesson: Option<u8>) -> Result<(), Failure> {
-    terminal::send(PAGES[usize::from(lesson.unwrap_or(0))])
+/// Prints a lesson, or the index, as text. An answer comes at once if `answers`, and else, in a
+/// terminal, after the key Enter.
+pub fn print(lesson: Option<u8>, answers: bool) -> Result<(), Failure> {
+    let number = lesson.unwrap_or(0);
+    let waits = io::stdin().is_terminal() && io::stdout().is_terminal();
+    for (k, piece) in pieces(PAGES[usize::from(number)]).into_iter().enumerate() {
+        if k > 0 {
+            terminal::say("\n")?;
+        }
+        match piece {
+            Piece::Answer(_) if !answers && !waits => {
+                terminal::say(&format!("Answer: a3 lessons {number} --answers\n"))?;
+            }
+            Piece::Answer(text) if !answers => {
+                terminal::say("Press Enter for the answer.")?;
+                // Without an answer to that, the text follows at once.
+                let _ = io::stdin().read_line(&mut String::new());
+                terminal::say(&text)?;
+            }
+            Piece::Text(text) | Piece::Answer(text) => terminal::say(&text)?,
+        }
+    }
+    Ok(())
 }
 
 /// Returns the text of the scene that a lesson describes under a name, such as `spring.toml`.
