@@ -6,6 +6,7 @@ use super::opened::{changed, dials, every_scene, opened};
 use super::screen::Screen;
 use crate::hud::panel::dial::DialScale;
 use crate::hud::panel::request::rows;
+use crate::hud::panel::undo;
 use crate::hud::panel::view::{PLACE, place};
 use crate::session::RunAction;
 
@@ -39,6 +40,9 @@ fn the_mouse_turns_every_row_and_only_that() {
             now.retain(|other| knob.name != "solver" || *other != "step");
             now.retain(|other| knob.name != "material" || *other == "material");
             assert_eq!(now, [knob.name], "of {name}");
+            if knob.name == "material" {
+                undo(&mut session, false);
+            }
             assert_eq!(session.panel.row, k);
             // A double click on the value restores the scene's own.
             if !matches!(dial.scale, DialScale::Choice(_)) {

@@ -32,10 +32,9 @@ pub fn dials(session: &Session) -> Vec<(&'static str, f64)> {
 pub fn changed(before: &[(&'static str, f64)], session: &Session) -> Vec<&'static str> {
     let always = |row: &&(&'static str, f64)| row.0 != "full colour";
     let after = dials(session);
-    let [before, after] = [before, &after].map(|rows| rows.iter().filter(always));
-    assert_eq!(before.clone().count(), after.clone().count());
-    let pairs = before.zip(after);
-    pairs.filter(|(a, b)| *a != *b).map(|(a, _)| a.0).collect()
+    let rows = after.iter().filter(always);
+    let others = rows.filter(|row| !before.contains(row));
+    others.map(|row| row.0).collect()
 }
 
 /// Returns the index of a part by its name.
