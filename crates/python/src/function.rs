@@ -167,7 +167,7 @@ fn read(result: &Bound<PyAny>, name: &str, shape: Shape, out: &mut [f64]) -> PyR
     let numbers = readable.as_slice().ok().filter(|_| array.is_c_contiguous());
     match (shape, numbers) {
         (Shape::Flat | Shape::Square | Shape::Number, Some(numbers)) => {
-            out.copy_from_slice(numbers)
+            out.copy_from_slice(numbers);
         }
         (Shape::Flat | Shape::Square | Shape::Number, None) => {
             for (out, number) in out.iter_mut().zip(readable.as_array()) {

@@ -202,9 +202,6 @@ impl Snapshot {
     pub fn errors_of(&self, other: &Self, scope: Scope) -> Errors {
         let springs = self.strains.len().max(1) as f64;
         let stretch = self.strains.iter().zip(&other.strains);
-        fn moved<'a>(own: &'a [f64], other: &'a [f64]) -> impl Iterator<Item = f64> + Clone + 'a {
-            own.iter().zip(other).map(|(own, other)| other - own)
-        }
         let positions = moved(&self.positions, &other.positions);
         let along = positions.clone().zip(&self.velocities).map(|(d, v)| d * v);
         let (position, state) = match self.particles {
@@ -281,6 +278,11 @@ impl Snapshot {
             impact: Impact::extrapolate(&coarse.impact, &fine.impact, both),
         }
     }
+}
+
+/// Returns how much other numbers are above these.
+fn moved<'a>(own: &'a [f64], other: &'a [f64]) -> impl Iterator<Item = f64> + Clone + 'a {
+    own.iter().zip(other).map(|(own, other)| other - own)
 }
 
 /// Returns the system's own quantities of the state y of a model at time t (s).

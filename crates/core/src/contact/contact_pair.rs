@@ -65,7 +65,7 @@ impl ContactPair {
         };
         let [first, second] = candidate.kind.sides();
         let arms = [arm(first, 1.0), arm(second, -1.0)];
-        Self::with_arms((points, weights), normal, &motion.inverse_masses, arms)
+        Self::with_arms((points, weights), normal, &motion.inverse_masses, &arms)
     }
 
     /// Returns the contact of points with these weights, and of these sides that are rigid bodies,
@@ -74,7 +74,7 @@ impl ContactPair {
         (points, weights): ([u32; 4], [f64; 4]),
         normal: Vector3<f64>,
         inverse_masses: &[f64],
-        arms: [Option<Arm>; 2],
+        arms: &[Option<Arm>; 2],
     ) -> Self {
         let terms = weights.iter().zip(points);
         let terms = terms.map(|(weight, i)| weight * weight * inverse_masses[i as usize]);
@@ -93,7 +93,7 @@ impl ContactPair {
             }
             contact.inverse_mass = normal.dot(&(mobility * normal));
             contact.rigid = Some(Box::new(RigidContact {
-                arms,
+                arms: *arms,
                 mobility,
                 rolling: None,
                 responses: vec![],

@@ -91,7 +91,7 @@ impl Impact {
             });
         }
         let points = (pair.points, weights);
-        let mut contact = ContactPair::with_arms(points, normal, &motion.inverse_masses, arms);
+        let mut contact = ContactPair::with_arms(points, normal, &motion.inverse_masses, &arms);
         let [start, end] = ends.map(|v| v.dot(&normal));
         let along = before.dot(&normal);
         let press = (start - end) / h;
@@ -179,7 +179,7 @@ impl Impact {
             contact
         } else {
             let arms = self.late_arms(span - self.left, motion);
-            late = ContactPair::with_arms((points, weights), contact.normal, masses, arms);
+            late = ContactPair::with_arms((points, weights), contact.normal, masses, &arms);
             &late
         };
         contact.push(impulse, masses, &mut motion.v);

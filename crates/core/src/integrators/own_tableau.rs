@@ -180,7 +180,7 @@ mod tests {
         assert_eq!(order_of(&classical[..1], &[1.0]), 1);
         assert_eq!(order_of(&classical[..2], &[0.0, 1.0]), 2);
         assert_eq!(order_of(&classical, &weights), 4);
-        assert_eq!(order_of(&classical, &[0.25; 4]), 1);
+        assert_eq!(order_of(&classical, &[0.25; 4]), 2);
         assert_eq!(order_of(&classical, &[0.3; 4]), 0);
         let mut pairs = 0;
         for method in METHODS {

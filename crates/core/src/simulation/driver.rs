@@ -16,7 +16,7 @@ use serde::{Deserialize, Serialize};
 
 use super::balance::Balance;
 use super::power::End;
-use super::reach::STEP_END_TOLERANCE;
+use super::reach::{Reach, STEP_END_TOLERANCE, next_change};
 use super::state::RunState;
 use super::step::{Failure, Pipeline};
 use super::stepper::Stepper;
@@ -25,7 +25,7 @@ use crate::control::Control;
 use crate::error::Error;
 use crate::integrators::AdaptiveState;
 use crate::interval::Interval;
-use crate::network::{next_break, pass_to};
+use crate::network::pass_to;
 use crate::scene::Model;
 use crate::system::ParticleSystem;
 use crate::threads::among_threads;
@@ -223,7 +223,7 @@ impl Driver {
         self.arrive(model, state);
         let begin = state.end();
         self.within.begin(&state.y);
-        self.pipeline.step(model, state)?;
+        among_threads(model.particles(), || self.pipeline.step(model, state))?;
         self.within.enter([begin, state.end()], &state.y);
         Ok([begin, state.end()])
     }
@@ -250,8 +250,8 @@ impl Driver {
             return;
         };
         pass_model_to(model, begin);
-        let fixed = model.network().filter(|_| state.control.step().is_some());
-        let breaks = fixed.is_some_and(|it| next_break(it, begin, state.sliver()) < end);
+        let is_fixed = state.control.step().is_some();
+        let breaks = is_fixed && next_change(model, begin, state.sliver()) < end;
         if breaks && self.shorten_step(model, state, begin, time) {
             state.shown = Some(time);
             return;
@@ -311,13 +311,16 @@ impl Driver {
             let Pipeline {
                 stepper, phases, ..
             } = &mut self.pipeline;
-            let next = model.network().map(|it| next_break(it, t, state.sliver()));
+            let next = next_change(model, t, state.sliver());
             let y = &mut state.y;
-            let end = next.unwrap_or(time).min(time);
+            let end = next.min(time);
+            let h = match model.network() {
+                None if end == next => Reach::up_to(t, end).longest,
+                _ => end - t,
+            };
             phases.begin(model, y, false);
-            let step = Control::Step(end - t);
-            let taken = stepper.integrate(model.system(), step, t, end - t, y);
-            let settled = phases.settle(model, Interval { t, h: end - t }, y);
+            let taken = stepper.integrate(model.system(), Control::Step(h), t, h, y);
+            let settled = phases.settle(model, Interval { t, h }, y);
             succeeds = taken.is_ok() && settled.is_ok() && y.iter().all(|y| y.is_finite());
             pass_model_to(model, end);
             self.pipeline.fit_at_jump(model, state, end);

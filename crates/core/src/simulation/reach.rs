@@ -31,6 +31,15 @@ impl Part {
     }
 }
 
+/// Returns the first time after t (s) at which a fixed step ends early: where a pin lets go or, after
+/// more than `none` (s), jumps, or f does.
+pub(super) fn next_change(model: &Model, t: f64, none: f64) -> f64 {
+    match model.network() {
+        Some(network) => next_break(network, t, none),
+        None => model.system().next_jump(t + none),
+    }
+}
+
 /// Limits of a step: its longest length, and the time (s) at which one of that length ends.
 #[derive(Clone, Copy)]
 pub(super) struct Reach {
@@ -71,7 +80,7 @@ impl Reach {
         if is_adaptive {
             reach.limit(limits.max_step.unwrap_or(f64::INFINITY));
         }
-        reach.or_before(t, target, none)
+        reach.or_before_in(model, t, (target, none))
     }
 
     /// Returns the same limits if they end where the velocity of a pin jumps that constraints hold,
@@ -93,11 +102,17 @@ impl Reach {
     /// locates no events. The part ends where the next pin lets go or, after more than `none` (s),
     /// jumps, where f jumps, or at `target` (s).
     pub fn of_part(model: &Model, t: f64, none: f64, target: Option<f64>) -> Self {
-        let until = match model.network() {
-            Some(network) => next_break(network, t, none),
-            None => model.system().next_jump(t + none),
-        };
-        Self::up_to(t, until).or_before(t, target, none)
+        let reach = Self::up_to(t, next_change(model, t, none));
+        reach.or_before_in(model, t, (target, none))
+    }
+
+    /// Returns what [`or_before`](Self::or_before) does. Where f of a model without pins jumps at
+    /// `target` itself, all evaluations are before that.
+    fn or_before_in(self, model: &Model, t: f64, (target, none): (Option<f64>, f64)) -> Self {
+        if model.network().is_none() && self.until.is_some() && self.until == target {
+            return self;
+        }
+        self.or_before(t, target, none)
     }
 
     /// Returns these limits, or those of a step that ends at `target` (s), if that is not later, or
@@ -125,7 +140,7 @@ impl Reach {
 
     /// Returns the limits of a step from t up to a time `until` (s) at which a motion changes. All
     /// evaluations are before that time. There is no limit if it is infinite.
-    fn up_to(t: f64, until: f64) -> Self {
+    pub fn up_to(t: f64, until: f64) -> Self {
         if until.is_infinite() {
             return Self::default();
         }

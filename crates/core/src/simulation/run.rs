@@ -50,6 +50,9 @@ pub struct Simulation {
     blow_up: Option<BlowUp>,
     /// Time at which a function last passed through 0 (s), if one did.
     passed: Option<f64>,
+    /// Time at which the state was set where a function had passed through 0 (s): rounding decides
+    /// on which side of 0 the function is there.
+    leaves: Option<f64>,
 }
 
 /// Way in which a function passes through 0.
@@ -78,7 +81,7 @@ impl Passage {
 }
 
 /// Number of looks at a function in each step: one that passes through 0 and back between two of
-/// them is missed. SciPy and others look once.
+/// them is missed.
 const LOOKS: u32 = 4;
 
 impl Simulation {
@@ -105,6 +108,7 @@ impl Simulation {
             driver,
             blow_up: None,
             passed: None,
+            leaves: None,
         })
     }
 
@@ -121,7 +125,7 @@ impl Simulation {
         self.model = self.scene.model.clone();
         self.state = RunState::new(method, control, self.scene.state.clone());
         self.driver.pipeline.phases.contact.forget_impulses();
-        (self.blow_up, self.passed) = (None, None);
+        (self.blow_up, self.passed, self.leaves) = (None, None, None);
         // The first step is chosen as in a new run: one that was reset is the same run.
         if let Ok(stepper) = Stepper::new(method, &self.scene, self.model.system(), control) {
             self.driver.change_stepper(stepper);
@@ -247,12 +251,15 @@ impl Simulation {
             }
             value => value.map_err(Error::Callback),
         };
+        if !until.is_finite() {
+            // This refuses it.
+            self.advance_to(until)?;
+        }
         let mut now = self.time();
-        // Where a passage was found, rounding decides on which side the function is.
-        let mut before = match self.passed {
-            Some(passed) if passed == now => None,
-            _ => Some(value(now, &self.state.y)?),
-        };
+        let mut before = None;
+        if self.leaves != Some(now) {
+            before = Some(value(now, &self.state.y)?);
+        }
         while now < until {
             self.save_if_sound()?;
             let ahead = self.driver.look_ahead(&mut self.model, &mut self.state);
@@ -262,12 +269,8 @@ impl Simulation {
                 let mut next = last;
                 if look < LOOKS {
                     next = begin + (last - begin) * f64::from(look) / f64::from(LOOKS);
-                    self.show(next);
-                } else if last == until {
-                    self.advance_to(until)?;
-                } else {
-                    self.show(last);
                 }
+                self.show(next);
                 let after = value(next, &self.state.y)?;
                 if before.is_some_and(|before| passage.is_between(before, after)) {
                     let rises = after > before.unwrap_or_default();
@@ -287,6 +290,10 @@ impl Simulation {
                     return Ok(true);
                 }
                 (now, before) = (next, Some(after));
+            }
+            if last == until {
+                // From there, the run arrives as it does without looks.
+                self.show(begin);
             }
         }
         self.advance_to(until)?;
@@ -308,6 +315,7 @@ impl Simulation {
             let why = "only the state of a system of one's own can be set: hands change others";
             return Err(Error::Invalid(why.into()));
         }
+        let leaves = self.passed.filter(|passed| *passed == self.time());
         let mut there = self.moment();
         there.run.y = y.to_vec();
         there.run.set_time(time);
@@ -315,9 +323,9 @@ impl Simulation {
         self.stop();
         self.state.y.copy_from_slice(y);
         self.state.set_time(time);
-        self.passed = self.passed.map(|_| time);
         self.driver.forget();
         self.continue_from_here();
+        self.leaves = leaves.map(|_| time);
         Ok(())
     }
 
@@ -448,7 +456,7 @@ impl Simulation {
 
     /// Continues from a sound state, also after a blow-up.
     fn continue_from_here(&mut self) {
-        self.blow_up = None;
+        (self.blow_up, self.passed, self.leaves) = (None, None, None);
         self.good.record(&self.state, &self.model, &self.driver);
     }
 

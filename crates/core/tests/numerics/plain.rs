@@ -411,9 +411,10 @@ fn known_jumps_end_steps() {
         if method.check(known.model.system()).is_err() {
             continue;
         }
-        let control = match method.is_adaptive() {
-            true => Control::Tolerance(1e-6),
-            false => Control::Step(0.3),
+        let control = if method.is_adaptive() {
+            Control::Tolerance(1e-6)
+        } else {
+            Control::Step(0.3)
         };
         let end = |scene: Scene| {
             let mut run = Simulation::new(scene, method, control).unwrap();
@@ -422,6 +423,27 @@ fn known_jumps_end_steps() {
         };
         let found = end(known);
         assert!((found - 1e-3).abs() < 1e-9, "{}: {found}", method.name);
+        // Steps that end at the edges themselves, and a look within a step.
+        if !method.is_adaptive() {
+            for (h, at) in [
+                (0.25, 5.2),
+                (0.125, 6.0),
+                (0.0005, 5.0007),
+                (0.1, 5.0004),
+                (0.7, 7.1),
+            ] {
+                let scene = pulse(&[5.0, 5.001]);
+                let mut run = Simulation::new(scene, method, Control::Step(h)).unwrap();
+                run.advance_to(at).unwrap();
+                let right = (at - 5.0).min(1e-3);
+                let found = run.state()[0];
+                assert!(
+                    (found - right).abs() < 1e-9,
+                    "{} {h} {at}: {found}",
+                    method.name
+                );
+            }
+        }
         let missed = end(pulse(&[]));
         assert!((missed - 1e-3).abs() > 1e-6, "{}: {missed}", method.name);
         tried += 1;
