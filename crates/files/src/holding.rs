@@ -17,8 +17,8 @@ pub const MIN_HOLD_TIME: f64 = 10.0;
 /// Processor time of the trials while a window waits.
 const WINDOW_BUDGET: Duration = Duration::from_millis(300);
 
-/// Work of the trials of one step before a run begins: about 0.3 s of processor time. It is
-/// counted, so that a run begins with the same step on every machine.
+/// Work of the trial of a step before a run begins, and of the search for another one: about 0.3 s
+/// of processor time each. It is counted, so that a run begins with the same step on every machine.
 const BEGINNING_WORK: f64 = 1e7;
 
 /// Number of steps of a trial between two looks at the time.

@@ -236,6 +236,19 @@ fn of_fabric(
     all
 }
 
+/// Returns the bending stiffness (N m2) and the stiffness under compression (N/m) of the strips of
+/// the fabric of a name, which are as wide as a cell (m); `None` if there is no such fabric.
+pub(crate) fn strip_of(name: &str, spacing: f64) -> Option<[f64; 2]> {
+    let found = MATERIALS.iter().find(|it| it.name == name)?;
+    let Stuff::Fabric {
+        stretch, bending, ..
+    } = found.stuff
+    else {
+        return None;
+    };
+    Some(strip(stretch, bending, spacing).map(|(_, value)| value))
+}
+
 /// Returns the keys of the strips of a fabric of this stiffness of stretch (N/m) and of bending
 /// (N m), which are as wide as a cell (m).
 fn strip(stretch: f64, bending: f64, spacing: f64) -> [(&'static str, f64); 2] {

@@ -157,7 +157,10 @@ mod tests {
         frames(&mut opened, 0.2);
         assert!(opened.runs.any_alive());
         let named = format!("solver = 't'\nstep = 0.005\n{jelly}");
-        for as_asked in [open(jelly, &["t", "0.005"]), open(&named, &[])] {
+        for as_asked in [
+            Box::new(open(jelly, &["t", "0.005"])),
+            Box::new(open(&named, &[])),
+        ] {
             let control = as_asked.runs.first().control();
             assert_eq!(control.step(), Some(0.005));
         }

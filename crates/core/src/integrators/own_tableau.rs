@@ -1,5 +1,6 @@
 //! Tableaux of own explicit Runge-Kutta methods: their checks, and their orders by the conditions of
-//! rooted trees (Butcher, *Coefficients for the study of Runge-Kutta integration processes*, 1963; Hairer, Norsett, Wanner, *Solving Ordinary Differential Equations I*, 1993, II.2).
+//! rooted trees (Butcher, *Coefficients for the study of Runge-Kutta integration processes*, 1963;
+//! Hairer, Norsett, Wanner, *Solving Ordinary Differential Equations I*, 1993, II.2).
 //!
 //! The method has order p if each rooted tree of up to p nodes, t = [t1, ..., tm], has
 //!

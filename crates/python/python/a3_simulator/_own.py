@@ -39,7 +39,7 @@ class System:
         jac: function of t and y that returns the Jacobian df/dy, (n, n), for stiff methods and stability. Without it,
             differences of f are taken; of a system of more than 1024 numbers they always are.
         args: further arguments of f and jac, after t and y.
-        tstops: times at which f or one of its derivatives jumps: a step of any method ends at each of them.
+        tstops: times at which f or one of its derivatives jumps: a step of each of a3's methods ends there.
 
     Where a scene is expected, a system can stand. Arrays that f gets are its own: it may keep or change them.
     """

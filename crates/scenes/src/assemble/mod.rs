@@ -30,8 +30,9 @@ use a3_core::{Control, Grid, Model, Scene, Swing, Vector3, integrators};
 
 use crate::budget::Budget;
 use crate::check::{at, at_least, key_of, positive};
-use crate::description::{Cloth, Description};
+use crate::description::{BucklingSpec, Cloth, Description};
 use crate::fault::Fault;
+use crate::material::strip_of;
 use crate::mesh::Mesh;
 use crate::setup::{Defaults, Presentation, Setup, Viewpoint};
 use crate::wording::unknown_choice;
@@ -70,13 +71,7 @@ impl Description {
         let own_mass = own.checked_mass().map_err(in_cloth)?;
         let mut other = self.clone();
         other.cloth[0].grid = [grid.rows(), grid.cols()];
-        // Strips of a material are as wide as a cell.
-        let spacings = [own, &other.cloth[0]].map(Cloth::checked_spacing);
-        let [was, is] = spacings.map(|spacing| spacing.map_err(in_cloth));
-        let widened = is? / was?;
-        if let (Some(_), Some(strip)) = (&own.material, &mut other.cloth[0].buckling) {
-            strip.bending *= widened;
-        }
+        restrip(own, &mut other.cloth[0]).map_err(in_cloth)?;
         let mass = other.cloth[0].checked_mass().map_err(in_cloth)?;
         let mut setup = other.assemble(Some(grid), mesh)?;
         // Its springs are equally stiff, so its highest frequency is proportional to the root of 1
@@ -218,4 +213,24 @@ impl Description {
             step_scale,
         })
     }
+}
+
+/// Gives `other`, a cloth on another grid, the strips of the material of `own` there, unless those
+/// of `own` are not of its material.
+///
+/// # Errors
+/// One of both has no size.
+pub(crate) fn restrip(own: &Cloth, other: &mut Cloth) -> Result<(), Fault> {
+    let strip = |spacing: f64| {
+        let [bending, compression] = strip_of(own.material.as_deref()?, spacing)?;
+        Some(BucklingSpec {
+            bending,
+            compression,
+        })
+    };
+    let (was, is) = (own.checked_spacing()?, other.checked_spacing()?);
+    if own.buckling.is_some() && own.buckling == strip(was) {
+        other.buckling = strip(is);
+    }
+    Ok(())
 }

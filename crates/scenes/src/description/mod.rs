@@ -225,7 +225,10 @@ impl Description {
         let cloths = self.cloth.len() + self.mesh.len();
         let solids = self.jelly.len() + self.solid.len() + self.body.len();
         let all = [(true, cloths), (false, solids)].into_iter();
-        let some = all.filter(|(_, count)| *count > 0);
+        // One that is named is exchanged for others of its kind.
+        let named = self.named_material();
+        let fits = |of_fabrics| named.is_none_or(|it| material::names(of_fabrics).contains(&it));
+        let some = all.filter(|(of_fabrics, count)| *count > 0 && fits(*of_fabrics));
         some.flat_map(|(of_fabrics, _)| material::names(of_fabrics))
             .collect()
     }

@@ -5,7 +5,7 @@ use a3_core::Vector3;
 
 use super::cells::{divided, finer, gcd};
 use super::places::{Lattice, Places};
-use crate::assemble::{damping_time, fluid_points, max_thickness};
+use crate::assemble::{damping_time, fluid_points, max_thickness, restrip};
 use crate::description::{Cloth, Description, Fluid, Jelly, Pin};
 
 /// Scene on another grid, with the places of the first grid's particles there.
@@ -146,7 +146,7 @@ fn regrid_cloth(own: &Cloth, other: &mut Cloth, factor: f64) -> Result<(), Strin
     let max = max_thickness(max.map_err(words)?);
     let default = max_thickness(default.map_err(words)?);
     other.thickness = Some(own.thickness.unwrap_or(default).min(max));
-    Ok(())
+    restrip(own, other).map_err(words)
 }
 
 /// Puts a jelly on a grid with cells about `factor` times shorter.

@@ -99,6 +99,7 @@ impl ApplicationHandler<Event> for App {
                 .pointer
                 .is_in_picture(&self.session, graphics.size(), graphics.scale());
         if let WindowEvent::MouseInput { state, .. } = event {
+            self.session.readings.touch = false;
             self.session
                 .history
                 .set_button_held(state == ElementState::Pressed);

@@ -73,8 +73,9 @@ pub fn throw(pointer: &Pointer, heavy: bool, session: &mut Session, screen: &Scr
         mass,
         ..Throw::default()
     };
-    session.panel.editor.tool = Tool::ThrowBall;
+    let chosen = std::mem::replace(&mut session.panel.editor.tool, Tool::ThrowBall);
     edit::throw(session, &aim, how);
+    session.panel.editor.tool = chosen;
 }
 
 /// Draws a line from particle i to the pointer, or to the particle under it.

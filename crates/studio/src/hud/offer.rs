@@ -4,7 +4,7 @@
 use a3_core::Control;
 use a3_files::holding::Sought;
 use a3_files::rounding::short;
-use egui::{Align2, Area, Context, Id, Order, Sense};
+use egui::{Align, Align2, Area, Context, Id, Layout, Order, Sense};
 
 use super::panel::{PanelRequest, Request, button};
 use crate::session::{Action, MeasureRequest, RunAction, Session};
@@ -13,9 +13,6 @@ use crate::session::{Action, MeasureRequest, RunAction, Session};
 const SIZE: [f32; 2] = [190.0, 30.0];
 /// Distance of the buttons from the lower edge of the picture (points).
 const DISTANCE: f32 = 24.0;
-/// Height of the tools, which are there when they are open (points).
-const TOOLS: f32 = 96.0;
-
 /// Draws the buttons while something is offered, and returns the request of the mouse.
 pub fn show(ctx: &Context, session: &Session) -> Option<Request> {
     let readings = &session.readings;
@@ -23,17 +20,21 @@ pub fn show(ctx: &Context, session: &Session) -> Option<Request> {
     if readings.help || readings.asks_to_quit || session.list.is_some() || offers.is_empty() {
         return None;
     }
-    let tools = if session.panel.editor.open {
-        TOOLS
+    let tools = ctx.memory(|memory| memory.area_rect(Id::unique("tools")));
+    let tools = tools.filter(|_| session.panel.editor.open);
+    let tools = tools.map_or(0.0, |place| place.height());
+    let is_wide = ctx.content_rect().width() > (SIZE[0] + DISTANCE) * offers.len() as f32;
+    let layout = if is_wide {
+        Layout::left_to_right(Align::Center)
     } else {
-        0.0
+        Layout::top_down(Align::Center)
     };
     let mut request = None;
     Area::new(Id::unique("offers"))
         .order(Order::Foreground)
         .anchor(Align2::CENTER_BOTTOM, [0.0, -DISTANCE - tools])
         .show(ctx, |ui| {
-            ui.horizontal(|ui| {
+            ui.with_layout(layout, |ui| {
                 for (words, key, offer) in offers {
                     let (rect, response) = ui.allocate_exact_size(SIZE.into(), Sense::click());
                     button(ui, rect, &response, &words, key);

@@ -411,7 +411,7 @@ pub fn toggle_touch(session: &mut Session) {
 }
 
 /// Returns whether surfaces of a run cross.
-fn crosses(run: &Simulation) -> bool {
+pub fn crosses(run: &Simulation) -> bool {
     run.model().network().is_some_and(|network| {
         let (x, _) = network.halves(run.state());
         !network.crossed(run.time(), x).is_empty()
@@ -540,7 +540,7 @@ mod tests {
         let first = session(&["--scene", path.to_str().unwrap()]);
         let mut dropped = session(&["--scene", "flag"]);
         assert!(dropped.open(&path));
-        for mut session in [first, dropped] {
+        for mut session in [Box::new(first), Box::new(dropped)] {
             session.readings.in_window = true;
             assert!(session.readings.offers_apart && !session.runs.first().touching());
             assert_eq!(session.tuning.defaults.duration, Some(1.0));

@@ -133,8 +133,8 @@ impl Lessons {
         true
     }
 
-    /// Checks the typed number. Something that is no number is a wrong answer only if it is not
-    /// empty, and is not counted.
+    /// Checks the typed number. An empty answer is ignored; one that is no number is marked as
+    /// wrong, but not counted.
     pub fn check(&mut self) {
         let Some((_, step)) = self.shown() else {
             return;
