@@ -122,8 +122,8 @@ pub trait ParticleSystem {
         f64::INFINITY
     }
 
-    /// Returns the number of quantities by which states are compared; 0 if they are compared by their
-    /// own numbers.
+    /// Returns the number of quantities by which states are compared; 0 if they are compared by
+    /// their own numbers.
     fn quantities(&self) -> usize {
         0
     }

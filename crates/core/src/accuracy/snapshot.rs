@@ -293,8 +293,8 @@ fn quantities(model: &Model, t: f64, y: &[f64]) -> Vec<f64> {
     all
 }
 
-/// Returns the mean over n numbers for each axis, summed over the axes, or the sum of the numbers of
-/// the `only` one.
+/// Returns the mean over n numbers for each axis, summed over the axes, or the sum of the numbers
+/// of the `only` one.
 fn mean(only: Option<usize>, n: usize, numbers: impl Iterator<Item = f64>) -> f64 {
     match only {
         None => numbers.sum::<f64>() / n as f64,

@@ -225,8 +225,8 @@ impl ContactPair {
         rigid.is_some_and(|rigid| !rigid.responses.is_empty())
     }
 
-    /// Returns whether impulses at this contact have the same effect on the rigid bodies as those at
-    /// another one of the same bodies.
+    /// Returns whether impulses at this contact have the same effect on the rigid bodies as those
+    /// at another one of the same bodies.
     pub fn is_at(&self, other: &Self) -> bool {
         let mut arms = self.arms().zip(other.arms());
         (self.normal - other.normal).norm() < SAME_TOLERANCE && arms.all(|(a, b)| a.is_at(b))
@@ -312,8 +312,8 @@ impl ContactPair {
         impulse
     }
 
-    /// Returns the change of an impulse so far (N s) after which the closest points separate as fast
-    /// as they have to, and slip as little as friction allows; and applies it.
+    /// Returns the change of an impulse so far (N s) after which the closest points separate as
+    /// fast as they have to, and slip as little as friction allows; and applies it.
     pub fn press(
         &self,
         so_far: Vector3<f64>,

@@ -50,8 +50,8 @@ impl Impulses {
     }
 }
 
-/// Returns the part (m) of the separation that bodies at a distance (m) lack that they get back in a
-/// step. Nothing else would restore what they lose in each step under pressure.
+/// Returns the part (m) of the separation that bodies at a distance (m) lack that they get back in
+/// a step. Nothing else would restore what they lose in each step under pressure.
 pub(super) fn restored(law: &Law, distance: f64) -> f64 {
     RESTORED_SHARE * (law.max_kept() - distance).max(0.0)
 }

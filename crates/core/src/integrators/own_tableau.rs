@@ -1,11 +1,12 @@
-//! Tableaux of own explicit Runge-Kutta methods: their checks, and their orders by the conditions of
-//! rooted trees (Butcher, *Coefficients for the study of Runge-Kutta integration processes*, 1963;
-//! Hairer, Norsett, Wanner, *Solving Ordinary Differential Equations I*, 1993, II.2).
+//! Tableaux of own explicit Runge-Kutta methods: their checks, and their orders by the conditions
+//! of rooted trees (Butcher, *Coefficients for the study of Runge-Kutta integration processes*,
+//! 1963; Hairer, Norsett, Wanner, *Solving Ordinary Differential Equations I*, 1993, II.2).
 //!
 //! The method has order p if each rooted tree of up to p nodes, t = [t1, ..., tm], has
 //!
 //! ```text
-//! sum b_i u_i(t) = 1 / g(t),    u_i(t) = product over k of sum a_ij u_j(tk),    g(t) = |t| product of g(tk)
+//! sum b_i u_i(t) = 1 / g(t),
+//! u_i(t) = product over k of sum a_ij u_j(tk),    g(t) = |t| product over k of g(tk).
 //! ```
 
 use super::embedded::Tableau;

@@ -139,9 +139,9 @@ impl Ode {
         })
     }
 
-    /// Sets `count` quantities by which states are compared in charts and choices, in place of their
-    /// own numbers: a function of t and y that writes them to its last argument, and may fail. The
-    /// error of each is relative to the largest size that it has had.
+    /// Sets `count` quantities by which states are compared in charts and choices, in place of
+    /// their own numbers: a function of t and y that writes them to its last argument, and may
+    /// fail. The error of each is relative to the largest size that it has had.
     ///
     /// # Errors
     /// There are none.

@@ -31,8 +31,8 @@ impl Part {
     }
 }
 
-/// Returns the first time after t (s) at which a fixed step ends early: where a pin lets go or, after
-/// more than `none` (s), jumps, or f does.
+/// Returns the first time after t (s) at which a fixed step ends early: where a pin lets go or,
+/// after more than `none` (s), jumps, or f does.
 pub(super) fn next_change(model: &Model, t: f64, none: f64) -> f64 {
     match model.network() {
         Some(network) => next_break(network, t, none),

@@ -1,5 +1,5 @@
-//! Buttons for what a message offers: to bring surfaces apart where they cross and, after a blow-up,
-//! to run again with what would have held, or with what is measured.
+//! Buttons for what a message offers: to bring surfaces apart where they cross and, after a
+//! blow-up, to run again with what would have held, or with what is measured.
 
 use a3_core::Control;
 use a3_files::holding::Sought;
