@@ -16,7 +16,7 @@ use serde::{Deserialize, Serialize};
 
 use super::balance::Balance;
 use super::power::End;
-use super::reach::{Reach, STEP_END_TOLERANCE, next_change};
+use super::reach::{Reach, STEP_END_TOLERANCE, begin_of, next_change};
 use super::state::RunState;
 use super::step::{Failure, Pipeline};
 use super::stepper::Stepper;
@@ -250,8 +250,13 @@ impl Driver {
             return;
         };
         pass_model_to(model, begin);
-        let is_fixed = state.control.step().is_some();
-        let breaks = is_fixed && next_change(model, begin, state.sliver()) < end;
+        let (is_fixed, sliver) = (state.control.step().is_some(), state.sliver());
+        let breaks = is_fixed
+            && match model.network() {
+                Some(_) => next_change(model, begin, sliver) < end,
+                // f at the ends is not that between them.
+                None => model.system().next_jump(begin) <= end + sliver,
+            };
         if breaks && self.shorten_step(model, state, begin, time) {
             state.shown = Some(time);
             return;
@@ -306,6 +311,7 @@ impl Driver {
     ) -> bool {
         let shown = std::mem::replace(&mut state.y, self.within.y0().to_vec());
         pass_model_to(model, t);
+        t = begin_of(model, t, state.sliver());
         let mut succeeds = true;
         while succeeds && t < time {
             let Pipeline {

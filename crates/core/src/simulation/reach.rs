@@ -40,6 +40,17 @@ pub(super) fn next_change(model: &Model, t: f64, none: f64) -> f64 {
     }
 }
 
+/// Returns the time (s) from which a step is taken that begins at t (s): after a jump of f that it
+/// is before by at most `none` (s), a rounding error.
+pub(super) fn begin_of(model: &Model, t: f64, none: f64) -> f64 {
+    match model.network() {
+        Some(_) => t,
+        None => Some(model.system().next_jump(t))
+            .filter(|jump| *jump <= t + none)
+            .unwrap_or(t),
+    }
+}
+
 /// Limits of a step: its longest length, and the time (s) at which one of that length ends.
 #[derive(Clone, Copy)]
 pub(super) struct Reach {

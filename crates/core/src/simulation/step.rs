@@ -16,8 +16,8 @@ use super::events::{Event, EventKind};
 use super::phases::{Phases, Settled};
 use super::power::End;
 use super::reach::{
-    MIN_RETRY_SHARE, MIN_RETRY_STEP, Part, Reach, STEP_END_TOLERANCE, limit_next, share_of_bulge,
-    share_of_retry,
+    MIN_RETRY_SHARE, MIN_RETRY_STEP, Part, Reach, STEP_END_TOLERANCE, begin_of, limit_next,
+    share_of_bulge, share_of_retry,
 };
 use super::resting::Locator;
 use super::state::RunState;
@@ -107,15 +107,10 @@ impl Pipeline {
     /// # Errors
     /// The run blew up in the step, or the step failed.
     pub fn step(&mut self, model: &mut Model, state: &mut RunState) -> Result<(), Failure> {
-        let mut begin = state.end();
         let whole = state.control.step();
         let target = whole.map(|h| state.since + (state.taken + 1) as f64 * h);
         let sliver = state.sliver();
-        if model.network().is_none() {
-            // A step that begins before a jump, by a rounding error, sees f after it.
-            let jump = model.system().next_jump(begin);
-            begin = if jump <= begin + sliver { jump } else { begin };
-        }
+        let mut begin = begin_of(model, state.end(), sliver);
         let breaks = target.is_some_and(|target| match model.network() {
             Some(network) => breaks_between(network, [begin, target], sliver),
             None => model.system().next_jump(begin + sliver) <= target + sliver,

@@ -4,16 +4,19 @@
 use a3_core::Control;
 use a3_files::holding::Sought;
 use a3_files::rounding::short;
-use egui::{Align, Align2, Area, Context, Id, Layout, Order, Sense};
+use egui::{Align, Align2, Area, Context, Id, Layout, Order, Rect, Sense, vec2};
 
 use super::panel::{PanelRequest, Request, button};
 use crate::session::{Action, MeasureRequest, RunAction, Session};
 
 /// Width and height of a button (points).
 const SIZE: [f32; 2] = [190.0, 30.0];
+/// Distance between buttons (points).
+const GAP: f32 = 8.0;
 /// Distance of the buttons from the lower edge of the picture (points).
 const DISTANCE: f32 = 24.0;
-/// Draws the buttons while something is offered, and returns the request of the mouse.
+/// Draws the buttons while something is offered and where they cover no text, and returns the
+/// request of the mouse.
 pub fn show(ctx: &Context, session: &Session) -> Option<Request> {
     let readings = &session.readings;
     let offers = offers(session);
@@ -23,12 +26,26 @@ pub fn show(ctx: &Context, session: &Session) -> Option<Request> {
     let tools = ctx.memory(|memory| memory.area_rect(Id::unique("tools")));
     let tools = tools.filter(|_| session.panel.editor.open);
     let tools = tools.map_or(0.0, |place| place.height());
-    let is_wide = ctx.content_rect().width() > (SIZE[0] + DISTANCE) * offers.len() as f32;
-    let layout = if is_wide {
-        Layout::left_to_right(Align::Center)
+    let (room, [width, height]) = (ctx.content_rect(), SIZE.map(|side| side + GAP));
+    let count = offers.len() as f32;
+    let (layout, size) = if room.width() > width * count {
+        (
+            Layout::left_to_right(Align::Center),
+            [width * count, height],
+        )
     } else {
-        Layout::top_down(Align::Center)
+        (Layout::top_down(Align::Center), [width, height * count])
     };
+    let bottom = room.center_bottom() - vec2(0.0, DISTANCE + tools + 0.5 * size[1]);
+    let place = Rect::from_center_size(bottom, size.into());
+    let texts = ["run", "pane 0", "pane 1", "pane 2", "pane 3"].map(Id::unique);
+    let is_taken = |id| {
+        ctx.memory(|memory| memory.area_rect(id))
+            .is_some_and(|it| it.intersects(place))
+    };
+    if texts.into_iter().any(is_taken) || !room.contains_rect(place) {
+        return None;
+    }
     let mut request = None;
     Area::new(Id::unique("offers"))
         .order(Order::Foreground)

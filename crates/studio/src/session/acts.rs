@@ -411,7 +411,7 @@ pub fn toggle_touch(session: &mut Session) {
 }
 
 /// Returns whether surfaces of a run cross.
-pub fn crosses(run: &Simulation) -> bool {
+fn crosses(run: &Simulation) -> bool {
     run.model().network().is_some_and(|network| {
         let (x, _) = network.halves(run.state());
         !network.crossed(run.time(), x).is_empty()

@@ -36,7 +36,7 @@ mod view;
 #[cfg(test)]
 mod words;
 
-pub use acts::{come_apart, crosses, go_to, offer_at_start};
+pub use acts::{come_apart, go_to, offer_at_start};
 pub use asking::MeasureRequest;
 pub use continued::continue_from;
 pub use effects::{Deviation, Effect, Job, Situation};

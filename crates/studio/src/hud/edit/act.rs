@@ -6,7 +6,7 @@ use a3_media::show::Target;
 use a3_scenes::{ConstraintSpec, Edit, PartChange, PartSpec, RigidBody};
 
 use super::super::panel::{Turn, edit, of_one_body, turn_part, undo};
-use crate::session::{Measure, Session, Tool, come_apart, crosses, exchange};
+use crate::session::{Measure, Session, Tool, come_apart, exchange};
 
 /// Coefficient of friction of bodies that are added.
 const FRICTION: f64 = 0.4;
@@ -126,8 +126,7 @@ fn thrown(session: &mut Session, aim: &Aim, how: Throw) -> Result<String, String
         }
     }
     // What lies on an obstacle without thickness may cross it.
-    let crosses = !touched && session.runs.all().any(crosses);
-    if done.is_ok() || !crosses || come_apart(session).is_err() {
+    if touched || done.is_ok() || come_apart(session).is_err() {
         return done.map(|name| format!("A {name} flies."));
     }
     let done = thrown_from(session, aim, how, first).inspect_err(|_| undo(session, false))?;
