@@ -18,6 +18,7 @@ mod candidates;
 mod check;
 mod contact_pair;
 mod cut;
+mod footing;
 mod friction;
 mod guard;
 mod impact;

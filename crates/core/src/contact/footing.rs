@@ -1,0 +1,164 @@
+//! Flat faces and seams of rigid shapes: several primitives repel a particle or a round body like
+//! the one surface that they form.
+//!
+//! A point near a face is within reach of several triangles and edges of that face, and of faces
+//! that adjoin it, also of other shapes. The tangent plane of a primitive is the plane through its
+//! point that is closest to the touching point, perpendicular to the line between both. A primitive
+//! of a rigid shape does not repel a point if the point touches another primitive at least as
+//! deeply, and no corner of the first primitive rises above the tangent plane of the other one.
+//! What repels the point then does not depend on triangles, seams and parts, and the force is
+//! continuous from one primitive to the next. The first one in canonical order repels a point that
+//! is as near to several.
+//!
+//! Corners and edges of cloth, boxes and meshes interact with all triangles: the surfaces below
+//! support them at many points.
+
+use std::cmp::Ordering;
+
+use nalgebra::Vector3;
+
+use super::candidates::{Candidates, Linear};
+use super::listing::Candidate;
+use super::repulsion::Pair;
+use super::skin::KEPT_SHARE;
+use super::surface::Surface;
+use crate::geometry::{PairKind, closest};
+
+/// Place at which a single point touches a primitive of a rigid shape.
+pub(super) struct Footing {
+    point: u32,
+    /// Depth within the thickness (m).
+    depth: f64,
+    /// Closest point of the primitive's surface (m), and the unit vector from there to the point.
+    foot: Vector3<f64>,
+    normal: Vector3<f64>,
+    /// Corners of the primitive (m), and the radius around them (m).
+    corners: [Vector3<f64>; 3],
+    radius: f64,
+    /// Height above a plane (m) up to which a corner counts as in it.
+    tolerance: f64,
+}
+
+impl Footing {
+    /// Returns whether the primitive lies behind the plane at another place of the same point.
+    fn is_behind(&self, other: &Self) -> bool {
+        let height = |corner: &Vector3<f64>| (corner - other.foot).dot(&other.normal) + self.radius;
+        self.corners
+            .iter()
+            .all(|corner| height(corner) <= self.tolerance)
+    }
+}
+
+/// Visits the results of all pairs, in their order, except those with a primitive that others hide
+/// from its point.
+fn visit_bare<R>(found: Vec<(Option<Footing>, R)>, mut visit: impl FnMut(R)) {
+    let mut order: Vec<_> = (0..found.len()).filter(|k| found[*k].0.is_some()).collect();
+    let key = |k: usize| found[k].0.as_ref().map(|it| (it.point, it.depth));
+    order.sort_by(|a, b| match (key(*a), key(*b)) {
+        (Some((a, deep)), Some((b, deeper))) => a.cmp(&b).then(deeper.total_cmp(&deep)),
+        _ => Ordering::Equal,
+    });
+    let mut hidden = vec![false; found.len()];
+    let of_one_point = |a: &usize, b: &usize| key(*a).map(|it| it.0) == key(*b).map(|it| it.0);
+    for group in order.chunk_by(of_one_point) {
+        for (number, k) in group.iter().enumerate() {
+            hidden[*k] = group[..number].iter().any(|other| {
+                let both = found[*k].0.as_ref().zip(found[*other].0.as_ref());
+                both.is_some_and(|(own, other)| own.is_behind(other))
+            });
+        }
+    }
+    for ((_, result), hidden) in found.into_iter().zip(hidden) {
+        if !hidden {
+            visit(result);
+        }
+    }
+}
+
+impl Surface {
+    /// Does what [`Candidates::each`] does for the pairs that may be nearer than a distance (m),
+    /// except those with a primitive of a rigid shape that others hide from the point that it
+    /// touches: `find` adds the place at which it does.
+    pub(super) fn each_bare<R: Send>(
+        &self,
+        candidates: &Candidates,
+        still: &Linear,
+        distance: impl Fn(&Candidate) -> Option<f64> + Sync,
+        find: impl Fn(&Candidate) -> Option<(Option<Footing>, R)> + Sync,
+        mut visit: impl FnMut(R),
+    ) {
+        if self.has_points {
+            let mut found = vec![];
+            candidates.each(0.0, still, distance, find, |result| found.push(result));
+            visit_bare(found, visit);
+        } else {
+            candidates.each(0.0, still, distance, find, |(_, result)| visit(result));
+        }
+    }
+
+    /// Returns whether an edge of a rigid shape is between coplanar triangles.
+    fn is_flat(&self, [a, b]: [u32; 2]) -> bool {
+        !self.flat.is_empty() && self.flat.binary_search(&[a.min(b), a.max(b)]).is_ok()
+    }
+
+    /// Returns whether a vertex is a particle without triangles and edges, or a point of a round
+    /// shape.
+    pub(super) fn is_single(&self, vertex: u32) -> bool {
+        let is_alone = || self.singles.get(vertex as usize).is_some_and(|is| *is);
+        self.radius(vertex) > 0.0 || is_alone()
+    }
+
+    /// Returns whether a vertex is a point of an obstacle or of a rigid body.
+    fn is_hard(&self, vertex: u32) -> bool {
+        vertex as usize >= self.particles() || self.solid(vertex).is_some()
+    }
+
+    /// Returns whether a pair is of a round body with an edge between coplanar triangles, which
+    /// does not repel it: the faces on either side do.
+    pub(super) fn is_inner(&self, candidate: &Candidate) -> bool {
+        let [i, a, b, c] = candidate.points;
+        candidate.kind == PairKind::EdgeEdge
+            && (self.is_flat([i, a]) && self.is_single(b)
+                || self.is_flat([b, c]) && self.is_single(i))
+    }
+
+    /// Returns the place at which a pair touches, if it is a single point with a primitive of a
+    /// rigid shape.
+    pub(super) fn footing(&self, candidate: &Candidate, pair: &Pair) -> Option<Footing> {
+        let [i, a, b, c] = candidate.points;
+        let [xi, xa, xb, xc] = pair.x;
+        let is_edge = candidate.kind == PairKind::EdgeEdge;
+        // Point, a vertex of the other primitive, its corners, and the sign of its side.
+        let (point, other, corners, sign) = match candidate.kind {
+            PairKind::EdgeEdge if i == a => (i, b, [xb, xc, xc], 1.0),
+            PairKind::EdgeEdge if b == c => (b, i, [xi, xa, xa], -1.0),
+            PairKind::EdgeEdge => return None,
+            _ => (i, a, [xa, xb, xc], 1.0),
+        };
+        if !self.is_single(point) || !self.is_hard(other) {
+            return None;
+        }
+        let x = if is_edge && sign < 0.0 { xb } else { xi };
+        let offset = closest(pair.kind, &pair.x).offset * sign;
+        let distance = offset.norm();
+        let normal = offset / distance;
+        let reach = pair.law.skin.thickness + pair.law.radius;
+        let radius = self.radius(other);
+        let foot = x - normal * (distance - radius);
+        // The part of a floor that the point can touch.
+        let around = |along: f64, across: f64| foot + Vector3::new(along, 0.0, across) * reach;
+        let corners = match candidate.kind {
+            PairKind::VertexFloor => [around(1.0, 0.0), around(-0.5, 0.8), around(-0.5, -0.8)],
+            _ => corners,
+        };
+        (distance > 0.0).then_some(Footing {
+            point,
+            depth: reach - distance,
+            foot,
+            normal,
+            corners,
+            radius,
+            tolerance: KEPT_SHARE * pair.law.skin.thickness,
+        })
+    }
+}
