@@ -36,11 +36,11 @@ fn the_bar_does_what_keys_do() {
     still("59", BAR);
     app.expect("scrubbed", "true");
     // Scenes and solvers, by their lists. A second press closes a list.
-    still("840", BAR);
+    still("806", BAR);
     app.expect("list", "true");
-    still("840", BAR);
+    still("806", BAR);
     app.expect("list", "false");
-    still("840", BAR);
+    still("806", BAR);
     app.expect("list", "true");
     still("450", "390");
     app.expect("list", "false");
@@ -49,13 +49,13 @@ fn the_bar_does_what_keys_do() {
     app.press_for("Prior", "scene", "pendulum");
     app.press_for("Prior", "scene", "simple");
     app.press_for("Prior", "scene", "cloth");
-    still("1017", BAR);
+    still("984", BAR);
     app.expect("panel", "true");
     app.press_for("Tab", "panel", "false");
     // A row of the help is a button, too; a click beside the help closes it.
     still("1255", BAR);
     app.expect("help", "true");
-    still("280", "320");
+    still("280", "341");
     app.expect("wind", "true");
     app.expect("help", "false");
     app.press_for("h", "help", "true");
