@@ -129,7 +129,7 @@ fn clicks_slow_motion_and_going_back() {
     // Drag along the timeline.
     app.press_for("comma", "scrubbed", "true");
     let go = |x: &str| display.xdotool(&["mousemove", "--window", &app.window, x, "707"]);
-    go("800");
+    go("740");
     display.xdotool(&["mousedown", "1"]);
     go("190");
     until("long before", || {
