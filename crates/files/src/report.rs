@@ -64,18 +64,17 @@ pub fn table(rows: &[Vec<String>]) -> String {
 
 /// Breaks a text into lines of `width` characters, if its words are no longer.
 pub(crate) fn wrapped(text: &str, width: usize) -> Vec<String> {
-    let mut lines = vec![String::new()];
+    let (mut lines, mut line) = (vec![], String::new());
     for word in text.split_whitespace() {
-        let line = lines.last_mut().expect("there is a first line");
-        if line.is_empty() {
-            *line = word.into();
-        } else if line.chars().count() + 1 + word.chars().count() > width {
-            lines.push(word.into());
-        } else {
-            *line += " ";
-            *line += word;
+        if !line.is_empty() && line.chars().count() + 1 + word.chars().count() > width {
+            lines.push(std::mem::take(&mut line));
         }
+        if !line.is_empty() {
+            line.push(' ');
+        }
+        line += word;
     }
+    lines.push(line);
     lines
 }
 

@@ -14,7 +14,7 @@ pub fn finish(path: &Path, figure: &Figure, open: bool) -> Result<(), Failure> {
     if !open {
         return Ok(());
     }
-    // Launchers take what is no path for an address.
+    // A viewer may read a relative path as the address of a web page.
     let whole = std::path::absolute(path).map_err(Failure::run)?;
     open::that_detached(whole).map_err(|_| {
         let path = path.display();

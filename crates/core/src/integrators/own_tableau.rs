@@ -146,8 +146,9 @@ fn order_of(stages: &[Vec<f64>], b: &[f64]) -> u32 {
     MAX_ORDER as u32
 }
 
-/// Adds the trees to `found` that have `left` further nodes in subtrees of the first `known` trees,
-/// none of which comes after the one before it.
+/// Adds to `found` the trees that complete a root with `left` further nodes: those of subtrees
+/// among the first `known` trees, listed from the last to the first, so that each set is found
+/// once.
 fn grow(
     trees: &[Tree],
     left: usize,

@@ -47,7 +47,7 @@ pub(super) fn pieces(page: &str) -> Vec<Piece> {
     writer.pieces
 }
 
-/// Text that is written, and what is read but not yet laid out.
+/// The text laid out so far, and the paragraph, list item or table that is being read.
 #[derive(Default)]
 struct Writer {
     pieces: Vec<Piece>,

@@ -40,6 +40,7 @@ class System:
             differences of f are taken; of a system of more than 1024 numbers they always are.
         args: further arguments of f and jac, after t and y.
         tstops: times at which f or one of its derivatives jumps: a step of each of a3's methods ends there.
+            f at such a time is that after the jump, so compare t with the same numbers.
 
     Where a scene is expected, a system can stand. Arrays that f gets are its own: it may keep or change them.
     """

@@ -51,11 +51,11 @@ pub fn show_all(
 /// Draws what lies over the picture, and returns the request of the mouse.
 fn over_picture(ctx: &Context, session: &Session) -> Option<Request> {
     let window = ctx.content_rect().size();
-    // The list covers a small picture, but for its margins.
+    // In a small window, the open list leaves no room for text beside it.
     if session.list.is_some() && window.min_elem() < LIST_COVERS {
         return None;
     }
-    // The tools cover what is left of a low one, or the lower panes.
+    // In a low window, the tools leave no room for text above them, nor for that of lower panes.
     let several = session.runs.panes.len() > 2;
     let is_low = window.y < TOOLS_COVER[usize::from(several)] && session.panel.editor.open;
     if is_low && !session.readings.help {

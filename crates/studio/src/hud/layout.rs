@@ -26,8 +26,8 @@ pub fn bar_height(session: &Session, [width, height]: [f32; 2]) -> f32 {
     }
 }
 
-/// Returns the place of what is open beside the picture: the panel, the questions, the lessons or
-/// the plots.
+/// Returns the place of the pane that is open beside the picture, if one is: the panel, the
+/// questions, the lessons or the plots.
 fn beside(session: &Session) -> Option<&'static Place> {
     panel::place(session)
         .or(measure::place(session))
@@ -35,7 +35,7 @@ fn beside(session: &Session) -> Option<&'static Place> {
         .or(plotting::place(session))
 }
 
-/// Returns whether the bar is below what is open beside the picture too, in a window of a width
+/// Returns whether the bar runs below both the picture and the open pane, in a window of a width
 /// (points).
 pub fn is_bar_whole(session: &Session, width: f32) -> bool {
     beside(session).is_some_and(|place| place.is_narrow(width))

@@ -407,8 +407,7 @@ fn a_dragged_obstacle_moves_on_about_its_new_place() {
     }
 }
 
-/// Throws a light and a heavy ball from the eye at what the camera looks at, and returns what is
-/// said.
+/// Throws a light and a heavy ball from the eye to the camera's target, and returns both messages.
 fn throw_two(session: &mut Session) -> [String; 2] {
     [1.0, 10.0].map(|mass| {
         let camera = &session.view.camera;
