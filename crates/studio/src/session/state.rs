@@ -544,7 +544,10 @@ mod tests {
 
     #[test]
     fn a_scene_pauses_at_its_end_and_can_go_on() {
-        let ellipse = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/scenes/ellipse.toml");
+        let ellipse = concat!(
+            env!("CARGO_MANIFEST_DIR"),
+            "/../../docs/scenes/ellipse.toml"
+        );
         let mut session = session(&["v", "0.005", "--scene", ellipse]);
         frames(&mut session, 1.5);
         let time = |session: &Session| session.runs.first().time();
