@@ -578,6 +578,13 @@ def test_tableaux_are_methods():
             a3.Method.tableau("my-wrong", *wrong)
 
 
+def test_a_jacobian_that_is_not_finite_is_named():
+    for method, control in (("bdf", {"tolerance": 1e-5}), ("radau", {"tolerance": 1e-5}), ("implicit", {"step": 0.01})):
+        system = a3.System(lambda t, y: -y, [1.0, 2.0], jac=lambda t, y: [[-1.0, 0.0], [math.nan, -1.0]])
+        with pytest.raises(a3.Error, match="Jacobian is NaN in row 1 and column 0 at t = 0"):
+            a3.Simulation(system, method, **control).advance_to(1.0)
+
+
 class Bashforth:
     """Adams and Bashforth's method of order 2, which keeps the last derivative; the first step is Heun's."""
 
