@@ -40,7 +40,7 @@ fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
 
 impl Raised {
     /// Keeps an exception, unless one is kept already. Returns its text.
-    fn keep(&self, error: PyErr) -> String {
+    pub fn keep(&self, error: PyErr) -> String {
         let text = error.to_string();
         locked(&self.0.error).get_or_insert(error);
         text
@@ -62,6 +62,8 @@ impl Raised {
 pub enum Shape {
     /// A flat array.
     Flat,
+    /// Two flat arrays, one after the other.
+    Pair,
     /// A square matrix for a flat array.
     Square,
     /// A row of three numbers for each particle, of what a3 has column by column.
@@ -143,6 +145,7 @@ impl Function {
 fn read(result: &Bound<PyAny>, name: &str, shape: Shape, out: &mut [f64]) -> PyResult<()> {
     let expected: &[usize] = match shape {
         Shape::Flat => &[out.len()],
+        Shape::Pair => &[2, out.len() / 2],
         Shape::Square => &[out.len().isqrt(); 2],
         Shape::Rows => &[out.len() / 3, 3],
         Shape::Number => &[],
@@ -166,10 +169,10 @@ fn read(result: &Bound<PyAny>, name: &str, shape: Shape, out: &mut [f64]) -> PyR
     // A slice of an array in Fortran's order has its numbers in another order.
     let numbers = readable.as_slice().ok().filter(|_| array.is_c_contiguous());
     match (shape, numbers) {
-        (Shape::Flat | Shape::Square | Shape::Number, Some(numbers)) => {
+        (Shape::Flat | Shape::Pair | Shape::Square | Shape::Number, Some(numbers)) => {
             out.copy_from_slice(numbers);
         }
-        (Shape::Flat | Shape::Square | Shape::Number, None) => {
+        (Shape::Flat | Shape::Pair | Shape::Square | Shape::Number, None) => {
             for (out, number) in out.iter_mut().zip(readable.as_array()) {
                 *out = *number;
             }

@@ -28,7 +28,7 @@ mod _a3 {
     #[pymodule_export]
     use super::monitor::Monitor;
     #[pymodule_export]
-    use super::own_method::{Derivative, add_foreign, add_method, add_tableau};
+    use super::own_method::{Derivative, add_adaptive, add_foreign, add_method, add_tableau};
     #[cfg(feature = "program")]
     #[pymodule_export]
     use super::program::main;

@@ -5,9 +5,10 @@ use std::collections::BTreeMap;
 use std::sync::{Mutex, PoisonError};
 
 use a3_core::integrators::Derivative as CoreDerivative;
-use a3_core::{Error, Method};
+use a3_core::{Error, Integrator, Method, ParticleSystem, Work};
 use numpy::{PyArray1, PyArrayMethods};
 use pyo3::prelude::*;
+use pyo3::types::PyType;
 use scoped_tls_hkt::scoped_thread_local;
 
 use super::arrays::numbers;
@@ -59,7 +60,7 @@ impl Derivative {
 }
 
 /// Registers a method. `step` is called with f, t (s), the state y and h (s), and returns the state
-/// at t + h.
+/// at t + h. A class is called once for each run, and its instance is the step of that run.
 #[pyfunction]
 pub fn add_method(
     py: Python<'_>,
@@ -70,21 +71,93 @@ pub fn add_method(
     default_step: f64,
 ) -> PyResult<()> {
     let raised = Raised::default();
-    let function = Function::new(step, Shape::Flat, &raised)?;
-    let method = Method::from_step(name, order, move |f, t, y, h| {
-        let mut next = vec![0.0; y.len()];
-        with(f, |py| {
-            let arguments = (Derivative, t, numbers(py, y), h);
-            function.call(py, Ok(arguments), &mut next)
-        })?;
-        Ok(next)
-    });
+    let method = if step.is_instance_of::<PyType>() {
+        let (class, raised) = (step.clone().unbind(), raised.clone());
+        Method::new(name, order, move |_| Box::new(Begun::new(&class, &raised)))
+    } else {
+        let function = Function::new(step, Shape::Flat, &raised)?;
+        Method::from_step(name, order, move |f, t, y, h| {
+            stepped(&function, f, (t, h), y, y.len())
+        })
+    };
     let method = method.map_err(|error| wrong(py, error.to_string()))?;
     let method = method
         .with_evaluations(evaluations)
         .with_default_step(default_step);
     register(method, raised);
     Ok(())
+}
+
+/// Registers a method that estimates its errors: `step` returns the state at t + h and the estimate.
+#[pyfunction]
+pub fn add_adaptive(
+    py: Python<'_>,
+    name: &str,
+    step: &Bound<PyAny>,
+    order: u32,
+    evaluations: u32,
+) -> PyResult<()> {
+    let raised = Raised::default();
+    let function = Function::new(step, Shape::Pair, &raised)?;
+    let method = Method::from_estimated_step(name, order, move |f, t, y, h| {
+        let mut next = stepped(&function, f, (t, h), y, 2 * y.len())?;
+        let estimate = next.split_off(y.len());
+        Ok([next, estimate])
+    });
+    let method = method.map_err(|error| wrong(py, error.to_string()))?;
+    register(method.with_evaluations(evaluations), raised);
+    Ok(())
+}
+
+/// Returns the `count` numbers that a function returns for f, t and h (s), and the state y.
+fn stepped(
+    function: &Function,
+    f: &mut CoreDerivative,
+    (t, h): (f64, f64),
+    y: &[f64],
+    count: usize,
+) -> Result<Vec<f64>, Error> {
+    let mut next = vec![0.0; count];
+    with(f, |py| {
+        let arguments = (Derivative, t, numbers(py, y), h);
+        function.call(py, Ok(arguments), &mut next)
+    })?;
+    Ok(next)
+}
+
+/// Steps of one run by an instance of a class, or the reason why there is none.
+struct Begun {
+    step: PyResult<Function>,
+    raised: Raised,
+}
+
+impl Begun {
+    fn new(class: &Py<PyAny>, raised: &Raised) -> Self {
+        let begin = |py: Python| Function::new(&class.bind(py).call0()?, Shape::Flat, raised);
+        Self {
+            step: Python::attach(begin),
+            raised: raised.clone(),
+        }
+    }
+}
+
+impl Integrator for Begun {
+    fn step(
+        &mut self,
+        system: &dyn ParticleSystem,
+        t: f64,
+        h: f64,
+        y: &mut [f64],
+    ) -> Result<Work, Error> {
+        let function = self.step.as_ref().map_err(|why| {
+            let why = Python::attach(|py| why.clone_ref(py));
+            Error::Callback(self.raised.keep(why))
+        })?;
+        let mut f = CoreDerivative::new(system);
+        let next = stepped(function, &mut f, (t, h), y, y.len())?;
+        y.copy_from_slice(&next);
+        Ok(f.work())
+    }
 }
 
 /// Registers an explicit Runge-Kutta method by its tableau. Returns its order.

@@ -578,6 +578,84 @@ def test_tableaux_are_methods():
             a3.Method.tableau("my-wrong", *wrong)
 
 
+def test_a_jacobian_that_is_not_finite_is_named():
+    for method, control in (("bdf", {"tolerance": 1e-5}), ("radau", {"tolerance": 1e-5}), ("implicit", {"step": 0.01})):
+        system = a3.System(lambda t, y: -y, [1.0, 2.0], jac=lambda t, y: [[-1.0, 0.0], [math.nan, -1.0]])
+        with pytest.raises(a3.Error, match="Jacobian is NaN in row 1 and column 0 at t = 0"):
+            a3.Simulation(system, method, **control).advance_to(1.0)
+
+
+class Bashforth:
+    """Adams and Bashforth's method of order 2, which keeps the last derivative; the first step is Heun's."""
+
+    begun = 0
+
+    def __init__(self):
+        Bashforth.begun += 1
+        self.last = None
+
+    def __call__(self, f, t, y, h):
+        k, last = f(t, y), self.last
+        self.last = k
+        if last is None:
+            return y + h / 2 * (k + f(t + h, y + h * k))
+        return y + h * (1.5 * k - 0.5 * last)
+
+
+def test_classes_begin_with_each_run():
+    method = a3.Method("my-bashforth", Bashforth)
+    assert method.order == 2
+    errors, begun = [], Bashforth.begun
+    for count, numbers in ((200, 1), (400, 1), (400, 3)):
+        run = a3.Simulation(a3.System(lambda t, y: -y, [1.0] * numbers), method, step=1 / count)
+        run.advance_to(1.0)
+        errors.append(abs(run.state[0] - math.exp(-1)))
+    assert errors[1] == errors[2] and 3.9 < errors[0] / errors[1] < 4.1, errors
+    assert Bashforth.begun >= begun + 3
+    chart = a3.chart(a3.System(lambda t, y: [y[1], -y[0]], [1.0, 0.0]), [method, "rk4"], until=3, progress=False)
+    assert "my-bashforth" in chart.methods
+
+    class Broken:
+        def __init__(self):
+            raise ValueError("no memory")
+
+    broken = a3.Method("my-broken", Broken, order=2)
+    with pytest.raises(ValueError, match="no memory"):
+        a3.Simulation(a3.System(lambda t, y: -y, [1.0]), broken, step=0.1).advance_to(1.0)
+
+
+def shampine(f, t, y, h):
+    """The pair of Bogacki and Shampine."""
+    k1 = f(t, y)
+    k2 = f(t + h / 2, y + h / 2 * k1)
+    k3 = f(t + 0.75 * h, y + 0.75 * h * k2)
+    end = y + h / 9 * (2 * k1 + 3 * k2 + 4 * k3)
+    return end, h / 72 * (-5 * k1 + 6 * k2 + 8 * k3 - 9 * f(t + h, end))
+
+
+def test_steps_with_estimates_are_chosen_to_a_tolerance():
+    method = a3.Method("my-shampine", shampine, adaptive=True)
+    assert method.order == 3 and pickle.loads(pickle.dumps(method)).adaptive
+    system = a3.System(lambda t, y: [y[1], -y[0]], [1.0, 0.0])
+    steps = []
+    for tolerance in (1e-5, 1e-8):
+        run = a3.Simulation(system, method, tolerance=tolerance)
+        run.advance_to(5.0)
+        assert abs(run.state[0] - math.cos(5.0)) < 30 * tolerance
+        steps.append(run.steps)
+    # Of order 3, a thousandth of the error takes ten times the steps.
+    assert 8 < steps[1] / steps[0] < 12, steps
+    chosen = a3.choose(system, error=1e-5, until=3, progress=False)
+    chart = a3.chart(system, [method, "dopri5"], until=3, progress=False)
+    assert chosen and "my-shampine" in chart.methods
+    for step, words in ((lambda f, t, y, h: y, "shape"), (lambda f, t, y, h: 1 / 0, "division")):
+        wrong = a3.Method("my-wrong", step, order=2, adaptive=True)
+        with pytest.raises((a3.InputError, ZeroDivisionError), match=words):
+            a3.Simulation(system, wrong, tolerance=1e-4).advance_to(1.0)
+    with pytest.raises(a3.InputError, match="not a class"):
+        a3.Method("my-class", Bashforth, adaptive=True)
+
+
 def test_events_are_located():
     """A ball that bounces: times of its bounces by all kinds of methods, against the closed form."""
     g, kept = 9.81, 0.8

@@ -147,7 +147,8 @@ impl Line {
 pub struct Corner {
     /// Position (m).
     pub place: [f32; 3],
-    /// Value from 0 to 1 that colours it, or -1 for the colour of the liquid.
+    /// Value from 0 to 1 that colours it; for the colour of the liquid, -2 less its depth: from -1
+    /// in spray through 0 at the surface to 1 deep below it.
     pub value: f32,
     /// Unit normal.
     pub normal: [f32; 3],

@@ -36,7 +36,10 @@ fn point(i: u32) -> vec4<f32> { return textureLoad(points, item(i), 0); }
 
 const PAPER = vec3(0.86, 0.855, 0.835);
 const SHADE = vec3(0.56, 0.60, 0.655);
-const WATER = vec3(0.02, 0.24, 0.46);
+// Water in spray, at its surface, and deep below it.
+const SPRAY = vec3(0.80, 0.90, 0.94);
+const SHALLOW = vec3(0.05, 0.42, 0.60);
+const DEEP = vec3(0.01, 0.11, 0.30);
 const INK = vec3(0.035, 0.05, 0.09);
 
 // Paper, its shade towards the corners, and the grid on the floor, in the theme's colours.
@@ -220,13 +223,14 @@ fn valued(value: f32, change: f32, color: vec3<f32>, finish: vec3<f32>, n: vec3<
 
 // ---- Liquid: a surface with its own normals.
 
-// The fourth number of a corner is the value that colours it, or -1.
+// The fourth number of a corner is the value that colours it, or -2 less its depth, from -1 to 1.
 @vertex fn liquid_vertex(@location(0) corner: vec4<f32>, @location(1) normal: vec3<f32>) -> Ball {
     var out: Ball;
     out.world = corner.xyz;
     out.clip = globals.view_proj * vec4(corner.xyz, 1.0);
     out.normal = normal;
-    out.color = WATER;
+    let depth = -2.0 - corner.w;
+    out.color = mix(mix(SHALLOW, SPRAY, saturate(-depth)), DEEP, saturate(depth));
     out.value = vec4(corner.w, 0.0, 0.0, step(corner.w, -0.5));
     return out;
 }
@@ -241,12 +245,12 @@ fn valued(value: f32, change: f32, color: vec3<f32>, finish: vec3<f32>, n: vec3<
 
 // Water: the background seen through it, bent by its surface and the bluer the more of it there is,
 // the light that it scatters, and the sky and the lamp that it mirrors.
-fn water(n: vec3<f32>, world: vec3<f32>, pixel: vec2<f32>) -> vec3<f32> {
+fn water(color: vec3<f32>, n: vec3<f32>, world: vec3<f32>, pixel: vec2<f32>) -> vec3<f32> {
     let eye = normalize(globals.eye.xyz - world);
     let facing = max(dot(n, eye), 0.0);
     let bend = (globals.view_proj * vec4(n, 0.0)).xy * vec2(-0.12, 0.12) * globals.tile.w;
-    let through = background(pixel + bend) * mix(vec3(0.30, 0.66, 0.82), vec3(0.02, 0.25, 0.44), facing);
-    let scattered = WATER * (0.1 + 0.45 * max(dot(n, globals.light.xyz), 0.0));
+    let through = background(pixel + bend) * mix(vec3(0.30, 0.66, 0.82), color, facing);
+    let scattered = color * (0.1 + 0.45 * max(dot(n, globals.light.xyz), 0.0));
     let spark = pow(max(dot(n, normalize(globals.light.xyz + eye)), 0.0), 90.0);
     return through + scattered + mirrored_sky(n, eye) + vec3(0.9 * spark);
 }
@@ -256,7 +260,7 @@ fn water(n: vec3<f32>, world: vec3<f32>, pixel: vec2<f32>) -> vec3<f32> {
     let value = ball_value(in.value);
     let change = fwidth(length(in.value.xyz));
     if value >= 0.0 { return vec4(finished(banded(value, change), CHART, n, in.world), 1.0); }
-    return vec4(water(n, in.world, in.clip.xy), 1.0);
+    return vec4(water(in.color, n, in.world, in.clip.xy), 1.0);
 }
 
 // ---- Balls: particles, pins and spherical obstacles.

@@ -14,8 +14,10 @@ pub struct Derivative<'a> {
 }
 
 impl<'a> Derivative<'a> {
-    /// Creates the derivative of a system, which nothing has evaluated yet.
-    pub(crate) fn new(system: &'a dyn ParticleSystem) -> Self {
+    /// Creates the derivative of a system, which nothing has evaluated yet, for a step of an own
+    /// [`Integrator`](super::Integrator).
+    #[must_use]
+    pub fn new(system: &'a dyn ParticleSystem) -> Self {
         Self {
             system,
             dim: system.dim(),
@@ -24,7 +26,8 @@ impl<'a> Derivative<'a> {
     }
 
     /// Returns the evaluations until now.
-    pub(crate) fn work(&self) -> Work {
+    #[must_use]
+    pub fn work(&self) -> Work {
         Work::of(self.evaluations)
     }
 }

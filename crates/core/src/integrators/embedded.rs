@@ -72,8 +72,20 @@ impl EmbeddedPair {
         tableau.stages.len() as u64
     }
 
+    /// Ends a step of h (s) at a state that was computed elsewhere.
+    pub(super) fn end_at(&mut self, h: f64, y1: &[f64]) {
+        self.last.h = h;
+        self.last.dense = false;
+        self.last.y1.copy_from_slice(y1);
+    }
+
+    /// Returns the state at the beginning of the step.
+    pub(super) fn start(&self) -> &[f64] {
+        &self.last.y0
+    }
+
     /// Evaluates the derivative at the end of the step.
-    fn finish(&mut self, system: &dyn ParticleSystem, t: f64) -> Work {
+    pub(super) fn finish(&mut self, system: &dyn ParticleSystem, t: f64) -> Work {
         let last = self.tableau.stages.len() + 1;
         system.eval_f(t + self.last.h, &self.last.y1, &mut self.last.k[last]);
         Work::of(1)

@@ -11,6 +11,7 @@ use super::embedded::{EmbeddedPair, Tableau};
 use super::error_norm::Tolerance;
 use super::integrator::Integrator;
 use super::nystrom::{NystromPair, NystromTableau};
+use super::own_trial::{Estimated, OwnTrial};
 use super::splitting::Plan;
 use super::sweep;
 use super::sweep::RungeKutta;
@@ -45,6 +46,8 @@ pub(super) enum Create {
     Own(&'static CreateOwn),
     /// Embedded pair of an own method.
     OwnPair(&'static Tableau),
+    /// Function that takes a step and estimates its error.
+    OwnTrial(&'static Estimated),
     /// Function that runs a whole span of time.
     Foreign(&'static Solve),
 }
@@ -66,6 +69,7 @@ impl fmt::Debug for Create {
             Self::Adaptive(..) => "Adaptive",
             Self::Own(_) => "Own",
             Self::OwnPair(_) => "OwnPair",
+            Self::OwnTrial(_) => "OwnTrial",
             Self::Foreign(_) => "Foreign",
         })
     }
@@ -241,6 +245,7 @@ impl Method {
             Create::Nystrom(tableau) => Box::new(self.nystrom(tableau, system)),
             Create::Step(create) | Create::Adaptive(create, _) => create(system),
             Create::Own(create) => create(system),
+            Create::OwnTrial(step) => Box::new(self.own_trial(step, system)),
             Create::Foreign(_) => {
                 return Err(Error::Invalid(format!(
                     "{} runs whole spans of time, which a chart measures: it takes no steps",
@@ -258,12 +263,16 @@ impl Method {
         NystromPair::new(self.title, tableau, system.dim())
     }
 
+    fn own_trial(&self, step: &'static Estimated, system: &dyn ParticleSystem) -> OwnTrial {
+        OwnTrial::new(self.name, self.order, step, system.dim())
+    }
+
     /// Returns whether the method is not of the table, but made by the caller of this library.
     #[must_use]
     pub fn is_own(&self) -> bool {
         matches!(
             self.create,
-            Create::Own(_) | Create::OwnPair(_) | Create::Foreign(_)
+            Create::Own(_) | Create::OwnPair(_) | Create::OwnTrial(_) | Create::Foreign(_)
         )
     }
 
@@ -303,6 +312,7 @@ impl Method {
             }
             Create::Nystrom(tableau) => Box::new(self.nystrom(tableau, system)),
             Create::Adaptive(_, create) => create(system),
+            Create::OwnTrial(step) => Box::new(self.own_trial(step, system)),
             _ => return None,
         };
         Some(Adaptive::new(trial, tolerance))
@@ -317,6 +327,7 @@ impl Method {
                 | Create::Nystrom(_)
                 | Create::Adaptive(..)
                 | Create::OwnPair(_)
+                | Create::OwnTrial(_)
                 | Create::Foreign(_)
         )
     }

@@ -14,6 +14,7 @@ mod nystrom;
 mod nystrom_pairs;
 mod own;
 mod own_tableau;
+mod own_trial;
 mod pairs;
 mod prediction;
 mod splitting;

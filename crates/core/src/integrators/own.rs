@@ -145,6 +145,45 @@ impl Method {
         })
     }
 
+    /// Creates an own method from a function that takes a step and estimates its error, so that
+    /// steps are chosen to a tolerance: from the [`Derivative`] f, t (s), y and h (s) it computes
+    /// the state at t + h and the estimate, which falls as h to the power of `order`, or faster.
+    /// Between the ends of a step, states are on the cubic through both.
+    ///
+    /// Heun's method with the difference from Euler's as the estimate:
+    ///
+    /// ```
+    /// use a3_core::Method;
+    ///
+    /// let pair = Method::from_estimated_step("my-pair", 2, |f, t, y, h| {
+    ///     let a = f.at(t, y)?;
+    ///     let ahead: Vec<f64> = y.iter().zip(&a).map(|(y, a)| y + h * a).collect();
+    ///     let b = f.at(t + h, &ahead)?;
+    ///     let estimate: Vec<f64> = a.iter().zip(&b).map(|(a, b)| 0.5 * h * (b - a)).collect();
+    ///     Ok([ahead.iter().zip(&estimate).map(|(y, e)| y + e).collect(), estimate])
+    /// })?;
+    /// assert!(pair.is_adaptive());
+    /// # Ok::<(), a3_core::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// Those of [`from_step`](Self::from_step).
+    pub fn from_estimated_step(
+        name: impl Into<String>,
+        order: u32,
+        step: impl Fn(&mut Derivative, f64, &[f64], f64) -> Result<[Vec<f64>; 2], Error>
+        + Send
+        + Sync
+        + 'static,
+    ) -> Result<Self, Error> {
+        let create = Create::OwnTrial(Box::leak(Box::new(step)));
+        let method = Self::made(name.into(), order, create)?;
+        Ok(Self {
+            default_control: Control::Tolerance(DEFAULT_TOLERANCE),
+            ..method
+        })
+    }
+
     /// Creates an explicit Runge-Kutta method from its tableau: rows of the weights `a_ij` of each
     /// stage, the weights b of y1, and those of another result, if there are some (b-hat), whose
     /// difference from y1 estimates the error. Such a pair chooses its steps to a tolerance. There

@@ -162,6 +162,14 @@ impl Ode {
     }
 }
 
+impl Ode {
+    /// Returns whether f(t, y) is finite.
+    fn is_defined(&self, t: f64, y: &[f64]) -> bool {
+        let mut dydt = vec![0.0; self.dim];
+        (self.f)(t, y, &mut dydt).is_ok() && dydt.iter().all(|f| f.is_finite())
+    }
+}
+
 impl ParticleSystem for Ode {
     fn dim(&self) -> usize {
         self.dim
@@ -175,7 +183,19 @@ impl ParticleSystem for Ode {
         let Some(jacobian) = &self.jacobian else {
             return false;
         };
-        self.failure.guard(out, |out| jacobian(t, y, out));
+        self.failure.guard(out, |out| {
+            jacobian(t, y, out)?;
+            let wrong = out.iter().position(|number| !number.is_finite());
+            match wrong.filter(|_| self.is_defined(t, y)) {
+                Some(k) => Err(format!(
+                    "the Jacobian is {} in row {} and column {} at t = {t} s, where f is finite",
+                    out[k],
+                    k / self.dim,
+                    k % self.dim
+                )),
+                None => Ok(()),
+            }
+        });
         true
     }
 

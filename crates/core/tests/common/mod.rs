@@ -17,6 +17,11 @@ pub fn scene(name: &str) -> Scene {
     a3_scenes::find(name).unwrap().build(None).unwrap().scene
 }
 
+/// A drop that is drawn out, without viscosity and weight.
+pub fn ellipse() -> Scene {
+    described(include_str!("../../../../docs/scenes/ellipse.toml"))
+}
+
 /// Numbers from -1 to 1, by a linear congruential generator.
 pub fn state_random(count: usize, seed: u64) -> Vec<f64> {
     let mut bits = seed;

@@ -70,6 +70,64 @@ fn an_own_rk4_takes_the_steps_of_the_built_in_one() {
     }
 }
 
+/// The pair of Bogacki and Shampine as a function takes the steps that it takes as a tableau.
+#[test]
+fn an_own_step_with_an_estimate_takes_the_steps_of_its_tableau() {
+    let other = [7.0 / 24.0, 0.25, 1.0 / 3.0, 0.125];
+    let b = [2.0 / 9.0, 1.0 / 3.0, 4.0 / 9.0];
+    let a = [vec![], vec![0.5], vec![0.0, 0.75]];
+    let tableau = Method::from_tableau("own-bs23", &a, &b, Some(&other)).unwrap();
+    let own = Method::from_estimated_step("own-estimated", 3, move |f, t, y, h| {
+        let k1 = f.at(t, y)?;
+        let k2 = f.at(t + 0.5 * h, &plus(y, 0.5 * h, &k1))?;
+        let k3 = f.at(t + 0.75 * h, &plus(y, 0.75 * h, &k2))?;
+        let combined = |y: &[f64], weights: &[f64]| {
+            let pairs = weights.iter().zip([&k1, &k2, &k3]);
+            pairs.fold(y.to_vec(), |y, (b, k)| plus(&y, b * h, k))
+        };
+        let end = combined(y, &b);
+        let k4 = f.at(t + h, &end)?;
+        let apart: Vec<_> = b.iter().zip(other).map(|(b, other)| b - other).collect();
+        let estimate = combined(&vec![0.0; y.len()], &apart);
+        Ok([end, plus(&estimate, -other[3] * h, &k4)])
+    });
+    let [own, tableau] = [own.unwrap(), tableau].map(Method::register);
+    assert!(own.is_own() && own.is_adaptive());
+    let run = |method, tolerance| {
+        let control = Control::Tolerance(tolerance);
+        let mut run = Simulation::new(rotation(3.0), method, control).unwrap();
+        // A time within a step.
+        run.advance_to(1.0).unwrap();
+        (run.steps(), run.state().to_vec())
+    };
+    for tolerance in [1e-4, 1e-7] {
+        let ((steps, ours), (same, theirs)) = (run(own, tolerance), run(tableau, tolerance));
+        assert_eq!(steps, same);
+        for (ours, theirs) in ours.iter().zip(&theirs) {
+            assert!((ours - theirs).abs() < 1e-12, "{ours} {theirs}");
+        }
+        let error = (ours[0] - 3.0_f64.cos()).hypot(ours[1] - 3.0_f64.sin());
+        assert!(error < 30.0 * tolerance, "{error:e}");
+    }
+}
+
+#[test]
+fn an_own_step_with_an_estimate_says_why_it_fails() {
+    let fails = |name: &str, step: fn(f64, &[f64]) -> Result<[Vec<f64>; 2], Error>| {
+        let method = Method::from_estimated_step(name, 2, move |_, t, y, _| step(t, y));
+        let method = method.unwrap().register();
+        let run = Simulation::new(rotation(1.0), method, Control::Tolerance(1e-3));
+        run.unwrap().advance_to(1.0).unwrap_err().to_string()
+    };
+    let why = fails("own-late", |t, y| match t {
+        0.0 => Ok([y.to_vec(), vec![0.0; y.len()]]),
+        _ => Err(Error::Callback("no more".into())),
+    });
+    assert!(why.contains("no more"), "{why}");
+    let why = fails("own-short", |_, y| Ok([y.to_vec(), vec![0.0]]));
+    assert!(why.contains("own-short returned 1 numbers"), "{why}");
+}
+
 #[test]
 fn names_are_checked_and_found() {
     let refused = |name: &str| match euler_named(name) {

@@ -2,7 +2,7 @@
 
 use a3_core::{Control, Linearized, Mechanics, Network, Scene, Simulation, Vector3};
 
-use crate::common::{described, distance, method, scene, size};
+use crate::common::{described, distance, ellipse, method, scene, size};
 use crate::networks::Random;
 
 /// A blob of fluid beside a wall, compressed and stirred, in two or three dimensions.
@@ -138,7 +138,7 @@ fn forces_between_particles_conserve_momentum() {
 /// *Simulating free surface flows with SPH*, 1994). Verlet's method keeps the energy.
 #[test]
 fn a_drop_becomes_the_ellipse_of_its_equation() {
-    let scene = scene("drop");
+    let scene = ellipse();
     let spacing = network(&scene).fluid().unwrap().law().spacing;
     let mut run = Simulation::new(scene, method("verlet"), Control::Step(2e-3)).unwrap();
     let before = run.energy().unwrap().total();
@@ -201,7 +201,7 @@ fn the_front_of_a_dam_break_is_where_it_was_measured() {
 /// A fluid that is compressed everywhere flows smoothly: methods have their orders.
 #[test]
 fn methods_have_their_orders_on_a_smooth_flow() {
-    let mut scene = scene("drop");
+    let mut scene = ellipse();
     let half = scene.state.len() / 2;
     // Compressed to four fifths of its width, it expands, but has not separated anywhere yet.
     for x in &mut scene.state[..half] {

@@ -14,6 +14,10 @@ const RADIUS: f32 = 0.6;
 /// Least sum of the weights of particles within the surface: less than at the surface of a single
 /// particle, and more than halfway between two that are farther apart than 2.2 spacings.
 const LEAST_WEIGHT: f32 = 0.7;
+/// Mean weight around a vertex below which it is spray.
+const SPRAY_WEIGHT: f32 = 1.0;
+/// Height of liquid that takes a share of 1 - 1/e from the light, in spacings.
+const DEEP: f32 = 12.0;
 /// Width of a cell of the grid, in spacings.
 const CELL_WIDTH: f64 = 0.55;
 /// Largest number of nodes of the grid: it is coarser where drops have flown far apart.
@@ -24,7 +28,8 @@ const MAX_NODES: f64 = 3e6;
 pub struct Corner {
     /// Position (m).
     pub place: [f32; 3],
-    /// Value from 0 to 1 that colours the vertex, or -1 without one.
+    /// Value from 0 to 1 that colours the vertex; without one, -2 less its depth: from -1 in spray
+    /// through 0 at the surface to 1 deep below it.
     pub value: f32,
     /// Unit normal.
     pub normal: [f32; 3],
@@ -50,6 +55,8 @@ struct Field {
     sums: Vec<[f32; 4]>,
     /// Sum of the weights, each times the value that colours its particle; empty without colours.
     coloured: Vec<f32>,
+    /// Height of the liquid above each node, in spacings; 0 outside. Empty with colours.
+    heights: Vec<f32>,
 }
 
 impl Liquid {
@@ -108,9 +115,13 @@ impl Field {
             cell,
             sums: vec![[0.0; 4]; counts.iter().product()],
             coloured: vec![0.0; values.map_or(0, |_| counts.iter().product())],
+            heights: vec![],
         };
         for (k, place) in places.iter().enumerate() {
             field.add(place, radius, values.map_or(0.0, |values| values[k]));
+        }
+        if values.is_none() {
+            field.find_heights();
         }
         field
     }
@@ -197,13 +208,47 @@ impl Field {
         })
     }
 
-    /// Returns the mean of the values around some nodes, weighted as they are; -1 without colours.
+    /// Finds the heights of the liquid above the nodes, from above down. Each is the mean over the
+    /// node above and its neighbours, so that a drop above casts no sharp shadow.
+    fn find_heights(&mut self) {
+        let [x, y, z] = self.counts;
+        self.heights = vec![0.0; self.sums.len()];
+        for j in (0..y - 1).rev() {
+            for k in 0..z {
+                for i in 0..x {
+                    let node = self.index([i, j, k]);
+                    if self.depth(node) > 0.0 {
+                        let sides = [
+                            [i.saturating_sub(1), k],
+                            [i + 1, k],
+                            [i, k.saturating_sub(1)],
+                            [i, k + 1],
+                        ];
+                        let above = [[i, k]].into_iter().chain(sides);
+                        let above = above.filter(|[i, k]| *i < x && *k < z);
+                        let above = above.map(|[i, k]| self.index([i, j + 1, k]));
+                        let wet: Vec<_> = above.filter(|node| self.depth(*node) > 0.0).collect();
+                        let sum: f32 = wet.iter().map(|node| self.heights[*node]).sum();
+                        self.heights[node] = sum / wet.len().max(1) as f32 + CELL_WIDTH as f32;
+                    }
+                }
+            }
+        }
+    }
+
+    /// Returns the mean of the values around some nodes, weighted as they are; without colours, -2
+    /// less the depth.
     fn colour(&self, nodes: [usize; 8]) -> f32 {
+        let weights: f32 = nodes.iter().map(|node| self.sums[*node][0]).sum();
         if self.coloured.is_empty() {
-            return -1.0;
+            let height = nodes
+                .iter()
+                .map(|node| self.heights[*node])
+                .fold(0.0, f32::max);
+            let spray = (SPRAY_WEIGHT - weights / 8.0).clamp(0.0, 0.5) / 0.5;
+            return -2.0 - (1.0 - (-height / DEEP).exp() - spray);
         }
         let coloured: f32 = nodes.iter().map(|node| self.coloured[*node]).sum();
-        let weights: f32 = nodes.iter().map(|node| self.sums[*node][0]).sum();
         coloured / weights
     }
 
@@ -298,7 +343,7 @@ mod tests {
             normal,
         } in &liquid.corners
         {
-            assert_eq!(*value, -1.0);
+            assert!((-3.0..=-1.0).contains(value), "{value}");
             let radius = place.iter().map(|x| x * x).sum::<f32>().sqrt();
             assert!((0.9..1.08).contains(&radius), "{radius}");
             let along: f32 = place.iter().zip(normal).map(|(x, n)| x * n / radius).sum();
@@ -330,6 +375,26 @@ mod tests {
             numbers.all(|x| x.is_finite())
         }));
         assert_eq!(Liquid::around(&[], 1.0, None), Liquid::default());
+    }
+
+    /// Below the surface of a ball its liquid grows deeper, and a lone drop is spray.
+    #[test]
+    fn the_surface_has_the_depth_of_the_liquid_above_it() {
+        let mut places = ball(1.0, 0.1);
+        places.push([0.0, 2.0, 0.0]);
+        let liquid = Liquid::around(&places, 0.1, None);
+        let depth = |range: std::ops::Range<f32>| {
+            let corners = liquid.corners.iter();
+            let within = corners.filter(|corner| range.contains(&corner.place[1]));
+            let depths: Vec<_> = within.map(|corner| -2.0 - corner.value).collect();
+            depths.iter().sum::<f32>() / depths.len() as f32
+        };
+        let [top, middle, bottom] = [0.9..1.2, -0.2..0.2, -1.2..-0.9].map(depth);
+        assert!(-0.05 < top && top + 0.1 < middle, "{top} {middle}");
+        // Twenty spacings of twelve that take a share of 1 - 1/e.
+        let exact = 1.0 - (-20.0_f32 / 12.0).exp();
+        assert!((bottom - exact).abs() < 0.05, "{bottom} {exact}");
+        assert!(depth(1.5..2.5) < -0.5);
     }
 
     /// Values that grow along x are those of the vertices, near the ends too.

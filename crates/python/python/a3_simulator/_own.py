@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import copy
+import functools
 import math
-from typing import Any, Callable, Optional, Sequence, Tuple, Union
+from typing import Any, Callable, Optional, Sequence, Tuple, Type, Union
 
 import numpy as np
 import numpy.typing as npt
@@ -149,9 +150,13 @@ class Method:
         step: function of f, the time t (s), the state y, (n,), and the step h (s), that returns the state at t + h,
             (n,). f(t, y) is the derivative, (n,); it may be called at any time and state. For particles the state is
             all x, all y, all z (m), and then the velocities (m/s) in the same order.
+            A class is called without arguments when a run begins, and its instance is the step of that run: a
+            multistep method keeps its past there.
         order: the error of a run falls as h to this power. By default it is measured, by a few steps of logistic
             growth.
         default_step: step of runs for which none is given (s).
+        adaptive: whether `step` is a function that returns the state at t + h and an estimate of its error, each (n,).
+            The method then chooses its steps to a tolerance; between their ends, states are on the cubic through both.
 
         def step(f, t, y, h):
             k = f(t, y)
@@ -160,15 +165,27 @@ class Method:
         a3.chart("pendulum", methods=["rk4", a3.Method("mine", step)])
     """
 
-    def __init__(self, name: str, step: Step, order: Optional[int] = None, *, default_step: float = 1e-3) -> None:
+    def __init__(
+        self,
+        name: str,
+        step: Union[Step, Type[Step]],
+        order: Optional[int] = None,
+        *,
+        default_step: float = 1e-3,
+        adaptive: bool = False,
+    ) -> None:
         if not callable(step):
             raise InputError(f"step: a function of f, t, y and h is expected, not {type(step).__name__}")
         if not (math.isfinite(default_step) and default_step > 0):
             raise InputError(f"default_step is a number of seconds above 0, such as 0.01, not {default_step}")
-        self.name = name
-        self.step = step
-        self.order, evaluations = _measure(step, name) if order is None else (order, order)
-        _a3.add_method(name, step, self.order, evaluations, default_step)
+        if adaptive and isinstance(step, type):
+            raise InputError("step: with adaptive=True a function is expected, not a class")
+        self.name, self.step, self.adaptive = name, step, adaptive
+        self.order, evaluations = _measure(step, name, adaptive) if order is None else (order, order)
+        if adaptive:
+            _a3.add_adaptive(name, step, self.order, evaluations)
+        else:
+            _a3.add_method(name, step, self.order, evaluations, default_step)
 
     @staticmethod
     def tableau(
@@ -193,7 +210,8 @@ class Method:
         return _Tableau(name, A, b, b_hat, c)
 
     def __reduce__(self) -> Any:
-        return Method, (self.name, self.step, self.order)
+        make = functools.partial(Method, adaptive=self.adaptive)
+        return make, (self.name, self.step, self.order)
 
     def __repr__(self) -> str:
         return f"<Method {self.name} of order {self.order}>"
@@ -316,7 +334,7 @@ def _numbers(what: str, given: npt.ArrayLike, shape: Sequence[int]) -> Floats:
     return array
 
 
-def _measure(step: Step, name: str) -> "tuple[int, int]":
+def _measure(step: Any, name: str, adaptive: bool) -> "tuple[int, int]":
     """Measures the order of a method and its evaluations in a step, on logistic growth y' = y (1 - y) in two numbers."""
     count = 0
 
@@ -328,9 +346,13 @@ def _measure(step: Step, name: str) -> "tuple[int, int]":
 
     def error(n: int) -> float:
         y, h = np.array([0.1, 0.3]), 2.0 / n
+        taken = step() if isinstance(step, type) else step
         exact = 1.0 / (1.0 + (1.0 / y - 1.0) * np.exp(-2.0))
         for k in range(n):
-            y = _numbers(f"what the step of {name} returned", step(f, k * h, y, h), (2,))
+            found = taken(f, k * h, y, h)
+            if adaptive:
+                found = _numbers(f"what the step of {name} returned", found, (2, 2))[0]
+            y = _numbers(f"what the step of {name} returned", found, (2,))
         return float(np.abs(y - exact).max())
 
     errors = [error(n) for n in (4, 8)]

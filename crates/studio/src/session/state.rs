@@ -544,7 +544,11 @@ mod tests {
 
     #[test]
     fn a_scene_pauses_at_its_end_and_can_go_on() {
-        let mut session = session(&["v", "0.005", "--scene", "drop"]);
+        let ellipse = concat!(
+            env!("CARGO_MANIFEST_DIR"),
+            "/../../docs/scenes/ellipse.toml"
+        );
+        let mut session = session(&["v", "0.005", "--scene", ellipse]);
         frames(&mut session, 1.5);
         let time = |session: &Session| session.runs.first().time();
         assert!(session.readings.paused && (time(&session) - 0.8).abs() < 1e-9);
