@@ -1,5 +1,5 @@
-//! Milliseconds a frame of each built-in scene on the graphics adapter that is there, off screen and
-//! read back, in two sizes: composing the picture, drawing it, and fetching its pixels.
+//! Milliseconds a frame of each built-in scene on the graphics adapter that is there, off screen
+//! and read back, in two sizes: composing the picture, drawing it, and fetching its pixels.
 
 use std::time::Instant;
 

@@ -88,7 +88,8 @@ pub fn add_method(
     Ok(())
 }
 
-/// Registers a method that estimates its errors: `step` returns the state at t + h and the estimate.
+/// Registers a method that estimates its errors: `step` returns the state at t + h and the
+/// estimate.
 #[pyfunction]
 pub fn add_adaptive(
     py: Python<'_>,

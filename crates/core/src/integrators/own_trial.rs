@@ -50,8 +50,8 @@ impl OwnTrial {
         }
     }
 
-    /// Takes a step of h (s) from y at t (s). Returns the state after it, the estimate of its error,
-    /// and its cost.
+    /// Takes a step of h (s) from y at t (s). Returns the state after it, the estimate of its
+    /// error, and its cost.
     fn take(
         &self,
         system: &dyn ParticleSystem,
