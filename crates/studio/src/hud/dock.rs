@@ -1,16 +1,11 @@
-//! Sheets at the edges of the window, beside the picture or below it.
+//! Sheets at the edges of the window, and the panes on them, which open beside the picture one at
+//! a time, below it in a narrow window, or over it in a small one.
 
-use egui::{
-    Align2, Area, Color32, Context, CursorIcon, FontId, Id, Rect, Sense, Stroke, Ui, pos2,
-    style::ScrollAnimation, vec2,
-};
+use egui::{Area, Context, Id, Rect, Sense, Stroke, Ui, pos2, vec2};
 
 use super::style::{FAINT, TEXT};
-
-/// Colour of the sheets.
-pub const SHEET: Color32 = Color32::from_rgb(226, 226, 224);
-/// Colour of their edges.
-pub const EDGE: Color32 = Color32::from_rgb(188, 189, 192);
+use super::widgets::{EDGE, LEFT, RIGHT, SHEET, cross, write};
+use crate::session::{Action, RunAction, Session};
 
 /// Draws a sheet at an edge of the window, with lines where it meets the picture, and its contents
 /// on it.
@@ -38,56 +33,59 @@ pub fn docked<R>(ctx: &Context, name: &str, rect: Rect, contents: impl FnOnce(&m
         .inner
 }
 
-/// Smallest width of a heading that names its key (points).
-const MIN_KEY_WIDTH: f32 = 220.0;
-
-/// Draws the button that closes a sheet at the right end of its heading, and the key that does so.
-/// Returns whether it was clicked.
-pub fn close(ui: &Ui, heading: Rect, key: &str) -> bool {
-    let place = Rect::from_center_size(heading.right_center() - vec2(8.0, 0.0), vec2(32.0, 32.0));
-    let response = ui.interact(place, Id::unique(("close", key)), Sense::click());
-    let colour = if response.hovered() { TEXT } else { FAINT };
-    let write = |at, align, words: &str, size, colour| {
-        let font = FontId::proportional(size);
-        ui.painter().text(at, align, words, font, colour);
-    };
-    write(place.center(), Align2::CENTER_CENTER, "✖", 14.0, colour);
-    if heading.width() > MIN_KEY_WIDTH {
-        write(place.left_center(), Align2::RIGHT_CENTER, key, 12.5, FAINT);
-    }
-    response.on_hover_cursor(CursorIcon::PointingHand).clicked()
-}
-
-/// Scrolls to the row that is chosen in a list when another one is chosen, so that the wheel can
-/// scroll.
-pub fn keep_in_sight(ui: &Ui, list: &str, row: Rect, chosen: usize) {
-    let was = Id::unique(("chosen in", list));
-    if ui.data(|data| data.get_temp(was)) != Some(chosen) {
-        ui.data_mut(|data| data.insert_temp(was, chosen));
-        ui.scroll_to_rect_animation(row, None, ScrollAnimation::none());
-    }
-}
-
-/// The place of a sheet: beside the picture, below it in a narrow window, or over it in a small
-/// one.
-pub struct Place {
+/// A pane that opens beside the picture.
+pub struct Pane {
+    /// The title, if the contents do not draw it themselves.
+    pub title: &'static str,
+    /// The action that opens the pane and closes it, and its key.
+    pub action: RunAction,
+    pub key: &'static str,
+    /// Distance of the contents from the edges, and of the middle of the title from the top
+    /// (points).
+    pub margins: [f32; 2],
+    /// Draws the contents in a room, and returns the action of the mouse.
+    pub contents: fn(&mut Ui, Rect, &Session) -> Option<Action>,
     /// Smallest and largest width beside the picture (points), and its share of the window's width
     /// between them.
     pub width: (f32, f32, f32),
-    /// Smallest width of a window with the sheet beside the picture (points).
+    /// Smallest width of a window with the pane beside the picture (points).
     pub min_width_beside: f32,
     /// Share of the height of a narrow window that is higher than wide.
     pub share_below: f32,
-    /// Width beside the picture in another narrow window (points); `None` if the sheet covers the
+    /// Width beside the picture in another narrow window (points); `None` if the pane covers the
     /// picture there.
     pub narrow: Option<f32>,
 }
 
-/// Smallest width of a picture beside a sheet (points).
+/// Smallest width of a picture beside a pane (points).
 const MIN_PICTURE_WIDTH: f32 = 150.0;
+/// Smallest width of a heading that names its key (points).
+const MIN_KEY_WIDTH: f32 = 220.0;
 
-impl Place {
-    /// Returns the width on the right and the height below the picture that the sheet takes, in a
+impl Pane {
+    /// Draws the pane: its heading with the button that closes it, and its contents. Returns the
+    /// action of the mouse.
+    pub fn show(&self, ctx: &Context, session: &Session) -> Option<Action> {
+        let rect = self.rect(ctx);
+        docked(ctx, self.key, rect, |ui| {
+            ui.set_clip_rect(rect);
+            let [side, line] = self.margins;
+            let room = rect.shrink2(vec2(side, 0.0));
+            let [left, right] = [room.left(), room.right() - 8.0];
+            let [left, right] = [left, right].map(|x| pos2(x, room.top() + line));
+            let closed = cross(ui, right);
+            let painter = ui.painter();
+            if room.width() > MIN_KEY_WIDTH {
+                let at = right - vec2(16.0, 0.0);
+                write(painter, at, RIGHT, self.key, 12.5, FAINT);
+            }
+            write(painter, left, LEFT, self.title, 17.0, TEXT);
+            let closed = closed.then_some(self.action.into());
+            (self.contents)(ui, room, session).or(closed)
+        })
+    }
+
+    /// Returns the width on the right and the height below the picture that the pane takes, in a
     /// window of a size (points). One that covers the picture takes nothing.
     pub fn taken(&self, [width, height]: [f32; 2]) -> [f32; 2] {
         let (least, most, share) = self.width;
@@ -101,19 +99,19 @@ impl Place {
         }
     }
 
-    /// Returns whether a window of a width (points) is so narrow that the sheet is above the bar.
+    /// Returns whether a window of a width (points) is so narrow that the pane is above the bar.
     pub fn is_narrow(&self, width: f32) -> bool {
         width < self.min_width_beside
     }
 
-    /// Returns whether the sheet covers the picture in a window of a size (points).
+    /// Returns whether the pane covers the picture in a window of a size (points).
     pub fn covers(&self, window: [f32; 2]) -> bool {
         self.taken(window) == [0.0, 0.0]
     }
 
-    /// Returns the rectangle of the sheet: the right side, the room between the picture and the
-    /// bar, or all above the bar.
-    pub fn rect(&self, ctx: &Context) -> Rect {
+    /// Returns the rectangle of the pane: the right side, the room between the picture and the bar,
+    /// or all above the bar.
+    fn rect(&self, ctx: &Context) -> Rect {
         let (window, picture) = (ctx.viewport_rect(), ctx.content_rect());
         match self.taken([window.width(), window.height()]) {
             [0.0, 0.0] => picture,
