@@ -130,3 +130,34 @@ impl Pane {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::collections::HashMap;
+
+    use super::*;
+    use crate::hud::window::Window;
+    use crate::hud::{all::show_all, layout};
+    use crate::session::{apply, session};
+
+    /// One pane is open at a time, and its cross closes it.
+    #[test]
+    fn a_cross_closes_each_pane() {
+        let mut session = session(&["t", "0.01"]);
+        session.measuring.answerer = Some(|_, _| unreachable!());
+        session.act(RunAction::Panel, 0);
+        let actions = [RunAction::Plots, RunAction::Measure, RunAction::Lessons];
+        for action in actions.into_iter().chain([RunAction::Panel]) {
+            session.act(action, 0);
+            let pane = layout::beside(&session).unwrap();
+            assert_eq!(pane.action, action);
+            let taken = layout::insets(&session, (1280, 720), 1.0);
+            let at = pos2(1280.0 - pane.margins[0] - 8.0, pane.margins[1]);
+            let mut window = Window::new([1280.0, 720.0]);
+            let all = |ctx: &_| show_all(ctx, &session, &HashMap::new());
+            let clicked = window.click(taken, at, all).unwrap();
+            assert!(!apply(&mut session, clicked, 0));
+            assert!(layout::beside(&session).is_none(), "{action:?}");
+        }
+    }
+}
