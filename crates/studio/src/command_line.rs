@@ -6,7 +6,7 @@ use a3_media::show::has_springs;
 use a3_render::Style;
 
 use crate::begin;
-use crate::hud::panel;
+use crate::session::panel;
 use crate::session::{Session, looks, write_scene};
 
 /// Returns the command line that opens the present run and the picture of pane `at`, from the

@@ -7,7 +7,7 @@ use a3_files::failure::Failure;
 use a3_files::output;
 use a3_files::scene_file::Source;
 
-use crate::hud::panel;
+use crate::session::panel;
 use crate::session::{Session, show_edited};
 
 /// Whether scenes can be edited: not on the page.
@@ -63,8 +63,7 @@ pub fn load(session: &mut Session, path: &Path) -> Result<(), Failure> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::hud::panel::{PanelKey, press};
-    use crate::session::{RunAction, frames, session};
+    use crate::session::{PanelKey, RunAction, action_beside, apply, frames, session};
 
     #[test]
     fn a_tuned_run_continues_from_its_file() {
@@ -78,8 +77,10 @@ mod tests {
         first.act(RunAction::Panel, 0);
         // Turn every row, including solver and step.
         for _ in 0..20 {
-            press(&mut first, PanelKey::Down, false);
-            press(&mut first, PanelKey::Right, true);
+            for (key, other) in [(PanelKey::Down, false), (PanelKey::Right, true)] {
+                let action = action_beside(&first, key, other).unwrap();
+                apply(&mut first, action, 0);
+            }
         }
         assert!(panel::tuned(&first).len() > 3, "{:?}", panel::tuned(&first));
         frames(&mut first, 0.5);

@@ -19,7 +19,6 @@
 #[cfg(any(target_arch = "wasm32", test))]
 pub mod address;
 mod app;
-pub mod begin;
 mod command_line;
 #[cfg(not(target_arch = "wasm32"))]
 pub mod compare;
@@ -38,9 +37,8 @@ mod settings;
 pub use app::{Event, send, spawn};
 #[cfg(not(target_arch = "wasm32"))]
 pub use hud::caption;
-#[cfg(target_arch = "wasm32")]
-pub use hud::lessons::apply as follow_lesson;
 #[cfg(not(target_arch = "wasm32"))]
 pub use open::open;
+pub use session::begin;
 #[cfg(target_arch = "wasm32")]
 pub use settings::Settings;

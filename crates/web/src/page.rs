@@ -11,8 +11,8 @@ use a3_files::failure::Failure;
 use a3_files::progress;
 use a3_files::scene_file::Hash;
 use a3_studio::address::Address;
-use a3_studio::session::LessonRequest;
-use a3_studio::{Event, Settings, begin, follow_lesson, send, spawn};
+use a3_studio::session::{LessonRequest, RunAction, apply};
+use a3_studio::{Event, Settings, begin, send, spawn};
 use wasm_bindgen::prelude::wasm_bindgen;
 use web_time::Instant;
 
@@ -45,8 +45,8 @@ fn begin() -> Result<(), Failure> {
         session.scenes.offer(names);
     }
     if let Some((lesson, step)) = address.lesson {
-        session.panel.lessons.open = true;
-        follow_lesson(&mut session, LessonRequest::Open(lesson, step));
+        session.panel.beside = Some(RunAction::Lessons);
+        apply(&mut session, LessonRequest::Open(lesson, step), 0);
     }
     spawn(session, &opening, settings)
 }

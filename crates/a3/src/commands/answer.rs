@@ -92,7 +92,7 @@ mod tests {
     use a3_files::report::Report;
     use a3_lab::chart::unit;
     use a3_studio::begin;
-    use a3_studio::session::asking::{MeasureRequest, apply, task};
+    use a3_studio::session::{MeasureRequest, apply, asking::task};
 
     use super::*;
 

@@ -7,9 +7,7 @@ use winit::event_loop::ActiveEventLoop;
 
 use super::graphics::FrameOutcome;
 use super::state::App;
-use crate::hud::panel::{self, Request};
-use crate::hud::{lessons, plotting};
-use crate::session::{Action, RunAction};
+use crate::session::{Action, RunAction, panel};
 
 /// Delay after which a skipped frame is drawn again.
 const RETRY_DELAY: Duration = Duration::from_millis(50);
@@ -51,29 +49,20 @@ impl App {
         };
         let begun = Instant::now();
         match graphics.frame(session, self.mouse.cursor) {
-            Ok(FrameOutcome::Drawn(again, request)) => {
+            Ok(FrameOutcome::Drawn(again, action)) => {
                 session.count_frame(begun.elapsed());
                 let filmed = self.platform.films.draw(session, Some(graphics));
-                let again = if filmed || request.is_some() {
+                let again = if filmed || action.is_some() {
                     Some(Duration::ZERO)
                 } else {
                     again
                 };
-                match request {
-                    Some(Request::Act(action)) => {
-                        if action != Action::Run(RunAction::Help) {
-                            session.readings.help = false;
-                        }
-                        self.act(event_loop, action);
+                if let Some(action) = action {
+                    let acts = matches!(action, Action::Run(_) | Action::Window(_));
+                    if acts && action != RunAction::Help.into() {
+                        session.readings.help = false;
                     }
-                    Some(Request::Change(change)) if panel::apply(session, change) => {
-                        self.scene_changed();
-                    }
-                    Some(Request::Learn(request)) if lessons::apply(session, request) => {
-                        self.scene_changed();
-                    }
-                    Some(Request::Plot(request)) => plotting::apply(session, request),
-                    _ => {}
+                    self.act(event_loop, action);
                 }
                 if let Some(status) = &mut self.status {
                     status.frames += 1;

@@ -18,15 +18,14 @@ use winit::window::Window;
 
 use super::adapter::{choose_format, clamped, transfer, window_samples};
 use crate::hud;
-use crate::hud::panel::Request;
 use crate::hud::{Overlay, layout};
-use crate::session::{Session, Topic};
+use crate::session::{Action, Session, Topic};
 
 /// The outcome of drawing a frame.
 pub enum FrameOutcome {
     /// The frame was drawn: the time after which the text must be drawn again, because it fades in,
     /// and the request of the mouse.
-    Drawn(Option<Duration>, Option<Request>),
+    Drawn(Option<Duration>, Option<Action>),
     /// The frame could not be drawn now, but a later one may be.
     Skipped,
 }
@@ -333,7 +332,7 @@ impl Graphics {
         view: &wgpu::TextureView,
         session: &Session,
         cursor: CursorIcon,
-    ) -> (Vec<wgpu::CommandBuffer>, Option<Duration>, Option<Request>) {
+    ) -> (Vec<wgpu::CommandBuffer>, Option<Duration>, Option<Action>) {
         let Some(mut layer) = self.layer.take() else {
             return self.draw_text_to(encoder, view, wgpu::LoadOp::Load, session, cursor);
         };
@@ -362,7 +361,7 @@ impl Graphics {
         below: wgpu::LoadOp<wgpu::Color>,
         session: &Session,
         cursor: CursorIcon,
-    ) -> (Vec<wgpu::CommandBuffer>, Option<Duration>, Option<Request>) {
+    ) -> (Vec<wgpu::CommandBuffer>, Option<Duration>, Option<Action>) {
         let mut input = self.egui_winit.take_egui_input(&self.window);
         let [right, bottom] = layout::insets(session, self.size(), self.scale());
         input.safe_area_insets = Some(egui::SafeAreaInsets(egui::epaint::MarginF32 {

@@ -3,8 +3,7 @@
 use winit::event::KeyEvent;
 use winit::keyboard::{Key, NamedKey};
 
-use crate::hud::panel::PanelKey;
-use crate::session::{self, Action, TextKey, WindowAction};
+use crate::session::{self, Action, PanelKey, TextKey, WindowAction};
 
 /// Returns the action of a key, if it has one.
 pub fn action(key: &Key) -> Option<Action> {

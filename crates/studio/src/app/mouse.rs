@@ -12,7 +12,7 @@ use super::pointer::Pointer;
 use super::screen::Screen;
 use super::tool;
 use crate::hud::plotting;
-use crate::session::{RulerEnd, Selection, Session, looks};
+use crate::session::{RulerEnd, Selection, Session, apply, looks};
 
 /// Largest motion of the pointer during a click of the mouse, and of a finger (points).
 const MAX_CLICK_DISTANCES: [f32; 2] = [4.0, 10.0];
@@ -104,7 +104,9 @@ impl Mouse {
                 if double {
                     let particle = hit.and_then(|(target, _)| target.particle());
                     looks::show_springs_of(&mut session.runs.panes, particle);
-                    plotting::pick(session, particle);
+                    if let Some(request) = plotting::picked(session, particle) {
+                        apply(session, request, 0);
+                    }
                 }
                 match hit {
                     Some((Target::Particle(i), grip)) if session.runs.grab(i) => Drag::Pull(grip),

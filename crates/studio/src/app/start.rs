@@ -8,7 +8,7 @@ use winit::event_loop::EventLoop;
 
 use super::platform::{Event, Platform};
 use super::state::App;
-use crate::session::{Opening, Session, looks};
+use crate::session::{Opening, RunAction, Session, looks};
 use crate::settings::Settings;
 
 /// The outcome of opening the window.
@@ -76,7 +76,9 @@ pub fn spawn(
 fn prepare(session: &mut Session, opening: &Opening, settings: Option<&Settings>) {
     session.readings.in_window = true;
     if let Some(settings) = settings {
-        session.panel.open = settings.panel && !session.panel.lessons.open;
+        if settings.panel {
+            session.panel.beside.get_or_insert(RunAction::Panel);
+        }
         session.pulled = settings.pulled;
         if settings.dark && !opening.light {
             looks::set_dark(&mut session.runs.panes, true);

@@ -19,8 +19,9 @@ use super::screen::Screen;
 use super::status::Status;
 use super::touch::Fingers;
 use super::{keyboard, platform, tool};
-use crate::hud::{lessons, panel, plotting};
+use crate::hud::{self, plotting};
 use crate::session::{Action, RunAction, Session, TextKey, WindowAction};
+use crate::session::{action_beside, apply, begin_plots, is_typing, panel};
 use crate::settings::Settings;
 use crate::{command_line, keep};
 
@@ -139,18 +140,9 @@ impl App {
             return;
         }
         let key = keyboard::panel_key(&event.logical_key);
-        if let Some(request) = key.and_then(|key| lessons::request(&self.session, key)) {
-            if lessons::apply(&mut self.session, request) {
-                self.scene_changed();
-            }
-            return;
-        }
-        if key.is_some_and(|key| plotting::press(&mut self.session, key)) {
-            return;
-        }
         let shift = self.modifiers.shift_key();
-        if key.is_some_and(|key| panel::press(&mut self.session, key, shift)) {
-            return;
+        if let Some(action) = key.and_then(|key| action_beside(&self.session, key, shift)) {
+            return self.act(event_loop, action);
         }
         let Some(action) = keyboard::action(&event.logical_key) else {
             return;
@@ -171,8 +163,11 @@ impl App {
 
     /// Handles a key while a value or an answer is typed, and returns whether one is.
     fn type_key(&mut self, key: TextKey) -> bool {
-        let session = &mut self.session;
-        panel::press_text(session, key) || lessons::press_text(session, key)
+        let is_typing = is_typing(&self.session);
+        if is_typing {
+            apply(&mut self.session, key, 0);
+        }
+        is_typing
     }
 
     /// Handles a key that is pressed with Ctrl, which never has the effect of the key alone.
@@ -188,17 +183,16 @@ impl App {
     /// Performs an action.
     pub fn act(&mut self, event_loop: &ActiveEventLoop, action: Action) {
         let pane = self.mouse.pointer.pane(&self.session, &self.screen);
-        match action {
-            Action::Run(action) => {
-                // Do not simulate the time in which the runs stood still.
-                if !self.session.animated() {
-                    self.last_tick = Instant::now();
-                }
-                if self.session.act(action, pane) {
-                    self.scene_changed();
-                }
+        if let Action::Window(action) = action {
+            self.act_in_window(event_loop, action, pane);
+        } else {
+            // Do not simulate the time in which the runs stood still.
+            if !self.session.animated() {
+                self.last_tick = Instant::now();
             }
-            Action::Window(action) => self.act_in_window(event_loop, action, pane),
+            if apply(&mut self.session, action, pane) {
+                self.scene_changed();
+            }
         }
         self.screen.redraw();
     }
@@ -209,9 +203,9 @@ impl App {
         let message = match action {
             WindowAction::Quit if std::mem::take(&mut session.readings.help) => None,
             WindowAction::Quit if std::mem::take(&mut session.panel.editor.open) => None,
-            WindowAction::Quit if std::mem::take(&mut session.measuring.open) => None,
+            WindowAction::Quit if session.panel.close(RunAction::Measure) => None,
             WindowAction::Quit if session.panel.plotting.ruler.take().is_some() => None,
-            WindowAction::Quit if std::mem::take(&mut session.panel.plotting.open) => None,
+            WindowAction::Quit if session.panel.close(RunAction::Plots) => None,
             WindowAction::Quit if platform::CAN_QUIT => {
                 session.readings.asks_to_quit = true;
                 None
@@ -249,11 +243,15 @@ impl App {
                 let panes = &session.runs.panes;
                 Some(session.view.follow(panes, pane, particle))
             }
-            WindowAction::WritePlots if plotting::is_shown(session) => {
-                let written = plotting::write(session);
+            WindowAction::WritePlots if session.shows(RunAction::Plots) => {
+                let written = plotting::write_files(session);
                 Some(written.unwrap_or_else(|failure| failure.to_string()))
             }
             WindowAction::WritePlots => Some(said("Wrote", write_plots(session))),
+            #[cfg(not(target_arch = "wasm32"))]
+            WindowAction::WritePlot(file) => {
+                Some(said("Wrote", plotting::write_one(session, file)))
+            }
             WindowAction::Record => {
                 self.platform.films.record(session, graphics);
                 None
@@ -288,7 +286,7 @@ impl App {
     /// Ends drags and live films, and shows another scene.
     pub fn scene_changed(&mut self) {
         self.mouse.abort();
-        plotting::begin_scene(&mut self.session);
+        begin_plots(&mut self.session);
         self.platform.films.finish_live(&mut self.session);
         self.screen.set_scene(&self.session);
     }
@@ -312,7 +310,7 @@ fn said(done: &str, file: Result<PathBuf, Failure>) -> String {
 /// Writes the samples of all panes under the first free name, and returns the path. Fails if the
 /// file cannot be written.
 fn write_plots(session: &Session) -> Result<PathBuf, Failure> {
-    let table = panel::csv(&session.runs.panes).map_err(Failure::run)?;
+    let table = hud::csv(&session.runs.panes).map_err(Failure::run)?;
     let scene = &session.runs.first().scene().name;
     output::write_new("".as_ref(), scene, "csv", &table)
 }
@@ -323,7 +321,7 @@ pub fn remember(before: &Settings, session: &Session, screen: &Screen) {
         interface_scale: screen.zoom,
         full_screen: screen.is_full_screen(),
         dark: session.panel.dark.unwrap_or(before.dark),
-        panel: session.panel.open,
+        panel: session.panel.has(RunAction::Panel),
         pulled: session.pulled,
         frame_limit: session.panel.frame_limit,
         film: session.panel.film,

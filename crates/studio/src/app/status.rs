@@ -7,7 +7,7 @@ use egui::CursorIcon;
 use web_time::{Duration, Instant};
 
 use super::screen::Screen;
-use crate::session::{Pane, Session};
+use crate::session::{Pane, RunAction, Session};
 
 /// A writer of status lines.
 #[derive(Default)]
@@ -61,8 +61,8 @@ impl Status {
             readings.help,
             readings.asks_to_quit,
             !session.pulled,
-            session.panel.open,
-            session.measuring.open,
+            session.panel.has(RunAction::Panel),
+            session.panel.has(RunAction::Measure),
             session.measuring.known().is_some(),
             lesson(session),
             plots(session),
@@ -132,7 +132,7 @@ fn number(particle: Option<usize>) -> String {
 fn lesson(session: &Session) -> String {
     let lessons = &session.panel.lessons;
     match lessons.step {
-        _ if !lessons.open => "-".into(),
+        _ if !session.panel.has(RunAction::Lessons) => "-".into(),
         None => "list".into(),
         Some(step) => format!("{}.{}", lessons.chosen + 1, step + 1),
     }
@@ -141,7 +141,7 @@ fn lesson(session: &Session) -> String {
 /// Returns the number of things that are plotted, if the plots are open.
 fn plots(session: &Session) -> String {
     let count = session.runs.panes[0].traces.len();
-    if session.panel.plotting.open {
+    if session.panel.has(RunAction::Plots) {
         count.to_string()
     } else {
         "-".into()

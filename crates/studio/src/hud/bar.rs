@@ -1,12 +1,15 @@
 //! The bar below the picture: what a user does most, as buttons, and the timeline.
 
-use egui::{Align2, Color32, Context, FontId, Id, Rect, Response, Sense, Ui, pos2, vec2};
+use egui::{
+    Align2, Color32, Context, CursorIcon, FontId, Id, Rect, Response, Sense, Stroke, Ui, pos2, vec2,
+};
 
-use super::docked::docked;
-use super::panel::Request;
-use super::style::{ALARM, FAINT, TEXT};
-use super::{layout, timeline};
-use crate::session::{Action, RunAction, Session, WindowAction};
+use super::dock::docked;
+use super::layout;
+use super::style::{ALARM, FAINT, INK, PAPER, TEXT};
+use super::widgets::{CHOSEN, MIDDLE, write};
+use super::words::digits;
+use crate::session::{Action, PanelRequest, RunAction, Session, TimelinePosition, WindowAction};
 
 /// Width of a button with a symbol, for the mouse and for fingers (points).
 const SYMBOL_WIDTHS: [f32; 2] = [34.0, 44.0];
@@ -14,8 +17,6 @@ const SYMBOL_WIDTHS: [f32; 2] = [34.0, 44.0];
 const MIN_WIDTH_OF_ALL: f32 = 480.0;
 /// Smallest width of the timeline (points).
 const MIN_TIMELINE_WIDTH: f32 = 90.0;
-/// Colour of the button under the pointer.
-const HOVERED: Color32 = Color32::from_rgb(207, 211, 218);
 
 /// A button of the bar.
 struct Button {
@@ -28,25 +29,33 @@ struct Button {
 }
 
 impl Button {
-    fn new(face: &str, about: &str, action: Action) -> Self {
+    fn new(face: &str, about: &str, action: impl Into<Action>) -> Self {
         Self {
             face: face.into(),
             about: about.into(),
-            action,
+            action: action.into(),
             colour: TEXT,
         }
     }
 
     /// Returns the width of the button (points), if one with a symbol is `least` wide.
     fn width(&self, ui: &Ui, least: f32) -> f32 {
-        if self.face.chars().count() == 1 {
+        let size = self.size();
+        if size > 14.0 {
             return least;
         }
-        let font = FontId::proportional(13.5);
-        let words = ui
-            .painter()
-            .layout_no_wrap(self.face.clone(), font, self.colour);
+        let (face, font) = (self.face.clone(), FontId::proportional(size));
+        let words = ui.painter().layout_no_wrap(face, font, self.colour);
         words.size().x + 20.0
+    }
+
+    /// Returns the size of the face (points): symbols are larger than words.
+    fn size(&self) -> f32 {
+        if self.face.chars().count() == 1 {
+            18.0
+        } else {
+            13.5
+        }
     }
 
     /// Draws the button in a rectangle, and returns its response.
@@ -54,26 +63,16 @@ impl Button {
         let response = ui.interact(rect, Id::unique(("bar", &self.about)), Sense::click());
         let painter = ui.painter();
         if response.hovered() {
-            painter.rect_filled(rect.shrink2(vec2(1.0, 5.0)), 6.0, HOVERED);
+            painter.rect_filled(rect.shrink2(vec2(1.0, 5.0)), 6.0, CHOSEN);
         }
-        let size = if self.face.chars().count() == 1 {
-            18.0
-        } else {
-            13.5
-        };
-        painter.text(
-            rect.center(),
-            Align2::CENTER_CENTER,
-            &self.face,
-            FontId::proportional(size),
-            self.colour,
-        );
+        let (at, size) = (rect.center(), self.size());
+        write(painter, at, MIDDLE, &self.face, size, self.colour);
         response.on_hover_text(&self.about)
     }
 }
 
 /// Draws the bar, if the window has room for it, and returns the request of the mouse.
-pub fn show(ctx: &Context, session: &Session) -> Option<Request> {
+pub fn show(ctx: &Context, session: &Session) -> Option<Action> {
     let (window, picture) = (ctx.viewport_rect(), ctx.content_rect());
     let height = layout::bar_height(session, [window.width(), window.height()]);
     if height == 0.0 {
@@ -94,12 +93,12 @@ pub fn show(ctx: &Context, session: &Session) -> Option<Request> {
 }
 
 /// Draws the buttons at both ends of a rectangle, and the timeline between them.
-fn contents(ui: &Ui, rect: Rect, session: &Session) -> Option<Request> {
+fn contents(ui: &Ui, rect: Rect, session: &Session) -> Option<Action> {
     let mut request = None;
     let mut place = |button: &Button, left: f32, width: f32| {
         let room = Rect::from_min_max(pos2(left, rect.top()), pos2(left + width, rect.bottom()));
         if button.show(ui, room).clicked() {
-            request = Some(Request::Act(button.action));
+            request = Some(button.action);
         }
     };
     let (mut left, mut right) = (rect.left(), rect.right());
@@ -134,13 +133,12 @@ fn contents(ui: &Ui, rect: Rect, session: &Session) -> Option<Request> {
         pos2(right - 14.0, rect.bottom()),
     );
     let drawn = session.readings.timeline.filter(|_| room.width() > 60.0);
-    let moved = drawn.and_then(|position| timeline::show(ui, room, &position));
-    moved.map(Request::Change).or(request)
+    let moved = drawn.and_then(|position| timeline(ui, room, &position));
+    moved.map(Action::Panel).or(request)
 }
 
 /// Returns the buttons for the run: reset, back, play or pause, and a step.
 fn running(session: &Session) -> [Button; 4] {
-    let run = Action::Run;
     let (play, does) = if session.animated() {
         ("⏸", "Pause (Space)")
     } else {
@@ -152,17 +150,16 @@ fn running(session: &Session) -> [Button; 4] {
         "One step (.)"
     };
     [
-        Button::new("⟲", "Start again (r)", run(RunAction::Reset)),
-        Button::new("⏮", "One frame back (,)", run(RunAction::Scrub(-1))),
-        Button::new(play, does, run(RunAction::Pause)),
-        Button::new("⏭", step, run(RunAction::Step)),
+        Button::new("⟲", "Start again (r)", RunAction::Reset),
+        Button::new("⏮", "One frame back (,)", RunAction::Scrub(-1)),
+        Button::new(play, does, RunAction::Pause),
+        Button::new("⏭", step, RunAction::Step),
     ]
 }
 
 /// Returns the other buttons: scene, solver, and what can be left out in a narrow bar, before the
 /// help.
 fn others(session: &Session) -> Vec<Button> {
-    let (run, window) = (Action::Run, Action::Window);
     let first = session.runs.first();
     let scene = format!("{} ⏷", first.scene().name);
     let solver: String = match session.runs.panes.len() {
@@ -177,37 +174,37 @@ fn others(session: &Session) -> Vec<Button> {
         ("⏺", "Film from now on (m)")
     };
     [
-        (&*scene, "Choose a scene (o)", run(RunAction::Scenes)),
-        (&*solver, "Choose a solver (e)", run(RunAction::Solvers)),
-        (
+        Button::new(&scene, "Choose a scene (o)", RunAction::Scenes),
+        Button::new(&solver, "Choose a solver (e)", RunAction::Solvers),
+        Button::new(
             "📈",
             "Measure: chart, limits, choice, parts (q)",
-            run(RunAction::Measure),
+            RunAction::Measure,
         ),
-        ("⚙", "Tune and plot (Tab)", run(RunAction::Panel)),
-        ("📖", "Lessons (F1)", run(RunAction::Lessons)),
-        ("⛶", "Full screen (F11)", window(WindowAction::FullScreen)),
-        (
+        Button::new("⚙", "Tune and plot (Tab)", RunAction::Panel),
+        Button::new("📖", "Lessons (F1)", RunAction::Lessons),
+        Button::new("⛶", "Full screen (F11)", WindowAction::FullScreen),
+        Button::new(
             "🗠",
             "Plot particles, bodies and springs (F3)",
-            run(RunAction::Plots),
+            RunAction::Plots,
         ),
-        (
+        Button::new(
             "⚽",
             "Throw a ball; with Shift, a heavy one (F4)",
-            window(WindowAction::Throw),
+            WindowAction::Throw,
         ),
-        ("✏", "Throw, add, join, delete (F2)", run(RunAction::Edit)),
-        ("⮪", "Undo (z)", window(WindowAction::Undo)),
-        ("📷", "Save a picture (p)", window(WindowAction::Picture)),
-        (film, does, window(WindowAction::Record)),
-        ("?", "Help, and everything else (h)", run(RunAction::Help)),
+        Button::new("✏", "Throw, add, join, delete (F2)", RunAction::Edit),
+        Button::new("⮪", "Undo (z)", WindowAction::Undo),
+        Button::new("📷", "Save a picture (p)", WindowAction::Picture),
+        Button::new(film, does, WindowAction::Record),
+        Button::new("?", "Help, and everything else (h)", RunAction::Help),
     ]
     .into_iter()
-    .filter(|(.., action)| is_there(session, *action))
-    .map(|(face, about, action)| Button {
-        colour: colour(session, action),
-        ..Button::new(face, about, action)
+    .filter(|button| is_there(session, button.action))
+    .map(|button| Button {
+        colour: colour(session, button.action),
+        ..button
     })
     .collect()
 }
@@ -234,67 +231,81 @@ fn is_there(session: &Session, action: Action) -> bool {
 fn colour(session: &Session, action: Action) -> Color32 {
     let is_open = match action {
         Action::Window(WindowAction::Record) => return ALARM.colour,
-        Action::Run(RunAction::Measure) => session.measuring.open,
-        Action::Run(RunAction::Panel) => session.panel.open,
+        Action::Run(pane @ (RunAction::Measure | RunAction::Panel)) => session.panel.has(pane),
         Action::Run(RunAction::Edit) => session.panel.editor.open,
         _ => false,
     };
     if is_open { FAINT } else { TEXT }
 }
 
+/// Draws the timeline in a room: a track with a thumb at the chosen moment, and a cross at the end
+/// if the run blew up there. Returns the request of the mouse.
+fn timeline(ui: &Ui, room: Rect, position: &TimelinePosition) -> Option<PanelRequest> {
+    let (wide, id) = (room.expand2(vec2(8.0, 0.0)), Id::unique("timeline"));
+    let response = ui.interact(wide, id, Sense::click_and_drag());
+    if response.hovered() || response.dragged() {
+        ui.set_cursor_icon(CursorIcon::ResizeHorizontal);
+    }
+    let (painter, y) = (ui.painter(), room.bottom() - 13.0);
+    let at = room.left() + position.share * room.width();
+    let line = |from, to, color| {
+        painter.hline(from..=to, y, Stroke::new(4.0, color));
+    };
+    line(room.left(), room.right(), FAINT.gamma_multiply(0.35));
+    line(room.left(), at, INK);
+    if position.blew_up {
+        let stroke = Stroke::new(2.0, ALARM.colour);
+        for way in [-4.0, 4.0] {
+            let end = room.right() + 8.0;
+            painter.line_segment([pos2(end - 4.0, y - way), pos2(end + 4.0, y + way)], stroke);
+        }
+    }
+    painter.circle_filled(pos2(at, y), 6.5, INK);
+    painter.circle_filled(pos2(at, y), 2.5, PAPER);
+    let say = |x, align, words: String, color| {
+        let place = pos2(x, room.top() + 5.0);
+        write(painter, place, align, words, 12.0, color);
+    };
+    if position.share < 1.0 {
+        let back = format!("{} s back", digits(position.back));
+        say(room.left(), Align2::LEFT_TOP, back, TEXT);
+    }
+    if room.width() > 150.0 {
+        let (words, color) = if position.blew_up {
+            ("✖ it blew up".into(), ALARM.colour)
+        } else {
+            (format!("{:.1} s kept", position.span), FAINT)
+        };
+        say(room.right(), Align2::RIGHT_TOP, words, color);
+    }
+    let held = response.dragged() || response.clicked();
+    let pointer = response.interact_pointer_pos().filter(|_| held)?;
+    let share = (pointer.x - room.left()) / room.width();
+    Some(PanelRequest::GoTo(share.clamp(0.0, 1.0)))
+}
+
 #[cfg(test)]
 mod tests {
     use std::collections::HashMap;
 
-    use egui::{Event, Modifiers, PointerButton, Pos2, RawInput, SafeAreaInsets};
+    use egui::Pos2;
 
     use super::*;
     use crate::hud::all::show_all;
-    use crate::hud::panel::PanelRequest;
-    use crate::hud::style::context;
-    use crate::session::{TimelinePosition, session};
+    use crate::hud::window::Window;
+    use crate::session::session;
 
-    /// Draws the bar in a window of a size (points), and presses at a place. Returns its text, the
-    /// places of its parts, and the request.
+    /// Draws the bar in a window, and clicks at a place. Returns its text, the places of its parts,
+    /// and the action.
     fn draw(
-        ctx: &Context,
+        window: &mut Window,
         session: &Session,
-        [width, height]: [f32; 2],
         at: Pos2,
-    ) -> (String, Vec<Rect>, Option<Request>) {
-        let window = Rect::from_min_size(Pos2::ZERO, vec2(width, height));
-        let bottom = layout::bar_height(session, [width, height]);
-        let press = |pressed| Event::PointerButton {
-            pos: at,
-            button: PointerButton::Primary,
-            pressed,
-            modifiers: Modifiers::default(),
-        };
-        let (mut words, mut places, mut request) = (String::new(), vec![], None);
-        for event in [None, None, Some(press(true)), Some(press(false))] {
-            let input = RawInput {
-                screen_rect: Some(window),
-                safe_area_insets: Some(SafeAreaInsets(egui::epaint::MarginF32 {
-                    bottom,
-                    ..Default::default()
-                })),
-                events: [Event::PointerMoved(at)].into_iter().chain(event).collect(),
-                ..RawInput::default()
-            };
-            let mut output = ctx.run_ui(input, |ui| request = show(ui.ctx(), session).or(request));
-            output.textures_delta.set.clear();
-            output.textures_delta.free.clear();
-            (words, places) = (String::new(), vec![]);
-            for clipped in &output.shapes {
-                if let egui::Shape::Text(text) = &clipped.shape {
-                    let rect = text.visual_bounding_rect();
-                    assert!(window.contains_rect(rect), "{:?}", text.galley.text());
-                    words.extend([text.galley.text(), "\n"]);
-                    places.push(rect);
-                }
-            }
-        }
-        (words, places, request)
+    ) -> (String, Vec<Rect>, Option<Action>) {
+        let bottom = layout::bar_height(session, window.place.size().into());
+        let action = window.click([0.0, bottom], at, |ctx| show(ctx, session));
+        let places = window.read().into_iter().map(|(_, place)| place);
+        (window.words(), places.collect(), action)
     }
 
     /// Returns a session whose runs are in the middle of their timeline.
@@ -311,10 +322,10 @@ mod tests {
 
     #[test]
     fn buttons_have_symbols_in_the_fonts_and_never_overlap() {
-        let (ctx, session) = (context(), rewound());
-        let away = Pos2::new(5.0, 5.0);
+        let (session, away) = (rewound(), pos2(5.0, 5.0));
         for width in [280.0, 400.0, 600.0, 700.0, 1280.0, 1920.0] {
-            let (words, places, _) = draw(&ctx, &session, [width, 600.0], away);
+            let mut window = Window::new([width, 600.0]);
+            let (words, places, _) = draw(&mut window, &session, away);
             for (k, a) in places.iter().enumerate() {
                 let apart = places[..k].iter().all(|b| !a.shrink(1.0).intersects(*b));
                 assert!(apart, "{words} in {width}");
@@ -324,20 +335,22 @@ mod tests {
                 "{words} in {width}"
             );
         }
-        let (words, ..) = draw(&ctx, &session, [1280.0, 720.0], away);
+        let mut window = Window::new([1280.0, 720.0]);
+        let (words, ..) = draw(&mut window, &session, away);
         for said in ["cloth ⏷", "trapezoid ⏷", "1.50 s back", "3.0 s kept"] {
             assert!(words.contains(said), "{said} in {words}");
         }
         let font = FontId::proportional(18.0);
         for symbol in words.chars().chain("⏸⏹☰∫✖⛶".chars()).filter(|c| *c != '\n') {
-            let known = ctx.fonts_mut(|fonts| fonts.has_glyph(&font, symbol));
+            let known = window.ctx.fonts_mut(|fonts| fonts.has_glyph(&font, symbol));
             assert!(known, "{symbol}");
         }
         // Fingers have larger buttons, and on a phone the lessons are among them.
         let mut touched = rewound();
         touched.readings.touch = true;
         for width in [360.0, 390.0, 844.0] {
-            let (words, places, _) = draw(&ctx, &touched, [width, 600.0], away);
+            let mut window = Window::new([width, 600.0]);
+            let (words, places, _) = draw(&mut window, &touched, away);
             assert!(words.contains('📖') && words.contains('▶'), "{words}");
             assert_eq!(words.contains('⏭'), width > 500.0, "{words}");
             let middles = places.iter().map(|place| place.center().x);
@@ -348,50 +361,37 @@ mod tests {
             assert_eq!(apart.count(), 0, "{words}");
         }
         // A tiny window has no bar.
-        assert_eq!(draw(&ctx, &session, [200.0, 150.0], away).0, "");
+        let mut tiny = Window::new([200.0, 150.0]);
+        assert_eq!(draw(&mut tiny, &session, away).0, "");
     }
 
     #[test]
     fn a_press_plays_and_goes_along_the_timeline() {
-        let (ctx, session) = (context(), rewound());
-        let size = [1280.0, 720.0];
-        let (.., request) = draw(&ctx, &session, size, Pos2::new(93.0, 700.0));
-        assert_eq!(request, Some(Request::Act(Action::Run(RunAction::Pause))));
-        let (.., request) = draw(&ctx, &session, size, Pos2::new(400.0, 705.0));
-        let Some(Request::Change(PanelRequest::GoTo(share))) = request else {
+        let (mut window, session) = (Window::new([1280.0, 720.0]), rewound());
+        let mut click = |x, y| draw(&mut window, &session, pos2(x, y)).2;
+        assert_eq!(click(93.0, 700.0), Some(RunAction::Pause.into()));
+        let request = click(400.0, 705.0);
+        let Some(Action::Panel(PanelRequest::GoTo(share))) = request else {
             panic!("{request:?}");
         };
         assert!(share > 0.2 && share < 0.4, "{share}");
-        let (.., request) = draw(&ctx, &session, size, Pos2::new(400.0, 600.0));
-        assert_eq!(request, None);
+        assert_eq!(click(400.0, 600.0), None);
     }
 
     /// What is beside the picture leaves the bar to the mouse, also after it has opened.
     #[test]
     fn panes_beside_the_picture_cover_no_button() {
-        let (ctx, mut session) = (context(), session(&["t", "0.01"]));
-        let window = Rect::from_min_size(Pos2::ZERO, vec2(1280.0, 720.0));
+        let (mut window, mut session) = (Window::new([1280.0, 720.0]), session(&["t", "0.01"]));
         for action in [RunAction::Panel, RunAction::Lessons] {
             session.act(action, 0);
-            let size = layout::picture_size(&session, (1280, 720), 1.0);
-            let at = pos2(size.0 as f32 - 30.0, 700.0);
+            let taken = layout::insets(&session, (1280, 720), 1.0);
             for _ in 0..4 {
-                let input = RawInput {
-                    screen_rect: Some(window),
-                    safe_area_insets: Some(SafeAreaInsets(egui::epaint::MarginF32 {
-                        bottom: (720 - size.1) as f32,
-                        right: (1280 - size.0) as f32,
-                        ..Default::default()
-                    })),
-                    ..RawInput::default()
-                };
-                let mut output = ctx.run_ui(input, |ui| {
-                    let _ = show_all(ui.ctx(), &session, &HashMap::new());
+                window.frame(taken, vec![], |ctx| {
+                    show_all(ctx, &session, &HashMap::new())
                 });
-                output.textures_delta.set.clear();
-                output.textures_delta.free.clear();
             }
-            let layer = ctx.layer_id_at(at).unwrap();
+            let at = pos2(1280.0 - taken[0] - 30.0, 700.0);
+            let layer = window.ctx.layer_id_at(at).unwrap();
             assert_eq!(layer.id, Id::unique("controls"), "{action:?}");
         }
     }

@@ -1,29 +1,25 @@
 //! The help: all that a user can do, by its purpose. A click on a row does it.
 
 use a3_core::integrators;
-use egui::{
-    Align2, Area, Color32, Context, CursorIcon, FontId, Id, ScrollArea, Sense, Ui, pos2, vec2,
-};
+use egui::{Align2, Area, Context, CursorIcon, Id, ScrollArea, Sense, Ui, pos2, vec2};
 
 use super::list::pressed_at;
-use super::panel::Request;
-use super::style::{MARGIN, TEXT, sheet, title};
+use super::style::{INK, MARGIN, TEXT, sheet, title};
+use super::widgets::{LEFT, write};
 use crate::session::{
     Action, Binding, FINGERS, GROUPS, Group, LEFT_OUT, MOUSE, RunAction, WindowAction,
 };
 
 /// Width of a window above which the help has three columns (points).
 const THREE_COLUMN_WIDTH: f32 = 900.0;
-/// Colour of keys and gestures.
-const KEY: Color32 = Color32::from_rgb(38, 84, 132);
 /// Height of a row (points).
 const ROW_HEIGHT: f32 = 21.0;
 /// Widths of a key, of a gesture of the mouse, and of what follows (points).
 const WIDTHS: [f32; 3] = [58.0, 128.0, 190.0];
 
-/// Shows the help, for one pane or `several`, and returns the request of the mouse. In a small
+/// Shows the help, for one pane or `several`, and returns the action of the mouse. In a small
 /// window it scrolls by the wheel.
-pub fn help(ctx: &Context, several: bool, touch: bool) -> Option<Request> {
+pub fn help(ctx: &Context, several: bool, touch: bool) -> Option<Action> {
     let window = ctx.content_rect().shrink(MARGIN);
     let mut request = None;
     let area = Area::new(Id::unique("help"))
@@ -46,14 +42,14 @@ pub fn help(ctx: &Context, several: bool, touch: bool) -> Option<Request> {
     // A click beside the help closes it, except on the bar.
     let pressed = pressed_at(ctx).is_some_and(|at| ctx.content_rect().contains(at));
     if pressed && !area.response.contains_pointer() {
-        request = Some(Request::Act(Action::Run(RunAction::Help)));
+        request = Some(RunAction::Help.into());
     }
     request
 }
 
 /// Writes all groups in three columns, or below one another in a narrow window. Returns the request
 /// of the mouse.
-fn columns(ui: &mut Ui, several: bool, touch: bool, wide: bool) -> Option<Request> {
+fn columns(ui: &mut Ui, several: bool, touch: bool, wide: bool) -> Option<Action> {
     let [running, choose, change, show, look, measure, keep, window] = &GROUPS;
     let mut request = None;
     let mut column = |ui: &mut Ui, groups: &[&Group], mouse: bool, numbered: bool| {
@@ -105,8 +101,8 @@ fn gestures(ui: &mut Ui, touch: bool) {
     }
 }
 
-/// Writes the keys of a purpose, and returns the request of the mouse.
-fn bindings(ui: &mut Ui, group: &Group) -> Option<Request> {
+/// Writes the keys of a purpose, and returns the action of the mouse.
+fn bindings(ui: &mut Ui, group: &Group) -> Option<Action> {
     heading(ui, group.purpose);
     let mut request = None;
     for Binding { keys, action, help } in group.bindings {
@@ -117,8 +113,8 @@ fn bindings(ui: &mut Ui, group: &Group) -> Option<Request> {
     request
 }
 
-/// Writes the solvers that digits choose, and returns the request of the mouse.
-fn solvers(ui: &mut Ui, several: bool) -> Option<Request> {
+/// Writes the solvers that digits choose, and returns the action of the mouse.
+fn solvers(ui: &mut Ui, several: bool) -> Option<Action> {
     heading(
         ui,
         if several {
@@ -147,7 +143,7 @@ fn left_out(ui: &mut Ui) {
 }
 
 /// Writes a key and its effect, and returns its action if the row was clicked.
-fn row(ui: &mut Ui, words: [&str; 2], width: f32, action: Option<Action>) -> Option<Request> {
+fn row(ui: &mut Ui, words: [&str; 2], width: f32, action: Option<Action>) -> Option<Action> {
     let sense = if action.is_some() {
         Sense::click()
     } else {
@@ -162,18 +158,17 @@ fn row(ui: &mut Ui, words: [&str; 2], width: f32, action: Option<Action>) -> Opt
         ui.set_cursor_icon(CursorIcon::PointingHand);
     }
     let y = rect.center().y;
-    for (words, x, colour) in [(words[0], 0.0, KEY), (words[1], width, TEXT)] {
+    for (words, x, colour) in [(words[0], 0.0, INK), (words[1], width, TEXT)] {
         let at = pos2(rect.left() + x, y);
-        let font = FontId::proportional(13.0);
-        ui.painter()
-            .text(at, Align2::LEFT_CENTER, words, font, colour);
+        write(ui.painter(), at, LEFT, words, 13.0, colour);
     }
-    action.filter(|_| response.clicked()).map(Request::Act)
+    action.filter(|_| response.clicked())
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::hud::window::Window;
     use crate::hud::{pane, read};
     use crate::session::{Readings, bindings};
 
@@ -203,39 +198,24 @@ mod tests {
     #[test]
     fn the_help_fits_into_small_windows() {
         for size in [[320.0, 240.0], [640.0, 360.0], [1000.0, 300.0]] {
-            let ctx = crate::hud::style::context();
-            let screen = egui::Rect::from_min_size(egui::Pos2::ZERO, size.into());
-            let seen = |scroll: f32| {
-                let mut words = String::new();
+            let mut window = Window::new(size);
+            let mut seen = |scroll: f32| {
+                let wheel = egui::Event::MouseWheel {
+                    unit: egui::MouseWheelUnit::Point,
+                    delta: vec2(0.0, scroll),
+                    phase: egui::TouchPhase::Move,
+                    source: egui::MouseWheelSource::Wheel,
+                    modifiers: egui::Modifiers::default(),
+                };
+                let events = [egui::Event::PointerMoved(window.place.center()), wheel];
                 for _ in 0..3 {
-                    let mut events = vec![egui::Event::PointerMoved(screen.center())];
-                    events.push(egui::Event::MouseWheel {
-                        unit: egui::MouseWheelUnit::Point,
-                        delta: vec2(0.0, scroll),
-                        phase: egui::TouchPhase::Move,
-                        source: egui::MouseWheelSource::Wheel,
-                        modifiers: egui::Modifiers::default(),
-                    });
-                    let input = egui::RawInput {
-                        screen_rect: Some(screen),
-                        events,
-                        ..Default::default()
-                    };
-                    let mut output = ctx.run_ui(input, |ui| {
-                        let _ = help(ui.ctx(), false, false);
-                    });
-                    output.textures_delta.set.clear();
-                    output.textures_delta.free.clear();
-                    words.clear();
-                    for clipped in &output.shapes {
-                        let egui::Shape::Text(text) = &clipped.shape else {
-                            continue;
-                        };
-                        let rect = text.visual_bounding_rect();
-                        assert!(screen.x_range().contains(rect.right()), "{size:?}");
-                        if clipped.clip_rect.contains_rect(rect) {
-                            words.extend([text.galley.text(), "\n"]);
-                        }
+                    window.frame([0.0; 2], events.to_vec(), |ctx| help(ctx, false, false));
+                }
+                let mut words = String::new();
+                for (said, rect, seen) in window.written() {
+                    assert!(window.place.x_range().contains(rect.right()), "{size:?}");
+                    if seen.contains_rect(rect) {
+                        words.extend([&*said, "\n"]);
                     }
                 }
                 words

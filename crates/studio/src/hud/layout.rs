@@ -2,9 +2,11 @@
 
 use a3_render::Tile;
 
-use super::docked::Place;
-use super::{lessons, measure, panel, plotting};
-use crate::session::Session;
+use super::dock::Pane;
+use super::{lessons, panel};
+#[cfg(not(target_arch = "wasm32"))]
+use super::{measure, plotting};
+use crate::session::{RunAction, Session};
 
 /// Distance between panes (points).
 const PANE_GAP: f32 = 3.0;
@@ -26,31 +28,35 @@ pub fn bar_height(session: &Session, [width, height]: [f32; 2]) -> f32 {
     }
 }
 
-/// Returns the place of the pane that is open beside the picture, if one is: the panel, the
-/// questions, the lessons or the plots.
-fn beside(session: &Session) -> Option<&'static Place> {
-    panel::place(session)
-        .or(measure::place(session))
-        .or(lessons::place(session))
-        .or(plotting::place(session))
+/// Returns the pane that is open beside the picture, if one is, and the help does not hide it.
+pub fn beside(session: &Session) -> Option<&'static Pane> {
+    match session.panel.beside.filter(|_| !session.readings.help)? {
+        RunAction::Panel => Some(&panel::PANE),
+        RunAction::Lessons => Some(&lessons::PANE),
+        #[cfg(not(target_arch = "wasm32"))]
+        RunAction::Measure => Some(&measure::PANE),
+        #[cfg(not(target_arch = "wasm32"))]
+        RunAction::Plots => Some(&plotting::PANE),
+        _ => None,
+    }
 }
 
 /// Returns whether the bar runs below both the picture and the open pane, in a window of a width
 /// (points).
 pub fn is_bar_whole(session: &Session, width: f32) -> bool {
-    beside(session).is_some_and(|place| place.is_narrow(width))
+    beside(session).is_some_and(|pane| pane.is_narrow(width))
 }
 
 /// Returns whether what is open covers the picture, in a window of a size (points).
 pub fn is_covered(session: &Session, window: [f32; 2]) -> bool {
-    beside(session).is_some_and(|place| place.covers(window))
+    beside(session).is_some_and(|pane| pane.covers(window))
 }
 
 /// Returns the size (px) of the picture beside what is open, and above the bar, in a window of
 /// `size` (px) at `scale` pixels per point.
 pub fn picture_size(session: &Session, size: (u32, u32), scale: f32) -> (u32, u32) {
     let window = [size.0, size.1].map(|side| side as f32 / scale);
-    let [right, below] = beside(session).map_or([0.0; 2], |place| place.taken(window));
+    let [right, below] = beside(session).map_or([0.0; 2], |pane| pane.taken(window));
     let [right, below] =
         [right, below + bar_height(session, window)].map(|a| (a * scale).round() as u32);
     (

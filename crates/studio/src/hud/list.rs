@@ -8,10 +8,9 @@ use egui::{
     Rect, ScrollArea, Sense, TextureId, Ui, pos2, vec2,
 };
 
-use super::docked::keep_in_sight;
-use super::panel::PanelRequest;
 use super::style::{FAINT, MARGIN, PAPER, TEXT, faint, text, title};
-use crate::session::{Entry, Session, Topic};
+use super::widgets::{LEFT, keep_in_sight, write};
+use crate::session::{Action, Entry, PanelRequest, Session, Topic};
 
 /// Largest width of the list (points).
 const MAX_WIDTH: f32 = 560.0;
@@ -26,13 +25,13 @@ const PICTURE_SIZE: [f32; 2] = [88.0, 55.0];
 /// Smallest width of the names (points).
 const NAME_WIDTH: f32 = 136.0;
 
-/// Draws the open list, with `pictures` of scenes by their names, and returns the request of the
+/// Draws the open list, with `pictures` of scenes by their names, and returns the action of the
 /// mouse.
 pub fn show(
     ctx: &Context,
     session: &Session,
     pictures: &HashMap<String, TextureId>,
-) -> Option<PanelRequest> {
+) -> Option<Action> {
     let list = session.list.as_ref()?;
     let window = ctx.content_rect().shrink(MARGIN);
     let mut request = None;
@@ -102,7 +101,8 @@ pub fn show(
                                             (scenes, picture),
                                             dark,
                                         ) {
-                                            request = Some(PanelRequest::TakeEntry(entry.number));
+                                            request =
+                                                Some(PanelRequest::TakeEntry(entry.number).into());
                                         }
                                     }
                                 });
@@ -114,7 +114,7 @@ pub fn show(
     // A click beside the list closes it, except on the bar, which may open another.
     let outside = pressed_at(ctx).is_some_and(|at| ctx.content_rect().contains(at));
     if request.is_none() && outside && !area.response.contains_pointer() {
-        request = Some(PanelRequest::CloseList);
+        request = Some(PanelRequest::CloseList.into());
     }
     request
 }
@@ -163,15 +163,13 @@ fn line(ui: &Ui, rect: Rect, entry: &Entry) {
         ui.painter().circle_filled(at, 3.5, TEXT);
     }
     let mark = if entry.current { "" } else { &entry.key };
-    let write = |x: f32, words: &str, size, colour| {
+    let say = |x: f32, words: &str, size, colour| {
         let room = rect.with_min_x(rect.left() + x);
-        let at = room.left_center();
-        let font = FontId::proportional(size);
         let painter = ui.painter().with_clip_rect(room.intersect(ui.clip_rect()));
-        painter.text(at, Align2::LEFT_CENTER, words, font, colour)
+        write(&painter, room.left_center(), LEFT, words, size, colour)
     };
-    write(8.0, mark, 11.0, FAINT);
-    let name = write(26.0, &entry.name, 13.5, TEXT);
+    say(8.0, mark, 11.0, FAINT);
+    let name = say(26.0, &entry.name, 13.5, TEXT);
     let about = (name.right() - rect.left() + 14.0).max(26.0 + NAME_WIDTH);
     let font = FontId::proportional(12.5);
     let mut words = LayoutJob::simple_singleline(entry.about.clone(), font, FAINT);
@@ -198,8 +196,7 @@ fn card(ui: &Ui, rect: Rect, entry: &Entry, picture: Option<TextureId>, dark: bo
         }
     }
     let at = place.right_top() + vec2(10.0, 3.0);
-    let font = FontId::proportional(14.0);
-    let name = painter.text(at, Align2::LEFT_TOP, &entry.name, font, TEXT);
+    let name = write(&painter, at, Align2::LEFT_TOP, &entry.name, 14.0, TEXT);
     if entry.current {
         let at = name.right_center() + vec2(10.0, 1.0);
         painter.circle_filled(at, 3.5, TEXT);
@@ -213,64 +210,48 @@ fn card(ui: &Ui, rect: Rect, entry: &Entry, picture: Option<TextureId>, dark: bo
 
 #[cfg(test)]
 mod tests {
-    use egui::{Event, Modifiers, PointerButton, Pos2, RawInput, Rect};
+    use egui::Event;
 
     use super::*;
-    use crate::hud::panel;
-    use crate::session::{RunAction, session};
+    use crate::hud::window::{Window, button};
+    use crate::session::{RunAction, apply, session};
 
     /// Draws the list, with the pointer at a position, and a button pressed or released there.
     fn draw(
-        ctx: &Context,
+        window: &mut Window,
         session: &Session,
         at: Pos2,
-        pressed: Option<bool>,
-    ) -> Option<PanelRequest> {
-        let mut events = vec![Event::PointerMoved(at)];
-        events.extend(pressed.map(|pressed| Event::PointerButton {
-            pos: at,
-            button: PointerButton::Primary,
-            pressed,
-            modifiers: Modifiers::default(),
-        }));
-        let input = RawInput {
-            screen_rect: Some(Rect::from_min_size(Pos2::ZERO, vec2(640.0, 360.0))),
-            events,
-            ..RawInput::default()
-        };
-        let mut request = None;
-        let mut output = ctx.run_ui(input, |ui| {
-            request = show(ui.ctx(), session, &HashMap::new()).or(request);
-        });
-        output.textures_delta.set.clear();
-        output.textures_delta.free.clear();
-        request
+        press: Option<bool>,
+    ) -> Option<Action> {
+        let press = press.map(|pressed| button(at, pressed));
+        let events = [Event::PointerMoved(at)].into_iter().chain(press).collect();
+        window.frame([0.0; 2], events, |ctx| show(ctx, session, &HashMap::new()))
     }
 
     #[test]
     fn a_click_takes_an_entry_and_a_click_elsewhere_closes_the_list() {
         let mut session = session(&["v", "0.005"]);
         session.act(RunAction::Scenes, 0);
-        let ctx = crate::hud::style::context();
+        let mut window = Window::new([640.0, 360.0]);
         let middle = Pos2::new(200.0, 180.0);
         for _ in 0..3 {
-            assert_eq!(draw(&ctx, &session, middle, None), None);
+            assert_eq!(draw(&mut window, &session, middle, None), None);
         }
-        draw(&ctx, &session, middle, Some(true));
-        let request = draw(&ctx, &session, middle, Some(false));
-        let Some(PanelRequest::TakeEntry(number)) = request else {
-            panic!("{request:?}");
+        draw(&mut window, &session, middle, Some(true));
+        let action = draw(&mut window, &session, middle, Some(false));
+        let Some(Action::Panel(PanelRequest::TakeEntry(number))) = action else {
+            panic!("{action:?}");
         };
-        assert!(panel::apply(&mut session, PanelRequest::TakeEntry(number)));
+        assert!(apply(&mut session, PanelRequest::TakeEntry(number), 0));
         let name = a3_scenes::SCENES[number].name;
         assert_eq!(session.runs.first().scene().name, name);
         session.act(RunAction::Scenes, 0);
         let corner = Pos2::new(4.0, 4.0);
         for _ in 0..2 {
-            assert_eq!(draw(&ctx, &session, corner, None), None);
+            assert_eq!(draw(&mut window, &session, corner, None), None);
         }
-        let request = draw(&ctx, &session, corner, Some(true));
-        assert_eq!(request, Some(PanelRequest::CloseList));
-        assert!(!panel::apply(&mut session, PanelRequest::CloseList) && session.list.is_none());
+        let action = draw(&mut window, &session, corner, Some(true));
+        assert_eq!(action, Some(PanelRequest::CloseList.into()));
+        assert!(!apply(&mut session, PanelRequest::CloseList, 0) && session.list.is_none());
     }
 }

@@ -4,47 +4,37 @@
 mod all;
 mod bar;
 mod blow_up;
-#[cfg(not(target_arch = "wasm32"))]
-mod caption;
 mod charts;
-mod docked;
+mod dock;
 #[cfg_attr(target_arch = "wasm32", path = "no_edit.rs")]
 pub mod edit;
 mod help;
-mod hint;
 pub mod layout;
 mod legend;
-pub mod lessons;
+mod lessons;
 mod list;
-#[cfg_attr(target_arch = "wasm32", path = "no_measure.rs")]
+mod marks;
+#[cfg(not(target_arch = "wasm32"))]
 mod measure;
-mod offer;
+mod offers;
 mod overlay;
-mod pane_buttons;
-pub mod panel;
-mod panes;
+mod panel;
 #[cfg(not(target_arch = "wasm32"))]
 mod picture;
 #[cfg_attr(target_arch = "wasm32", path = "no_plotting.rs")]
 pub mod plotting;
-mod question;
-#[cfg(not(target_arch = "wasm32"))]
-mod ruler;
-mod selection;
-mod single;
-#[cfg(test)]
-mod small;
 mod style;
 mod text;
-mod timeline;
+mod widgets;
+#[cfg(test)]
+mod window;
 mod words;
 
 pub use all::show_all;
-#[cfg(not(target_arch = "wasm32"))]
-pub use caption::caption;
 pub use overlay::Overlay;
+pub use panel::csv;
 #[cfg(not(target_arch = "wasm32"))]
-pub use picture::Studio;
+pub use picture::{Studio, caption};
 #[cfg(not(target_arch = "wasm32"))]
 pub use words::digits;
 
@@ -57,56 +47,35 @@ mod tests {
 
     use a3_core::{Simulation, integrators};
     use a3_media::show::{Manner, Show};
+    use egui::{Rect, Shape};
 
     use super::style::PAPER;
-    use super::text::show;
+    use super::text::show_text;
+    use super::window::Window;
     use crate::session::{Pane, Readings};
 
     /// Returns the text over panes in a window of a size (points), and the rectangles of the
     /// sheets. Nothing may be cut off.
-    pub fn read(panes: &[Pane], readings: &Readings, size: [f32; 2]) -> (String, Vec<egui::Rect>) {
-        fn collect(shape: &egui::Shape, words: &mut String, sheets: &mut Vec<egui::Rect>) {
+    pub fn read(panes: &[Pane], readings: &Readings, size: [f32; 2]) -> (String, Vec<Rect>) {
+        fn sheets(shape: &Shape, found: &mut Vec<Rect>) {
             match shape {
-                egui::Shape::Text(text) => words.extend([text.galley.text(), "\n"]),
-                egui::Shape::Rect(rect) if rect.fill == PAPER => sheets.push(rect.rect),
-                egui::Shape::Vec(shapes) => shapes
-                    .iter()
-                    .for_each(|shape| collect(shape, words, sheets)),
+                Shape::Rect(rect) if rect.fill == PAPER => found.push(rect.rect),
+                Shape::Vec(shapes) => shapes.iter().for_each(|shape| sheets(shape, found)),
                 _ => {}
             }
         }
-        let ctx = crate::hud::style::context();
-        let screen = egui::Rect::from_min_size(egui::Pos2::ZERO, size.into());
-        let mut output = egui::FullOutput::default();
+        let mut window = Window::new(size);
+        window.step = 1.0;
         // The first pass measures the layout, the next ones draw it.
-        for pass in 0..3 {
-            let input = egui::RawInput {
-                screen_rect: Some(screen),
-                time: Some(f64::from(pass)),
-                ..Default::default()
-            };
-            output.textures_delta.set.clear();
-            output.textures_delta.free.clear();
-            output = ctx.run_ui(input, |ui| {
-                let _ = show(ui.ctx(), panes, readings);
-            });
+        for _ in 0..3 {
+            window.frame([0.0; 2], vec![], |ctx| show_text(ctx, panes, readings));
         }
-        let (mut words, mut sheets) = (String::new(), vec![]);
-        for clipped in &output.shapes {
-            let cut = clipped.clip_rect.intersect(screen).expand(1.0);
-            if let egui::Shape::Text(text) = &clipped.shape {
-                let rect = text.visual_bounding_rect();
-                assert!(
-                    cut.contains_rect(rect),
-                    "{:?} is cut off in {size:?}",
-                    text.galley.text()
-                );
-            }
-            collect(&clipped.shape, &mut words, &mut sheets);
+        window.read();
+        let mut found = vec![];
+        for clipped in &window.shapes {
+            sheets(&clipped.shape, &mut found);
         }
-        output.textures_delta.set.clear();
-        output.textures_delta.free.clear();
-        (words, sheets)
+        (window.words(), found)
     }
 
     pub fn pane(scene: &str, method: &str, step: f64) -> Pane {

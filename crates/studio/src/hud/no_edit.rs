@@ -2,10 +2,9 @@
 
 use egui::Context;
 
-use super::panel::PanelRequest;
-use crate::session::Session;
+use crate::session::{Action, Session};
 
 /// Draws nothing.
-pub fn show(_: &Context, _: &Session) -> Option<PanelRequest> {
+pub fn show(_: &Context, _: &Session) -> Option<Action> {
     None
 }

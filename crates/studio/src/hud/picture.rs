@@ -1,11 +1,15 @@
-//! Pictures of all panes, drawn without a window.
+//! Pictures drawn without a window: of all panes, and the legend over those of one run.
 
 use a3_files::failure::Failure;
-use a3_render::{Camera, Gpu, OFFSCREEN_FORMAT, Offscreen, Renderer, TEXT_FORMAT};
+use a3_media::painter::{self, Caption};
+use a3_media::show::Show;
+use a3_render::{Camera, Gpu, OFFSCREEN_FORMAT, Offscreen, Renderer, Style, TEXT_FORMAT};
+use egui::Align2;
 
-use super::layout;
+use super::legend::legend;
 use super::overlay::Overlay;
-use super::text;
+use super::style::{MARGIN, column, sheet};
+use super::{layout, text};
 use crate::session::{Pane, Readings};
 
 /// A renderer of panes without a window, for one picture or many.
@@ -78,11 +82,33 @@ impl Studio {
             overlay.dark = panes[0].show.dark;
             overlay.write(gpu, encoder, view, (size, scale), |ctx| {
                 // A picture has no mouse.
-                let _ = text::show(ctx, panes, readings);
+                let _ = text::show_text(ctx, panes, readings);
             })
         };
         self.offscreen
             .render_tiles(gpu, &mut self.renderer, &pictures, write)
             .map_err(Failure::run)
     }
+}
+
+/// Returns the legend as the caption of pictures of this size (px), for a show that has colours,
+/// arrows or kinds of springs. A transparent picture has none: it is laid over another one.
+pub fn caption(show: &Show, size: (u32, u32)) -> Option<Caption> {
+    let explains = show.colouring.quantity.is_some()
+        || show.field.arrows.is_some()
+        || show.style == Style::Springs;
+    // Do not shrink text below its normal size: it would be illegible.
+    let scale = painter::scale(size).max(1.0);
+    let mut overlay = None;
+    let write: Caption = Box::new(move |show, gpu, encoder, view| {
+        let overlay = overlay.get_or_insert_with(|| Overlay::new(gpu, TEXT_FORMAT));
+        overlay.dark = show.dark;
+        overlay.write(gpu, encoder, view, (size, scale), |ctx| {
+            let corner = [MARGIN, -MARGIN];
+            column(ctx, "legend", Align2::LEFT_BOTTOM, corner, |ui| {
+                sheet(ui, |ui| legend(ui, show));
+            });
+        })
+    });
+    (explains && !show.transparent).then_some(write)
 }

@@ -12,6 +12,8 @@ use epaint_default_fonts::EMOJI_ICON;
 pub const TEXT: Color32 = Color32::from_rgb(24, 28, 40);
 /// Colour of names and notes.
 pub const FAINT: Color32 = Color32::from_rgb(92, 98, 114);
+/// Colour of keys, of controls, and of values that differ from the scene's own.
+pub const INK: Color32 = Color32::from_rgb(38, 84, 132);
 /// Colour of sheets, slightly transparent.
 pub const PAPER: Color32 = Color32::from_rgba_premultiplied(216, 216, 214, 222);
 /// Mark of a step well within its limit.

@@ -9,8 +9,8 @@ use a3_files::holding::Sought;
 use a3_media::show;
 use a3_scenes::Setup;
 
+use super::action::RunAction;
 use super::history::Change;
-use super::keys::RunAction;
 use super::list::{List, TextKey, Topic, solvers};
 use super::pane::Pane;
 #[cfg(not(target_arch = "wasm32"))]
@@ -488,17 +488,11 @@ pub fn toggle(session: &mut Session, action: RunAction) {
         let why = "Only the program measures: key y copies the command line for it.";
         return session.readings.say(why);
     }
-    let panes = [
-        (RunAction::Panel, &mut session.panel.open),
-        (RunAction::Measure, &mut session.measuring.open),
-        (RunAction::Lessons, &mut session.panel.lessons.open),
-        (RunAction::Plots, &mut session.panel.plotting.open),
-    ];
-    for (own, open) in panes {
-        *open = own == action && !*open;
-    }
+    let panel = &mut session.panel;
+    panel.typed = None;
+    panel.beside = Some(action).filter(|pane| !panel.has(*pane));
     #[cfg(not(target_arch = "wasm32"))]
-    if session.panel.plotting.open {
+    if panel.has(RunAction::Plots) {
         plotting::pick_first(&mut session.runs.panes);
     }
     if action != RunAction::Panel {
@@ -510,7 +504,7 @@ pub fn toggle(session: &mut Session, action: RunAction) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::hud::panel;
+    use crate::session::panel;
     use crate::session::{RunAction, frames, session};
 
     /// Returns whether surfaces cross in any run.

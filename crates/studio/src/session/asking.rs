@@ -8,8 +8,8 @@ use a3_files::rounding::short;
 use a3_files::setup::{Request, SceneOptions};
 use a3_scenes::snapshot;
 
+use super::action::{MeasureRequest, RunAction};
 use super::acts::toggle;
-use super::keys::RunAction;
 use super::panes;
 use super::question::{MethodSetting, Question, Task};
 use super::save;
@@ -17,33 +17,6 @@ use super::state::Session;
 
 /// Ends of the negative decimal logarithm of an error (m).
 const DIGITS: [i32; 2] = [1, 8];
-
-/// A request of the mouse or of a key about questions and answers.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum MeasureRequest {
-    /// Show a question.
-    Ask(Question),
-    /// Measure the answer, or stop that.
-    Toggle,
-    /// Show and measure which solver and step serve best.
-    Choose,
-    /// Allow a tenth or the tenfold of the error.
-    Error { finer: bool },
-    /// Measure computing times, or evaluations.
-    Timed(bool),
-    /// Measure from the beginning of the scene, or from its present state.
-    FromStart(bool),
-    /// Use the method and setting of a row of the answer.
-    Use(usize),
-    /// Run the method and setting of a row of the answer beside the present one.
-    RowBeside(usize),
-    /// Run the method and setting of a point of the diagram beside the present one.
-    RunBeside { curve: usize, run: usize },
-    /// Write the leanest scene to a file, and show it.
-    OpenLean,
-    /// Hide questions and answers.
-    Close,
-}
 
 /// Carries out a request for the run of pane `at`, and returns whether that changed the scene.
 pub fn apply(session: &mut Session, request: MeasureRequest, at: usize) -> bool {
@@ -59,7 +32,7 @@ pub fn apply(session: &mut Session, request: MeasureRequest, at: usize) -> bool 
         }
         MeasureRequest::Choose => {
             measuring.question = Question::Choose;
-            if !measuring.open {
+            if !session.panel.has(RunAction::Measure) {
                 toggle(session, RunAction::Measure);
             }
             if session.measuring.progress().is_none() {
@@ -88,7 +61,6 @@ pub fn apply(session: &mut Session, request: MeasureRequest, at: usize) -> bool 
             return setting.is_some_and(|setting| beside(session, at, setting));
         }
         MeasureRequest::OpenLean => return open_lean(session),
-        MeasureRequest::Close => measuring.open = false,
     }
     false
 }
@@ -185,7 +157,6 @@ mod tests {
     use a3_scenes::{Description, regridded};
 
     use super::*;
-    use crate::hud::panel::{PanelRequest, apply as turn};
     use crate::session::question::{Answer, Diagram};
     use crate::session::{RunAction, frames, session};
 
@@ -307,13 +278,12 @@ mod tests {
     fn answers_can_be_used_and_run_beside() {
         let mut session = session(&["t", "0.01", "--scene", "chain"]);
         session.act(RunAction::Measure, 0);
-        assert!(!session.measuring.open, "nothing can answer");
+        assert_eq!(session.panel.beside, None, "nothing can answer");
         session.measuring.answerer = Some(found);
         session.act(RunAction::Panel, 0);
         session.act(RunAction::Measure, 0);
-        assert!(session.measuring.open && !session.panel.open);
-        let measure =
-            |session: &mut Session, request| turn(session, PanelRequest::Measure(request));
+        assert!(session.panel.has(RunAction::Measure));
+        let measure = |session: &mut Session, request| apply(session, request, 0);
         assert!(!measure(&mut session, MeasureRequest::RowBeside(0)));
         measure(&mut session, MeasureRequest::Toggle);
         while session.measuring.progress().is_some() {

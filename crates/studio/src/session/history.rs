@@ -186,7 +186,7 @@ impl History {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::hud::panel;
+    use crate::session::panel;
     use crate::session::{RunAction, compared, frames, session};
 
     #[test]

@@ -4,38 +4,12 @@ use std::collections::BTreeMap;
 
 use a3_files::lessons::{ALL, Answer, Lesson, Step};
 
-/// A request of the user to the pane of lessons.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum LessonRequest {
-    /// Hide the lessons.
-    Close,
-    /// Show the list of lessons.
-    Contents,
-    /// Choose a lesson in the list.
-    Choose(usize),
-    /// Show a step of a lesson, and begin its run.
-    Open(usize, usize),
-    /// Begin the run of the step again.
-    Again,
-    /// Mark a choice, for the keys.
-    Mark(usize),
-    /// Give a choice as the answer.
-    Answer(usize),
-    /// Take keys as letters of the number, or no longer.
-    Type(bool),
-    /// Type a letter of the number, or erase the last one.
-    Letter(Option<char>),
-    /// Check the number.
-    Check,
-    /// Show the right answer.
-    Reveal,
-}
+use super::action::{LessonRequest, PanelKey};
+use super::list::TextKey;
 
 /// The pane of lessons, and the progress in them since the program began.
 #[derive(Default)]
 pub struct Lessons {
-    /// Whether the pane is visible, unless the help hides it.
-    pub open: bool,
     /// The chosen lesson, which keys open.
     pub chosen: usize,
     /// The step of the chosen lesson that is shown; `None` for the list of lessons.
@@ -81,6 +55,103 @@ impl Lessons {
     fn given_mut(&mut self) -> Option<&mut Given> {
         let step = (self.chosen, self.step?);
         Some(self.given.entry(step).or_default())
+    }
+
+    /// Carries out a request, and returns whether the run of the step that is shown begins then.
+    /// What is typed next replaces the text so far if that `is_marked`.
+    pub fn apply(&mut self, request: LessonRequest, is_marked: &mut bool) -> bool {
+        let was_marked = std::mem::take(is_marked);
+        self.typing &= matches!(request, LessonRequest::Letter(_));
+        match request {
+            LessonRequest::Contents => self.step = None,
+            LessonRequest::Choose(lesson) => self.chosen = lesson,
+            LessonRequest::Open(lesson, step) => {
+                (self.chosen, self.step, self.marked) = (lesson, Some(step), 0);
+                return true;
+            }
+            LessonRequest::Again => return true,
+            LessonRequest::Mark(choice) => self.marked = choice,
+            LessonRequest::Answer(choice) => {
+                self.marked = choice;
+                self.choose(choice);
+            }
+            LessonRequest::Type(typing) => {
+                self.typing = typing && !self.given().done;
+                *is_marked = self.typing;
+            }
+            LessonRequest::Letter(letter) => {
+                self.type_letter(letter, was_marked);
+            }
+            LessonRequest::Check => self.check(),
+            LessonRequest::Reveal => self.reveal(),
+        }
+        false
+    }
+
+    /// Handles a key while a number is typed.
+    pub fn type_key(&mut self, key: TextKey, is_marked: &mut bool) {
+        let request = match key {
+            TextKey::Type(letter) => LessonRequest::Letter(Some(letter)),
+            TextKey::Erase => LessonRequest::Letter(None),
+            TextKey::Accept => LessonRequest::Check,
+            TextKey::Cancel => LessonRequest::Type(false),
+            TextKey::MarkAll => return *is_marked = true,
+            TextKey::Move(_) => return,
+        };
+        self.apply(request, is_marked);
+    }
+
+    /// Returns the request of the step after the one that is shown: the next one of the lesson, the
+    /// first of the next lesson, or the list.
+    pub fn next(&self) -> LessonRequest {
+        let (lesson, step) = (self.chosen, self.step.unwrap_or(0) + 1);
+        if ALL.get(lesson).is_some_and(|it| step < it.steps.len()) {
+            LessonRequest::Open(lesson, step)
+        } else if lesson + 1 < ALL.len() {
+            LessonRequest::Open(lesson + 1, 0)
+        } else {
+            LessonRequest::Contents
+        }
+    }
+
+    /// Returns the request of the step before the one that is shown, or the list before the first
+    /// one.
+    pub fn previous(&self) -> LessonRequest {
+        match self.step {
+            Some(step @ 1..) => LessonRequest::Open(self.chosen, step - 1),
+            _ => LessonRequest::Contents,
+        }
+    }
+
+    /// Returns the request of a key.
+    pub fn request(&self, key: PanelKey) -> Option<LessonRequest> {
+        let moved = |at: usize, count: usize| match key {
+            PanelKey::Up => at.checked_sub(1).unwrap_or(count - 1),
+            _ => (at + 1) % count,
+        };
+        let Some((_, step)) = self.shown() else {
+            return Some(match key {
+                PanelKey::Up | PanelKey::Down => {
+                    LessonRequest::Choose(moved(self.chosen, ALL.len()))
+                }
+                PanelKey::Left => LessonRequest::Contents,
+                PanelKey::Right | PanelKey::Toggle => {
+                    LessonRequest::Open(self.chosen, self.next_step(self.chosen))
+                }
+            });
+        };
+        let done = self.given().done;
+        Some(match (key, &step.question.answer) {
+            (PanelKey::Left, _) => self.previous(),
+            (PanelKey::Right, _) => self.next(),
+            (PanelKey::Toggle, _) if done => self.next(),
+            (PanelKey::Toggle, Answer::Choice { .. }) => LessonRequest::Answer(self.marked),
+            (PanelKey::Toggle, Answer::Number { .. }) => LessonRequest::Type(true),
+            (PanelKey::Up | PanelKey::Down, Answer::Choice { choices, .. }) => {
+                LessonRequest::Mark(moved(self.marked, choices.len()))
+            }
+            (PanelKey::Up | PanelKey::Down, Answer::Number { .. }) => return None,
+        })
     }
 
     /// Returns whether a step of a lesson is done.
@@ -195,7 +266,6 @@ mod tests {
 
     fn at((lesson, step): (usize, usize)) -> Lessons {
         Lessons {
-            open: true,
             chosen: lesson,
             step: Some(step),
             ..Lessons::default()

@@ -98,8 +98,6 @@ impl Drop for Job {
 pub struct Measuring {
     /// Function that answers; `None` where nothing can be measured.
     pub answerer: Option<Answerer>,
-    /// Whether questions and answers are shown.
-    pub open: bool,
     /// The question that is shown.
     pub question: Question,
     /// Negative decimal logarithm of the error of a choice or of a simpler scene (m).
@@ -116,7 +114,6 @@ impl Default for Measuring {
     fn default() -> Self {
         Self {
             answerer: None,
-            open: false,
             question: Question::default(),
             digits: 3,
             timed: false,

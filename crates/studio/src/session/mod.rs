@@ -1,9 +1,14 @@
 //! A session, independent of a window: one run or several side by side in real time, the
 //! interaction with them, their reference, the timeline, and the actions of keys.
 
+mod action;
 mod acts;
+mod apply;
 pub mod asking;
+pub mod begin;
 mod continued;
+mod dial;
+mod editor;
 mod effects;
 pub mod exchange;
 mod hands;
@@ -16,6 +21,7 @@ mod measuring;
 mod opening;
 mod origin;
 mod pane;
+pub mod panel;
 pub mod panes;
 mod passage;
 #[cfg(not(target_arch = "wasm32"))]
@@ -36,14 +42,17 @@ mod view;
 #[cfg(test)]
 mod words;
 
+pub use action::{Action, RunAction, WindowAction};
+pub use action::{LessonRequest, MeasureRequest, PanelKey, PanelRequest};
 pub use acts::{come_apart, go_to, offer_at_start};
-pub use asking::MeasureRequest;
+pub use apply::{action_beside, apply, begin_plots, is_typing};
 pub use continued::continue_from;
+pub use dial::{Dial, DialScale, Turn};
+pub use editor::{Measure, Tool};
 pub use effects::{Deviation, Effect, Job, Situation};
 pub use history::{Change, EditChange, Recorded};
-pub use keys::{Action, RunAction, WindowAction};
 pub use keys::{Binding, FINGERS, GROUPS, Group, LEFT_OUT, MOUSE, action};
-pub use lessons::{Given, LessonRequest, Lessons};
+pub use lessons::{Given, Lessons};
 pub use list::{Entry, TextKey, Topic};
 pub use measuring::Progress;
 pub use opening::{Opening, Reader};
@@ -51,7 +60,7 @@ pub use origin::{Origin, begins_crossed};
 pub use pane::Pane;
 pub use passage::Passage;
 pub use question::{Answer, Answerer, Diagram, MethodSetting, Question, Task};
-pub use replace::{replace, show_edited};
+pub use replace::show_edited;
 pub use samples::{SPAN, Sample, Samples};
 pub use save::write_scene;
 pub use state::{Beginning, Session};
@@ -63,7 +72,6 @@ pub use traces::{PlotRequest, RulerEnd};
 #[cfg(any(target_arch = "wasm32", test))]
 pub use tuning::Hidden;
 pub use tuning::{DEFAULT_FILM_SECONDS, Tuning};
-pub use tuning::{Measure, Tool};
 
 #[cfg(test)]
 pub use keys::bindings;
@@ -78,8 +86,7 @@ pub use words::read;
 mod tests {
     //! Sessions for tests.
 
-    use super::{Session, words};
-    use crate::begin;
+    use super::{Session, begin, words};
 
     /// Creates the session of a command line.
     pub fn session(words: &[&str]) -> Session {

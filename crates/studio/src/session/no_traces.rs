@@ -39,8 +39,6 @@ impl Traces {
 /// The settings of plots.
 #[derive(Default)]
 pub struct PlotSettings {
-    /// Whether the pane of plots is open.
-    pub open: bool,
     /// The ends of the ruler.
     pub ruler: Option<Vec<RulerEnd>>,
 }

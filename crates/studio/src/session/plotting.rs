@@ -6,7 +6,7 @@ use a3_core::{Path, Simulation};
 use a3_media::show::Target;
 
 use super::pane::Pane;
-use super::traces::{MAX_PICKS, Mode, Pick, Trigger, Variable};
+use super::traces::{MAX_PICKS, Mode, Pick, PlotRequest, PlotSettings, Trigger, Variable};
 
 /// Largest number of things that are plotted without being picked.
 const FEW: usize = 3;
@@ -96,6 +96,45 @@ pub fn begin_section(panes: &mut [Pane], mode: Mode, across: Variable) {
         let trigger = first_trigger(&panes[0].simulation, across);
         set_trigger(panes, trigger);
     }
+}
+
+/// Carries out a request, and returns what is to be said.
+pub fn apply(
+    settings: &mut PlotSettings,
+    panes: &mut [Pane],
+    request: PlotRequest,
+) -> Option<String> {
+    match request {
+        PlotRequest::Toggle(pick) => return toggle(panes, pick).err(),
+        PlotRequest::Mode(mode) => {
+            settings.mode = mode;
+            begin_section(panes, mode, settings.axes[0]);
+        }
+        PlotRequest::Show(variable) => {
+            let before = settings.shown.len();
+            settings.shown.retain(|it| *it != variable);
+            if settings.shown.len() == before {
+                settings.shown.push(variable);
+            }
+        }
+        PlotRequest::Axis(axis, variable) => {
+            // The velocity goes with its coordinate.
+            let [across, up] = &mut settings.axes;
+            if axis == 0 && *up == across.velocity() && variable.is_coordinate() {
+                *up = variable.velocity();
+            }
+            settings.axes[axis] = variable;
+        }
+        PlotRequest::Trigger(trigger) => set_trigger(panes, trigger),
+        PlotRequest::Span(span) => settings.span = span,
+        PlotRequest::Clear => panes.iter_mut().for_each(|pane| pane.traces.forget()),
+        PlotRequest::Ruler if settings.ruler.take().is_none() => {
+            settings.ruler = Some(vec![]);
+            return Some("Drag from one point to another, or click on both.".into());
+        }
+        PlotRequest::Ruler => {}
+    }
+    None
 }
 
 #[cfg(test)]

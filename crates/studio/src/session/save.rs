@@ -107,7 +107,7 @@ mod tests {
     use a3_files::scene_file::Source;
 
     use super::*;
-    use crate::hud::panel;
+    use crate::session::panel;
     use crate::session::{RunAction, session};
 
     fn forces(run: &Simulation) -> Vec<f64> {

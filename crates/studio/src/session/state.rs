@@ -8,6 +8,7 @@ use a3_media::show::{Manner, Show};
 use a3_scenes::Setup;
 use web_time::{Duration, Instant};
 
+use super::action::RunAction;
 use super::effects::Effects;
 use super::history::History;
 use super::list::List;
@@ -118,6 +119,12 @@ impl Session {
             pulled: false,
             taken_again: None,
         })
+    }
+
+    /// Returns whether this is visible beside the picture: it is open, and the help does not hide
+    /// it.
+    pub fn shows(&self, pane: RunAction) -> bool {
+        self.panel.has(pane) && !self.readings.help
     }
 
     /// Returns whether the runs advance: the next frame will differ.

@@ -1,21 +1,15 @@
-//! The panel's part of a session: the tuning of the scene, the tools that edit it, with the sizes,
-//! speeds and masses of what they add, and the actions that a page for teaching leaves out.
+//! The panel's part of a session: the tuning of the scene, the settings that the panel changes, and
+//! the actions that a page for teaching leaves out.
 
-#![cfg_attr(
-    target_arch = "wasm32",
-    allow(dead_code, reason = "the page has no tools")
-)]
-
-use a3_core::{Network, Scene};
+use a3_core::Scene;
 use a3_files::ending::Ending;
-use a3_files::rounding::short;
 use a3_scenes::{Defaults, Part, PartChange, Setup};
 
-use super::keys::RunAction;
+use super::action::RunAction;
+use super::editor::Editor;
 use super::lessons::Lessons;
 use super::list::Topic;
 use super::origin::Origin;
-use super::runs::Runs;
 use super::traces::PlotSettings;
 
 /// The original scene, and what the panel changes of it: factors, and parts that are left out.
@@ -67,13 +61,14 @@ pub const DEFAULT_FILM_SECONDS: f64 = 5.0;
 
 /// State of the panel, except the settings of runs, and of the pane of lessons.
 pub struct PanelState {
-    /// Whether the panel is open.
-    pub open: bool,
-    /// The lessons, in whose place the panel opens.
+    /// What is open beside the picture, by the action that opens it: the panel, the measurements,
+    /// the lessons or the plots.
+    pub beside: Option<RunAction>,
+    /// The lessons.
     pub lessons: Lessons,
     /// The actions that are left out.
     pub hidden: Hidden,
-    /// The pane of plots, which opens in its place too.
+    /// The settings of the plots.
     pub plotting: PlotSettings,
     /// Number of the chosen row in the table of knobs, which keys turn.
     pub row: usize,
@@ -100,7 +95,7 @@ pub struct PanelState {
 impl Default for PanelState {
     fn default() -> Self {
         Self {
-            open: false,
+            beside: None,
             lessons: Lessons::default(),
             hidden: Hidden::default(),
             plotting: PlotSettings::default(),
@@ -115,6 +110,18 @@ impl Default for PanelState {
             pane: 0,
             editor: Editor::default(),
         }
+    }
+}
+
+impl PanelState {
+    /// Returns whether this is open beside the picture.
+    pub fn has(&self, pane: RunAction) -> bool {
+        self.beside == Some(pane)
+    }
+
+    /// Closes this, and returns whether it was open.
+    pub fn close(&mut self, pane: RunAction) -> bool {
+        self.beside.take_if(|open| *open == pane).is_some()
     }
 }
 
@@ -153,151 +160,6 @@ impl Hidden {
     }
 }
 
-/// Tool that edits the scene where the pointer clicks.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Tool {
-    #[default]
-    ThrowBall,
-    ThrowBox,
-    AddBall,
-    AddBox,
-    Particle,
-    Spring,
-    Rod,
-    Rope,
-    Delete,
-}
-
-/// Quantity of what a tool adds.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Measure {
-    /// Diameter of a ball, or edge of a box (m).
-    Size,
-    /// Speed of a throw (m/s).
-    Speed,
-    /// Mass of a body (kg).
-    Mass,
-    /// Mass of a particle (kg).
-    PointMass,
-    /// Stiffness of a spring (N/m).
-    Stiffness,
-}
-
-impl Tool {
-    /// All tools, in the order of their buttons.
-    pub const ALL: [Self; 9] = [
-        Self::ThrowBall,
-        Self::ThrowBox,
-        Self::AddBall,
-        Self::AddBox,
-        Self::Particle,
-        Self::Spring,
-        Self::Rod,
-        Self::Rope,
-        Self::Delete,
-    ];
-
-    /// Returns the quantities that can be set for the tool.
-    pub fn measures(self) -> &'static [Measure] {
-        match self {
-            Self::ThrowBall | Self::ThrowBox => &[Measure::Size, Measure::Speed, Measure::Mass],
-            Self::AddBall | Self::AddBox => &[Measure::Size, Measure::Mass],
-            Self::Particle => &[Measure::PointMass],
-            Self::Spring => &[Measure::Stiffness],
-            Self::Rod | Self::Rope | Self::Delete => &[],
-        }
-    }
-
-    /// Returns whether the tool throws, by a drag the faster.
-    pub fn throws(self) -> bool {
-        matches!(self, Self::ThrowBall | Self::ThrowBox)
-    }
-
-    /// Returns whether the tool joins two particles by a drag.
-    pub fn joins(self) -> bool {
-        matches!(self, Self::Spring | Self::Rod | Self::Rope)
-    }
-}
-
-/// State of the tools.
-#[derive(Default)]
-pub struct Editor {
-    /// Whether the tools are shown, and act where the mouse is pressed.
-    pub open: bool,
-    /// The chosen tool.
-    pub tool: Tool,
-    /// Values of the quantities that fit the scene, and those that are set.
-    values: Option<[[f64; 2]; 5]>,
-}
-
-impl Editor {
-    /// Shows the tools, or hides them.
-    pub fn toggle(&mut self, runs: &Runs) {
-        self.open = !self.open;
-        self.fit(runs);
-    }
-
-    /// Gives all quantities values that fit the scene, unless they have some.
-    pub fn fit(&mut self, runs: &Runs) {
-        let fit = || fitting(runs).map(|value| [value; 2]);
-        self.values.get_or_insert_with(fit);
-    }
-
-    /// Forgets all values, because the scene is another one.
-    pub fn forget(&mut self, runs: &Runs) {
-        self.values = self.open.then(|| fitting(runs).map(|value| [value; 2]));
-    }
-
-    /// Returns the value that is set for a quantity.
-    pub fn value(&self, measure: Measure) -> f64 {
-        self.both(measure)[1]
-    }
-
-    /// Returns the value of a quantity that fits the scene, and that which is set.
-    pub fn both(&self, measure: Measure) -> [f64; 2] {
-        self.values.map_or([1.0; 2], |all| all[measure as usize])
-    }
-
-    /// Sets the value of a quantity.
-    pub fn set(&mut self, measure: Measure, value: f64) {
-        if let Some(all) = &mut self.values {
-            all[measure as usize][1] = value;
-        }
-    }
-}
-
-/// Returns values of all quantities that fit the scene.
-fn fitting(runs: &Runs) -> [f64; 5] {
-    let view = runs.panes[0].show.presentation.viewpoint;
-    let distance = (view.eye - view.target).norm();
-    let network = runs.first().model().network();
-    let all = network.map_or(&[][..], Network::masses).iter().enumerate();
-    let carried = |i: &usize| network.is_some_and(|network| network.body_of(*i).is_some());
-    let free: Vec<_> = all.filter(|(i, _)| !carried(i)).map(|(_, m)| *m).collect();
-    let centers = network.into_iter().flat_map(Network::bodies);
-    let bodies = centers.map(|body| network.map_or(0.0, |network| network.masses()[body.center()]));
-    let (count, points) = (free.len(), free.iter().sum::<f64>());
-    let total = points + bodies.sum::<f64>();
-    let point = if count == 0 {
-        0.1 * total
-    } else {
-        points / count as f64
-    };
-    let stiffness = network.and_then(|network| Some(network.springs().next()?.law.stiffness));
-    let values = [
-        0.035 * distance,
-        1.3 * distance,
-        if points > 0.0 {
-            0.05 * total
-        } else {
-            0.5 * total
-        },
-        point,
-        stiffness.unwrap_or(400.0 * point),
-    ];
-    values.map(|value| short(value.clamp(1e-6, 1e6), 1))
-}
-
 #[cfg(test)]
 mod tests {
     use std::path::Path;
@@ -325,7 +187,7 @@ mod tests {
             assert!(said.starts_with("This page has"), "{said}");
         }
         session.toggle_list(Topic::Beside { pane: 0 });
-        assert!(session.list.is_none() && !session.panel.open && !session.panel.lessons.open);
+        assert!(session.list.is_none() && session.panel.beside.is_none());
         assert_eq!(session.runs.first().method().name, "trapezoid");
     }
 

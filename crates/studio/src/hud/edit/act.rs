@@ -5,8 +5,8 @@ use a3_files::rounding::short;
 use a3_media::show::Target;
 use a3_scenes::{ConstraintSpec, Edit, PartChange, PartSpec, RigidBody};
 
-use super::super::panel::{Turn, edit, of_one_body, turn_part, undo};
-use crate::session::{Measure, Session, Tool, come_apart, exchange};
+use crate::session::panel::{edit, of_one_body, turn_part, undo};
+use crate::session::{Measure, Session, Tool, Turn, come_apart, exchange};
 
 /// Coefficient of friction of bodies that are added.
 const FRICTION: f64 = 0.4;

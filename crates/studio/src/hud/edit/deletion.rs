@@ -5,7 +5,7 @@ use a3_core::rigid::Body;
 use a3_media::show::Target;
 
 use super::{Aim, click};
-use crate::hud::panel;
+use crate::session::panel;
 use crate::session::{Pick, RulerEnd, RunAction, Session, Tool, frames, session};
 
 const LINKAGE: &str = concat!(

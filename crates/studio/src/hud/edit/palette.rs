@@ -6,10 +6,9 @@ use egui::{
     Shape, Stroke, StrokeKind, Ui, pos2, vec2,
 };
 
-use super::super::docked::SHEET;
-use super::super::panel::{Dial, DialScale, INK, PanelRequest, Turn, slider};
-use super::super::style::{FAINT, TEXT};
-use crate::session::{Measure, Session, Tool};
+use super::super::style::{FAINT, INK, TEXT};
+use super::super::widgets::{SHEET, slider};
+use crate::session::{Action, Dial, DialScale, Measure, PanelRequest, Session, Tool, Turn};
 
 /// Smallest and largest width of a button, and its height (points).
 const BUTTON: [f32; 3] = [49.0, 62.0, 46.0];
@@ -29,7 +28,7 @@ const CHOSEN: Color32 = Color32::from_rgb(246, 246, 244);
 const HOVERED: Color32 = Color32::from_rgb(214, 216, 220);
 
 /// Draws the palette, if it is open, and returns the request of the mouse.
-pub fn show(ctx: &Context, session: &Session) -> Option<PanelRequest> {
+pub fn show(ctx: &Context, session: &Session) -> Option<Action> {
     let (readings, editor) = (&session.readings, &session.panel.editor);
     if !editor.open || readings.help || readings.asks_to_quit || session.list.is_some() {
         return None;
@@ -89,7 +88,7 @@ pub fn show(ctx: &Context, session: &Session) -> Option<PanelRequest> {
                     .text(at, Align2::CENTER_CENTER, words, font, FAINT);
             }
         });
-    request
+    request.map(Action::Panel)
 }
 
 /// Draws the button of a tool, and returns whether it was clicked.

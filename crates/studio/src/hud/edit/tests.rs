@@ -7,7 +7,7 @@ use a3_files::scene_file::Source;
 use a3_media::show::Target;
 
 use super::{Aim, Throw, click, join, throw};
-use crate::hud::panel;
+use crate::session::panel;
 use crate::session::{Measure, RunAction, Session, Tool, compared, frames, session, write_scene};
 
 /// A scene with bodies of many kinds.

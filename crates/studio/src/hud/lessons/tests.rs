@@ -1,14 +1,14 @@
 //! The lessons in the window: their answers are true, and a user can go through them.
 
 use a3_files::lessons::{ALL, Answer};
-use egui::{Event, Modifiers, PointerButton, Pos2, RawInput, Rect, SafeAreaInsets};
+use egui::Pos2;
 
-use super::super::panel::PanelKey::{self, Down, Left, Right, Toggle, Up};
-use super::super::style::context;
-use super::place::PLACE;
-use super::{apply, press_text, request, show};
+use super::super::window::Window;
+use super::PANE;
 use crate::begin;
-use crate::session::{LessonRequest, RunAction, Session, TextKey, read, session};
+use crate::session::PanelKey::{self, Down, Left, Right, Toggle, Up};
+use crate::session::{Action, RunAction, Session, TextKey, read, session};
+use crate::session::{action_beside, apply, is_typing};
 
 /// Height of the bar (points).
 const BAR: f32 = 48.0;
@@ -132,49 +132,23 @@ fn the_right_choices_are_what_happens() {
 
 /// Draws the lessons in a window of a size (points), and clicks on the text that begins with
 /// `words`, if there is any. Returns the text, and the request.
-fn draw(session: &Session, size: [f32; 2], words: Option<&str>) -> (String, Option<LessonRequest>) {
-    let ctx = context();
-    let window = Rect::from_min_size(Pos2::ZERO, size.into());
-    let [right, below] = PLACE.taken(size);
-    let bottom = below + BAR;
-    let (mut said, mut request, mut at) = (String::new(), None, Pos2::new(3.0, 3.0));
-    for pressed in [None, None, None, Some(true), Some(false)] {
-        let press = pressed.map(|pressed| Event::PointerButton {
-            pos: at,
-            button: PointerButton::Primary,
-            pressed,
-            modifiers: Modifiers::default(),
-        });
-        let input = RawInput {
-            screen_rect: Some(window),
-            safe_area_insets: Some(SafeAreaInsets(egui::epaint::MarginF32 {
-                right,
-                bottom,
-                ..Default::default()
-            })),
-            events: [Event::PointerMoved(at)].into_iter().chain(press).collect(),
-            ..RawInput::default()
-        };
-        let mut output = ctx.run_ui(input, |ui| request = show(ui.ctx(), session).or(request));
-        output.textures_delta.set.clear();
-        output.textures_delta.free.clear();
-        said.clear();
-        for clipped in &output.shapes {
-            let egui::Shape::Text(text) = &clipped.shape else {
-                continue;
-            };
-            let rect = text.visual_bounding_rect();
-            let within = window.x_range().contains(rect.left())
-                && rect.right() <= clipped.clip_rect.right().min(window.right());
-            assert!(within, "{:?} in {size:?}", text.galley.text());
-            said.extend([text.galley.text(), "\n"]);
-            let is_wanted = words.is_some_and(|words| text.galley.text().starts_with(words));
-            if is_wanted && clipped.clip_rect.contains(rect.center()) {
-                at = rect.center();
-            }
+fn draw(session: &Session, size: [f32; 2], words: Option<&str>) -> (String, Option<Action>) {
+    let mut window = Window::new(size);
+    let [right, below] = PANE.taken(size);
+    let taken = [right, below + BAR];
+    let draw = |ctx: &_| PANE.show(ctx, session);
+    window.click(taken, Pos2::new(3.0, 3.0), draw);
+    let mut at = None;
+    for (said, rect, seen) in window.written() {
+        let within = window.place.left() <= rect.left() && rect.right() <= seen.right();
+        assert!(within, "{said:?} in {size:?}");
+        let is_wanted = words.is_some_and(|words| said.starts_with(words));
+        if is_wanted && seen.contains(rect.center()) {
+            at = Some(rect.center());
         }
     }
-    (said, request)
+    let action = at.and_then(|at| window.click(taken, at, draw));
+    (window.words(), action)
 }
 
 #[test]
@@ -188,7 +162,7 @@ fn every_step_is_drawn_in_windows_and_on_phones() {
             ALL.iter().all(|lesson| said.contains(&lesson.title)),
             "{said}"
         );
-        let [right, below] = PLACE.taken(size);
+        let [right, below] = PANE.taken(size);
         let picture = [size[0] - right, size[1] - below - BAR];
         assert!(picture.iter().all(|side| *side >= 390.0), "{picture:?}");
         for lesson in 0..ALL.len() {
@@ -216,12 +190,12 @@ fn a_lesson_is_gone_through_by_clicks() {
     let size = [1280.0, 800.0];
     session.act(RunAction::Panel, 0);
     session.act(RunAction::Lessons, 0);
-    assert!(!session.panel.open && session.panel.lessons.open);
+    assert!(session.shows(RunAction::Lessons));
     (session.pulled, session.panel.pane) = (true, 3);
     let mut click = |words: &str, changes: bool| {
         let (said, request) = draw(&session, size, Some(words));
         let request = request.unwrap_or_else(|| panic!("no {words} in {said}"));
-        assert_eq!(apply(&mut session, request), changes, "{request:?}");
+        assert_eq!(apply(&mut session, request, 0), changes, "{request:?}");
         let lessons = &session.panel.lessons;
         (
             session.runs.panes.len(),
@@ -240,8 +214,8 @@ fn a_lesson_is_gone_through_by_clicks() {
     assert!(session.panel.lessons.typing && session.pulled && session.panel.pane == 0);
     let mut answer = |begin: &[TextKey], number: &str| {
         if !session.panel.lessons.typing {
-            let again = request(&session, Toggle).unwrap();
-            apply(&mut session, again);
+            let again = action_beside(&session, Toggle, false).unwrap();
+            apply(&mut session, again, 0);
         }
         let letters = number.chars().map(TextKey::Type);
         for key in begin
@@ -250,7 +224,8 @@ fn a_lesson_is_gone_through_by_clicks() {
             .chain(letters)
             .chain([TextKey::Accept])
         {
-            assert!(press_text(&mut session, key), "{number}");
+            assert!(is_typing(&session), "{number}");
+            apply(&mut session, key, 0);
         }
         let (said, _) = draw(&session, size, None);
         (session.panel.lessons.given(), said)
@@ -270,10 +245,10 @@ fn a_lesson_is_gone_through_by_clicks() {
         "1.65"
     );
     assert!(session.panel.lessons.given().done && !session.panel.lessons.typing);
-    assert!(!press_text(&mut session, TextKey::Type('1')));
+    assert!(!is_typing(&session));
     // The scenes of before are still there, and so is the progress.
     session.act(RunAction::Panel, 0);
-    assert!(session.panel.open && !session.panel.lessons.open);
+    assert!(session.shows(RunAction::Panel));
     session.act(RunAction::Lessons, 0);
     assert!(session.panel.lessons.is_done(0, 1) && session.panel.lessons.next_step(0) == 2);
 }
@@ -281,12 +256,12 @@ fn a_lesson_is_gone_through_by_clicks() {
 #[test]
 fn a_lesson_is_gone_through_by_keys() {
     let mut session = session(&["t", "0.01", "--paused"]);
-    assert_eq!(request(&session, Toggle), None);
+    assert_eq!(action_beside(&session, Toggle, false), None);
     session.act(RunAction::Lessons, 0);
     let mut press = |keys: &[PanelKey]| {
         for key in keys {
-            let request = request(&session, *key).unwrap();
-            apply(&mut session, request);
+            let request = action_beside(&session, *key, false).unwrap();
+            apply(&mut session, request, 0);
         }
         let lessons = &session.panel.lessons;
         (lessons.chosen, lessons.step, lessons.given())

@@ -1,15 +1,13 @@
 //! Rows of the parts of a scene: a switch, a name, and what the part costs and changes.
 
 use a3_files::rounding::short;
-use egui::{Align2, FontId, Id, Rect, Sense, Ui, pos2, vec2};
+use egui::{Id, Rect, Sense, Ui, pos2, vec2};
 
-use super::super::docked::keep_in_sight;
-use super::super::style::{FAINT, TEXT};
-use super::dial::Turn;
-use super::parts::{effect_in_words, is_as_in_scene, is_in};
-use super::request::{PanelRequest, can_measure, measuring_row, part_row};
-use super::row::{CHOSEN, HOVERED, INK, button, switch};
-use crate::session::Session;
+use super::super::style::{FAINT, INK, TEXT};
+use super::super::widgets::{CHOSEN, HOVERED, LEFT, button, keep_in_sight, switch, write};
+use crate::session::panel::{can_measure, measuring_row, part_row};
+use crate::session::panel::{effect_in_words, is_as_in_scene, is_in};
+use crate::session::{PanelRequest, Session, Turn};
 
 /// Height of the row of a part (points).
 const HEIGHT: f32 = 36.0;
@@ -46,7 +44,6 @@ pub fn show(ui: &Ui, room: Rect, session: &Session) -> (f32, Option<PanelRequest
 /// Draws the row that measures the parts.
 fn measuring(ui: &Ui, rect: Rect, session: &Session) -> Option<PanelRequest> {
     let place = rect.shrink2(vec2(0.0, 3.0));
-    let response = ui.interact(place, Id::unique("measuring"), Sense::click());
     let (effects, number) = (&session.effects, measuring_row());
     let (words, state) = match (effects.progress(), effects.time()) {
         (Some([done, all]), _) => ("stop", format!("{done} of {all} measured")),
@@ -57,8 +54,7 @@ fn measuring(ui: &Ui, rect: Rect, session: &Session) -> Option<PanelRequest> {
         let painter = ui.painter();
         painter.rect_filled(rect.expand2(vec2(6.0, -0.5)), 5.0, CHOSEN);
     }
-    button(ui, place, &response, words, &state);
-    let response = response.on_hover_text(
+    let response = button(ui, place, words, &state).on_hover_text(
         "Measures, from the present state on, what each part costs in a step and how far it moves the particles \
          in the next seconds. Parts that are left out are measured by bringing them back.",
     );
@@ -81,24 +77,18 @@ fn row(ui: &Ui, rect: Rect, session: &Session, part: usize) -> Option<PanelReque
     let (name, on) = (&session.tuning.parts[part].name, is_in(session, part));
     let effect = session.effects.of(part).map(|it| effect_in_words(&it));
     let as_in_scene = is_as_in_scene(session, part);
-    let write = |y: f32, words: &str, size: f32, colour| {
-        let at = pos2(rect.left() + NAME_LEFT, rect.top() + y);
-        painter.text(
-            at,
-            Align2::LEFT_CENTER,
-            words,
-            FontId::proportional(size),
-            colour,
-        );
+    let say = |y: f32, words: &str, size: f32, colour| {
+        let at = rect.min + vec2(NAME_LEFT, y);
+        write(painter, at, LEFT, words, size, colour);
     };
-    write(11.5, name, 13.0, if as_in_scene { TEXT } else { INK });
+    say(11.5, name, 13.0, if as_in_scene { TEXT } else { INK });
     let state = match (on, &effect) {
         (_, Some(effect)) => effect,
         (true, None) => "in",
         (false, None) if as_in_scene => "off",
         (false, None) => "left out",
     };
-    write(26.5, state, 11.5, if as_in_scene { FAINT } else { INK });
+    say(26.5, state, 11.5, if as_in_scene { FAINT } else { INK });
     let turn = switch(ui, rect, id("switch"), on);
     let whole = whole.on_hover_text(tooltip(session, part, effect.as_deref()));
     turn.map(|turn| PanelRequest::Turn(number, turn))

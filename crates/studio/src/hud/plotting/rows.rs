@@ -2,11 +2,11 @@
 //! side by side in as many lines as they need.
 
 use a3_media::show;
-use egui::{Align2, CursorIcon, FontId, Id, Pos2, Rect, Sense, Ui, pos2, vec2};
+use egui::{FontId, Pos2, Rect, Ui, pos2, vec2};
 
 use super::super::charts::line;
-use super::super::measure::chip;
 use super::super::style::{FAINT, TEXT};
+use super::super::widgets::{LEFT, MIDDLE, chip, write};
 use super::super::words::signed;
 use super::chart::{has, run_name, style};
 use crate::session::plotting::{drive, first_trigger};
@@ -33,10 +33,7 @@ impl Rows<'_> {
     /// Draws a button in a flow.
     fn button(&mut self, flow: &mut Flow, words: &str, chosen: bool, wish: PlotRequest) {
         let place = flow.words(self.ui, words, 8.0);
-        let id = Id::unique(("plot", words, place.left() as i32, place.top() as i32));
-        let response = self.ui.interact(place, id, Sense::click());
-        chip(self.ui, place, &response, words, chosen);
-        if response.clicked() {
+        if chip(self.ui, place, words, chosen).clicked() {
             self.request = Some(wish);
         }
     }
@@ -44,9 +41,7 @@ impl Rows<'_> {
     /// Writes words in a flow.
     fn say(&self, flow: &mut Flow, words: &str) {
         let at = flow.words(self.ui, words, 2.0).left_center();
-        let font = FontId::proportional(13.0);
-        let painter = self.ui.painter();
-        painter.text(at, Align2::LEFT_CENTER, words, font, FAINT);
+        write(self.ui.painter(), at, LEFT, words, 13.0, FAINT);
     }
 
     /// Goes on below a flow.
@@ -80,9 +75,8 @@ impl Rows<'_> {
                 let at = place.left_center();
                 let ends = vec![at + vec2(2.0, 0.0), at + vec2(2.0 + SAMPLE, 0.0)];
                 line(self.ui.painter(), ends, &style(session, [k, 0]).pen(2.2));
-                let (at, font) = (at + vec2(SAMPLE + 8.0, 0.0), FontId::proportional(13.0));
-                let painter = self.ui.painter();
-                painter.text(at, Align2::LEFT_CENTER, name, font, TEXT);
+                let at = at + vec2(SAMPLE + 8.0, 0.0);
+                write(self.ui.painter(), at, LEFT, name, 13.0, TEXT);
             }
             self.end(&flow);
         }
@@ -92,9 +86,7 @@ impl Rows<'_> {
     /// Draws one thing that is plotted.
     fn pick(&mut self, place: Rect, name: &str, source: [usize; 2], grey: bool, pick: Pick) {
         let (ui, look) = (self.ui, style(self.session, source));
-        let id = Id::unique(("plotted", name));
-        let response = ui.interact(place, id, Sense::click());
-        chip(ui, place, &response, "", false);
+        let response = chip(ui, place, "", false);
         let painter = ui.painter();
         let at = place.left_center() + vec2(8.0, 0.0);
         let ends = vec![at, at + vec2(SAMPLE, 0.0)];
@@ -103,13 +95,11 @@ impl Rows<'_> {
             pen.colour = "#181c28";
         }
         line(painter, ends, &pen);
-        let (at, font) = (at + vec2(SAMPLE + 6.0, 0.0), FontId::proportional(13.0));
-        painter.text(at, Align2::LEFT_CENTER, name, font, TEXT);
+        let at = at + vec2(SAMPLE + 6.0, 0.0);
+        write(painter, at, LEFT, name, 13.0, TEXT);
         let at = pos2(place.right() - 9.0, at.y);
         let ink = if response.hovered() { TEXT } else { FAINT };
-        let font = FontId::proportional(10.0);
-        painter.text(at, Align2::CENTER_CENTER, "✖", font, ink);
-        let response = response.on_hover_cursor(CursorIcon::PointingHand);
+        write(painter, at, MIDDLE, "✖", 10.0, ink);
         if response.on_hover_text("Plot it no longer").clicked() {
             self.request = Some(PlotRequest::Toggle(pick));
         }
@@ -231,18 +221,17 @@ fn step(session: &Session, variable: Variable) -> f64 {
 }
 
 /// Height of a line, and distance between its parts and between lines (points).
-pub const HEIGHT: f32 = 24.0;
-const GAP: f32 = 4.0;
+const LINE: [f32; 2] = [24.0, 4.0];
 
 /// Places from the left to the right of a room, line by line.
-pub struct Flow {
+struct Flow {
     room: Rect,
     next: Pos2,
 }
 
 impl Flow {
     /// Begins at the top of a room.
-    pub fn new(room: Rect) -> Self {
+    fn new(room: Rect) -> Self {
         Self {
             room,
             next: room.min,
@@ -250,25 +239,25 @@ impl Flow {
     }
 
     /// Returns the place of a part of a width (points).
-    pub fn place(&mut self, width: f32) -> Rect {
+    fn place(&mut self, width: f32) -> Rect {
         let is_full = self.next.x + width > self.room.right() && self.next.x > self.room.left();
         if is_full {
-            self.next = pos2(self.room.left(), self.next.y + HEIGHT + GAP);
+            self.next = pos2(self.room.left(), self.next.y + LINE[0] + LINE[1]);
         }
-        let place = Rect::from_min_size(self.next, vec2(width, HEIGHT));
-        self.next.x += width + GAP;
+        let place = Rect::from_min_size(self.next, vec2(width, LINE[0]));
+        self.next.x += width + LINE[1];
         place
     }
 
     /// Returns the place of words with a margin (points) on either side.
-    pub fn words(&mut self, ui: &Ui, words: &str, margin: f32) -> Rect {
+    fn words(&mut self, ui: &Ui, words: &str, margin: f32) -> Rect {
         let font = FontId::proportional(13.0);
         let galley = ui.painter().layout_no_wrap(words.into(), font, TEXT);
         self.place(galley.size().x + 2.0 * margin)
     }
 
     /// Returns the height (points) below the last line.
-    pub fn bottom(&self) -> f32 {
-        self.next.y + HEIGHT + GAP
+    fn bottom(&self) -> f32 {
+        self.next.y + LINE[0] + LINE[1]
     }
 }

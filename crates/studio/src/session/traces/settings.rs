@@ -44,8 +44,6 @@ impl Mode {
 
 /// The settings of plots.
 pub struct PlotSettings {
-    /// Whether the pane of plots is open.
-    pub open: bool,
     pub mode: Mode,
     /// The variables that are shown over time.
     pub shown: Vec<Variable>,
@@ -99,7 +97,6 @@ pub enum RulerEnd {
 impl Default for PlotSettings {
     fn default() -> Self {
         Self {
-            open: false,
             mode: Mode::Time,
             shown: vec![Variable::X, Variable::Y, Variable::Length, Variable::Force],
             axes: [Variable::X, Variable::VelocityX],
@@ -121,9 +118,7 @@ pub enum PlotFile {
 /// A request of the user to the pane of plots.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum PlotRequest {
-    /// Close the pane.
-    Close,
-    /// Plot something, or no longer. The pane opens.
+    /// Plot something, or no longer.
     Toggle(Pick),
     /// Change what is on the axes.
     Mode(Mode),
@@ -139,8 +134,6 @@ pub enum PlotRequest {
     Clear,
     /// Draw a ruler in the picture, or remove it.
     Ruler,
-    /// Write a file.
-    Write(PlotFile),
 }
 
 impl RulerEnd {

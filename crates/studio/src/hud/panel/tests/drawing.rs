@@ -2,13 +2,10 @@
 
 use egui::vec2;
 
-use super::opened::{changed, dials, every_scene, opened};
-use super::screen::Screen;
-use crate::hud::panel::dial::DialScale;
-use crate::hud::panel::request::rows;
-use crate::hud::panel::undo;
-use crate::hud::panel::view::{PLACE, place};
-use crate::session::RunAction;
+use super::screen::{Screen, changed, dials, every_scene, opened};
+use crate::hud::panel::PANE;
+use crate::session::panel::{rows, undo};
+use crate::session::{DialScale, RunAction};
 
 const SIZES: [[f32; 2]; 2] = [[1280.0, 720.0], [800.0, 600.0]];
 
@@ -46,7 +43,7 @@ fn the_mouse_turns_every_row_and_only_that() {
             assert_eq!(session.panel.row, k);
             // A double click on the value restores the scene's own.
             if !matches!(dial.scale, DialScale::Choice(_)) {
-                screen.time += 1.0;
+                screen.window.time += 1.0;
                 screen.click(&mut session, value, value);
                 screen.click(&mut session, value, value);
                 let now = (knob.read)(&session, 0).unwrap();
@@ -70,7 +67,7 @@ fn nothing_is_cut_off_or_overlaps() {
         for screen in &mut screens {
             let size = screen.size;
             let texts = screen.read(&session);
-            let edge = size[0] - PLACE.taken(size)[0];
+            let edge = size[0] - PANE.taken(size)[0];
             for (k, (words, rect)) in texts.iter().enumerate() {
                 let inside = rect.left() > edge + 4.0 && rect.right() < size[0] - 4.0;
                 assert!(inside || rect.right() < edge, "{words} in {name}, {size:?}");
@@ -111,10 +108,10 @@ fn the_chosen_row_is_visible() {
 #[test]
 fn the_help_hides_the_panel() {
     let mut session = opened(&["r", "0.005"]);
-    assert!(place(&session).is_some());
-    assert_eq!(PLACE.taken([1280.0, 720.0]), [304.0, 0.0]);
+    assert!(session.shows(RunAction::Panel));
+    assert_eq!(PANE.taken([1280.0, 720.0]), [304.0, 0.0]);
     session.act(RunAction::Help, 0);
-    assert!(place(&session).is_none());
+    assert!(!session.shows(RunAction::Panel));
     assert!(
         !Screen::new(SIZES[0])
             .read(&session)

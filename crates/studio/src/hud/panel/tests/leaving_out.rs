@@ -4,13 +4,9 @@ use a3_core::contact::Shape;
 use a3_core::{Network, Vector3};
 use egui::vec2;
 
-use super::opened::{every_scene, opened, part, toggle, type_key};
-use super::screen::Screen;
-use crate::hud::panel::dial::Turn;
-use crate::hud::panel::knobs::row_of;
-use crate::hud::panel::request::{PanelKey, PanelRequest, apply, measuring_row, part_row, rows};
-use crate::hud::panel::{parts, tuned, undo};
-use crate::session::{RunAction, Session, compared, frames};
+use super::screen::{Screen, every_scene, opened, part, toggle, type_key};
+use crate::session::panel::{is_in, measuring_row, part_row, row_of, rows, set_part, tuned, undo};
+use crate::session::{PanelKey, PanelRequest, RunAction, Session, Turn, apply, compared, frames};
 
 fn network(session: &Session) -> &Network {
     session.runs.first().model().network().unwrap()
@@ -40,10 +36,10 @@ fn every_part_comes_and_goes(session: &mut Session) -> (usize, Vec<String>) {
     let count = session.tuning.parts.len();
     for k in 0..count {
         let name = session.tuning.parts[k].name.clone();
-        let (was_in, now) = (parts::is_in(session, k), moment(session));
+        let (was_in, now) = (is_in(session, k), moment(session));
         let (steps, before) = (session.runs.first().steps(), forces(session, &now));
-        if let Err(why) = parts::set(session, k, !was_in) {
-            assert_eq!(parts::is_in(session, k), was_in, "{name} of {scene}: {why}");
+        if let Err(why) = set_part(session, k, !was_in) {
+            assert_eq!(is_in(session, k), was_in, "{name} of {scene}: {why}");
             assert!(why.ends_with('.') || why.contains(':'), "{why}");
             continue;
         }
@@ -68,10 +64,10 @@ fn every_part_comes_and_goes(session: &mut Session) -> (usize, Vec<String>) {
         }
         let mut then = moment(session);
         // Surfaces that crossed meanwhile cannot begin to touch.
-        if let Err(why) = parts::set(session, k, was_in) {
+        if let Err(why) = set_part(session, k, was_in) {
             assert!(why.contains("cross"), "{name} of {scene}: {why}");
             session.act(RunAction::Reset, 0);
-            parts::set(session, k, was_in).unwrap();
+            set_part(session, k, was_in).unwrap();
             then = moment(session);
         }
         assert_eq!(moment(session), then, "{name} of {scene}");
@@ -127,6 +123,7 @@ fn obstacles_keep_their_paths_when_others_leave() {
     apply(
         &mut session,
         PanelRequest::Turn(row_of("sphere"), Turn::To(0.8)),
+        0,
     );
     let tuned_before = tuned(&session);
     let spheres = |session: &Session| {
@@ -172,6 +169,7 @@ fn pins_hands_and_tuning_stay() {
         apply(
             &mut session,
             PanelRequest::Turn(row_of(name), Turn::To(value)),
+            0,
         );
     }
     frames(&mut session, 0.1);
@@ -191,6 +189,7 @@ fn pins_hands_and_tuning_stay() {
     apply(
         &mut session,
         PanelRequest::Turn(row_of("gravity"), Turn::To(9.0)),
+        0,
     );
     assert_eq!(network(&session).gravity(), None);
     let said = session.readings.message.clone().unwrap();
@@ -212,9 +211,9 @@ fn switches_agree_with_keys_and_knobs() {
         ("self-collision", RunAction::Touch),
     ] {
         let k = part(&session, name);
-        assert!(!parts::is_in(&session, k), "{name}");
+        assert!(!is_in(&session, k), "{name}");
         session.act(action, 0);
-        assert!(parts::is_in(&session, k), "{name}");
+        assert!(is_in(&session, k), "{name}");
         toggle(&mut session, name);
         let run = session.runs.first();
         let on = if name == "wind" {
@@ -222,7 +221,7 @@ fn switches_agree_with_keys_and_knobs() {
         } else {
             run.touching()
         };
-        assert!(!on && !parts::is_in(&session, k), "{name}");
+        assert!(!on && !is_in(&session, k), "{name}");
     }
     toggle(&mut session, "floor");
     let floors = network(&session).obstacles().iter();

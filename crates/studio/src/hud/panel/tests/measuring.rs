@@ -1,13 +1,10 @@
 //! Measuring the parts of a scene, and their rows.
 
-use super::opened::{opened, part, toggle, type_key};
-use super::screen::Screen;
-use crate::hud::panel::dial::Turn;
-use crate::hud::panel::knobs::row_of;
-use crate::hud::panel::request::{PanelKey, PanelRequest, apply, measuring_row, numbers, part_row};
-use crate::hud::panel::view::PLACE;
-use crate::hud::panel::{parts, update};
-use crate::session::{Deviation, Effect, RunAction, Session, frames};
+use super::screen::{Screen, opened, part, toggle, type_key};
+use crate::hud::panel::PANE;
+use crate::session::panel::{measuring_row, numbers, part_row, row_of, set_part, update};
+use crate::session::{Deviation, Effect, PanelKey, PanelRequest, RunAction, Session, Turn};
+use crate::session::{apply, frames};
 
 /// Waits until all parts are measured.
 fn wait(session: &mut Session) {
@@ -53,6 +50,7 @@ fn parts_are_measured_until_the_scene_changes() {
     apply(
         &mut session,
         PanelRequest::Turn(row_of("stiffness"), Turn::To(2.0)),
+        0,
     );
     update(&mut session);
     assert_eq!(session.effects.time(), None);
@@ -61,6 +59,7 @@ fn parts_are_measured_until_the_scene_changes() {
         apply(
             &mut session,
             PanelRequest::Turn(measuring_row(), Turn::Toggle),
+            0,
         );
         session.act(action, 0);
         update(&mut session);
@@ -89,7 +88,7 @@ fn rows_of_parts_fit() {
         let all: Vec<_> = (0..session.tuning.parts.len()).collect();
         let k = row.checked_sub(part_row(0));
         if let Some(k) = k.filter(|k| all.contains(k)) {
-            let _ = parts::set(&mut session, k, false);
+            let _ = set_part(&mut session, k, false);
         }
     }
     for size in [
@@ -100,7 +99,7 @@ fn rows_of_parts_fit() {
     ] {
         let mut screen = Screen::new(size);
         let texts = screen.written(&session);
-        let edge = size[0] - PLACE.taken(size)[0];
+        let edge = size[0] - PANE.taken(size)[0];
         let panel = texts.iter().filter(|(_, rect, _)| rect.left() > edge);
         for (words, rect, seen) in panel.clone() {
             // In a low window, rows scroll.

@@ -3,6 +3,5 @@
 mod drawing;
 mod leaving_out;
 mod measuring;
-mod opened;
 mod screen;
 mod turning;

@@ -1,99 +1,56 @@
-//! A window of egui without a display.
+//! The panel in a window without a display, sessions with an open panel, and values of its rows.
 
-use egui::{Context, Event, PointerButton, Pos2, RawInput, Rect, Shape, pos2};
+use egui::{Event, Pos2, Rect, pos2};
 
-use crate::hud::panel::request::{Request, apply};
-use crate::hud::panel::view::{MARGIN, PLACE, place, show};
-use crate::hud::style;
-use crate::session::Session;
+use crate::hud::panel::PANE;
+use crate::hud::window::{Window, button};
+use crate::session::panel::{part_row, rows};
+use crate::session::{Action, PanelKey, PanelRequest, RunAction, Session, Turn};
+use crate::session::{action_beside, apply, session};
 
-/// A window of egui without a display.
+/// A panel in a window.
 pub struct Screen {
-    ctx: Context,
+    pub window: Window,
     pub size: [f32; 2],
-    pub time: f64,
 }
 
 impl Screen {
     pub fn new(size: [f32; 2]) -> Self {
-        Self {
-            ctx: style::context(),
-            size,
-            time: 0.0,
-        }
+        let window = Window::new(size);
+        Self { window, size }
     }
 
     /// Returns the width of the panel (points).
     fn width(&self) -> f32 {
-        PLACE.taken(self.size)[0]
+        PANE.taken(self.size)[0]
     }
 
-    /// Runs a frame, and returns the drawing and the request of the mouse.
-    pub fn frame(
-        &mut self,
-        session: &Session,
-        events: Vec<Event>,
-    ) -> (egui::FullOutput, Option<Request>) {
-        self.time += 0.05;
-        let shown = place(session).map(|place| place.taken(self.size));
-        let [right, bottom] = shown.unwrap_or_default();
-        let input = RawInput {
-            screen_rect: Some(Rect::from_min_size(Pos2::ZERO, self.size.into())),
-            safe_area_insets: Some(egui::SafeAreaInsets(egui::epaint::MarginF32 {
-                right,
-                bottom,
-                ..Default::default()
-            })),
-            time: Some(self.time),
-            events,
-            ..Default::default()
-        };
-        let mut request = None;
-        let mut output = self.ctx.run_ui(input, |ui| {
-            request = show(ui.ctx(), session).or(request);
-        });
-        output.textures_delta.set.clear();
-        output.textures_delta.free.clear();
-        (output, request)
+    /// Runs a frame, and returns the action of the mouse.
+    fn frame(&mut self, session: &Session, events: Vec<Event>) -> Option<Action> {
+        let pane = session.shows(RunAction::Panel).then_some(PANE);
+        let taken = pane.as_ref().map_or([0.0; 2], |pane| pane.taken(self.size));
+        self.window
+            .frame(taken, events, |ctx| pane.as_ref()?.show(ctx, session))
     }
 
     /// Returns all text, with its rectangle and the visible part of the screen.
     pub fn written(&mut self, session: &Session) -> Vec<(String, Rect, Rect)> {
-        self.frame(session, vec![]);
-        self.frame(session, vec![]);
-        self.time += 10.0;
-        let (output, _) = self.frame(session, vec![]);
-        let screen = Rect::from_min_size(Pos2::ZERO, self.size.into());
-        let text = |clipped: &egui::epaint::ClippedShape| match &clipped.shape {
-            Shape::Text(text) => Some((
-                text.galley.text().to_owned(),
-                text.visual_bounding_rect(),
-                clipped.clip_rect.intersect(screen).expand(1.0),
-            )),
-            _ => None,
-        };
-        output.shapes.iter().filter_map(text).collect()
+        for later in [0.0, 0.0, 10.0] {
+            self.window.time += later;
+            self.frame(session, vec![]);
+        }
+        self.window.written()
     }
 
     /// Returns all text with its rectangles. Nothing may be cut off.
     pub fn read(&mut self, session: &Session) -> Vec<(String, Rect)> {
-        let all = self.written(session).into_iter();
-        all.map(|(words, rect, seen)| {
-            assert!(seen.contains_rect(rect), "{words} is cut off at {rect:?}");
-            (words, rect)
-        })
-        .collect()
+        self.written(session);
+        self.window.read()
     }
 
     /// Drags the left button from one position to another, or clicks if they are the same, and
-    /// applies the requests to the session.
+    /// carries out the actions.
     pub fn click(&mut self, session: &mut Session, from: Pos2, to: Pos2) {
-        let button = |pos, pressed| Event::PointerButton {
-            pos,
-            button: PointerButton::Primary,
-            pressed,
-            modifiers: egui::Modifiers::default(),
-        };
         for event in [
             vec![Event::PointerMoved(from)],
             vec![button(from, true)],
@@ -101,8 +58,8 @@ impl Screen {
             vec![button(to, false)],
             vec![],
         ] {
-            if let (_, Some(Request::Change(request))) = self.frame(session, event) {
-                apply(session, request);
+            if let Some(action) = self.frame(session, event) {
+                apply(session, action, 0);
             }
         }
     }
@@ -115,9 +72,55 @@ impl Screen {
             .iter()
             .find(|(words, rect)| words == name && rect.left() > left)
             .unwrap();
-        let y = row.center().y;
-        let at = |x: f32| pos2(left + MARGIN + x, y);
-        let wide = self.width() - 2.0 * MARGIN;
+        let (y, margin) = (row.center().y, PANE.margins[0]);
+        let at = |x: f32| pos2(left + margin + x, y);
+        let wide = self.width() - 2.0 * margin;
         (at(wide - 10.0), [at(82.0), at(wide - 86.0)])
     }
+}
+
+pub fn opened(words: &[&str]) -> Session {
+    let mut session = session(words);
+    session.act(RunAction::Panel, 0);
+    session
+}
+
+/// Returns a session with an open panel for every built-in scene.
+pub fn every_scene() -> impl Iterator<Item = Session> {
+    let names = a3_scenes::SCENES.iter().map(|entry| entry.name);
+    names.map(|name| opened(&["r", "0.005", "--scene", name]))
+}
+
+pub fn type_key(session: &mut Session, key: PanelKey, shift: bool) {
+    let action = action_beside(session, key, shift).unwrap();
+    apply(session, action, 0);
+}
+
+/// Returns the names and values of all rows.
+pub fn dials(session: &Session) -> Vec<(&'static str, f64)> {
+    let rows = rows(session).into_iter();
+    rows.map(|(_, knob, dial)| (knob.name, dial.value))
+        .collect()
+}
+
+/// Returns the names of the rows that differ, except the colour scale, which exists only with
+/// colours.
+pub fn changed(before: &[(&'static str, f64)], session: &Session) -> Vec<&'static str> {
+    let always = |row: &&(&'static str, f64)| row.0 != "full colour";
+    let after = dials(session);
+    let rows = after.iter().filter(always);
+    let others = rows.filter(|row| !before.contains(row));
+    others.map(|row| row.0).collect()
+}
+
+/// Returns the index of a part by its name.
+pub fn part(session: &Session, name: &str) -> usize {
+    let mut parts = session.tuning.parts.iter();
+    parts.position(|part| part.name == name).unwrap()
+}
+
+/// Toggles a part by its name.
+pub fn toggle(session: &mut Session, name: &str) {
+    let row = part_row(part(session, name));
+    apply(session, PanelRequest::Turn(row, Turn::Toggle), 0);
 }

@@ -4,13 +4,10 @@ use a3_core::contact::Shape;
 use a3_core::{Control, Network, Path, Vector3};
 use a3_scenes::MATERIALS;
 
-use super::opened::{changed, dials, every_scene, opened, type_key};
-use super::screen::Screen;
-use crate::hud::panel::dial::Turn;
-use crate::hud::panel::knobs::{KNOBS, row_of};
-use crate::hud::panel::request::{PanelKey, PanelRequest, apply, numbers, press, press_text, rows};
-use crate::hud::panel::undo;
-use crate::session::{RunAction, Session, TextKey, compared, frames};
+use super::screen::{Screen, changed, dials, every_scene, opened, type_key};
+use crate::session::panel::{KNOBS, numbers, row_of, rows, undo};
+use crate::session::{PanelKey, PanelRequest, RunAction, Session, TextKey, Turn};
+use crate::session::{action_beside, apply, compared, frames, is_typing};
 
 #[test]
 fn keys_reach_every_row_and_turn_only_that() {
@@ -56,7 +53,7 @@ fn keys_reach_every_row_and_turn_only_that() {
         }
         // A closed panel ignores keys.
         session.act(RunAction::Panel, 0);
-        assert!(!press(&mut session, PanelKey::Up, false));
+        assert_eq!(action_beside(&session, PanelKey::Up, false), None);
     }
 }
 
@@ -73,7 +70,7 @@ fn a_turn_changes_forces_and_turning_back_restores_them() {
     session.tick(0.1);
     let turn = |session: &mut Session, name: &str, turn| {
         let k = KNOBS.iter().position(|knob| knob.name == name).unwrap();
-        apply(session, PanelRequest::Turn(k, turn));
+        apply(session, PanelRequest::Turn(k, turn), 0);
     };
     let before = forces(&session);
     for (name, value) in [
@@ -143,6 +140,7 @@ fn another_scene_is_not_tuned() {
                     other: false,
                 },
             ),
+            0,
         );
     }
     session.act(RunAction::NextScene, 0);
@@ -159,7 +157,7 @@ fn the_limit_follows_the_stiffness() {
     let limit = |session: &Session| session.runs.panes[0].limit.limit().unwrap().step;
     let before = limit(&session);
     let k = KNOBS.iter().position(|k| k.name == "stiffness").unwrap();
-    apply(&mut session, PanelRequest::Turn(k, Turn::To(4.0)));
+    apply(&mut session, PanelRequest::Turn(k, Turn::To(4.0)), 0);
     session.read_state();
     let after = limit(&session);
     assert!((before / after - 2.0).abs() < 0.05, "{before} {after}");
@@ -171,7 +169,7 @@ fn every_pane_and_the_reference_are_tuned_alike() {
     session.act(RunAction::Panel, 0);
     for (name, value) in [("stiffness", 2.0), ("gravity", 20.0), ("drag", 0.02)] {
         let k = KNOBS.iter().position(|k| k.name == name).unwrap();
-        apply(&mut session, PanelRequest::Turn(k, Turn::To(value)));
+        apply(&mut session, PanelRequest::Turn(k, Turn::To(value)), 0);
     }
     for _ in 0..60 {
         session.tick(1.0 / 60.0);
@@ -182,7 +180,7 @@ fn every_pane_and_the_reference_are_tuned_alike() {
     }
     // The step belongs to one pane.
     session.panel.pane = 1;
-    apply(&mut session, PanelRequest::Turn(1, Turn::To(0.002)));
+    apply(&mut session, PanelRequest::Turn(1, Turn::To(0.002)), 0);
     assert_eq!(session.runs.first().control(), Control::Step(0.005));
     assert_eq!(
         session.runs.panes[1].simulation.control(),
@@ -227,20 +225,20 @@ fn values_are_typed() {
     let mut screen = Screen::new([1280.0, 720.0]);
     let mut type_value = |session: &mut Session, name: &str, words: &str| {
         let (value, _) = screen.place(session, name);
-        screen.time += 1.0;
+        screen.window.time += 1.0;
         screen.click(session, value, value);
         assert_eq!(session.panel.typed.as_deref(), Some(""));
         // Ctrl+A marks what was typed, and the next letter replaces it.
         for key in [TextKey::Type('7'), TextKey::Type('7'), TextKey::MarkAll] {
-            assert!(press_text(session, key));
+            apply(session, key, 0);
         }
         for letter in words.chars() {
-            assert!(press_text(session, TextKey::Type(letter)));
+            apply(session, TextKey::Type(letter), 0);
         }
-        press_text(session, TextKey::Accept);
-        let typing = session.panel.typed.is_some();
-        press_text(session, TextKey::Cancel);
-        assert!(!press_text(session, TextKey::Type('1')));
+        apply(session, TextKey::Accept, 0);
+        let typing = is_typing(session);
+        apply(session, TextKey::Cancel, 0);
+        assert!(!is_typing(session));
         typing
     };
     assert!(type_value(&mut session, "gravity", "1.51.65"));
@@ -290,6 +288,7 @@ fn turns_are_undone_and_redone() {
                         other: false,
                     },
                 ),
+                0,
             );
             let turned = there(&session);
             if turned == Some(dial.value) {
@@ -342,6 +341,7 @@ fn a_material_is_chosen_and_undone() {
     apply(
         &mut session,
         PanelRequest::Turn(row, Turn::Exactly(denim as f64)),
+        0,
     );
     let said = session.readings.message.take().unwrap();
     assert!(

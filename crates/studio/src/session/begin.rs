@@ -8,7 +8,10 @@ use a3_files::scene_file::Source;
 use a3_files::setup::{Request, find};
 use a3_media::show::{check_drawing, check_particle};
 
-use crate::session::{Beginning, Opening, Origin, Reader, Session, begins_crossed, offer_at_start};
+use super::acts::offer_at_start;
+use super::opening::{Opening, Reader};
+use super::origin::{Origin, begins_crossed};
+use super::state::{Beginning, Session};
 
 /// Creates the session of a window on one run, or on several side by side. Fails if an option does
 /// not fit the scene.

@@ -1,86 +1,12 @@
-//! Requests of keys and mouse to the panel and to the open list.
+//! The rows of the panel, and what keys and mouse do there and in the open list.
 
 use a3_scenes::{Edit, MATERIALS, Material};
 
-use super::dial::{Dial, Turn};
 use super::knobs::{KNOBS, Knob, is_left_out};
 use super::undo::edit;
 use super::values::pane;
 use super::{measure, parts};
-use crate::session::{
-    Action, LessonRequest, Measure, MeasureRequest, PlotRequest, Session, TextKey, Tool, Topic,
-    asking, panes,
-};
-
-/// A request of the mouse.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Request {
-    /// Perform the action of a key.
-    Act(Action),
-    /// Change the panel, a knob, the open list, or the moment.
-    Change(PanelRequest),
-    /// Go on in a lesson.
-    Learn(LessonRequest),
-    /// Change the plots.
-    Plot(PlotRequest),
-}
-
-/// A request of the mouse to the panel, the open list or the timeline.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum PanelRequest {
-    /// Choose a row, by its number in the table of knobs.
-    ChooseRow(usize),
-    /// Start to type a value for the knob of a number.
-    Type(usize),
-    /// Turn the knob of a number.
-    Turn(usize, Turn),
-    /// Accept the entry of a number in the open list.
-    TakeEntry(usize),
-    /// Close the list.
-    CloseList,
-    /// Go to a share of the timeline.
-    GoTo(f32),
-    /// Ask something about the scene, or use an answer.
-    Measure(MeasureRequest),
-    /// Choose a solver for another pane beside that of a number.
-    AddPane(usize),
-    /// Remove the pane of a number.
-    RemovePane(usize),
-    /// Reset all runs, and give that of a pane, which blew up, what would have held.
-    RunAgain(usize),
-    /// Choose a tool.
-    #[cfg_attr(
-        target_arch = "wasm32",
-        allow(dead_code, reason = "the page has no tools")
-    )]
-    Tool(Tool),
-    /// Set a quantity of what the tools add.
-    #[cfg_attr(
-        target_arch = "wasm32",
-        allow(dead_code, reason = "the page has no tools")
-    )]
-    SetMeasure(Measure, f64),
-}
-
-/// A key of the panel.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum PanelKey {
-    /// Chooses the row above.
-    Up,
-    /// Chooses the row below.
-    Down,
-    /// Turns the knob down.
-    Left,
-    /// Turns the knob up.
-    Right,
-    /// Toggles a switch; turns another knob to the scene's own value.
-    Toggle,
-}
-
-/// Returns whether the panel is visible: it is open, and the help does not hide it.
-pub fn is_shown(session: &Session) -> bool {
-    session.panel.open && !session.readings.help
-}
+use crate::session::{Dial, PanelKey, PanelRequest, Session, TextKey, Topic, Turn, panes};
 
 /// Returns the knobs that apply to the panel's pane, with their numbers in the table.
 pub fn rows(session: &Session) -> Vec<(usize, &'static Knob, Dial)> {
@@ -125,47 +51,27 @@ pub fn numbers(session: &Session) -> Vec<usize> {
     knobs.chain(measuring).chain(parts).collect()
 }
 
-/// Handles a key, and returns whether the panel or the questions take it. With `other`, a knob
-/// turns by the other step of its scale.
-pub fn press(session: &mut Session, key: PanelKey, other: bool) -> bool {
-    if session.measuring.open && key != PanelKey::Up && key != PanelKey::Down {
-        let request = match key {
-            PanelKey::Left => MeasureRequest::Ask(session.measuring.question.neighbour(-1)),
-            PanelKey::Right => MeasureRequest::Ask(session.measuring.question.neighbour(1)),
-            _ => MeasureRequest::Toggle,
-        };
-        apply(session, PanelRequest::Measure(request));
-        return true;
-    }
-    if !is_shown(session) {
-        return false;
-    }
+/// Returns the request of a key. With `other`, a knob turns by the other step of its scale.
+pub fn request(session: &Session, key: PanelKey, other: bool) -> PanelRequest {
     let rows = numbers(session);
     // If the present scene lacks the chosen row, use the nearest one above it.
     let chosen = session.panel.row;
     let at = rows.iter().rposition(|k| *k <= chosen).unwrap_or(0);
+    // From the first row, up to the last of the same page.
+    let knobs = self::rows(session).len();
+    let above = || at.checked_sub(1).unwrap_or(knobs.saturating_sub(1));
     let turn = match key {
-        PanelKey::Up => {
-            // From the first row, to the last of the same page.
-            let knobs = self::rows(session).len();
-            session.panel.row = rows[at.checked_sub(1).unwrap_or(knobs.saturating_sub(1))];
-            return true;
-        }
-        PanelKey::Down => {
-            session.panel.row = rows[(at + 1) % rows.len()];
-            return true;
-        }
+        PanelKey::Up => return PanelRequest::ChooseRow(rows[above()]),
+        PanelKey::Down => return PanelRequest::ChooseRow(rows[(at + 1) % rows.len()]),
         PanelKey::Left => Turn::By { up: false, other },
         PanelKey::Right => Turn::By { up: true, other },
         PanelKey::Toggle => Turn::Toggle,
     };
-    apply(session, PanelRequest::Turn(rows[at], turn));
-    true
+    PanelRequest::Turn(rows[at], turn)
 }
 
 /// Carries out a request, and returns whether that changed the scene.
 pub fn apply(session: &mut Session, request: PanelRequest) -> bool {
-    let at = pane(session);
     // Discard a value that was typed but not accepted.
     (session.panel.typed, session.panel.all_marked) = (None, false);
     match request {
@@ -176,12 +82,11 @@ pub fn apply(session: &mut Session, request: PanelRequest) -> bool {
         PanelRequest::ChooseRow(row) => session.panel.row = row,
         PanelRequest::Turn(row, turn) => {
             session.panel.row = row;
-            turn_row(session, at, row, turn);
+            turn_row(session, pane(session), row, turn);
         }
         PanelRequest::TakeEntry(number) => return session.take_entry(number),
         PanelRequest::CloseList => session.list = None,
         PanelRequest::GoTo(share) => session.scrub_to(share),
-        PanelRequest::Measure(request) => return asking::apply(session, request, at),
         PanelRequest::AddPane(pane) => session.toggle_list(Topic::Beside { pane }),
         PanelRequest::RemovePane(pane) => return panes::remove(session, pane),
         PanelRequest::RunAgain(pane) => session.run_again(pane),
@@ -228,13 +133,10 @@ fn name_material(session: &mut Session, material: &Material) {
     session.readings.say(said);
 }
 
-/// Handles a key while a value is typed for the chosen row, and returns whether one is.
-pub fn press_text(session: &mut Session, key: TextKey) -> bool {
-    if !is_shown(session) {
-        session.panel.typed = None;
-    }
+/// Handles a key while a value is typed for the chosen row.
+pub fn type_key(session: &mut Session, key: TextKey) {
     let Some(typed) = &mut session.panel.typed else {
-        return false;
+        return;
     };
     if std::mem::take(&mut session.panel.all_marked)
         && matches!(key, TextKey::Type(_) | TextKey::Erase)
@@ -257,7 +159,6 @@ pub fn press_text(session: &mut Session, key: TextKey) -> bool {
             }
         }
     }
-    true
 }
 
 /// Parses a typed value: a number, or a fraction such as 1/60. Fails if it is neither, or outside

@@ -1,21 +1,28 @@
-//! The hint for the first run: the mouse can pull.
+//! Marks at places of the picture: the hint for the first run, that the mouse can pull; the ruler,
+//! the distance between two particles or points; and the box in which particles are pinned or
+//! freed.
 
 use a3_media::show;
-use egui::{Context, FontId, Id, LayerId, Order, Rect, Vec2, pos2, vec2};
+use egui::{
+    Align2, Context, FontId, Id, LayerId, Order, Pos2, Rect, Stroke, StrokeKind, Vec2, pos2, vec2,
+};
 
 use super::layout;
-use super::style::{MARGIN, PAPER, TEXT};
-use crate::session::Session;
+use super::style::{MARGIN, PAPER, TEXT, WARNING};
+use super::widgets::write;
+#[cfg(not(target_arch = "wasm32"))]
+use super::words::signed;
+use crate::session::{Selection, Session};
 
 /// Time for which the hint is shown (s).
-const DURATION: f64 = 10.0;
+const HINT_DURATION: f64 = 10.0;
 /// Distance of the hint from the body, and of its words from its edges (points).
 const GAP: f32 = 14.0;
 const PAD: [f32; 2] = [12.0, 9.0];
 
 /// Writes the hint beside the body of the first pane for a while, until something was pulled for
 /// the first time. It covers neither the body nor other text.
-pub fn show(ctx: &Context, session: &Session) {
+pub fn hint(ctx: &Context, session: &Session) {
     let (run, readings) = (session.runs.first(), &session.readings);
     let hidden = session.pulled
         || session.panel.editor.open
@@ -28,7 +35,7 @@ pub fn show(ctx: &Context, session: &Session) {
     };
     let (since, now) = (Id::unique("hint since"), ctx.input(|input| input.time));
     let begun = ctx.data_mut(|data| *data.get_temp_mut_or(since, now));
-    if now - begun > DURATION {
+    if now - begun > HINT_DURATION {
         return;
     }
     let by = if readings.touch {
@@ -108,38 +115,101 @@ fn beside(body: Rect, size: Vec2, room: Rect, taken: [Rect; 2]) -> Option<Rect> 
     })
 }
 
+/// Radius of an end of the ruler (points).
+#[cfg(not(target_arch = "wasm32"))]
+const END: f32 = 4.0;
+
+/// Draws the ruler in each pane, with the distance between its ends there.
+#[cfg(not(target_arch = "wasm32"))]
+pub fn ruler(ctx: &Context, session: &Session) {
+    let ends = session.panel.plotting.ruler.as_deref().unwrap_or_default();
+    if ends.is_empty() || session.readings.help {
+        return;
+    }
+    let (window, scale) = (ctx.content_rect(), ctx.pixels_per_point());
+    let size = [window.width(), window.height()].map(|side| (side * scale).round() as u32);
+    let layer = LayerId::new(Order::Background, Id::unique("ruler"));
+    let panes = &session.runs.panes;
+    let tiles = layout::tiles(panes.len(), size.into(), scale);
+    for (pane, tile) in panes.iter().zip(tiles) {
+        let [left, top] = [tile.x, tile.y].map(|side| side as f32 / scale);
+        let [width, height] = layout::points(tile, scale);
+        let room = Rect::from_min_size(pos2(left, top), vec2(width, height));
+        let painter = ctx.layer_painter(layer).with_clip_rect(room);
+        let places = ends.iter().map(|end| {
+            let at = end.place(&pane.simulation)?;
+            let camera = &session.view.camera;
+            let ([x, y], _) = camera.project(show::to_f32(at), tile.aspect())?;
+            Some((at, room.min + vec2(x * width, y * height)))
+        });
+        let Some(places) = places.collect::<Option<Vec<_>>>() else {
+            continue;
+        };
+        if let [(from, a), (to, b)] = *places {
+            let [wide, thin] = [Stroke::new(4.0, PAPER), Stroke::new(1.6, TEXT)];
+            for stroke in [wide, thin] {
+                painter.line_segment([a, b], stroke);
+            }
+            let way = to - from;
+            let [dx, dy, dz] = [way.x, way.y, way.z].map(signed);
+            let length = signed(way.norm());
+            let words = format!("{length} m\ndx {dx}   dy {dy}   dz {dz} m");
+            let font = FontId::proportional(13.5);
+            let galley = painter.layout_no_wrap(words, font, TEXT);
+            let sheet = galley.size() + vec2(16.0, 10.0);
+            let at = below(a, b, room, sheet);
+            painter.rect_filled(Rect::from_min_size(at, sheet), 6.0, PAPER);
+            painter.galley(at + vec2(8.0, 5.0), galley, TEXT);
+        }
+        for (_, at) in places {
+            painter.circle(at, END, PAPER.to_opaque(), Stroke::new(1.6, TEXT));
+        }
+    }
+}
+
+/// Returns the place of a sheet of a size beside the middle of a line, within a room.
+#[cfg(not(target_arch = "wasm32"))]
+fn below(a: Pos2, b: Pos2, room: Rect, size: Vec2) -> Pos2 {
+    let at = a + 0.5 * (b - a) + vec2(10.0, 10.0);
+    let most = room.max - size;
+    pos2(
+        at.x.min(most.x).max(room.left()),
+        at.y.min(most.y).max(room.top()),
+    )
+}
+
+/// Draws the box in which particles are pinned or freed, with the effect of releasing the button.
+pub fn selection(ctx: &Context, selection: &Selection) {
+    let [a, b] = selection.corners.map(Pos2::from);
+    let rect = Rect::from_two_pos(a, b);
+    let painter = ctx.layer_painter(LayerId::new(Order::Foreground, Id::unique("box")));
+    let fill = WARNING.colour.gamma_multiply(0.12);
+    let stroke = Stroke::new(1.4, WARNING.colour);
+    painter.rect(rect, 2.0, fill, stroke, StrokeKind::Middle);
+    let does = if selection.pinned { "pin" } else { "free" };
+    let words = format!("{does} {}", selection.count);
+    let at = rect.left_top() + vec2(6.0, 4.0);
+    write(&painter, at, Align2::LEFT_TOP, words, 13.5, TEXT);
+}
+
 #[cfg(test)]
 mod tests {
-    use egui::Pos2;
-
     use super::*;
+    use crate::hud::window::Window;
     use crate::session::{frames, session};
 
     /// Returns the words of the hint and its place after a time (s) in a window of a size (points),
     /// drawn twice a second.
     fn seen(session: &Session, size: [f32; 2], time: f64) -> Option<(String, Rect)> {
-        let ctx = crate::hud::style::context();
-        let mut seen = None;
-        for k in 0..=(2.0 * time) as u32 {
-            let input = egui::RawInput {
-                screen_rect: Some(Rect::from_min_size(Pos2::ZERO, size.into())),
-                time: Some(0.5 * f64::from(k)),
-                ..Default::default()
-            };
-            let mut output = ctx.run_ui(input, |ui| show(ui.ctx(), session));
-            output.textures_delta.set.clear();
-            output.textures_delta.free.clear();
-            seen = output
-                .shapes
-                .iter()
-                .find_map(|clipped| match &clipped.shape {
-                    egui::Shape::Text(text) => {
-                        Some((text.galley.text().to_owned(), text.visual_bounding_rect()))
-                    }
-                    _ => None,
-                });
+        let mut window = Window::new(size);
+        window.step = 0.5;
+        for _ in 0..=(2.0 * time) as u32 {
+            window.frame([0.0; 2], vec![], |ctx| {
+                hint(ctx, session);
+                None::<()>
+            });
         }
-        seen
+        window.read().into_iter().next()
     }
 
     #[test]

@@ -6,13 +6,12 @@ use a3_files::ending::Ending;
 use a3_media::show::{Arrows, Quantity, Show};
 use a3_scenes::PartChange;
 
-use super::dial::{Dial, DialScale, Turn};
-use super::seen::{arrows, colour, film, film_seconds, frame_limit, full_colour, style};
+use super::values::{arrows, colour, film, film_seconds, frame_limit, full_colour, style};
 use super::values::{
     damping, drag, floor, gravity, gusts, material, network, own, radii, solver, sphere,
     springs_of, step, stiffness, strain_limit, strain_limits, switch,
 };
-use crate::session::{Change, RunAction, Session, Tuning, looks};
+use crate::session::{Change, Dial, DialScale, RunAction, Session, Tuning, Turn, looks};
 
 /// A knob: a row of the table.
 #[derive(Clone, Copy)]

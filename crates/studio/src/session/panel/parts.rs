@@ -3,10 +3,9 @@
 use a3_files::rounding::short;
 use a3_scenes::PartChange;
 
-use super::dial::Turn;
 use super::knobs::{KNOBS, row_of};
 use super::tune::leave_out;
-use crate::session::{Change, Effect, Session};
+use crate::session::{Change, Effect, Session, Turn};
 
 /// Share of the work below which a part costs next to nothing: timings are no more accurate.
 const MIN_COST: f64 = 0.01;

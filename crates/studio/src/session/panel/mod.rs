@@ -1,0 +1,26 @@
+//! The panel: everything that can be tuned during a run, the parts of the scene, and the edits of
+//! the scene, with undo and redo of all of these.
+
+mod knobs;
+mod measure;
+mod parts;
+mod request;
+mod tune;
+mod undo;
+mod values;
+
+pub use knobs::Knob;
+pub use measure::update;
+pub use parts::{effect_in_words, is_as_in_scene, is_in, turn as turn_part};
+pub use request::{apply, request, type_key};
+pub use request::{can_measure, measuring_row, numbers, part_row, rows, shows_parts};
+pub use tune::{tune, tuned};
+pub use undo::undo;
+#[cfg(not(target_arch = "wasm32"))]
+pub use undo::{edit, of_one_body};
+pub use values::pane;
+
+#[cfg(test)]
+pub use knobs::{KNOBS, row_of};
+#[cfg(test)]
+pub use parts::set as set_part;
