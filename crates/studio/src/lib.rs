@@ -16,7 +16,6 @@
     allow(clippy::unused_self, clippy::unnecessary_wraps)
 )]
 
-#[cfg(any(target_arch = "wasm32", test))]
 pub mod address;
 mod app;
 pub mod begin;
@@ -33,6 +32,8 @@ mod open;
 mod recorder;
 pub mod session;
 mod settings;
+#[cfg_attr(target_arch = "wasm32", path = "page_storage.rs")]
+mod storage;
 
 #[cfg(target_arch = "wasm32")]
 pub use app::{Event, send, spawn};

@@ -6,7 +6,8 @@ use egui::{Context, TextureId};
 
 use super::panel::{self, Request};
 use super::{
-    bar, edit, hint, layout, lessons, list, measure, offer, pane_buttons, plotting, question, text,
+    bar, edit, hint, layout, lessons, list, measure, offer, pane_buttons, plotting, question,
+    ruler, text,
 };
 use crate::session::Session;
 
@@ -65,8 +66,7 @@ fn over_picture(ctx: &Context, session: &Session) -> Option<Request> {
     let on_text = text::show(ctx, &session.runs.panes, &session.readings);
     let on_offer = plotting::offer(ctx, session);
     let on_offer = offer::show(ctx, session).or(on_offer);
-    #[cfg(not(target_arch = "wasm32"))]
-    super::ruler::show(ctx, session);
+    ruler::show(ctx, session);
     let on_panes = pane_buttons::show(ctx, session);
     let on_tools = edit::show(ctx, session).map(Request::Change);
     on_panes.or(on_offer).or(on_tools).or(on_text)

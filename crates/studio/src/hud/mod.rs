@@ -8,7 +8,6 @@ mod blow_up;
 mod caption;
 mod charts;
 mod docked;
-#[cfg_attr(target_arch = "wasm32", path = "no_edit.rs")]
 pub mod edit;
 mod help;
 mod hint;
@@ -16,7 +15,6 @@ pub mod layout;
 mod legend;
 pub mod lessons;
 mod list;
-#[cfg_attr(target_arch = "wasm32", path = "no_measure.rs")]
 mod measure;
 mod offer;
 mod overlay;
@@ -25,10 +23,8 @@ pub mod panel;
 mod panes;
 #[cfg(not(target_arch = "wasm32"))]
 mod picture;
-#[cfg_attr(target_arch = "wasm32", path = "no_plotting.rs")]
 pub mod plotting;
 mod question;
-#[cfg(not(target_arch = "wasm32"))]
 mod ruler;
 mod selection;
 mod single;

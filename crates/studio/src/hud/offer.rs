@@ -65,7 +65,7 @@ pub fn show(ctx: &Context, session: &Session) -> Option<Request> {
 /// Returns what is offered: words, a key, and the request.
 fn offers(session: &Session) -> Vec<(String, &'static str, Request)> {
     let mut all = vec![];
-    if session.readings.offers_apart && !cfg!(target_arch = "wasm32") {
+    if session.readings.offers_apart {
         let apart = Request::Act(Action::Run(RunAction::Touch));
         all.push(("Bring the surfaces apart".into(), "x", apart));
     }

@@ -13,7 +13,6 @@ use super::history::Change;
 use super::keys::RunAction;
 use super::list::{List, TextKey, Topic, solvers};
 use super::pane::Pane;
-#[cfg(not(target_arch = "wasm32"))]
 use super::plotting;
 use super::runs::KEY_BUDGET;
 use super::state::Session;
@@ -98,9 +97,6 @@ impl Session {
             RunAction::NextView => self.readings.say(self.view.next_view()),
             RunAction::Panel | RunAction::Measure | RunAction::Lessons | RunAction::Plots => {
                 toggle(self, action);
-            }
-            RunAction::Edit if cfg!(target_arch = "wasm32") => {
-                self.readings.say("Only the program edits scenes.");
             }
             RunAction::Edit if self.runs.first().model().network().is_none() => {
                 let why = "Only scenes of masses can be edited.";
@@ -396,14 +392,13 @@ pub fn offer_at_start(session: &mut Session) {
 /// Turns self-collision on or off. If surfaces cross, says which, and offers to bring them apart;
 /// does so if that was offered.
 pub fn toggle_touch(session: &mut Session) {
-    let is_page = cfg!(target_arch = "wasm32");
-    if session.readings.offers_apart && !is_page {
+    if session.readings.offers_apart {
         return bring_apart(session);
     }
     let Err(why) = session.runs.toggle_touch() else {
         return;
     };
-    if !is_page && session.runs.all().any(crosses) {
+    if session.runs.all().any(crosses) {
         session.readings.offer(why);
     } else {
         session.readings.say(why);
@@ -497,7 +492,6 @@ pub fn toggle(session: &mut Session, action: RunAction) {
     for (own, open) in panes {
         *open = own == action && !*open;
     }
-    #[cfg(not(target_arch = "wasm32"))]
     if session.panel.plotting.open {
         plotting::pick_first(&mut session.runs.panes);
     }

@@ -18,7 +18,6 @@ mod origin;
 mod pane;
 pub mod panes;
 mod passage;
-#[cfg(not(target_arch = "wasm32"))]
 pub mod plotting;
 mod question;
 mod reference;
@@ -29,7 +28,6 @@ mod save;
 mod scenes;
 mod state;
 mod timeline;
-#[cfg_attr(target_arch = "wasm32", path = "no_traces.rs")]
 mod traces;
 mod tuning;
 mod view;
@@ -42,7 +40,7 @@ pub use continued::continue_from;
 pub use effects::{Deviation, Effect, Job, Situation};
 pub use history::{Change, EditChange, Recorded};
 pub use keys::{Action, RunAction, WindowAction};
-pub use keys::{Binding, FINGERS, GROUPS, Group, LEFT_OUT, MOUSE, action};
+pub use keys::{Binding, FINGERS, GROUPS, Group, IS_PAGE, MOUSE, action, is_here};
 pub use lessons::{Given, LessonRequest, Lessons};
 pub use list::{Entry, TextKey, Topic};
 pub use measuring::Progress;
@@ -57,13 +55,9 @@ pub use save::write_scene;
 pub use state::{Beginning, Session};
 pub use state::{FilmProgress, Readings, Selection};
 pub use timeline::TimelinePosition;
-#[cfg(not(target_arch = "wasm32"))]
 pub use traces::{Kind, Mode, Pick, PlotFile, Row, SPANS, Trigger, Variable};
 pub use traces::{PlotRequest, RulerEnd};
-#[cfg(any(target_arch = "wasm32", test))]
-pub use tuning::Hidden;
-pub use tuning::{DEFAULT_FILM_SECONDS, Tuning};
-pub use tuning::{Measure, Tool};
+pub use tuning::{DEFAULT_FILM_SECONDS, Hidden, Measure, Tool, Tuning};
 
 #[cfg(test)]
 pub use keys::bindings;

@@ -84,7 +84,6 @@ impl Scenes {
     }
 
     /// Limits the scenes to those with these names.
-    #[cfg(any(target_arch = "wasm32", test))]
     pub fn offer(&mut self, names: Vec<String>) {
         let shown = &self.shown.source.typed;
         self.number = names.iter().position(|name| name == shown).unwrap_or(0);

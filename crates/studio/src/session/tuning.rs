@@ -1,11 +1,6 @@
 //! The panel's part of a session: the tuning of the scene, the tools that edit it, with the sizes,
 //! speeds and masses of what they add, and the actions that a page for teaching leaves out.
 
-#![cfg_attr(
-    target_arch = "wasm32",
-    allow(dead_code, reason = "the page has no tools")
-)]
-
 use a3_core::{Network, Scene};
 use a3_files::ending::Ending;
 use a3_files::rounding::short;

@@ -14,19 +14,15 @@ mod undo;
 mod values;
 mod view;
 
-#[cfg(not(target_arch = "wasm32"))]
 pub use dial::{Dial, DialScale, Turn};
 pub use measure::update;
-#[cfg(not(target_arch = "wasm32"))]
 pub use parts::turn as turn_part;
 pub use plots::csv;
 pub use request::{PanelKey, PanelRequest, Request, apply, press, press_text};
-#[cfg(not(target_arch = "wasm32"))]
 pub use row::slider;
 pub use row::{CHOSEN, HOVERED, INK, TRACK, button};
 pub use tune::{tune, tuned};
 pub use undo::undo;
-#[cfg(not(target_arch = "wasm32"))]
 pub use undo::{edit, of_one_body};
 pub use view::{place, show};
 

@@ -49,16 +49,8 @@ pub enum PanelRequest {
     /// Reset all runs, and give that of a pane, which blew up, what would have held.
     RunAgain(usize),
     /// Choose a tool.
-    #[cfg_attr(
-        target_arch = "wasm32",
-        allow(dead_code, reason = "the page has no tools")
-    )]
     Tool(Tool),
     /// Set a quantity of what the tools add.
-    #[cfg_attr(
-        target_arch = "wasm32",
-        allow(dead_code, reason = "the page has no tools")
-    )]
     SetMeasure(Measure, f64),
 }
 

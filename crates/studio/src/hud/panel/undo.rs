@@ -1,11 +1,6 @@
 //! Edits of the scene in the window, and undo and redo of all of the user's changes. Each edit is
 //! one change.
 
-#![cfg_attr(
-    target_arch = "wasm32",
-    allow(dead_code, reason = "the page has no tools")
-)]
-
 use std::sync::Arc;
 
 use a3_core::{Checkpoint, Network};
