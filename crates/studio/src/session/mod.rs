@@ -31,7 +31,6 @@ mod timeline;
 mod traces;
 mod tuning;
 mod view;
-#[cfg(test)]
 mod words;
 
 pub use acts::{come_apart, go_to, offer_at_start};
@@ -44,7 +43,7 @@ pub use keys::{Binding, FINGERS, GROUPS, Group, IS_PAGE, MOUSE, action, is_here}
 pub use lessons::{Given, LessonRequest, Lessons};
 pub use list::{Entry, TextKey, Topic};
 pub use measuring::Progress;
-pub use opening::{Opening, Reader};
+pub use opening::Opening;
 pub use origin::{Origin, begins_crossed};
 pub use pane::Pane;
 pub use passage::Passage;
@@ -65,7 +64,6 @@ pub use keys::bindings;
 pub use pane::Cost;
 #[cfg(test)]
 pub use tests::{compared, frames, session, times};
-#[cfg(test)]
 pub use words::read;
 
 #[cfg(test)]
@@ -78,9 +76,7 @@ mod tests {
     /// Creates the session of a command line.
     pub fn session(words: &[&str]) -> Session {
         let owned: Vec<_> = words.iter().map(|word| (*word).to_owned()).collect();
-        let mut session = begin::session(&words::read(&owned).unwrap()).unwrap();
-        session.scenes.reader = Some(words::read);
-        session
+        begin::session(&words::read(&owned).unwrap()).unwrap()
     }
 
     /// Creates a comparison, advanced to a time (s) in frames of 60 Hz.

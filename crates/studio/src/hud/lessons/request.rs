@@ -44,10 +44,7 @@ fn begin(session: &mut Session) -> bool {
     let Some((_, step)) = session.panel.lessons.shown() else {
         return false;
     };
-    let Some(reader) = session.scenes.reader else {
-        return false;
-    };
-    match begin::step(step, reader) {
+    match begin::step(step) {
         Ok(next) => replace(session, next),
         Err(why) => {
             session.readings.warn(why.to_string());
