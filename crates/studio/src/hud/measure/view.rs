@@ -7,7 +7,7 @@ use super::super::panel::{PanelRequest, Request, button};
 use super::super::style::{FAINT, TEXT};
 use super::answer;
 use super::chip::{INK, chip};
-use crate::session::{MeasureRequest, Progress, Question, Session};
+use crate::session::{IS_PAGE, MeasureRequest, Progress, Question, Session};
 
 /// The place of the pane.
 const PLACE: Place = Place {
@@ -29,9 +29,10 @@ const BUTTON_WIDTHS: [f32; 2] = [92.0, 108.0];
 /// Colour of the track of a progress.
 const TRACK: Color32 = Color32::from_rgb(200, 202, 207);
 
-/// Returns the place of the pane, if it is visible: it is open, and the help does not hide it.
+/// Returns the place of the pane, if it is visible: it is open, and the help does not hide it. A
+/// page has none.
 pub fn place(session: &Session) -> Option<&'static Place> {
-    (session.measuring.open && !session.readings.help).then_some(&PLACE)
+    (!IS_PAGE && session.measuring.open && !session.readings.help).then_some(&PLACE)
 }
 
 /// Draws the pane, if it is visible, and returns the request of the mouse.

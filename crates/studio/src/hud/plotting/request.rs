@@ -10,7 +10,9 @@ use super::super::docked::Place;
 use super::super::measure::chip;
 use super::super::panel::{PanelKey, Request};
 use super::chart::{plotted, rows, variables};
-use crate::session::{Action, Pick, PlotFile, PlotRequest, RunAction, Session, Variable, plotting};
+use crate::session::{
+    Action, IS_PAGE, Pick, PlotFile, PlotRequest, RunAction, Session, Variable, plotting,
+};
 
 /// The place of the pane.
 pub const PLACE: Place = Place {
@@ -164,13 +166,13 @@ pub fn write_one(session: &Session, file: PlotFile) -> Result<PathBuf, Failure> 
     }
     let (ending, bytes) = match file {
         PlotFile::Table => ("csv", table(session).map_err(Failure::run)?),
-        PlotFile::Picture => ("png", picture(session)?),
+        PlotFile::Picture => (if IS_PAGE { "svg" } else { "png" }, picture(session)?),
     };
     let scene = &session.runs.first().scene().name;
     output::write_new("".as_ref(), scene, ending, &bytes)
 }
 
-/// Returns the picture.
+/// Returns the picture: as PNG, or on a page as SVG, without the code that draws pixels.
 fn picture(session: &Session) -> Result<Vec<u8>, Failure> {
     let chart = plotted(session, DETAIL).chart;
     let [width, panel, rest] = SIZES;
@@ -179,6 +181,9 @@ fn picture(session: &Session) -> Result<Vec<u8>, Failure> {
         count => count as f64 * panel,
     };
     let figure = chart.draw(width, height + rest).map_err(Failure::run)?;
+    if IS_PAGE {
+        return Ok(figure.svg().into_bytes());
+    }
     figure.png(SCALE).map_err(Failure::run)
 }
 

@@ -8,7 +8,7 @@ use super::super::style::TEXT;
 use super::draw;
 use super::request::place;
 use super::rows::Rows;
-use crate::session::{Mode, PlotFile, PlotRequest, SPANS, Session};
+use crate::session::{IS_PAGE, Mode, PlotFile, PlotRequest, SPANS, Session};
 
 /// Distance of the contents from the edges (points).
 const MARGIN: f32 = 16.0;
@@ -109,7 +109,10 @@ fn foot(ui: &Ui, rect: Rect, session: &Session) -> Option<PlotRequest> {
     let mut right = rect.right();
     let ruled = settings.ruler.is_some();
     for (words, wish) in [
-        ("PNG", PlotRequest::Write(PlotFile::Picture)),
+        (
+            if IS_PAGE { "SVG" } else { "PNG" },
+            PlotRequest::Write(PlotFile::Picture),
+        ),
         ("CSV", PlotRequest::Write(PlotFile::Table)),
         ("clear", PlotRequest::Clear),
         ("ruler", PlotRequest::Ruler),
