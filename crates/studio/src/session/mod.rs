@@ -22,6 +22,7 @@ pub mod plotting;
 mod question;
 mod reference;
 mod replace;
+mod rows;
 mod runs;
 mod samples;
 mod save;
