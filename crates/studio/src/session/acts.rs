@@ -124,7 +124,6 @@ impl Session {
     fn reset(&mut self) {
         let touching = self.runs.first().touching();
         self.runs.reset();
-        self.effects.forget();
         if touching && !self.runs.first().touching() {
             let why = "Surfaces cross in the initial state, so self-collision is off again";
             self.readings.offer(why);
@@ -358,7 +357,6 @@ impl Session {
         let said = match self.runs.set_scene(setup) {
             Ok(said) => {
                 self.tuning = Tuning::of(&self.scenes.shown, setup);
-                self.effects.forget();
                 self.measuring.forget();
                 self.readings.left_out.clear();
                 self.panel.editor.forget(&self.runs);

@@ -4,7 +4,6 @@
 mod acts;
 pub mod asking;
 mod continued;
-mod effects;
 pub mod exchange;
 mod hands;
 mod history;
@@ -36,8 +35,6 @@ mod words;
 
 pub use acts::{come_apart, go_to, offer_at_start};
 pub use asking::MeasureRequest;
-pub use continued::continue_from;
-pub use effects::{Deviation, Effect, Job, Situation};
 pub use history::{Change, EditChange, Recorded};
 pub use keys::{Action, RunAction, WindowAction};
 pub use keys::{Binding, FINGERS, GROUPS, Group, IS_PAGE, MOUSE, action, is_here};

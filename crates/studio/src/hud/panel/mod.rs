@@ -2,7 +2,6 @@
 
 mod dial;
 mod knobs;
-mod measure;
 mod part_rows;
 mod parts;
 mod plots;
@@ -15,7 +14,6 @@ mod values;
 mod view;
 
 pub use dial::{Dial, DialScale, Turn};
-pub use measure::update;
 pub use parts::turn as turn_part;
 pub use plots::csv;
 pub use request::{PanelKey, PanelRequest, Request, apply, press, press_text};

@@ -4,12 +4,12 @@ use a3_scenes::{Edit, MATERIALS, Material};
 
 use super::dial::{Dial, Turn};
 use super::knobs::{KNOBS, Knob, is_left_out};
+use super::parts;
 use super::undo::edit;
 use super::values::pane;
-use super::{measure, parts};
 use crate::session::{
-    Action, LessonRequest, Measure, MeasureRequest, PlotRequest, Session, TextKey, Tool, Topic,
-    asking, panes,
+    Action, LessonRequest, Measure, MeasureRequest, PlotRequest, Question, Session, TextKey, Tool,
+    Topic, asking, panes,
 };
 
 /// A request of the mouse.
@@ -88,11 +88,6 @@ pub fn rows(session: &Session) -> Vec<(usize, &'static Knob, Dial)> {
     .collect()
 }
 
-/// Returns whether the parts of a scene can be measured: that needs threads.
-pub fn can_measure() -> bool {
-    !cfg!(target_arch = "wasm32")
-}
-
 /// Returns the number of the row that measures the parts, after those of the knobs.
 pub fn measuring_row() -> usize {
     KNOBS.len()
@@ -112,7 +107,8 @@ pub fn shows_parts(session: &Session) -> bool {
 pub fn numbers(session: &Session) -> Vec<usize> {
     let knobs = rows(session).into_iter().map(|(k, ..)| k);
     let count = session.tuning.parts.len();
-    let measuring = (count > 0 && can_measure()).then(measuring_row);
+    let can_measure = count > 0 && session.measuring.answerer.is_some();
+    let measuring = can_measure.then(measuring_row);
     let parts = (0..count).map(part_row);
     knobs.chain(measuring).chain(parts).collect()
 }
@@ -193,14 +189,11 @@ fn turn_row(session: &mut Session, at: usize, row: usize, turn: Turn) {
         return;
     }
     let Some(part) = row.checked_sub(part_row(0)) else {
-        return measure::toggle(session);
+        asking::apply(session, MeasureRequest::Ask(Question::Simplify), at);
+        asking::apply(session, MeasureRequest::Toggle, at);
+        return;
     };
-    let was_measured = session.effects.time().is_some();
-    let before = parts::is_in(session, part);
     parts::turn(session, part, turn);
-    if was_measured && parts::is_in(session, part) != before {
-        measure::begin(session);
-    }
 }
 
 /// Makes the bodies of the scene that can be of a material of it, while the motion goes on.

@@ -123,7 +123,6 @@ pub fn edit(session: &mut Session, edit: &Edit, name: &str) -> Result<(), String
     go_on(session, touching, &mut |session| {
         exchange::edit(session, after.clone(), &there, &[])
     })?;
-    session.effects.forget();
     let edit = Arc::new(EditChange {
         name: name.into(),
         origins: [origin, after],
@@ -146,7 +145,6 @@ fn repeat(
     go_on(session, passage.touching, &mut |session| {
         exchange::edit(session, origin.clone(), passage, then)
     })?;
-    session.effects.forget();
     Ok(())
 }
 

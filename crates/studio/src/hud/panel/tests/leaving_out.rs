@@ -8,7 +8,7 @@ use super::opened::{every_scene, opened, part, toggle, type_key};
 use super::screen::Screen;
 use crate::hud::panel::dial::Turn;
 use crate::hud::panel::knobs::row_of;
-use crate::hud::panel::request::{PanelKey, PanelRequest, apply, measuring_row, part_row, rows};
+use crate::hud::panel::request::{PanelKey, PanelRequest, apply, part_row, rows};
 use crate::hud::panel::{parts, tuned, undo};
 use crate::session::{RunAction, Session, compared, frames};
 
@@ -262,7 +262,7 @@ fn keys_and_mouse_leave_out_a_part_and_undo_brings_it_back() {
     assert_eq!(session.panel.row, 0);
     let parts = place(&mut screen, &session, "Parts").center();
     screen.click(&mut session, parts, parts);
-    assert_eq!(session.panel.row, measuring_row());
+    assert_eq!(session.panel.row, part_row(0));
 }
 
 /// All panes and the reference lose the part at the same time.
