@@ -19,7 +19,7 @@ const embedded = asked.includes("embed=1");
 addEventListener("keydown", (event) => {
   const withControl = event.ctrlKey || event.metaKey;
   const undoes = withControl && /^[zy]$/i.test(event.key);
-  if ((withControl && !undoes) || event.altKey || /^F([3-9]|12)$/.test(event.key)) event.stopImmediatePropagation();
+  if ((withControl && !undoes) || event.altKey || /^F([5-9]|12)$/.test(event.key)) event.stopImmediatePropagation();
 }, true);
 
 // Opens files that were dropped, and says which of them it cannot open.

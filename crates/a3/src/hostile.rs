@@ -3,9 +3,6 @@
 
 #[path = "../../scenes/tests/hostile/mutation.rs"]
 mod mutation;
-#[cfg(feature = "window")]
-#[path = "../../web/src/words.rs"]
-mod page;
 
 #[cfg(feature = "window")]
 use a3_files::failure::Failure;
@@ -17,11 +14,13 @@ use a3_media::show::{Arrows, Quantity};
 #[cfg(feature = "window")]
 use a3_render::Style;
 #[cfg(feature = "window")]
-use a3_studio::session::Opening;
+use a3_studio::session::{Opening, read as read_words};
 use clap::Parser;
 use clap::error::ErrorKind;
 use mutation::{Random, seeds};
 
+#[cfg(feature = "window")]
+use crate::cli::Command;
 use crate::cli::{Cli, explain};
 
 /// Number of inputs of each kind.
@@ -94,6 +93,19 @@ compare e r --watch
 t --sceen flag
 t -s";
 
+/// Reads the words that follow the name of the program as the program does.
+#[cfg(feature = "window")]
+fn of_program(words: &[String]) -> Result<Opening, Failure> {
+    let program = ["a3".to_owned()];
+    let cli = Cli::try_parse_from(program.iter().chain(words));
+    let cli = cli.map_err(|error| explain(&error, &[]).err().unwrap_or(Failure::usage(error)))?;
+    match cli.command {
+        None => Ok(cli.window.opening()),
+        Some(Command::Compare(options)) => options.opening(),
+        Some(_) => Err(Failure::usage("a page has no command except compare")),
+    }
+}
+
 /// The page reads command lines as the program does, and says the same about wrong values.
 #[cfg(feature = "window")]
 #[test]
@@ -137,7 +149,7 @@ fn the_page_reads_command_lines_as_the_program_does() {
                 "{scene} {options:?} {methods:?} {limits:?} {look:?} {resume:?} {switches:?}"
             ))
         };
-        (by(crate::cli::read), by(page::read))
+        (by(of_program), by(read_words))
     };
     for line in OF_WINDOWS.lines() {
         match read(line) {

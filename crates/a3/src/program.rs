@@ -59,7 +59,7 @@ pub fn run(args: &[OsString]) -> u8 {
     let result = match Cli::try_parse_from(args) {
         Ok(cli) => match cli.command {
             #[cfg(feature = "window")]
-            None => window::open(&cli.window.opening(), answer::answer, cli::read),
+            None => window::open(&cli.window.opening(), answer::answer),
             #[cfg(not(feature = "window"))]
             None => Err(Failure::usage(
                 "this a3 was built without its window: give a command; --help lists them",
@@ -104,7 +104,7 @@ fn compare(options: &Compare) -> Result<(), Failure> {
     let opening = options.opening()?;
     match (&options.output, options.until) {
         (Some(path), Some(until)) => window::compare::run(&opening, path, until, options.size),
-        (None, None) => window::open(&opening, answer::answer, cli::read),
+        (None, None) => window::open(&opening, answer::answer),
         _ => Err(Failure::usage("a picture takes both --output and --until")),
     }
 }

@@ -7,7 +7,7 @@ use a3_render::Style;
 
 use crate::begin;
 use crate::session::panel;
-use crate::session::{Session, looks, write_scene};
+use crate::session::{Session, looks, read, write_scene};
 
 /// Returns the command line that opens the present run and the picture of pane `at`, from the
 /// beginning. If options cannot express the run, writes a scene file, from whose state a single run
@@ -104,8 +104,7 @@ fn arguments_with_scene(session: &Session, at: usize, scene: &str) -> Vec<String
 /// Returns whether these arguments recreate the run of a session, or the initial state of a
 /// comparison. A run that no hand has touched is recreated by its beginning.
 fn recreates(words: &[String], session: &Session) -> bool {
-    let opening = session.scenes.reader.map(|read| read(words));
-    let Some(Ok(made)) = opening.map(|opening| begin::session(&opening?)) else {
+    let Ok(made) = read(words).and_then(|opening| begin::session(&opening)) else {
         return false;
     };
     let begins_alike = |now: &Simulation, made: &Simulation| {

@@ -10,16 +10,13 @@ use a3_files::scene_file::Source;
 use crate::session::panel;
 use crate::session::{Session, show_edited};
 
-/// Whether scenes can be edited: not on the page.
-const EDITS: bool = !cfg!(target_arch = "wasm32");
-
 /// Saves the run of pane `at` under the first free name, in the folder of its scene file if it has
 /// one, and returns the path. Fails if the file cannot be written.
 pub fn save(session: &mut Session, at: usize) -> Result<PathBuf, Failure> {
     let run = &session.runs.panes[at.min(session.runs.panes.len() - 1)].simulation;
     let (shown, own) = (&session.scenes.shown, session.scenes.unedited());
     let mut kept = Kept::new(&own.source, own.grid, run, None);
-    if EDITS && shown.edited {
+    if shown.edited {
         let text = shown.source.description.to_toml().map_err(Failure::run)?;
         kept = kept.of_edited(text, &own.source, own.grid, &own.build()?.scene);
     }
@@ -42,17 +39,15 @@ pub fn load(session: &mut Session, path: &Path) -> Result<(), Failure> {
     }
     let refuse = |why: String| Failure::usage(format!("{}: {why}", path.display()));
     let (kept, own) = (Kept::read(path)?, session.scenes.unedited());
-    if EDITS && session.scenes.shown.edited {
+    if session.scenes.shown.edited {
         kept.check(path, &own.source, own.grid, &own.build()?.scene)?;
     } else {
         kept.check(path, &own.source, own.grid, session.runs.first().scene())?;
     }
-    if EDITS {
-        let edited = kept.edited.as_deref().map(Source::written).transpose();
-        let edited = edited.map_err(|error| refuse(error.to_string()))?;
-        let edited = edited.as_ref().map(|source| &*source.description);
-        show_edited(session, edited).map_err(refuse)?;
-    }
+    let edited = kept.edited.as_deref().map(Source::written).transpose();
+    let edited = edited.map_err(|error| refuse(error.to_string()))?;
+    let edited = edited.as_ref().map(|source| &*source.description);
+    show_edited(session, edited).map_err(refuse)?;
     panel::tune(session, &kept.tuned).map_err(refuse)?;
     let taken = session.restore(&kept.checkpoint);
     taken.map_err(|why| refuse(why.to_string()))?;

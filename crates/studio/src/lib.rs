@@ -16,7 +16,6 @@
     allow(clippy::unused_self, clippy::unnecessary_wraps)
 )]
 
-#[cfg(any(target_arch = "wasm32", test))]
 pub mod address;
 mod app;
 mod command_line;
@@ -32,6 +31,8 @@ mod open;
 mod recorder;
 pub mod session;
 mod settings;
+#[cfg_attr(target_arch = "wasm32", path = "page_storage.rs")]
+mod storage;
 
 #[cfg(target_arch = "wasm32")]
 pub use app::{Event, send, spawn};

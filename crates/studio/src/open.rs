@@ -8,17 +8,15 @@ use a3_files::terminal;
 use a3_media::show;
 
 use crate::app::{self, End};
-use crate::session::{Answerer, Opening, Reader};
+use crate::session::{Answerer, Opening};
 use crate::settings::Settings;
 use crate::{begin, headless, keep};
 
-/// Opens the window, until it is closed. `answerer` answers questions about the scene, and `reader`
-/// reads command lines. Fails if an option does not fit, or with the failure that closed the
-/// window.
-pub fn open(opening: &Opening, answerer: Answerer, reader: Reader) -> Result<(), Failure> {
+/// Opens the window, until it is closed. `answerer` answers questions about the scene. Fails if an
+/// option does not fit, or with the failure that closed the window.
+pub fn open(opening: &Opening, answerer: Answerer) -> Result<(), Failure> {
     let mut session = begin::session(opening)?;
     session.measuring.answerer = Some(answerer);
-    session.scenes.reader = Some(reader);
     // The scene, its meshes and their buffers.
     let files: Vec<PathBuf> = if opening.watch {
         output::files_read()

@@ -1,22 +1,14 @@
 //! Settings of the window that are saved between sessions.
 
 use std::path::{Path, PathBuf};
-#[cfg(not(target_arch = "wasm32"))]
-use std::{env, fs, io};
 
-#[cfg(target_arch = "wasm32")]
-use a3_files::browser;
 use a3_files::ending::Ending;
 use a3_files::failure::Failure;
-#[cfg(not(target_arch = "wasm32"))]
-use a3_files::{output, terminal};
 use serde::{Deserialize, Serialize};
 
+use super::storage::{file, store, text_of};
 use crate::session::{DEFAULT_FILM_SECONDS, SPAN};
 
-/// Largest size of a settings file (bytes).
-#[cfg(not(target_arch = "wasm32"))]
-const MAX_FILE_SIZE: u64 = 1 << 20;
 /// Largest number of recent files.
 const MAX_RECENT_FILES: usize = 12;
 /// Scale factors that text and panel can have.
@@ -123,82 +115,10 @@ impl Settings {
     }
 }
 
-/// Reads the text of a file, `None` if it does not exist. Fails if it is not a regular file, too
-/// large, or unreadable.
-#[cfg(not(target_arch = "wasm32"))]
-fn text_of(path: &Path) -> Result<Option<String>, String> {
-    let place = path.display();
-    match fs::metadata(path) {
-        Ok(there) if there.is_file() && there.len() <= MAX_FILE_SIZE => {}
-        Ok(_) => {
-            return Err(format!(
-                "{place}: this is not a regular file of at most 1 MiB: the settings are neither read nor saved"
-            ));
-        }
-        Err(why) if why.kind() == io::ErrorKind::NotFound => return Ok(None),
-        Err(why) => return Err(format!("{place}: {}", terminal::reason(&why))),
-    }
-    let text = fs::read_to_string(path);
-    text.map(Some)
-        .map_err(|why| format!("{place}: {}", terminal::reason(&why)))
-}
-
-/// Writes a file, and creates its folder if need be. Fails if that is not possible.
-#[cfg(not(target_arch = "wasm32"))]
-fn store(path: &Path, text: &str) -> Result<(), Failure> {
-    if let Some(folder) = path.parent() {
-        fs::create_dir_all(folder)
-            .map_err(|why| Failure::run(format!("{}: {why}", folder.display())))?;
-    }
-    output::write(path, text.as_bytes())
-}
-
-/// Reads the text that the browser stores under a name.
-#[cfg(target_arch = "wasm32")]
-fn text_of(path: &Path) -> Result<Option<String>, String> {
-    let storage = browser::storage();
-    Ok(storage.and_then(|it| it.get_item(&path.to_string_lossy()).ok().flatten()))
-}
-
-/// Stores a text in the browser under a name, if the browser allows it.
-#[cfg(target_arch = "wasm32")]
-fn store(path: &Path, text: &str) -> Result<(), Failure> {
-    if let Some(storage) = browser::storage() {
-        let _ = storage.set_item(&path.to_string_lossy(), text);
-    }
-    Ok(())
-}
-
-/// Returns the name under which the browser stores the settings.
-#[cfg(target_arch = "wasm32")]
-fn file() -> PathBuf {
-    "a3 settings".into()
-}
-
-/// Returns the path of the settings file.
-#[cfg(not(target_arch = "wasm32"))]
-fn file() -> PathBuf {
-    let named = |name| {
-        env::var_os(name)
-            .map(PathBuf::from)
-            .filter(|path| path.is_absolute())
-    };
-    let home = |below: &str| env::home_dir().map(|home| home.join(below));
-    let folder = if cfg!(windows) {
-        named("APPDATA")
-    } else if cfg!(target_os = "macos") {
-        home("Library/Application Support")
-    } else {
-        named("XDG_CONFIG_HOME").or_else(|| home(".config"))
-    };
-    folder
-        .unwrap_or_else(env::temp_dir)
-        .join("a3")
-        .join("settings.toml")
-}
-
 #[cfg(test)]
 mod tests {
+    use std::fs;
+
     use super::*;
 
     #[test]

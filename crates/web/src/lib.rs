@@ -3,4 +3,3 @@
 #![cfg(target_arch = "wasm32")]
 
 mod page;
-mod words;

@@ -11,12 +11,10 @@ use a3_files::failure::Failure;
 use a3_files::progress;
 use a3_files::scene_file::Hash;
 use a3_studio::address::Address;
-use a3_studio::session::{LessonRequest, RunAction, apply};
+use a3_studio::session::{LessonRequest, RunAction, apply, read};
 use a3_studio::{Event, Settings, begin, send, spawn};
 use wasm_bindgen::prelude::wasm_bindgen;
 use web_time::Instant;
-
-use super::words::read;
 
 /// Starts the run that the address describes, or shows on the page why that is not possible.
 #[wasm_bindgen]
@@ -34,7 +32,6 @@ fn begin() -> Result<(), Failure> {
     let address = Address::read(browser::words())?;
     let opening = read(&address.words)?;
     let mut session = begin::session(&opening)?;
-    session.scenes.reader = Some(read);
     let settings = if opening.no_settings || address.embedded {
         None
     } else {

@@ -9,8 +9,6 @@ pub mod sweep;
 pub mod values;
 #[cfg(feature = "window")]
 mod window;
-#[cfg(feature = "window")]
-mod words;
 
 pub use command::Chart;
 pub use command::Choose;
@@ -26,5 +24,3 @@ pub use measures::WorkMeasure;
 pub use sweep::Sweep;
 #[cfg(feature = "window")]
 pub use window::{Compare, Render};
-#[cfg(feature = "window")]
-pub use words::read;

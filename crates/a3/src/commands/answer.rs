@@ -92,13 +92,13 @@ mod tests {
     use a3_files::report::Report;
     use a3_lab::chart::unit;
     use a3_studio::begin;
-    use a3_studio::session::{MeasureRequest, apply, asking::task};
+    use a3_studio::session::{MeasureRequest, apply, asking::task, read};
 
     use super::*;
 
     fn answered(question: Question, words: &[&str]) -> Answer {
         let words: Vec<_> = words.iter().map(|word| (*word).to_owned()).collect();
-        let opening = crate::cli::read(&words).unwrap();
+        let opening = read(&words).unwrap();
         let mut session = begin::session(&opening).unwrap();
         apply(&mut session, MeasureRequest::Ask(question), 0);
         apply(&mut session, MeasureRequest::FromStart(true), 0);

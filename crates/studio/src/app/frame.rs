@@ -7,7 +7,7 @@ use winit::event_loop::ActiveEventLoop;
 
 use super::graphics::FrameOutcome;
 use super::state::App;
-use crate::session::{Action, RunAction, panel};
+use crate::session::{Action, RunAction};
 
 /// Delay after which a skipped frame is drawn again.
 const RETRY_DELAY: Duration = Duration::from_millis(50);
@@ -39,7 +39,6 @@ impl App {
         session.tick(self.platform.films.time_to_advance(session, real));
         session.view.track_followed(&session.runs.panes);
         session.read_state();
-        panel::update(session);
         session.measuring.update();
         self.mouse
             .update_hover(self.modifiers.shift_key(), session, &self.screen);
@@ -69,8 +68,7 @@ impl App {
                 }
                 let frame_time = self.screen.frame_time(self.session.panel.frame_limit);
                 let session = &self.session;
-                let measuring =
-                    session.effects.progress().is_some() || session.measuring.progress().is_some();
+                let measuring = session.measuring.progress().is_some();
                 let measured = measuring.then_some(now + MEASURING_DELAY);
                 let next = if self.session.animated() {
                     Some(now + frame_time)

@@ -9,18 +9,14 @@ mod graphics;
 mod hover;
 mod keyboard;
 mod mouse;
-#[cfg(not(target_arch = "wasm32"))]
-mod native;
-#[cfg(target_arch = "wasm32")]
-mod page;
 mod pick;
+#[cfg_attr(target_arch = "wasm32", path = "page.rs")]
 mod platform;
 mod pointer;
 mod screen;
 mod start;
 mod state;
 mod status;
-#[cfg_attr(target_arch = "wasm32", path = "no_tool.rs")]
 mod tool;
 mod touch;
 #[cfg(not(target_arch = "wasm32"))]

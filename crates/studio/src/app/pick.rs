@@ -107,7 +107,6 @@ pub fn pick(
 
 /// Returns the depth (m) at which the line of sight through the pointer first meets a surface, a
 /// rigid body or an obstacle, and the normal there.
-#[cfg(not(target_arch = "wasm32"))]
 pub fn meet(
     simulation: &Simulation,
     camera: &Camera,

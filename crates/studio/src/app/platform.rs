@@ -1,6 +1,164 @@
-//! The platform: the operating system, or the browser in a page.
+//! The operating system's part of the window: clipboard, films, watched files, and an adapter that
+//! is opened synchronously.
 
-#[cfg(not(target_arch = "wasm32"))]
-pub use super::native::{CAN_QUIT, Event, Platform, attributes};
-#[cfg(target_arch = "wasm32")]
-pub use super::page::{CAN_QUIT, Event, Platform, attributes, connect, send};
+use std::path::PathBuf;
+use std::time::Instant;
+
+use a3_files::failure::Failure;
+use a3_files::output;
+use a3_files::terminal;
+use a3_render::{GpuError, Offscreen};
+use arboard::Clipboard;
+use winit::dpi::LogicalSize;
+use winit::event_loop::ActiveEventLoop;
+#[cfg(target_os = "linux")]
+use winit::platform::wayland::WindowAttributesExtWayland;
+use winit::window::{Window, WindowAttributes};
+
+use super::adapter;
+use super::filming::Films;
+use super::graphics::Graphics;
+use super::screen::Screen;
+use super::watch::Watch;
+use crate::hud::Studio;
+use crate::session::{Readings, Session};
+
+/// Size of the window (points) where the screen has room for it.
+const SIZE: [f64; 2] = [1280.0, 720.0];
+/// Height that the window leaves to its title and to the bars of the desktop (points).
+const BARS: f64 = 64.0;
+
+/// Returns the initial attributes of the window, which fits on the screen.
+pub fn attributes(event_loop: &ActiveEventLoop) -> WindowAttributes {
+    let first = || event_loop.available_monitors().next();
+    let monitor = event_loop.primary_monitor().or_else(first);
+    let room = monitor.map(|it| it.size().to_logical(it.scale_factor()));
+    let attributes = Window::default_attributes()
+        .with_inner_size(room.map_or(SIZE.into(), fitting))
+        .with_min_inner_size(LogicalSize::new(64.0, 48.0));
+    // A desktop finds the icon by this name. On X11, winit sets this name by itself.
+    #[cfg(target_os = "linux")]
+    let attributes = WindowAttributesExtWayland::with_name(attributes, "a3", "a3");
+    attributes
+}
+
+/// Returns the size of a window for a screen of a size (points).
+fn fitting(screen: LogicalSize<f64>) -> LogicalSize<f64> {
+    let [width, height] = SIZE;
+    // A monitor of unknown size has none.
+    if screen.width < 1.0 || screen.height <= BARS {
+        return SIZE.into();
+    }
+    LogicalSize::new(width.min(screen.width), height.min(screen.height - BARS))
+}
+
+/// Whether the program closes its window; a page is closed by the browser.
+pub const CAN_QUIT: bool = true;
+
+/// Events from outside the window: none.
+pub type Event = ();
+
+/// Services of the operating system for the window.
+#[derive(Default)]
+pub struct Platform {
+    /// The clipboard, opened on first use. Its contents are lost when it is dropped.
+    clipboard: Option<Clipboard>,
+    pub films: Films,
+    /// Watch over the files of the scene, if it was requested.
+    watch: Option<Watch>,
+}
+
+impl Platform {
+    /// Creates the services, with a watch over `files`, if there are any.
+    pub fn new(files: Vec<PathBuf>) -> Self {
+        Self {
+            watch: (!files.is_empty()).then(|| Watch::new(files)),
+            ..Self::default()
+        }
+    }
+
+    /// Opens an adapter, and creates the graphics for the window. Returns `None` if there is no
+    /// window.
+    pub fn open_graphics(
+        &mut self,
+        screen: &mut Screen,
+        session: &mut Session,
+    ) -> Option<Result<Graphics, GpuError>> {
+        let window = screen.window.clone()?;
+        // The recorder draws with the old device.
+        self.films.finish(session);
+        // The window cannot have two surfaces.
+        screen.graphics = None;
+        let opened = pollster::block_on(adapter::open(window.clone(), screen.display.clone()));
+        Some(opened.and_then(|(gpu, surface)| Graphics::new(gpu, surface, window, session)))
+    }
+
+    /// Saves a picture, and returns a message about it.
+    #[expect(clippy::unused_self, reason = "a page saves the next frame")]
+    pub fn save_picture(&mut self, session: &mut Session, graphics: Option<&Graphics>) -> String {
+        match write_picture(session, graphics) {
+            Ok(name) => format!("Saved {name}."),
+            Err(failure) => failure.to_string(),
+        }
+    }
+
+    /// Writes a command line to the terminal and the clipboard, and returns a message about it.
+    pub fn copy(&mut self, line: &str) -> String {
+        // Copy the line even if the terminal is closed.
+        let _ = terminal::say(&format!("{line}\n"));
+        if self.clipboard.is_none() {
+            self.clipboard = Clipboard::new().ok();
+        }
+        let copied = self.clipboard.as_mut().map(|board| board.set_text(line));
+        match copied {
+            Some(Ok(())) => format!("Copied: {line}"),
+            _ => format!("Written to the terminal: {line}"),
+        }
+    }
+
+    /// Returns whether a file of the scene has changed since the last check.
+    pub fn files_changed(&mut self) -> bool {
+        self.watch.as_mut().is_some_and(Watch::changed)
+    }
+
+    /// Returns the time of the next check of the watched files, if there are any.
+    pub fn next_check(&self) -> Option<Instant> {
+        self.watch.as_ref().map(Watch::next)
+    }
+}
+
+/// Writes a picture under the first free name, and returns its path. Several panes have their text,
+/// a single one has none. Fails if drawing or writing does.
+fn write_picture(session: &mut Session, graphics: Option<&Graphics>) -> Result<String, Failure> {
+    let closed = || Failure::run("the graphics adapter is not open");
+    let graphics = graphics.ok_or_else(closed)?;
+    let (gpu, size) = (graphics.gpu(), graphics.size());
+    let offscreen = Offscreen::new(gpu, size).map_err(Failure::run)?;
+    let readings = Readings {
+        no_error: session.readings.no_error,
+        ..Readings::default()
+    };
+    let (panes, scale) = (&mut session.runs.panes, graphics.scale());
+    let mut studio = Studio::new(gpu, offscreen, panes);
+    let pixels = studio.draw(gpu, panes, session.view.camera, scale, &readings)?;
+    let scene = &session.runs.first().scene().name;
+    let path = output::write_new("".as_ref(), scene, "png", &output::png(&pixels, size)?)?;
+    Ok(path.display().to_string())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_window_fits_on_the_screen() {
+        for (screen, expected) in [
+            ([1920.0, 1080.0], [1280.0, 720.0]),
+            ([1024.0, 768.0], [1024.0, 704.0]),
+            ([0.0, 0.0], [1280.0, 720.0]),
+        ] {
+            let fitted: [f64; 2] = fitting(screen.into()).into();
+            assert_eq!(fitted, expected);
+        }
+    }
+}

@@ -64,7 +64,6 @@ impl Pointer {
     }
 
     /// Returns the length of the drag of the pressed button (px).
-    #[cfg(not(target_arch = "wasm32"))]
     pub fn dragged(&self) -> f32 {
         let [x, y] = [0, 1].map(|k| self.position[k] - self.pressed_at[k]);
         if self.still { 0.0 } else { x.hypot(y) }

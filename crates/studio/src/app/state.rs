@@ -248,7 +248,6 @@ impl App {
                 Some(written.unwrap_or_else(|failure| failure.to_string()))
             }
             WindowAction::WritePlots => Some(said("Wrote", write_plots(session))),
-            #[cfg(not(target_arch = "wasm32"))]
             WindowAction::WritePlot(file) => {
                 Some(said("Wrote", plotting::write_one(session, file)))
             }

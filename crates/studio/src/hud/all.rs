@@ -52,7 +52,6 @@ fn over_picture(ctx: &Context, session: &Session) -> Option<Action> {
     let on_text = text::show_text(ctx, &session.runs.panes, &session.readings);
     let on_offer = plotting::offer(ctx, session);
     let on_offer = offers::offer(ctx, session).or(on_offer);
-    #[cfg(not(target_arch = "wasm32"))]
     marks::ruler(ctx, session);
     let on_panes = offers::on_panes(ctx, session);
     let on_tools = edit::show(ctx, session);

@@ -9,7 +9,9 @@ use super::layout;
 use super::style::{ALARM, FAINT, INK, PAPER, TEXT};
 use super::widgets::{CHOSEN, MIDDLE, write};
 use super::words::digits;
-use crate::session::{Action, PanelRequest, RunAction, Session, TimelinePosition, WindowAction};
+use crate::session::{
+    Action, IS_PAGE, PanelRequest, RunAction, Session, TimelinePosition, WindowAction, is_here,
+};
 
 /// Width of a button with a symbol, for the mouse and for fingers (points).
 const SYMBOL_WIDTHS: [f32; 2] = [34.0, 44.0];
@@ -209,21 +211,19 @@ fn others(session: &Session) -> Vec<Button> {
     .collect()
 }
 
-/// Returns whether the bar has the button of an action. A page makes no films, plots nothing and
-/// edits no scenes; a telephone has no key that fills the screen.
+/// Returns whether the bar has the button of an action. A telephone has no key that fills the
+/// screen.
 fn is_there(session: &Session, action: Action) -> bool {
-    let is_page = cfg!(target_arch = "wasm32");
     match action {
         Action::Run(RunAction::Measure) => session.measuring.answerer.is_some(),
         Action::Run(action @ (RunAction::Panel | RunAction::Lessons)) => {
             session.panel.hidden.refusal(action).is_none()
         }
-        Action::Window(WindowAction::FullScreen) => is_page,
-        Action::Run(RunAction::Plots) | Action::Window(WindowAction::Record) => !is_page,
+        Action::Window(WindowAction::FullScreen) => IS_PAGE,
         Action::Run(RunAction::Edit) | Action::Window(WindowAction::Throw) => {
-            !is_page && session.runs.first().model().network().is_some()
+            session.runs.first().model().network().is_some()
         }
-        _ => true,
+        _ => is_here(action),
     }
 }
 

@@ -121,7 +121,6 @@ impl<'a> Sheet<'a> {
     }
 
     /// Writes lines, each with its size and colour, on a note with an edge beside a point.
-    #[cfg(not(target_arch = "wasm32"))]
     pub fn note(&self, at: Pos2, edge: Color32, lines: Vec<(String, f32, Color32)>) {
         let (painter, room) = (self.painter, self.room);
         let lay = |(words, size, colour): (String, f32, Color32)| {

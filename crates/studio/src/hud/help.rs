@@ -7,7 +7,7 @@ use super::list::pressed_at;
 use super::style::{INK, MARGIN, TEXT, sheet, title};
 use super::widgets::{LEFT, write};
 use crate::session::{
-    Action, Binding, FINGERS, GROUPS, Group, LEFT_OUT, MOUSE, RunAction, WindowAction,
+    Action, Binding, FINGERS, GROUPS, Group, MOUSE, RunAction, WindowAction, is_here,
 };
 
 /// Width of a window above which the help has three columns (points).
@@ -63,7 +63,6 @@ fn columns(ui: &mut Ui, several: bool, touch: bool, wide: bool) -> Option<Action
             }
             if numbered {
                 request = solvers(ui, several).or(request);
-                left_out(ui);
             }
         });
     };
@@ -105,7 +104,8 @@ fn gestures(ui: &mut Ui, touch: bool) {
 fn bindings(ui: &mut Ui, group: &Group) -> Option<Action> {
     heading(ui, group.purpose);
     let mut request = None;
-    for Binding { keys, action, help } in group.bindings {
+    let here = group.bindings.iter().filter(|it| is_here(it.action));
+    for Binding { keys, action, help } in here {
         // A click cannot point at a particle too.
         let clicked = Some(*action).filter(|it| *it != Action::Window(WindowAction::Follow));
         request = row(ui, [&keys.join("  "), help], WIDTHS[0], clicked).or(request);
@@ -130,16 +130,6 @@ fn solvers(ui: &mut Ui, several: bool) -> Option<Action> {
         request = row(ui, [&key, method.title], WIDTHS[0], Some(action)).or(request);
     }
     request
-}
-
-/// Writes what a page leaves out of the window of the program.
-fn left_out(ui: &mut Ui) {
-    if cfg!(target_arch = "wasm32") {
-        heading(ui, "Only in the program");
-        for (what, does) in LEFT_OUT {
-            row(ui, [what, does], WIDTHS[1], None);
-        }
-    }
 }
 
 /// Writes a key and its effect, and returns its action if the row was clicked.

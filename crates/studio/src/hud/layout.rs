@@ -3,10 +3,8 @@
 use a3_render::Tile;
 
 use super::dock::Pane;
-use super::{lessons, panel};
-#[cfg(not(target_arch = "wasm32"))]
-use super::{measure, plotting};
-use crate::session::{RunAction, Session};
+use super::{lessons, measure, panel, plotting};
+use crate::session::{IS_PAGE, RunAction, Session};
 
 /// Distance between panes (points).
 const PANE_GAP: f32 = 3.0;
@@ -33,9 +31,7 @@ pub fn beside(session: &Session) -> Option<&'static Pane> {
     match session.panel.beside.filter(|_| !session.readings.help)? {
         RunAction::Panel => Some(&panel::PANE),
         RunAction::Lessons => Some(&lessons::PANE),
-        #[cfg(not(target_arch = "wasm32"))]
-        RunAction::Measure => Some(&measure::PANE),
-        #[cfg(not(target_arch = "wasm32"))]
+        RunAction::Measure if !IS_PAGE => Some(&measure::PANE),
         RunAction::Plots => Some(&plotting::PANE),
         _ => None,
     }

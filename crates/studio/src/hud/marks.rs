@@ -10,7 +10,6 @@ use egui::{
 use super::layout;
 use super::style::{MARGIN, PAPER, TEXT, WARNING};
 use super::widgets::write;
-#[cfg(not(target_arch = "wasm32"))]
 use super::words::signed;
 use crate::session::{Selection, Session};
 
@@ -116,11 +115,9 @@ fn beside(body: Rect, size: Vec2, room: Rect, taken: [Rect; 2]) -> Option<Rect> 
 }
 
 /// Radius of an end of the ruler (points).
-#[cfg(not(target_arch = "wasm32"))]
 const END: f32 = 4.0;
 
 /// Draws the ruler in each pane, with the distance between its ends there.
-#[cfg(not(target_arch = "wasm32"))]
 pub fn ruler(ctx: &Context, session: &Session) {
     let ends = session.panel.plotting.ruler.as_deref().unwrap_or_default();
     if ends.is_empty() || session.readings.help {
@@ -168,7 +165,6 @@ pub fn ruler(ctx: &Context, session: &Session) {
 }
 
 /// Returns the place of a sheet of a size beside the middle of a line, within a room.
-#[cfg(not(target_arch = "wasm32"))]
 fn below(a: Pos2, b: Pos2, room: Rect, size: Vec2) -> Pos2 {
     let at = a + 0.5 * (b - a) + vec2(10.0, 10.0);
     let most = room.max - size;

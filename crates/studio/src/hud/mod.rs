@@ -6,7 +6,6 @@ mod bar;
 mod blow_up;
 mod charts;
 mod dock;
-#[cfg_attr(target_arch = "wasm32", path = "no_edit.rs")]
 pub mod edit;
 mod help;
 pub mod layout;
@@ -14,14 +13,12 @@ mod legend;
 mod lessons;
 mod list;
 mod marks;
-#[cfg(not(target_arch = "wasm32"))]
 mod measure;
 mod offers;
 mod overlay;
 mod panel;
 #[cfg(not(target_arch = "wasm32"))]
 mod picture;
-#[cfg_attr(target_arch = "wasm32", path = "no_plotting.rs")]
 pub mod plotting;
 mod style;
 mod text;

@@ -152,7 +152,7 @@ pub fn offer(ctx: &Context, session: &Session) -> Option<Action> {
 /// Returns what is offered: words, a key, and the action.
 fn offers(session: &Session) -> Vec<(String, &'static str, Action)> {
     let mut all = vec![];
-    if session.readings.offers_apart && !cfg!(target_arch = "wasm32") {
+    if session.readings.offers_apart {
         all.push((
             "Bring the surfaces apart".into(),
             "x",

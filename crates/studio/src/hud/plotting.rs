@@ -12,7 +12,7 @@ use super::style::{FAINT, TEXT};
 use super::widgets::{chip, columns, write};
 use super::words::signed;
 use crate::session::{Action, Mode, Pick, PlotFile, PlotRequest, Row, RunAction, SPANS};
-use crate::session::{Session, Variable, WindowAction};
+use crate::session::{IS_PAGE, Session, Variable, WindowAction};
 use chart::{Plotted, place, plotted, rows};
 use rows::Rows;
 
@@ -89,7 +89,7 @@ fn foot(ui: &Ui, rect: Rect, session: &Session) -> Option<Action> {
     let ruled = settings.ruler.is_some();
     for (words, wish, chosen) in [
         (
-            "PNG",
+            if IS_PAGE { "SVG" } else { "PNG" },
             WindowAction::WritePlot(PlotFile::Picture).into(),
             false,
         ),

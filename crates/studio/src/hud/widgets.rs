@@ -63,7 +63,6 @@ fn face(ui: &Ui, rect: Rect, words: &str, size: f32, [fill, edge, ink]: [Color32
 }
 
 /// Draws a small button, which is chosen or not.
-#[cfg(not(target_arch = "wasm32"))]
 pub fn chip(ui: &Ui, rect: Rect, words: &str, chosen: bool) -> Response {
     let response = sense(ui, rect, words);
     face(

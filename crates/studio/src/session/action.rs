@@ -4,9 +4,7 @@ use super::dial::Turn;
 use super::editor::{Measure, Tool};
 use super::list::TextKey;
 use super::question::Question;
-#[cfg(not(target_arch = "wasm32"))]
-use super::traces::PlotFile;
-use super::traces::PlotRequest;
+use super::traces::{PlotFile, PlotRequest};
 
 /// What a user asks for.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -110,7 +108,6 @@ pub enum WindowAction {
     /// Write the samples of the plots as CSV.
     WritePlots,
     /// Write a table or a picture of what is plotted.
-    #[cfg(not(target_arch = "wasm32"))]
     WritePlot(PlotFile),
     /// Start a live film, or complete it.
     Record,
@@ -153,16 +150,8 @@ pub enum PanelRequest {
     /// Reset all runs, and give that of a pane, which blew up, what would have held.
     RunAgain(usize),
     /// Choose a tool.
-    #[cfg_attr(
-        target_arch = "wasm32",
-        allow(dead_code, reason = "the page has no tools")
-    )]
     Tool(Tool),
     /// Set a quantity of what the tools add.
-    #[cfg_attr(
-        target_arch = "wasm32",
-        allow(dead_code, reason = "the page has no tools")
-    )]
     SetMeasure(Measure, f64),
 }
 

@@ -13,7 +13,6 @@ use super::action::RunAction;
 use super::history::Change;
 use super::list::{List, TextKey, Topic, solvers};
 use super::pane::Pane;
-#[cfg(not(target_arch = "wasm32"))]
 use super::plotting;
 use super::runs::KEY_BUDGET;
 use super::state::Session;
@@ -99,9 +98,6 @@ impl Session {
             RunAction::Panel | RunAction::Measure | RunAction::Lessons | RunAction::Plots => {
                 toggle(self, action);
             }
-            RunAction::Edit if cfg!(target_arch = "wasm32") => {
-                self.readings.say("Only the program edits scenes.");
-            }
             RunAction::Edit if self.runs.first().model().network().is_none() => {
                 let why = "Only scenes of masses can be edited.";
                 self.readings.say(why);
@@ -128,7 +124,6 @@ impl Session {
     fn reset(&mut self) {
         let touching = self.runs.first().touching();
         self.runs.reset();
-        self.effects.forget();
         if touching && !self.runs.first().touching() {
             let why = "Surfaces cross in the initial state, so self-collision is off again";
             self.readings.offer(why);
@@ -362,7 +357,6 @@ impl Session {
         let said = match self.runs.set_scene(setup) {
             Ok(said) => {
                 self.tuning = Tuning::of(&self.scenes.shown, setup);
-                self.effects.forget();
                 self.measuring.forget();
                 self.readings.left_out.clear();
                 self.panel.editor.forget(&self.runs);
@@ -396,14 +390,13 @@ pub fn offer_at_start(session: &mut Session) {
 /// Turns self-collision on or off. If surfaces cross, says which, and offers to bring them apart;
 /// does so if that was offered.
 pub fn toggle_touch(session: &mut Session) {
-    let is_page = cfg!(target_arch = "wasm32");
-    if session.readings.offers_apart && !is_page {
+    if session.readings.offers_apart {
         return bring_apart(session);
     }
     let Err(why) = session.runs.toggle_touch() else {
         return;
     };
-    if !is_page && session.runs.all().any(crosses) {
+    if session.runs.all().any(crosses) {
         session.readings.offer(why);
     } else {
         session.readings.say(why);
@@ -491,7 +484,6 @@ pub fn toggle(session: &mut Session, action: RunAction) {
     let panel = &mut session.panel;
     panel.typed = None;
     panel.beside = Some(action).filter(|pane| !panel.has(*pane));
-    #[cfg(not(target_arch = "wasm32"))]
     if panel.has(RunAction::Plots) {
         plotting::pick_first(&mut session.runs.panes);
     }

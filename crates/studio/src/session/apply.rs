@@ -3,7 +3,6 @@
 use super::action::{Action, MeasureRequest, PanelKey, RunAction};
 use super::state::Session;
 use super::{asking, begin, panel, replace};
-#[cfg(not(target_arch = "wasm32"))]
 use super::{plotting, traces::PlotRequest};
 
 /// Carries out an action, and returns whether it changed the scene. Those on a solver are for the
@@ -18,15 +17,12 @@ pub fn apply(session: &mut Session, action: impl Into<Action>, at: usize) -> boo
         Action::Learn(request) => {
             return own.lessons.apply(request, &mut own.all_marked) && begin_step(session);
         }
-        #[cfg(not(target_arch = "wasm32"))]
         Action::Plot(request) => {
             if let Some(said) = plotting::apply(&mut own.plotting, &mut session.runs.panes, request)
             {
                 session.readings.say(said);
             }
         }
-        #[cfg(target_arch = "wasm32")]
-        Action::Plot(request) => match request {},
         Action::Type(key) if own.has(RunAction::Lessons) => {
             own.lessons.type_key(key, &mut own.all_marked);
         }
@@ -37,10 +33,10 @@ pub fn apply(session: &mut Session, action: impl Into<Action>, at: usize) -> boo
 
 /// Begins the run of the step of a lesson that is shown, and returns whether that was possible.
 fn begin_step(session: &mut Session) -> bool {
-    let Some(((_, step), reader)) = session.panel.lessons.shown().zip(session.scenes.reader) else {
+    let Some((_, step)) = session.panel.lessons.shown() else {
         return false;
     };
-    match begin::step(step, reader) {
+    match begin::step(step) {
         Ok(next) => replace::replace(session, next),
         Err(why) => {
             session.readings.warn(why.to_string());
@@ -69,10 +65,7 @@ pub fn action_beside(session: &Session, key: PanelKey, other: bool) -> Option<Ac
             (None, PanelKey::Toggle) => Some(MeasureRequest::Toggle.into()),
             _ => None,
         },
-        #[cfg(not(target_arch = "wasm32"))]
         _ => Some(PlotRequest::Mode(session.panel.plotting.mode.neighbour(by?)).into()),
-        #[cfg(target_arch = "wasm32")]
-        _ => None,
     }
 }
 
@@ -85,7 +78,6 @@ pub fn is_typing(session: &Session) -> bool {
 /// Removes the ruler of the former scene and, if the plots are open, plots what moves alone.
 pub fn begin_plots(session: &mut Session) {
     session.panel.plotting.ruler = None;
-    #[cfg(not(target_arch = "wasm32"))]
     if session.panel.has(RunAction::Plots) {
         plotting::pick_first(&mut session.runs.panes);
     }

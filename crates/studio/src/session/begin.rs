@@ -9,9 +9,10 @@ use a3_files::setup::{Request, find};
 use a3_media::show::{check_drawing, check_particle};
 
 use super::acts::offer_at_start;
-use super::opening::{Opening, Reader};
+use super::opening::Opening;
 use super::origin::{Origin, begins_crossed};
 use super::state::{Beginning, Session};
+use super::words::read;
 
 /// Creates the session of a window on one run, or on several side by side. Fails if an option does
 /// not fit the scene.
@@ -28,7 +29,7 @@ const SEEN_TIME: f64 = 10.0;
 
 /// Creates the session of a step of a lesson, which pauses at the time of the step. Fails if its
 /// command line does not fit its scene.
-pub fn step(step: &Step, read: Reader) -> Result<Session, Failure> {
+pub fn step(step: &Step) -> Result<Session, Failure> {
     let words = step.run.split_whitespace().skip(1).map(str::to_owned);
     let opening = read(&words.collect::<Vec<_>>())?;
     let source = match lessons::scene(&opening.scene) {

@@ -1,10 +1,5 @@
 //! The tools that edit the scene, with the sizes, speeds and masses of what they add.
 
-#![cfg_attr(
-    target_arch = "wasm32",
-    allow(dead_code, reason = "the page has no tools")
-)]
-
 use a3_core::Network;
 use a3_files::rounding::short;
 

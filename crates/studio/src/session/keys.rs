@@ -59,9 +59,7 @@ pub static GROUPS: [Group; 8] = [
         purpose: "Change",
         bindings: &[
             run(&["Tab"], RunAction::Panel, "tune and plot"),
-            #[cfg(not(target_arch = "wasm32"))]
             run(&["F2"], RunAction::Edit, "throw, add, join, delete"),
-            #[cfg(not(target_arch = "wasm32"))]
             window(&["F4"], WindowAction::Throw, "throw a ball; Shift, heavy"),
             run(&["d"], RunAction::Wind, "wind"),
             run(&["s"], RunAction::Swing, "swing the pins"),
@@ -92,8 +90,6 @@ pub static GROUPS: [Group; 8] = [
         purpose: "Measure",
         bindings: &[
             run(&["q"], RunAction::Measure, "chart, limits, choice, parts"),
-            // In a browser, the key searches the page.
-            #[cfg(not(target_arch = "wasm32"))]
             run(&["F3"], RunAction::Plots, "plot particles, springs"),
         ],
     },
@@ -142,15 +138,18 @@ pub static FINGERS: &[(&str, &str)] = &[
     ("double tap", "list springs"),
 ];
 
-/// What a page leaves out of the window of the program, for its help.
-pub static LEFT_OUT: &[(&str, &str)] = &[
-    ("measure (q)", "charts, limits, choice"),
-    ("plots (F3)", "particles, springs"),
-    ("tools (F2)", "throw, add, join, delete"),
-    ("films (m, n)", "MP4, GIF, WebM, PNG"),
-    ("comparisons", "from a command line"),
-    ("threads", "large scenes are slower"),
-];
+/// Whether this is the window in a page.
+pub const IS_PAGE: bool = cfg!(target_arch = "wasm32");
+
+/// Returns whether an action does anything here: a page measures nothing, and makes no films.
+pub fn is_here(action: Action) -> bool {
+    let left_out = [
+        Action::Run(RunAction::Measure),
+        Action::Window(WindowAction::Record),
+        Action::Window(WindowAction::FilmLast),
+    ];
+    !IS_PAGE || !left_out.contains(&action)
+}
 
 /// Returns all keys except the digits.
 pub fn bindings() -> impl Iterator<Item = &'static Binding> {

@@ -133,7 +133,12 @@ impl Measuring {
 
     /// Returns the answer to the question that is shown, if there is one.
     pub fn known(&self) -> Option<&Known> {
-        self.known[self.question as usize].as_ref()
+        self.known_of(self.question)
+    }
+
+    /// Returns the answer to a question, if there is one.
+    pub fn known_of(&self, question: Question) -> Option<&Known> {
+        self.known[question as usize].as_ref()
     }
 
     /// Returns the question that is being measured, and its progress; whether it was told to stop.

@@ -9,7 +9,6 @@ pub mod begin;
 mod continued;
 mod dial;
 mod editor;
-mod effects;
 pub mod exchange;
 mod hands;
 mod history;
@@ -24,38 +23,34 @@ mod pane;
 pub mod panel;
 pub mod panes;
 mod passage;
-#[cfg(not(target_arch = "wasm32"))]
 pub mod plotting;
 mod question;
 mod reference;
 mod replace;
+mod rows;
 mod runs;
 mod samples;
 mod save;
 mod scenes;
 mod state;
 mod timeline;
-#[cfg_attr(target_arch = "wasm32", path = "no_traces.rs")]
 mod traces;
 mod tuning;
 mod view;
-#[cfg(test)]
 mod words;
 
 pub use action::{Action, RunAction, WindowAction};
 pub use action::{LessonRequest, MeasureRequest, PanelKey, PanelRequest};
 pub use acts::{come_apart, go_to, offer_at_start};
 pub use apply::{action_beside, apply, begin_plots, is_typing};
-pub use continued::continue_from;
 pub use dial::{Dial, DialScale, Turn};
 pub use editor::{Measure, Tool};
-pub use effects::{Deviation, Effect, Job, Situation};
 pub use history::{Change, EditChange, Recorded};
-pub use keys::{Binding, FINGERS, GROUPS, Group, LEFT_OUT, MOUSE, action};
+pub use keys::{Binding, FINGERS, GROUPS, Group, IS_PAGE, MOUSE, action, is_here};
 pub use lessons::{Given, Lessons};
 pub use list::{Entry, TextKey, Topic};
 pub use measuring::Progress;
-pub use opening::{Opening, Reader};
+pub use opening::Opening;
 pub use origin::{Origin, begins_crossed};
 pub use pane::Pane;
 pub use passage::Passage;
@@ -66,12 +61,9 @@ pub use save::write_scene;
 pub use state::{Beginning, Session};
 pub use state::{FilmProgress, Readings, Selection};
 pub use timeline::TimelinePosition;
-#[cfg(not(target_arch = "wasm32"))]
 pub use traces::{Kind, Mode, Pick, PlotFile, Row, SPANS, Trigger, Variable};
 pub use traces::{PlotRequest, RulerEnd};
-#[cfg(any(target_arch = "wasm32", test))]
-pub use tuning::Hidden;
-pub use tuning::{DEFAULT_FILM_SECONDS, Tuning};
+pub use tuning::{DEFAULT_FILM_SECONDS, Hidden, Tuning};
 
 #[cfg(test)]
 pub use keys::bindings;
@@ -79,7 +71,6 @@ pub use keys::bindings;
 pub use pane::Cost;
 #[cfg(test)]
 pub use tests::{compared, frames, session, times};
-#[cfg(test)]
 pub use words::read;
 
 #[cfg(test)]
@@ -91,9 +82,7 @@ mod tests {
     /// Creates the session of a command line.
     pub fn session(words: &[&str]) -> Session {
         let owned: Vec<_> = words.iter().map(|word| (*word).to_owned()).collect();
-        let mut session = begin::session(&words::read(&owned).unwrap()).unwrap();
-        session.scenes.reader = Some(words::read);
-        session
+        begin::session(&words::read(&owned).unwrap()).unwrap()
     }
 
     /// Creates a comparison, advanced to a time (s) in frames of 60 Hz.

@@ -4,12 +4,8 @@ use std::path::PathBuf;
 
 use a3_core::{Method, StepLimits};
 
-use a3_files::failure::Failure;
 use a3_files::setup::SceneOptions;
 use a3_media::show::Manner;
-
-/// Function of the program that reads the words of a command line that opens a window.
-pub type Reader = fn(&[String]) -> Result<Opening, Failure>;
 
 /// A scene, its runs, and the first look of the window.
 #[expect(clippy::struct_excessive_bools, reason = "each is an option")]

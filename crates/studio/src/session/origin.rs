@@ -147,12 +147,10 @@ impl Origin {
     }
 }
 
-/// Returns whether surfaces of a scene cross at the start, or too many are at one place. The page
-/// does not ask: it has to stay small.
+/// Returns whether surfaces of a scene cross at the start, or too many are at one place.
 pub fn begins_crossed(scene: &Scene) -> bool {
-    !cfg!(target_arch = "wasm32")
-        && scene.model.network().is_some_and(|network| {
-            let (x, _) = network.halves(&scene.state);
-            network.check_apart(0.0, x).is_err()
-        })
+    scene.model.network().is_some_and(|network| {
+        let (x, _) = network.halves(&scene.state);
+        network.check_apart(0.0, x).is_err()
+    })
 }

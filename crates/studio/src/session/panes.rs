@@ -65,7 +65,6 @@ pub fn remove(session: &mut Session, at: usize) -> bool {
     session.release();
     session.runs.remove_pane(at);
     session.panel.pane = 0;
-    session.effects.forget();
     session.history.clear();
     session.view.stop_following();
     if let Some(Topic::Solvers { .. } | Topic::Beside { .. }) =

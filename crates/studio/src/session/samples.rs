@@ -1,8 +1,8 @@
 //! Samples of the last seconds of a run, for the plots.
 
-use std::collections::VecDeque;
-
 use a3_core::{Energy, Simulation};
+
+use super::rows::{self, Row, Rows};
 
 /// Simulated time that samples cover (s).
 pub const SPAN: f64 = 20.0;
@@ -10,11 +10,9 @@ pub const SPAN: f64 = 20.0;
 /// reduce their rate of ten per second.
 const MIN_INTERVAL: f64 = 0.09;
 
-/// Values of a run at one time.
+/// Values of a run.
 #[derive(Clone, Copy, Debug)]
-pub struct Sample {
-    /// Simulated time (s).
-    pub time: f64,
+pub struct Values {
     /// Energy by kind, if the scene has any.
     pub energy: Option<Energy>,
     /// The largest length over rest length, if the scene has springs.
@@ -25,10 +23,13 @@ pub struct Sample {
     total: [f64; 2],
 }
 
+/// Values of a run at one time.
+pub type Sample = Row<Values>;
+
 /// Samples in the order of their times.
 #[derive(Default)]
 pub struct Samples {
-    samples: VecDeque<Sample>,
+    samples: Rows<Values>,
 }
 
 impl Samples {
@@ -42,9 +43,7 @@ impl Samples {
         computing: f64,
     ) {
         let time = run.time();
-        while self.samples.back().is_some_and(|last| last.time > time) {
-            self.samples.pop_back();
-        }
+        rows::forget_after(&mut self.samples, time);
         let before = self.samples.back();
         if before.is_some_and(|last| time - last.time < MIN_INTERVAL) {
             return;
@@ -53,17 +52,17 @@ impl Samples {
         let cost = before.map(|last| {
             let elapsed = time - last.time;
             [
-                (total[0] - last.total[0]) / elapsed,
-                1e3 * (total[1] - last.total[1]) / elapsed,
+                (total[0] - last.values.total[0]) / elapsed,
+                1e3 * (total[1] - last.values.total[1]) / elapsed,
             ]
         });
-        self.samples.push_back(Sample {
-            time,
+        let values = Values {
             energy,
             stretch,
             cost: cost.filter(|[evaluations, _]| *evaluations >= 0.0),
             total,
-        });
+        };
+        self.samples.push_back(Row { time, values });
         while self.samples[0].time < time - SPAN {
             self.samples.pop_front();
         }
@@ -76,12 +75,8 @@ impl Samples {
 
     /// Returns the sample nearest to a time (s), if it is within five intervals.
     pub fn nearest(&self, time: f64) -> Option<&Sample> {
-        let distance = |sample: &&Sample| (sample.time - time).abs();
-        let nearest = self
-            .samples
-            .iter()
-            .min_by(|a, b| distance(a).total_cmp(&distance(b)));
-        nearest.filter(|sample| distance(sample) < 5.0 * MIN_INTERVAL)
+        let nearest = rows::nearest(&self.samples, time);
+        nearest.filter(|sample| (sample.time - time).abs() < 5.0 * MIN_INTERVAL)
     }
 
     /// Returns the samples, the oldest first.
@@ -116,10 +111,10 @@ mod tests {
         assert!((200..=202).contains(&samples.len()), "{}", samples.len());
         for pair in samples.windows(2) {
             assert!((pair[1].time - pair[0].time - 0.1).abs() < 1e-9);
-            let [evaluations, computing] = pair[1].cost.unwrap();
+            let [evaluations, computing] = pair[1].values.cost.unwrap();
             assert!((evaluations - 400.0).abs() < 1e-6 && (computing - 20.0).abs() < 1e-6);
         }
-        assert!(samples[0].time >= 29.9 - SPAN && samples[0].energy.is_some());
+        assert!(samples[0].time >= 29.9 - SPAN && samples[0].values.energy.is_some());
         // A reset drops the later samples.
         run.reset();
         kept.take(&run, run.energy(), None, computing);

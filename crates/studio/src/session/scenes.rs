@@ -8,7 +8,6 @@ use a3_files::scene_file::Source;
 use a3_scenes::Setup;
 
 use super::list::Entry;
-use super::opening::Reader;
 use super::origin::Origin;
 
 /// The scenes that a session can show, and the one that it shows.
@@ -27,8 +26,6 @@ pub struct Scenes {
     pub recent: Vec<PathBuf>,
     /// The checkpoint that was last saved or loaded.
     pub checkpoint: Option<PathBuf>,
-    /// Function that reads command lines.
-    pub reader: Option<Reader>,
 }
 
 /// A reloaded scene, and the changes in its file.
@@ -54,7 +51,6 @@ impl Scenes {
             asked: vec![origin],
             recent: vec![],
             checkpoint: None,
-            reader: None,
         }
     }
 
@@ -78,13 +74,11 @@ impl Scenes {
         self.offered = former.offered;
         self.recent = former.recent;
         self.checkpoint = former.checkpoint;
-        self.reader = former.reader;
         let number = self.names().iter().position(|name| *name == shown);
         self.number = number.unwrap_or(0);
     }
 
     /// Limits the scenes to those with these names.
-    #[cfg(any(target_arch = "wasm32", test))]
     pub fn offer(&mut self, names: Vec<String>) {
         let shown = &self.shown.source.typed;
         self.number = names.iter().position(|name| name == shown).unwrap_or(0);

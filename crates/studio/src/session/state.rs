@@ -9,7 +9,6 @@ use a3_scenes::Setup;
 use web_time::{Duration, Instant};
 
 use super::action::RunAction;
-use super::effects::Effects;
 use super::history::History;
 use super::list::List;
 use super::measuring::Measuring;
@@ -65,8 +64,6 @@ pub struct Session {
     pub history: History,
     /// Changes that the panel made to the scene.
     pub tuning: Tuning,
-    /// What the parts of the scene cost and change.
-    pub effects: Effects,
     /// Questions about the scene, and their answers.
     pub measuring: Measuring,
     /// State of the panel.
@@ -107,7 +104,6 @@ impl Session {
             history: History::default(),
             tuning: Tuning::of(&origin, setup),
             scenes: Scenes::new(origin),
-            effects: Effects::default(),
             measuring: Measuring::default(),
             panel: PanelState::default(),
             list: None,

@@ -1,8 +1,8 @@
 //! The timeline: moments of the last seconds, to which all runs can return.
 
-use std::collections::VecDeque;
-
 use a3_core::{Checkpoint, Simulation};
+
+use super::rows::{self, Row, Rows};
 
 /// Simulated time between two moments (s).
 const INTERVAL: f64 = 1.0 / 60.0;
@@ -14,26 +14,19 @@ const MAX_MEMORY: usize = 64 << 20;
 /// Recorded moments, the oldest first.
 #[derive(Default)]
 pub struct Timeline {
-    moments: VecDeque<Entry>,
+    moments: Rows<States>,
     /// Index of the chosen moment; `None` for the newest.
     shown: Option<usize>,
     /// Whether a run blew up after the newest moment.
     blew_up: bool,
 }
 
-/// A moment: the states of all runs at one time.
-struct Entry {
-    /// Simulated time (s).
-    clock: f64,
-    /// A checkpoint of each run; `None` if the run had diverged.
-    moments: Vec<Option<Checkpoint>>,
-}
+/// The states of all runs at one time; `None` for a run that had diverged.
+type States = Vec<Option<Checkpoint>>;
 
-impl Entry {
-    /// Returns the memory of the checkpoints (bytes).
-    fn size(&self) -> usize {
-        self.moments.iter().flatten().map(Checkpoint::size).sum()
-    }
+/// Returns the memory of the states of a moment (bytes).
+fn size(moment: &Row<States>) -> usize {
+    moment.values.iter().flatten().map(Checkpoint::size).sum()
 }
 
 /// Position of a moment on the timeline.
@@ -57,8 +50,7 @@ impl Timeline {
 
     /// Drops the moments after a time (s), and chooses the newest of the others.
     pub fn forget_after(&mut self, clock: f64) {
-        let others = self.moments.partition_point(|entry| entry.clock <= clock);
-        self.moments.truncate(others);
+        rows::forget_after(&mut self.moments, clock);
         (self.shown, self.blew_up) = (None, false);
     }
 
@@ -68,16 +60,16 @@ impl Timeline {
     }
 
     /// Returns the states of all runs at the last moment before a time (s), or else at the oldest;
-    /// `None` for a run that had diverged, and no states if there is no moment.
-    pub fn before(&self, clock: f64) -> Vec<Option<Checkpoint>> {
-        let later = self.moments.partition_point(|entry| entry.clock <= clock);
-        let entry = self.moments.get(later.saturating_sub(1));
-        entry.map_or(vec![], |entry| entry.moments.clone())
+    /// no states if there is no moment.
+    pub fn before(&self, clock: f64) -> States {
+        let later = self.moments.partition_point(|moment| moment.time <= clock);
+        let moment = self.moments.get(later.saturating_sub(1));
+        moment.map_or(vec![], |moment| moment.values.clone())
     }
 
     /// Returns the time of the next moment (s), if there is one before it.
     pub fn due(&self) -> Option<f64> {
-        self.moments.back().map(|newest| newest.clock + INTERVAL)
+        self.moments.back().map(|newest| newest.time + INTERVAL)
     }
 
     /// Records the states at `clock` (s) if the last moment is old enough, or with `now` if it is
@@ -92,23 +84,19 @@ impl Timeline {
             self.moments.truncate(k + 1);
             self.blew_up = false;
         }
-        let last = self.moments.back().map(|moment| moment.clock);
+        let last = self.moments.back().map(|moment| moment.time);
         let early = |due: f64| !now && clock < due - 1e-6 * INTERVAL;
         if last.is_some_and(|last| clock <= last) || self.due().is_some_and(early) {
             return;
         }
-        let size: usize = self.moments.iter().map(Entry::size).sum();
-        let next = self.moments.back().map_or(0, Entry::size);
-        let old = |entry: &Entry| entry.clock < clock - SPAN;
-        let full = self.moments.len() > 1 && size + next > MAX_MEMORY;
+        let taken: usize = self.moments.iter().map(size).sum();
+        let next = self.moments.back().map_or(0, size);
+        let is_full = self.moments.len() > 1 && taken + next > MAX_MEMORY;
         // Reuse the memory of the oldest moment.
-        let spare = if full || self.moments.front().is_some_and(old) {
-            self.moments.pop_front()
-        } else {
-            None
-        };
-        let mut places = spare.map_or(vec![], |entry| entry.moments).into_iter();
-        let moments = runs.map(|run| {
+        let old = |oldest: &mut Row<States>| is_full || oldest.time < clock - SPAN;
+        let spare = self.moments.pop_front_if(old);
+        let mut places = spare.map_or(vec![], |moment| moment.values).into_iter();
+        let states = runs.map(|run| {
             let spare = places.next().flatten();
             let moment = || match spare {
                 Some(mut moment) => {
@@ -119,15 +107,14 @@ impl Timeline {
             };
             run.blow_up().is_none().then(moment)
         });
-        let moments = moments.collect();
-        self.moments.push_back(Entry { clock, moments });
+        let (time, values) = (clock, states.collect());
+        self.moments.push_back(Row { time, values });
     }
 
     /// Goes `by` moments forward, or back if it is negative, and returns whether that changed the
     /// moment.
     pub fn go(&mut self, by: isize) -> bool {
-        let newest = self.moments.len().saturating_sub(1);
-        let from = self.shown.unwrap_or(newest);
+        let (newest, from) = (self.moments.len().saturating_sub(1), self.chosen());
         let to = from.saturating_add_signed(by).min(newest);
         self.shown = Some(to).filter(|k| *k < newest);
         to != from
@@ -138,50 +125,43 @@ impl Timeline {
     pub fn go_to(&mut self, share: f32) -> bool {
         let newest = self.moments.len().saturating_sub(1);
         let to = (share.clamp(0.0, 1.0) * newest as f32).round() as isize;
-        self.go(to - self.shown.unwrap_or(newest) as isize)
+        self.go(to - self.chosen() as isize)
     }
 
-    /// Returns the moments nearest to times that are `interval` (s) apart, over the last `seconds`
-    /// (s) before the chosen moment, the oldest first. A run that had diverged has `None`.
-    pub fn last(&self, seconds: f64, interval: f64) -> Vec<Vec<Option<Checkpoint>>> {
-        let count = self.shown.map_or(self.moments.len(), |k| k + 1);
-        let moments: Vec<_> = self.moments.iter().take(count).collect();
-        let (Some(first), Some(last)) = (moments.first(), moments.last()) else {
+    /// Returns the states nearest to times that are `interval` (s) apart, over the last `seconds`
+    /// (s) before the chosen moment, the oldest first.
+    pub fn last(&self, seconds: f64, interval: f64) -> Vec<States> {
+        let ends = self.moments.front().zip(self.moments.get(self.chosen()));
+        let Some([first, last]) = ends.map(|(first, last)| [first.time, last.time]) else {
             return vec![];
         };
-        let span = seconds.min(last.clock - first.clock);
-        let frames = (span / interval + 1e-6).floor() as u32;
-        let nearest = |time: f64| {
-            let k = moments.partition_point(|moment| moment.clock < time);
-            let near = &moments[k.saturating_sub(1)..(k + 1).min(moments.len())];
-            let distance = |moment: &Entry| (moment.clock - time).abs();
-            near.iter()
-                .min_by(|a, b| distance(a).total_cmp(&distance(b)))
-                .map_or(vec![], |moment| moment.moments.clone())
-        };
-        (0..=frames)
-            .rev()
-            .map(|k| nearest(last.clock - f64::from(k) * interval))
-            .collect()
+        let frames = (seconds.min(last - first) / interval + 1e-6).floor() as u32;
+        let times = (0..=frames).rev().map(|k| last - f64::from(k) * interval);
+        let nearest = times.filter_map(|time| rows::nearest(&self.moments, time));
+        nearest.map(|moment| moment.values.clone()).collect()
     }
 
     /// Restores the runs to the chosen moment.
     pub fn show<'r>(&self, runs: impl Iterator<Item = &'r mut Simulation>) {
-        let newest = self.moments.len().saturating_sub(1);
-        let Some(entry) = self.moments.get(self.shown.unwrap_or(newest)) else {
+        let Some(chosen) = self.moments.get(self.chosen()) else {
             return;
         };
-        for (run, moment) in runs.zip(&entry.moments) {
+        for (run, moment) in runs.zip(&chosen.values) {
             // The checkpoint is of this run, so it fits.
             let _ = moment.as_ref().map(|moment| run.rewind(moment));
         }
     }
 
+    /// Returns the index of the chosen moment.
+    fn chosen(&self) -> usize {
+        self.shown.unwrap_or(self.moments.len().saturating_sub(1))
+    }
+
     /// Returns the position of the chosen moment; `None` before there are two.
     pub fn position(&self) -> Option<TimelinePosition> {
         let newest = self.moments.len().checked_sub(1).filter(|k| *k > 0)?;
-        let k = self.shown.unwrap_or(newest);
-        let clock = |k: usize| self.moments[k].clock;
+        let k = self.chosen();
+        let clock = |k: usize| self.moments[k].time;
         Some(TimelinePosition {
             share: k as f32 / newest as f32,
             back: clock(newest) - clock(k),
@@ -229,7 +209,7 @@ mod tests {
         }
         assert!(timeline.go(-3));
         timeline.record(1.5, false, [&run].into_iter());
-        let clocks: Vec<_> = timeline.moments.iter().map(|entry| entry.clock).collect();
+        let clocks: Vec<_> = timeline.moments.iter().map(|entry| entry.time).collect();
         assert_eq!(clocks, [0.0, 1.0, 1.5]);
     }
 
@@ -291,7 +271,7 @@ mod tests {
         timeline.record(0.0, false, [&run].into_iter());
         while run.take_steps(1).is_ok() {}
         timeline.record(1.0, false, [&run].into_iter());
-        let kept = timeline.moments.iter().map(|e| e.moments[0].is_some());
+        let kept = timeline.moments.iter().map(|e| e.values[0].is_some());
         assert_eq!(kept.collect::<Vec<_>>(), [true, false]);
     }
 

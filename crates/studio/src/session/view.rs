@@ -212,7 +212,7 @@ mod tests {
     use a3_media::show;
 
     use crate::begin;
-    use crate::session::{RunAction, Session, frames, read, session};
+    use crate::session::{RunAction, Session, frames, session};
 
     #[test]
     fn the_camera_follows_a_particle_forth_and_back() {
@@ -263,7 +263,7 @@ mod tests {
     fn the_motion_of_a_lesson_fills_its_picture() {
         for lesson in ALL.iter() {
             for step in &lesson.steps {
-                let session = begin::step(step, read).unwrap();
+                let session = begin::step(step).unwrap();
                 let aspect = 1.2;
                 let project = session.view.camera.projection(aspect);
                 let scene = session.runs.first().scene().clone();

@@ -1,14 +1,99 @@
-//! A reader of command lines for tests, which trusts them to be right.
+//! The words of a command line that opens a window, from a link, a lesson, a test or the window
+//! itself: those of the program, but for the picture of a comparison and the help.
 
-use a3_core::{Disturbances, Grid, Method, StepLimits, integrators};
+use std::iter::Peekable;
+use std::slice::Iter;
+
+use a3_core::StepLimits;
+use a3_files::arguments::{
+    absolute, grid, max_step, particle, solver, solver_and_step, step, threads,
+};
 use a3_files::failure::Failure;
-use a3_files::setup::SceneOptions;
-use a3_media::show::{Arrows, Manner, Quantity};
-use a3_render::Style;
+use a3_files::setup::{SceneOptions, check_count};
+use a3_media::show::{Arrows, Manner, Quantity, style};
+use a3_scenes::nearest;
 
 use super::opening::Opening;
 
-/// Reads the words that follow the name of the program, as far as windows have them.
+/// Names of the options.
+const OPTIONS: [&str; 22] = [
+    "--scene",
+    "--grid",
+    "--wind",
+    "--swing",
+    "--self-collision",
+    "--threads",
+    "--absolute",
+    "--max-step",
+    "--springs-of",
+    "--wireframe",
+    "--springs",
+    "--orthographic",
+    "--dark",
+    "--light",
+    "--colour",
+    "--arrows",
+    "--no-config",
+    "--no-self-collision",
+    "--paused",
+    "--status",
+    "--watch",
+    "--resume",
+];
+
+/// The words that are still to be read, and the option that is being read.
+struct Words<'a> {
+    rest: Peekable<Iter<'a, String>>,
+    option: &'a str,
+    /// What follows the option's equals sign.
+    value: Option<&'a str>,
+}
+
+impl Words<'_> {
+    /// Reads the value of the option.
+    fn read<T>(&mut self, parse: impl Fn(&str) -> Result<T, String>) -> Result<T, Failure> {
+        let option = self.option;
+        let is_value = |word: &&String| is_plain(word) || option == "--grid";
+        let mut next = || self.rest.next_if(is_value).map(String::as_str);
+        let text = self.value.or_else(&mut next);
+        let text = text.ok_or_else(|| Failure::usage(format!("`{option}` needs a value")))?;
+        parse(text).map_err(|why| Failure::usage(format!("`{option} {text}`: {why}")))
+    }
+
+    /// Reads the name of a choice.
+    fn choose<T: Copy>(
+        &mut self,
+        all: &[T],
+        name_of: fn(T) -> &'static str,
+    ) -> Result<Option<T>, Failure> {
+        self.read(|text| {
+            let found = all.iter().copied().find(|choice| name_of(*choice) == text);
+            let names: Vec<_> = all.iter().copied().map(name_of).collect();
+            let list = names.join(", ");
+            found.map(Some).ok_or_else(|| match nearest(text, names) {
+                Some(name) => format!("did you mean {name}? The choices are {list}"),
+                None => format!("the choices are {list}"),
+            })
+        })
+    }
+
+    /// Reads an option that has no value.
+    fn flag(&self) -> Result<bool, Failure> {
+        let refuse = |value| format!("`{}` takes no value: leave out {value}", self.option);
+        self.value
+            .map_or(Ok(true), |it| Err(Failure::usage(refuse(it))))
+    }
+}
+
+/// Returns whether a word is no option.
+fn is_plain(word: &str) -> bool {
+    !word.starts_with('-') || word == "-" || word.parse::<f64>().is_ok()
+}
+
+/// Reads the words that follow the name of the program.
+///
+/// # Errors
+/// A word is wrong, or the command opens no window.
 pub fn read(words: &[String]) -> Result<Opening, Failure> {
     let mut opening = Opening {
         scene: "cloth".into(),
@@ -19,77 +104,120 @@ pub fn read(words: &[String]) -> Result<Opening, Failure> {
         manner: Manner::default(),
         light: false,
         paused: false,
-        no_settings: true,
+        no_settings: false,
         watch: false,
         resume: None,
         status: false,
     };
-    let mut words = words.iter().map(String::as_str).peekable();
-    if words.next_if_eq(&"compare").is_some() {
-        while let Some(word) = words.next_if(|word| !word.starts_with("--")) {
-            let (solver, step) = word
-                .split_once(':')
-                .map_or((word, None), |(solver, step)| (solver, Some(number(step))));
-            opening.methods.push((Some(method(solver)), step));
+    let mut words = Words {
+        rest: words.iter().peekable(),
+        option: "",
+        value: None,
+    };
+    let compared = words.rest.next_if(|word| *word == "compare").is_some();
+    let (mut plain, mut given) = (vec![], vec![]);
+    while let Some(word) = words.rest.next() {
+        if is_plain(word) {
+            plain.push(word.as_str());
+            continue;
         }
-    } else {
-        let solver = words.next_if(|word| !word.starts_with("--")).map(method);
-        let step = words.next_if(|word| !word.starts_with("--")).map(number);
-        opening.methods.push((solver, step));
+        if word == "--" {
+            continue;
+        }
+        (words.option, words.value) = match word.split_once('=') {
+            Some((option, value)) => (option, Some(value)),
+            None => (word.as_str(), None),
+        };
+        if words.option == "--color" {
+            words.option = "--colour";
+        }
+        if given.contains(&words.option) {
+            let why = format!("`{}` is there twice: give it once", words.option);
+            return Err(Failure::usage(why));
+        }
+        given.push(words.option);
+        set(&mut opening, &mut words)?;
     }
-    while let Some(word) = words.next() {
-        let mut value = || words.next().unwrap();
-        let Opening {
-            options: SceneOptions { grid, on },
-            manner,
-            limits,
-            ..
-        } = &mut opening;
-        let Disturbances {
-            wind,
-            swing,
-            contact,
-        } = on;
-        match word {
-            "--scene" => opening.scene = value().into(),
-            "--grid" => {
-                let (rows, cols) = value().split_once('x').unwrap();
-                let grid_of = Grid::new(rows.parse().unwrap(), cols.parse().unwrap());
-                *grid = Some(grid_of.map_err(Failure::usage)?);
-            }
-            "--colour" => {
-                let name = value();
-                manner.colour = Quantity::ALL.into_iter().find(|it| it.name() == name);
-            }
-            "--arrows" => {
-                let name = value();
-                manner.arrows = Arrows::ALL.into_iter().find(|it| it.name() == name);
-            }
-            "--springs-of" => manner.springs_of = value().parse().ok(),
-            "--absolute" => limits.absolute = Some(number(value())),
-            "--max-step" => limits.max_step = Some(number(value())),
-            "--wireframe" => manner.style = Style::Wireframe,
-            "--springs" => manner.style = Style::Springs,
-            "--orthographic" => manner.orthographic = true,
-            "--dark" => manner.dark = true,
-            "--wind" => *wind = true,
-            "--swing" => *swing = true,
-            "--self-collision" => *contact = true,
-            "--no-self-collision" => opening.no_contact = true,
-            "--paused" => opening.paused = true,
-            _ => panic!("{word}: no option of a test"),
+    let is_given = |option| given.contains(&option);
+    for (one, other) in [
+        ("--wireframe", "--springs"),
+        ("--self-collision", "--no-self-collision"),
+    ] {
+        if is_given(one) && is_given(other) {
+            let why = format!("give either `{one}` or `{other}`, not both");
+            return Err(Failure::usage(why));
         }
     }
-    Ok(opening)
-}
-
-fn method(name: &str) -> &'static Method {
-    integrators::find(name).unwrap_or_else(|| panic!("{name}: no solver"))
-}
-
-fn number(text: &str) -> f64 {
-    match text.split_once('/') {
-        Some((above, below)) => number(above) / number(below),
-        None => text.parse().unwrap(),
+    opening.manner.style = style(is_given("--wireframe"), is_given("--springs"));
+    let wrong = |word, why| Failure::usage(format!("`{word}`: {why}"));
+    if compared {
+        let mut alone = ["--springs-of", "--watch", "--resume"].into_iter();
+        if let Some(option) = alone.find(|option| is_given(option)) {
+            return Err(Failure::usage(format!(
+                "there is no option `{option}` here"
+            )));
+        }
+        check_count(plain.len())?;
+        for word in plain {
+            let (method, step) = solver_and_step(word).map_err(|why| wrong(word, why))?;
+            opening.methods.push((Some(method), step));
+        }
+        return Ok(opening);
     }
+    if opening.resume.is_some() && !plain.is_empty() {
+        let why = "give either `SOLVER` or `--resume FILE.checkpoint`, not both";
+        return Err(Failure::usage(why));
+    }
+    let mut plain = plain.into_iter();
+    let method = plain.next().map(|word| {
+        solver(word)
+            .map_err(|why| wrong(word, format!("{why}; a page has no command except compare")))
+    });
+    let step = plain
+        .next()
+        .map(|word| step(word).map_err(|why| wrong(word, why)));
+    opening
+        .methods
+        .push((method.transpose()?, step.transpose()?));
+    match plain.next() {
+        Some(word) => Err(Failure::usage(format!("`{word}` is one word too many"))),
+        None => Ok(opening),
+    }
+}
+
+/// Sets what the option that is being read says.
+fn set(opening: &mut Opening, words: &mut Words) -> Result<(), Failure> {
+    let (options, manner) = (&mut opening.options, &mut opening.manner);
+    match words.option {
+        "--scene" => opening.scene = words.read(|name| Ok(name.to_owned()))?,
+        "--grid" => options.grid = Some(words.read(grid)?),
+        "--wind" => options.on.wind = words.flag()?,
+        "--swing" => options.on.swing = words.flag()?,
+        "--self-collision" => options.on.contact = words.flag()?,
+        // These are the process's, which has its own by now, and a page has one.
+        "--threads" => drop(words.read(threads)?),
+        "--absolute" => opening.limits.absolute = Some(words.read(absolute)?),
+        "--max-step" => opening.limits.max_step = Some(words.read(max_step)?),
+        "--springs-of" => manner.springs_of = Some(words.read(particle)?),
+        "--wireframe" | "--springs" => drop(words.flag()?),
+        "--orthographic" => manner.orthographic = words.flag()?,
+        // The last of these counts.
+        "--dark" => (manner.dark, opening.light) = (words.flag()?, false),
+        "--light" => (manner.dark, opening.light) = (false, words.flag()?),
+        "--colour" => manner.colour = words.choose(&Quantity::ALL, Quantity::name)?,
+        "--arrows" => manner.arrows = words.choose(&Arrows::ALL, Arrows::name)?,
+        "--no-config" => opening.no_settings = words.flag()?,
+        "--no-self-collision" => opening.no_contact = words.flag()?,
+        "--paused" => opening.paused = words.flag()?,
+        "--status" => opening.status = words.flag()?,
+        "--watch" => opening.watch = words.flag()?,
+        "--resume" => opening.resume = Some(words.read(|path| Ok(path.into()))?),
+        option => {
+            return Err(Failure::usage(match nearest(option, OPTIONS) {
+                Some(name) => format!("there is no option `{option}`; did you mean {name}?"),
+                None => format!("there is no option `{option}`"),
+            }));
+        }
+    }
+    Ok(())
 }

@@ -7,7 +7,7 @@ use super::super::window::Window;
 use super::PANE;
 use crate::begin;
 use crate::session::PanelKey::{self, Down, Left, Right, Toggle, Up};
-use crate::session::{Action, RunAction, Session, TextKey, read, session};
+use crate::session::{Action, RunAction, Session, TextKey, session};
 use crate::session::{action_beside, apply, is_typing};
 
 /// Height of the bar (points).
@@ -73,8 +73,7 @@ impl Asked {
 fn the_answers_are_what_the_runs_say() {
     for (k, lesson) in ALL.iter().enumerate() {
         for (n, step) in lesson.steps.iter().enumerate() {
-            let mut session =
-                begin::step(step, read).unwrap_or_else(|why| panic!("{}: {why}", step.run));
+            let mut session = begin::step(step).unwrap_or_else(|why| panic!("{}: {why}", step.run));
             let place = (k + 1, n + 1);
             let asked = ASKED.iter().find(|(k, n, _)| (*k, *n) == place);
             let number = matches!(step.question.answer, Answer::Number { .. });
@@ -105,7 +104,7 @@ fn the_answers_are_what_the_runs_say() {
 #[test]
 fn the_right_choices_are_what_happens() {
     let of = |lesson: usize, step: usize, time: f64| {
-        let mut session = begin::step(&ALL[lesson - 1].steps[step - 1], read).unwrap();
+        let mut session = begin::step(&ALL[lesson - 1].steps[step - 1]).unwrap();
         session.run_to(time);
         session
     };

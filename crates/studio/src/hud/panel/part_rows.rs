@@ -1,13 +1,12 @@
-//! Rows of the parts of a scene: a switch, a name, and what the part costs and changes.
+//! Rows of the parts of a scene: a switch, a name, and whether the part is needed.
 
-use a3_files::rounding::short;
-use egui::{Id, Rect, Sense, Ui, pos2, vec2};
+use egui::text::{LayoutJob, TextWrapping};
+use egui::{Align2, Color32, FontId, Id, Rect, Sense, Ui, pos2, vec2};
 
 use super::super::style::{FAINT, INK, TEXT};
-use super::super::widgets::{CHOSEN, HOVERED, LEFT, button, keep_in_sight, switch, write};
-use crate::session::panel::{can_measure, measuring_row, part_row};
-use crate::session::panel::{effect_in_words, is_as_in_scene, is_in};
-use crate::session::{PanelRequest, Session, Turn};
+use super::super::widgets::{CHOSEN, HOVERED, button, keep_in_sight, switch};
+use crate::session::panel::{is_as_in_scene, is_in, measured, measuring_row, part_row};
+use crate::session::{PanelRequest, Question, Session, Turn};
 
 /// Height of the row of a part (points).
 const HEIGHT: f32 = 36.0;
@@ -24,7 +23,7 @@ pub fn show(ui: &Ui, room: Rect, session: &Session) -> (f32, Option<PanelRequest
     let place = |top: f32, height: f32| {
         Rect::from_min_size(pos2(room.left(), top), vec2(room.width(), height))
     };
-    if can_measure() {
+    if session.measuring.answerer.is_some() {
         request = measuring(ui, place(top, MEASURING_HEIGHT), session);
         top += MEASURING_HEIGHT + 6.0;
     }
@@ -44,20 +43,25 @@ pub fn show(ui: &Ui, room: Rect, session: &Session) -> (f32, Option<PanelRequest
 /// Draws the row that measures the parts.
 fn measuring(ui: &Ui, rect: Rect, session: &Session) -> Option<PanelRequest> {
     let place = rect.shrink2(vec2(0.0, 3.0));
-    let (effects, number) = (&session.effects, measuring_row());
-    let (words, state) = match (effects.progress(), effects.time()) {
-        (Some([done, all]), _) => ("stop", format!("{done} of {all} measured")),
-        (None, Some(time)) => ("measure again", format!("measured at {} s", short(time, 3))),
+    let number = measuring_row();
+    let known = session.measuring.known_of(Question::Simplify);
+    let (words, state) = match (session.measuring.progress(), known) {
+        (Some((.., true)), _) => ("stopping", String::new()),
+        (Some((_, progress, _)), _) => ("stop", format!("{:.0} %", 100.0 * progress.share())),
+        (None, Some(known)) if known.answer.is_err() => ("measure again", "no answer".into()),
+        (None, Some(_)) => ("measure again", "Enter".into()),
         (None, None) => ("measure the parts", "Enter".into()),
     };
     if session.panel.row == number {
         let painter = ui.painter();
         painter.rect_filled(rect.expand2(vec2(6.0, -0.5)), 5.0, CHOSEN);
     }
-    let response = button(ui, place, words, &state).on_hover_text(
-        "Measures, from the present state on, what each part costs in a step and how far it moves the particles \
-         in the next seconds. Parts that are left out are measured by bringing them back.",
-    );
+    let about = match known.map(|known| (&known.of, &known.answer)) {
+        Some((of, Ok(found))) => format!("{of}: {}{}", found.report.head, found.report.foot),
+        Some((of, Err(why))) => format!("{of}: {why}"),
+        None => format!("{} Key q shows the table.", Question::Simplify.about()),
+    };
+    let response = button(ui, place, words, &state).on_hover_text(about);
     response
         .clicked()
         .then_some(PanelRequest::Turn(number, Turn::Toggle))
@@ -75,40 +79,46 @@ fn row(ui: &Ui, rect: Rect, session: &Session, part: usize) -> Option<PanelReque
         painter.rect_filled(rect.expand2(vec2(6.0, -0.5)), 5.0, colour);
     }
     let (name, on) = (&session.tuning.parts[part].name, is_in(session, part));
-    let effect = session.effects.of(part).map(|it| effect_in_words(&it));
+    let measured = measured(session, part).and_then(in_words);
     let as_in_scene = is_as_in_scene(session, part);
-    let say = |y: f32, words: &str, size: f32, colour| {
-        let at = rect.min + vec2(NAME_LEFT, y);
-        write(painter, at, LEFT, words, size, colour);
+    let write = |y: f32, words: &str, size: f32, colour: Color32| {
+        let mut job =
+            LayoutJob::simple_singleline(words.into(), FontId::proportional(size), colour);
+        job.wrap = TextWrapping::truncate_at_width(rect.width() - NAME_LEFT);
+        let galley = painter.layout_job(job);
+        let at = pos2(rect.left() + NAME_LEFT, rect.top() + y);
+        let place = Align2::LEFT_CENTER.anchor_size(at, galley.size());
+        painter.galley(place.min, galley, colour);
     };
-    say(11.5, name, 13.0, if as_in_scene { TEXT } else { INK });
-    let state = match (on, &effect) {
-        (_, Some(effect)) => effect,
+    write(11.5, name, 13.0, if as_in_scene { TEXT } else { INK });
+    let state = match (on, &measured) {
+        (_, Some(words)) => words,
         (true, None) => "in",
         (false, None) if as_in_scene => "off",
         (false, None) => "left out",
     };
-    say(26.5, state, 11.5, if as_in_scene { FAINT } else { INK });
+    write(26.5, state, 11.5, if as_in_scene { FAINT } else { INK });
     let turn = switch(ui, rect, id("switch"), on);
-    let whole = whole.on_hover_text(tooltip(session, part, effect.as_deref()));
+    let whole = whole.on_hover_text(tooltip(name, measured.as_deref()));
     turn.map(|turn| PanelRequest::Turn(number, turn))
         .or_else(|| whole.clicked().then_some(PanelRequest::ChooseRow(number)))
 }
 
-/// Returns the tooltip of a part: its effect in sentences, and the use of the switch.
-fn tooltip(session: &Session, part: usize, effect: Option<&str>) -> String {
-    let name = &session.tuning.parts[part].name;
-    let measured = session.effects.of(part).zip(effect).map(|(it, words)| {
-        let way = it.change.map_or(String::new(), |change| {
-            format!(
-                "\nThe distance is the root mean square over the particles, at the time in {} s when it is largest.",
-                short(change.time, 2)
-            )
-        });
-        format!("{name}: {words}.{way}\n")
-    });
+/// Returns a row of the table of what can be left out, without its name, in words.
+fn in_words(row: &[String]) -> Option<String> {
+    let [_, changes, .., saves, verdict] = row else {
+        return None;
+    };
+    Some(match &**changes {
+        "-" => verdict.clone(),
+        changes => format!("{verdict}: changes {changes} m, saves {saves}"),
+    })
+}
+
+/// Returns the tooltip of a part: what was measured of it, and the use of the switch.
+fn tooltip(name: &str, measured: Option<&str>) -> String {
+    let measured = measured.map_or(String::new(), |words| format!("{name}: {words}.\n"));
     format!(
-        "{}The switch leaves the part out, or brings it back, while the motion goes on.",
-        measured.unwrap_or_default()
+        "{measured}The switch leaves the part out, or brings it back, while the motion goes on."
     )
 }

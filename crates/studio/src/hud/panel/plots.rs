@@ -58,25 +58,27 @@ static PLOTS: &[Plot] = &[
         title: "energy (J)",
         curves: &[
             curve("kinetic", "kinetic energy (J)", (TEAL, &[5.0, 2.1]), |s| {
-                Some(s.energy?.kinetic)
+                Some(s.values.energy?.kinetic)
             }),
             curve("elastic", "elastic energy (J)", (AMBER, &[1.1, 1.7]), |s| {
-                Some(s.energy?.elastic)
+                Some(s.values.energy?.elastic)
             }),
             curve(
                 "gravity",
                 "gravitational energy (J)",
                 (VIOLET, &[5.0, 1.7, 1.1, 1.7]),
-                |s| Some(s.energy?.gravitational),
+                |s| Some(s.values.energy?.gravitational),
             ),
             curve("total", "total energy (J)", ("#181c28", &[]), |s| {
-                Some(s.energy?.total())
+                Some(s.values.energy?.total())
             }),
         ],
     },
     Plot {
         title: "largest stretch",
-        curves: &[curve("", "largest stretch", (AMBER, &[]), |s| s.stretch)],
+        curves: &[curve("", "largest stretch", (AMBER, &[]), |s| {
+            s.values.stretch
+        })],
     },
     Plot {
         title: "computing (ms per simulated s)",
@@ -84,7 +86,7 @@ static PLOTS: &[Plot] = &[
             "",
             "computing (ms per simulated s)",
             (TEAL, &[]),
-            |s| Some(s.cost?[1]),
+            |s| Some(s.values.cost?[1]),
         )],
     },
     Plot {
@@ -93,7 +95,7 @@ static PLOTS: &[Plot] = &[
             "",
             "evaluations per simulated s",
             (VIOLET, &[]),
-            |s| Some(s.cost?[0]),
+            |s| Some(s.values.cost?[0]),
         )],
     },
 ];
@@ -217,7 +219,7 @@ mod tests {
         let last = session.runs.panes[1].samples.iter().last().unwrap();
         let row = rows.last().unwrap();
         assert_eq!((row[0], row[1]), ("rk4", &*last.time.to_string()));
-        assert_eq!(row[5].parse(), Ok(last.energy.unwrap().total()));
+        assert_eq!(row[5].parse(), Ok(last.values.energy.unwrap().total()));
     }
 
     #[test]

@@ -7,7 +7,8 @@ use a3_files::output;
 use a3_plot::{CurveStyle, Line, LineChart, LinePanel, Marker};
 
 use super::super::words::{self, signed};
-use crate::session::{Kind, Mode, Pane, Pick, PlotFile, Row, Session, Trigger, Variable};
+use crate::session::{IS_PAGE, Kind, Mode, Pane, Pick, PlotFile, Row, Session};
+use crate::session::{Trigger, Variable};
 
 /// Colours of picks or, in a comparison, of panes, that every kind of colour vision tells apart
 /// (Okabe and Ito, Tol).
@@ -258,7 +259,7 @@ pub fn write_one(session: &Session, file: PlotFile) -> Result<PathBuf, Failure> 
     }
     let (ending, bytes) = match file {
         PlotFile::Table => ("csv", table(session).map_err(Failure::run)?),
-        PlotFile::Picture => ("png", picture(session)?),
+        PlotFile::Picture => (if IS_PAGE { "svg" } else { "png" }, picture(session)?),
     };
     let scene = &session.runs.first().scene().name;
     output::write_new("".as_ref(), scene, ending, &bytes)
@@ -273,6 +274,9 @@ fn picture(session: &Session) -> Result<Vec<u8>, Failure> {
         count => count as f64 * panel,
     };
     let figure = chart.draw(width, height + rest).map_err(Failure::run)?;
+    if IS_PAGE {
+        return Ok(figure.svg().into_bytes());
+    }
     figure.png(SCALE).map_err(Failure::run)
 }
 

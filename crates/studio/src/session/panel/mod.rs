@@ -2,7 +2,6 @@
 //! the scene, with undo and redo of all of these.
 
 mod knobs;
-mod measure;
 mod parts;
 mod request;
 mod tune;
@@ -10,13 +9,11 @@ mod undo;
 mod values;
 
 pub use knobs::Knob;
-pub use measure::update;
-pub use parts::{effect_in_words, is_as_in_scene, is_in, turn as turn_part};
+pub use parts::{is_as_in_scene, is_in, measured, turn as turn_part};
 pub use request::{apply, request, type_key};
-pub use request::{can_measure, measuring_row, numbers, part_row, rows, shows_parts};
+pub use request::{measuring_row, numbers, part_row, rows, shows_parts};
 pub use tune::{tune, tuned};
 pub use undo::undo;
-#[cfg(not(target_arch = "wasm32"))]
 pub use undo::{edit, of_one_body};
 pub use values::pane;
 

@@ -1,14 +1,10 @@
-//! Parts of the scene: which are in the runs, and what they cost and change, in words.
+//! Parts of the scene: which are in the runs, and what was measured of them.
 
-use a3_files::rounding::short;
 use a3_scenes::PartChange;
 
 use super::knobs::{KNOBS, row_of};
 use super::tune::leave_out;
-use crate::session::{Change, Effect, Session, Turn};
-
-/// Share of the work below which a part costs next to nothing: timings are no more accurate.
-const MIN_COST: f64 = 0.01;
+use crate::session::{Change, Question, Session, Turn};
 
 /// Returns the row of the knob that turns a part on and off, if there is one.
 fn knob(change: PartChange) -> Option<usize> {
@@ -92,45 +88,11 @@ pub fn name(session: &Session, part: usize) -> String {
     format!("{name}: {state}")
 }
 
-/// Describes what a part costs and changes.
-pub fn effect_in_words(effect: &Effect) -> String {
-    let cost = effect.cost.map(|share| {
-        let percent = 100.0 * share.abs();
-        if share.abs() < MIN_COST {
-            "under 1 % of the work".into()
-        } else if share < 0.0 {
-            format!("saves {percent:.0} % of the work")
-        } else {
-            format!("{percent:.0} % of the work")
-        }
-    });
-    let change = effect.change.map(|change| {
-        let time = short(change.time, 2);
-        if change.distance < 2.0 * change.error {
-            format!("less than {} in {time} s", length(2.0 * change.error))
-        } else if change.distance == 0.0 {
-            format!("nothing in {time} s")
-        } else {
-            format!("{} in {time} s", length(change.distance))
-        }
-    });
-    let words: Vec<_> = cost.into_iter().chain(change).collect();
-    if words.is_empty() {
-        "cannot be measured".into()
-    } else {
-        words.join(", ")
-    }
-}
-
-/// Writes a length (m) with two digits, in m, cm, mm or µm.
-fn length(metres: f64) -> String {
-    let (factor, unit) = match metres {
-        long if long >= 0.995 => (1.0, "m"),
-        long if long >= 9.95e-3 => (1e2, "cm"),
-        long if long >= 9.95e-5 => (1e3, "mm"),
-        _ => (1e6, "µm"),
-    };
-    let value = factor * metres;
-    let places = usize::from(value < 9.95);
-    format!("{value:.places$} {unit}")
+/// Returns the row of a part in the table of what can be left out, if that was measured.
+pub fn measured(session: &Session, part: usize) -> Option<&[String]> {
+    let known = session.measuring.known_of(Question::Simplify)?;
+    let mut rows = known.answer.as_ref().ok()?.report.rows.iter();
+    let name = &session.tuning.parts[part].name;
+    rows.find(|row| row.first() == Some(name))
+        .map(Vec::as_slice)
 }

@@ -3,10 +3,11 @@
 use a3_scenes::{Edit, MATERIALS, Material};
 
 use super::knobs::{KNOBS, Knob, is_left_out};
+use super::parts;
 use super::undo::edit;
 use super::values::pane;
-use super::{measure, parts};
-use crate::session::{Dial, PanelKey, PanelRequest, Session, TextKey, Topic, Turn, panes};
+use crate::session::{Dial, MeasureRequest, PanelKey, PanelRequest, Question, Session};
+use crate::session::{TextKey, Topic, Turn, asking, panes};
 
 /// Returns the knobs that apply to the panel's pane, with their numbers in the table.
 pub fn rows(session: &Session) -> Vec<(usize, &'static Knob, Dial)> {
@@ -20,11 +21,6 @@ pub fn rows(session: &Session) -> Vec<(usize, &'static Knob, Dial)> {
         Some((k, knob, dial))
     })
     .collect()
-}
-
-/// Returns whether the parts of a scene can be measured: that needs threads.
-pub fn can_measure() -> bool {
-    !cfg!(target_arch = "wasm32")
 }
 
 /// Returns the number of the row that measures the parts, after those of the knobs.
@@ -46,7 +42,8 @@ pub fn shows_parts(session: &Session) -> bool {
 pub fn numbers(session: &Session) -> Vec<usize> {
     let knobs = rows(session).into_iter().map(|(k, ..)| k);
     let count = session.tuning.parts.len();
-    let measuring = (count > 0 && can_measure()).then(measuring_row);
+    let can_measure = count > 0 && session.measuring.answerer.is_some();
+    let measuring = can_measure.then(measuring_row);
     let parts = (0..count).map(part_row);
     knobs.chain(measuring).chain(parts).collect()
 }
@@ -106,14 +103,11 @@ fn turn_row(session: &mut Session, at: usize, row: usize, turn: Turn) {
         return;
     }
     let Some(part) = row.checked_sub(part_row(0)) else {
-        return measure::toggle(session);
+        asking::apply(session, MeasureRequest::Ask(Question::Simplify), at);
+        asking::apply(session, MeasureRequest::Toggle, at);
+        return;
     };
-    let was_measured = session.effects.time().is_some();
-    let before = parts::is_in(session, part);
     parts::turn(session, part, turn);
-    if was_measured && parts::is_in(session, part) != before {
-        measure::begin(session);
-    }
 }
 
 /// Makes the bodies of the scene that can be of a material of it, while the motion goes on.

@@ -1,11 +1,6 @@
 //! Edits of the scene in the window, and undo and redo of all of the user's changes. Each edit is
 //! one change.
 
-#![cfg_attr(
-    target_arch = "wasm32",
-    allow(dead_code, reason = "the page has no tools")
-)]
-
 use std::sync::Arc;
 
 use a3_core::{Checkpoint, Network};
@@ -128,7 +123,6 @@ pub fn edit(session: &mut Session, edit: &Edit, name: &str) -> Result<(), String
     go_on(session, touching, &mut |session| {
         exchange::edit(session, after.clone(), &there, &[])
     })?;
-    session.effects.forget();
     let edit = Arc::new(EditChange {
         name: name.into(),
         origins: [origin, after],
@@ -151,7 +145,6 @@ fn repeat(
     go_on(session, passage.touching, &mut |session| {
         exchange::edit(session, origin.clone(), passage, then)
     })?;
-    session.effects.forget();
     Ok(())
 }
 

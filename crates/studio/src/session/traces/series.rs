@@ -1,13 +1,12 @@
 //! Values of what is plotted over the last minute of a run.
 
-use std::collections::VecDeque;
-
 use a3_core::Simulation;
 use a3_scenes::Splice;
 
 use super::pick::Pick;
 use super::section::Trigger;
-use super::variable::Row;
+use super::variable::{Row, VALUES};
+use crate::session::rows::{self, Rows};
 
 /// Simulated time that values cover (s).
 pub const KEPT: f64 = 60.0;
@@ -19,8 +18,8 @@ const MAX_ROWS: [usize; 2] = [30_000, 10_000];
 /// Values of one pick, in the order of their times.
 #[derive(Default)]
 pub struct Series {
-    rows: VecDeque<Row>,
-    section: VecDeque<Row>,
+    rows: Rows<[f64; VALUES]>,
+    section: Rows<[f64; VALUES]>,
     /// Time (s) up to which points of the section were searched for.
     searched: f64,
 }
@@ -38,30 +37,22 @@ impl Series {
 
     /// Returns the row nearest to a time (s).
     pub fn nearest(&self, time: f64) -> Option<&Row> {
-        let k = self.rows.partition_point(|row| row.time < time);
-        let near = [k.checked_sub(1), Some(k)].into_iter().flatten();
-        let near = near.filter_map(|k| self.rows.get(k));
-        near.min_by(|a, b| (a.time - time).abs().total_cmp(&(b.time - time).abs()))
+        rows::nearest(&self.rows, time)
     }
 
     /// Adds a row, and finds the points of the section that it completes. Rows and points of later
     /// times are dropped first, because time may go back.
     fn push(&mut self, row: Row, trigger: Trigger) {
-        while self.rows.back().is_some_and(|last| last.time > row.time) {
-            self.rows.pop_back();
-        }
+        rows::forget_after(&mut self.rows, row.time);
         let last = self.rows.back().map_or(f64::NEG_INFINITY, |last| last.time);
-        while self.section.back().is_some_and(|point| point.time > last) {
-            self.section.pop_back();
-        }
+        rows::forget_after(&mut self.section, last);
         self.searched = self.searched.min(last);
         if last == row.time {
             return;
         }
         self.rows.push_back(row);
         self.search(trigger, self.rows.len().saturating_sub(3));
-        let is_old = |first: &Row| first.time < row.time - KEPT;
-        while self.rows.len() > MAX_ROWS[0] || self.rows.front().is_some_and(is_old) {
+        while self.rows.len() > MAX_ROWS[0] || self.rows[0].time < row.time - KEPT {
             self.rows.pop_front();
         }
     }

@@ -111,7 +111,7 @@ impl Default for PlotSettings {
 pub enum PlotFile {
     /// A table, as CSV.
     Table,
-    /// A picture, as PNG.
+    /// A picture, as PNG, or as SVG on a page.
     Picture,
 }
 

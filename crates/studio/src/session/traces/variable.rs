@@ -1,6 +1,8 @@
 //! Variables of particles, rigid bodies and springs that can be plotted, and their values at one
 //! time.
 
+use crate::session::rows;
+
 /// Kind of what is plotted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
@@ -143,9 +145,4 @@ pub const VALUES: usize = 11;
 /// Values of a pick at one time. Of a spring: length (m), strain and force (N), above 0 when it
 /// pulls. Otherwise: position (m), velocity (m/s), kinetic and potential energy (J), and the
 /// angular velocity (rad/s) of a rigid body. A value that is not known is NaN.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Row {
-    /// Simulated time (s).
-    pub time: f64,
-    pub values: [f64; VALUES],
-}
+pub type Row = rows::Row<[f64; VALUES]>;

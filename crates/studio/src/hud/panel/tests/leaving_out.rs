@@ -5,7 +5,7 @@ use a3_core::{Network, Vector3};
 use egui::vec2;
 
 use super::screen::{Screen, every_scene, opened, part, toggle, type_key};
-use crate::session::panel::{is_in, measuring_row, part_row, row_of, rows, set_part, tuned, undo};
+use crate::session::panel::{is_in, part_row, row_of, rows, set_part, tuned, undo};
 use crate::session::{PanelKey, PanelRequest, RunAction, Session, Turn, apply, compared, frames};
 
 fn network(session: &Session) -> &Network {
@@ -261,7 +261,7 @@ fn keys_and_mouse_leave_out_a_part_and_undo_brings_it_back() {
     assert_eq!(session.panel.row, 0);
     let parts = place(&mut screen, &session, "Parts").center();
     screen.click(&mut session, parts, parts);
-    assert_eq!(session.panel.row, measuring_row());
+    assert_eq!(session.panel.row, part_row(0));
 }
 
 /// All panes and the reference lose the part at the same time.
