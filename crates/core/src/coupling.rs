@@ -11,6 +11,8 @@ pub enum Coupling {
     Block(BlockCoupling),
     /// A coupling by matrices that need not be symmetric; it adds KT dd + CT dd' to dFj.
     General(GeneralCoupling),
+    /// A coupling of four particles along one direction, as of two surfaces that touch.
+    RankOne(RankOneCoupling),
 }
 
 /// Coupling of two particles along the line between them. With u = d / |d|, K = along u uT + across
@@ -59,6 +61,22 @@ pub struct GeneralCoupling {
     pub stiffness: [f64; 9],
     /// C (N s/m).
     pub damping: [f64; 9],
+}
+
+/// Coupling of four particles, of which several may be the same, along one direction u. With the
+/// sum d of all wi xi it adds dFi = -wi u uT (k dd + c dd'), so that K is a matrix of rank one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RankOneCoupling {
+    /// Particles.
+    pub ends: [usize; 4],
+    /// Weight w of each; 0 instead of a place that does not depend on the state, as on an obstacle.
+    pub weights: [f64; 4],
+    /// Direction u.
+    pub direction: [f64; 3],
+    /// Stiffness k (N/m).
+    pub stiffness: f64,
+    /// Damping c (N s/m).
+    pub damping: f64,
 }
 
 impl From<BlockCoupling> for GeneralCoupling {

@@ -99,7 +99,9 @@ mod work;
 
 pub use constraints::Constraint;
 pub use control::Control;
-pub use coupling::{AxialCoupling, BlockCoupling, Coupling, Diagonal, GeneralCoupling, Matrix};
+pub use coupling::{
+    AxialCoupling, BlockCoupling, Coupling, Diagonal, GeneralCoupling, Matrix, RankOneCoupling,
+};
 pub use elements::Sheet;
 pub use energy::Energy;
 pub use error::{BlowUp, Cause, ConstraintName, Error, Rounded, Unmet, Vertex};

@@ -67,7 +67,7 @@ pub(super) struct Candidates {
     listing: Listing,
     pairs: Vec<Listed>,
     /// Time at which the courses begin (s).
-    begin: f64,
+    pub begin: f64,
     /// Positions there (m), and velocities (m/s).
     base: Vec<Vector3<f64>>,
     speeds: Vec<Vector3<f64>>,
@@ -135,10 +135,15 @@ impl Candidates {
         if last > first {
             self.back = last - first;
         }
-        let is_ahead = first >= self.begin
-            && last <= self.begin + self.horizon
-            && self.base.len() == stretch.ends[0].len();
-        if is_ahead {
+        let is_ahead = first >= self.begin && last <= self.begin + self.horizon;
+        if (is_ahead || first == last) && self.base.len() == stretch.ends[0].len() {
+            // Courses have no time of their own. Beyond their end, an instant is compared with them
+            // where they were used last: it often is the beginning of the next step.
+            self.since = if is_ahead {
+                stretch.times.map(|t| t - self.begin)
+            } else {
+                [self.since[1]; 2]
+            };
             self.measure(stretch);
             if self.farthest <= self.margin || self.renew(surface, stretch) {
                 return;
@@ -153,7 +158,6 @@ impl Candidates {
     /// Finds the distance of each vertex from its course in a stretch, apart from a displacement
     /// that all vertices share.
     fn measure(&mut self, stretch: &Stretch) {
-        self.since = stretch.times.map(|t| t - self.begin);
         let [first, last] = self.since;
         let [from, to] = stretch.ends;
         let is_point = std::ptr::eq(from, to) && first == last;
@@ -230,7 +234,8 @@ impl Candidates {
         let fastest = speeds.fold(0.0, f64::max).sqrt();
         let thickest = surface.thickest();
         let horizon = (self.shares[1] * thickest / fastest).min(HORIZON_RATIO * self.held);
-        self.horizon = horizon.min(MAX_HORIZON).max(stretch.times[1] - self.begin);
+        self.since = stretch.times.map(|t| t - self.begin);
+        self.horizon = horizon.min(MAX_HORIZON).max(self.since[1]);
         self.measure(stretch);
         self.margin = (self.shares[0] * thickest).max(2.0 * self.farthest);
         self.parallel = threads(surface.particles()) > 1;

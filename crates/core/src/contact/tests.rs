@@ -193,3 +193,35 @@ fn no_bit_depends_on_the_list() {
     assert!(forces[0].iter().any(|f| *f != 0.0), "nothing touched");
     assert!(forces.iter().all(|f| *f == forces[0]));
 }
+
+/// An instant after the end of a list's courses needs no other list where nothing has moved since
+/// the list was used, as where a step begins; it needs one where a vertex has.
+#[test]
+fn a_list_serves_the_beginning_of_the_next_step() {
+    let surface = Surface::new(
+        &[skin(0.1); 6],
+        &[[0, 1, 2], [3, 4, 5]],
+        &[],
+        &[],
+        &[],
+        true,
+    );
+    let at = |i: usize, height: f64| Vector3::new((i % 3) as f64, height, f64::from(i % 3 == 1));
+    let (h, speeds) = (0.02, [Vector3::y(); 6]);
+    let mut list = Candidates::default();
+    let mut cover = |times: [f64; 2], rises: [f64; 2], kick: f64| {
+        let place = |i: usize, rise: f64| at(i, rise + [0.01, 0.0, 0.0, 0.0, 0.0, kick][i]);
+        let ends = rises.map(|rise| (0..6).map(|i| place(i, rise)).collect::<Vec<_>>());
+        let stretch = Stretch {
+            times,
+            ends: [&ends[0], &ends[1]],
+            speeds: Some(&speeds),
+        };
+        list.cover(&surface, &stretch);
+        (list.begin, list.near(0.0).count())
+    };
+    let (begin, count) = cover([1.0, 2.0], [0.0, h], 0.0);
+    assert!(begin == 1.0 && count > 0);
+    assert_eq!(cover([3.0; 2], [h; 2], 0.0), (begin, count));
+    assert!(cover([4.0; 2], [h; 2], 1.0).0 > begin);
+}

@@ -4,7 +4,9 @@
 //! are zero there.
 
 use crate::columns::columns_mut;
-use crate::coupling::{AxialCoupling, Coupling, Diagonal, GeneralCoupling, Matrix, full};
+use crate::coupling::{
+    AxialCoupling, Coupling, Diagonal, GeneralCoupling, Matrix, RankOneCoupling, full,
+};
 use crate::system::Linearized;
 
 /// The matrix A, and K.
@@ -12,6 +14,7 @@ pub(crate) struct Tangent {
     /// Axial couplings. Those that the system multiplies come first.
     axial: Vec<AxialCoupling>,
     blocks: Vec<GeneralCoupling>,
+    rank_one: Vec<RankOneCoupling>,
     /// Number of couplings that the system multiplies, and whether they are listed too.
     fast: usize,
     listed: bool,
@@ -68,6 +71,7 @@ impl Tangent {
         Self {
             axial: vec![],
             blocks: vec![],
+            rank_one: vec![],
             fast: 0,
             listed: false,
             masses: vec![0.0; n],
@@ -102,11 +106,17 @@ impl Tangent {
         (left, skips): (usize, bool),
         visit: impl FnOnce(f64, &[f64], bool, &mut dyn FnMut(Coupling)),
     ) {
-        let (axial, blocks, free) = (&mut self.axial, &mut self.blocks, &self.free);
+        let Self {
+            axial,
+            blocks,
+            rank_one,
+            free,
+            ..
+        } = self;
         // Walls of a fluid have many couplings of two pinned particles, which act on nothing.
         let idle = |c: &AxialCoupling| skips && free[c.i] + free[c.j] == 0.0;
-        let counts = [axial.len(), blocks.len()];
-        let (mut axial_count, mut block_count, mut same) = (left, 0, true);
+        let counts = [axial.len(), blocks.len(), rank_one.len()];
+        let (mut axial_count, mut block_count, mut rank_one_count, mut same) = (left, 0, 0, true);
         visit(self.t, &self.x, self.clamped, &mut |coupling| {
             let block = match coupling {
                 Coupling::Axial(new) if idle(&new) => return,
@@ -117,13 +127,19 @@ impl Tangent {
                 }
                 Coupling::Block(coupling) => coupling.into(),
                 Coupling::General(coupling) => coupling,
+                Coupling::RankOne(new) => {
+                    same &= put(rank_one, rank_one_count, new, |c| c.ends);
+                    rank_one_count += 1;
+                    return;
+                }
             };
             same &= put(blocks, block_count, block, |c| [c.i, c.j]);
             block_count += 1;
         });
         axial.truncate(axial_count);
         blocks.truncate(block_count);
-        self.pattern += u64::from(!same || counts != [axial_count, block_count]);
+        rank_one.truncate(rank_one_count);
+        self.pattern += u64::from(!same || counts != [axial_count, block_count, rank_one_count]);
     }
 
     /// Returns the number of the pattern, which changes whenever other particles are coupled.
@@ -143,13 +159,17 @@ impl Tangent {
 
     /// Returns the number of couplings.
     pub fn couplings(&self) -> usize {
-        self.axial.len() + self.blocks.len()
+        self.axial.len() + self.blocks.len() + self.rank_one.len()
     }
 
     /// Lists the ends of the couplings.
     pub fn pairs(&self) -> impl Iterator<Item = [u32; 2]> {
         let axial = self.axial.iter().map(|c| [c.i as u32, c.j as u32]);
-        axial.chain(self.blocks.iter().map(|c| [c.i as u32, c.j as u32]))
+        let blocks = self.blocks.iter().map(|c| [c.i as u32, c.j as u32]);
+        let of_four = |c: &RankOneCoupling| TWO_OF_FOUR.map(|two| two.map(|k| c.ends[k] as u32));
+        axial
+            .chain(blocks)
+            .chain(self.rank_one.iter().flat_map(of_four))
     }
 
     /// Assembles the couplings at time t (s) at x for steps of length a (s). With `clamped`, A is
@@ -221,6 +241,17 @@ impl Tangent {
             let k = rows.max(xx + yx + zx).max(xy + yy + zy).max(xz + yz + zz);
             // The sum of the blocks of a particle is symmetric.
             add_own(&mut diagonal, [c.i, c.j], symmetric(block), k);
+        }
+        for c in &self.rank_one {
+            let (factor, block) = (self.factor(c), square(c.direction));
+            let [columns @ .., sums] = &mut diagonal.columns;
+            for (i, weight) in c.ends.into_iter().zip(c.weights) {
+                for (column, part) in columns.iter_mut().zip(block) {
+                    column[i] += factor * weight * weight * part;
+                }
+                // Half of the sum of a row, as the weights of a side sum to 1.
+                sums[i] += factor * weight.abs();
+            }
         }
         self.diagonal = sums;
     }
@@ -296,8 +327,13 @@ impl Tangent {
         std::array::from_fn(|part| square * k[part] + a * c[part])
     }
 
+    /// Returns the factor of a coupling of four particles in A.
+    fn factor(&self, c: &RankOneCoupling) -> f64 {
+        self.stiffness_factor() * c.stiffness + self.a * c.damping
+    }
+
     /// Visits the ends i and j of each coupling and its 3 x 3 block B in A, row by row: -B is in
-    /// the rows of i and the columns of j.
+    /// the rows of i and the columns of j. One of four particles couples each two of them.
     pub fn blocks(&self, mut visit: impl FnMut(usize, usize, [f64; 9])) {
         for c in &self.axial {
             visit(c.i, c.j, full(self.axial_block(c)));
@@ -305,16 +341,18 @@ impl Tangent {
         for c in &self.blocks {
             visit(c.i, c.j, self.block(c));
         }
+        for c in &self.rank_one {
+            for [k, l] in TWO_OF_FOUR {
+                let share = -self.factor(c) * c.weights[k] * c.weights[l];
+                let block = square(c.direction).map(|part| share * part);
+                visit(c.ends[k], c.ends[l], full(block));
+            }
+        }
     }
 
     /// Visits the ends of each coupling and the symmetric part of its block in A.
     pub fn symmetric_blocks(&self, mut visit: impl FnMut(usize, usize, Block)) {
-        for c in &self.axial {
-            visit(c.i, c.j, self.axial_block(c));
-        }
-        for c in &self.blocks {
-            visit(c.i, c.j, symmetric(self.block(c)));
-        }
+        self.blocks(|i, j, block| visit(i, j, symmetric(block)));
     }
 
     /// Returns an upper bound on a2 w2, the square of the step's length over the time scale of the
@@ -349,6 +387,9 @@ impl Tangent {
         for c in &self.blocks {
             add_block(c, self.block(c), p, out);
         }
+        for c in &self.rank_one {
+            add_rank_one(c, self.factor(c), p, out);
+        }
         self.filter(out);
     }
 
@@ -381,6 +422,9 @@ impl Tangent {
         }
         for c in &self.blocks {
             add_block(c, c.stiffness.map(|k| -a * k), d, out);
+        }
+        for c in &self.rank_one {
+            add_rank_one(c, -a * c.stiffness, d, out);
         }
     }
 
@@ -437,6 +481,24 @@ pub fn add_block(c: &GeneralCoupling, block: [f64; 9], p: &[f64], out: &mut [f64
     }
 }
 
+/// Adds to each end its weight times factor u uT d.
+#[inline]
+fn add_rank_one(c: &RankOneCoupling, factor: f64, p: &[f64], out: &mut [f64]) {
+    let n = p.len() / 3;
+    let weighted = |column: usize| {
+        let ([a, b, c, d], [u, v, w, x]) = (c.ends.map(|i| p[column * n + i]), c.weights);
+        a * u + b * v + c * w + d * x
+    };
+    let [x, y, z] = c.direction;
+    let along = factor * (weighted(0) * x + weighted(1) * y + weighted(2) * z);
+    for (i, weight) in c.ends.into_iter().zip(c.weights) {
+        let along = weight * along;
+        for (axis, u) in c.direction.into_iter().enumerate() {
+            out[axis * n + i] += along * u;
+        }
+    }
+}
+
 #[inline]
 fn difference(p: &[f64], i: usize, j: usize) -> [f64; 3] {
     let n = p.len() / 3;
@@ -454,7 +516,12 @@ fn add(i: usize, j: usize, force: impl Fn(usize) -> f64, out: &mut [f64]) {
 
 /// Puts a coupling in its place in a list. Returns whether there was one of the same ends.
 #[inline]
-pub fn put<C>(list: &mut Vec<C>, place: usize, new: C, ends: impl Fn(&C) -> [usize; 2]) -> bool {
+pub fn put<C, E: PartialEq>(
+    list: &mut Vec<C>,
+    place: usize,
+    new: C,
+    ends: impl Fn(&C) -> E,
+) -> bool {
     if let Some(old) = list.get_mut(place) {
         let same = ends(old) == ends(&new);
         *old = new;
@@ -465,8 +532,16 @@ pub fn put<C>(list: &mut Vec<C>, place: usize, new: C, ends: impl Fn(&C) -> [usi
     }
 }
 
+/// Places of each two of four ends.
+const TWO_OF_FOUR: [[usize; 2]; 6] = [[0, 1], [0, 2], [0, 3], [1, 2], [1, 3], [2, 3]];
+
 /// A block: xx, yy, zz, xy, xz, yz.
 pub(super) type Block = [f64; 6];
+
+/// Returns the block u uT.
+fn square([x, y, z]: [f64; 3]) -> Block {
+    [x * x, y * y, z * z, x * y, x * z, y * z]
+}
 
 /// Returns the inverse of a symmetric block; if the block is not positive definite, the inverse of
 /// the absolute values on its diagonal.

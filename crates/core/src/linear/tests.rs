@@ -3,10 +3,12 @@
 use std::hint::black_box;
 use std::time::{Duration, Instant};
 
+use super::tangent::add_block;
 use super::*;
+use crate::contact::Skin;
 use crate::random::SplitMix;
 use crate::spring::{Spring, SpringKind, SpringLaw};
-use crate::{Grid, Network, Path, Sheet, Vector3};
+use crate::{GeneralCoupling, Grid, Network, Path, Sheet, Touch, Vector3};
 
 /// Returns a flat square of springs of one stiffness, a corner pinned and everything a little out
 /// of place.
@@ -276,3 +278,57 @@ fn solves_measured() {
 }
 
 const FORCING: f64 = 1e-5;
+
+/// A vertex within the thickness of a triangle: the product with the coupling of the four is that
+/// with the blocks of each two, it has the blocks on the diagonal, and the stiffness is a bound.
+#[test]
+fn a_coupling_of_four_particles_is_those_of_each_two() {
+    let skin = Skin {
+        thickness: 0.1,
+        stiffness: 50.0,
+        damping: 0.5,
+        ..Skin::default()
+    };
+    let mut network = Network::new(vec![0.1, 0.2, 0.3, 0.4]).unwrap();
+    network.set_triangles([[1, 2, 3]]).unwrap();
+    let touch = Touch {
+        skins: vec![skin; 4],
+        edges: vec![[0, 0]],
+        drops: vec![],
+        bodies: true,
+    };
+    network.set_touch(Some(touch)).unwrap();
+    let x = [0.3, 0.0, 1.0, 0.0, 0.05, 0.0, 0.0, 0.02, 0.2, 0.0, 0.1, 1.0];
+    let mut tangent = Tangent::new(&network);
+    tangent.assemble(&network, (0.0, 0.2), &x, true);
+    assert!(tangent.stiffness() > 10.0, "{}", tangent.stiffness());
+    let masses = tangent.masses().to_vec();
+    let (mut random, mut product) = (SplitMix(3), [0.0; 12]);
+    for _ in 0..20 {
+        let p: [f64; 12] = std::array::from_fn(|_| random.between(-1.0, 1.0));
+        tangent.product(&network, &p, &mut product);
+        let mut expected: [f64; 12] = std::array::from_fn(|k| masses[k % 4] * p[k]);
+        let by_mass: f64 = expected.iter().zip(p).map(|(a, p)| a * p).sum();
+        tangent.blocks(|i, j, stiffness| {
+            let damping = [0.0; 9];
+            let coupling = GeneralCoupling {
+                i,
+                j,
+                stiffness,
+                damping,
+            };
+            add_block(&coupling, stiffness, &p, &mut expected);
+        });
+        for (a, b) in product.iter().zip(expected) {
+            assert!((a - b).abs() < 1e-14, "{a} and {b}");
+        }
+        let whole: f64 = product.iter().zip(p).map(|(a, p)| a * p).sum();
+        assert!((0.0..tangent.stiffness()).contains(&(whole / by_mass - 1.0)));
+    }
+    for k in 0..12 {
+        let unit: [f64; 12] = std::array::from_fn(|i| f64::from(u8::from(i == k)));
+        tangent.product(&network, &unit, &mut product);
+        let own = tangent.diagonal()[k / 4][k % 4];
+        assert!((product[k] - own).abs() < 1e-14, "{} and {own}", product[k]);
+    }
+}

@@ -5,7 +5,7 @@ use super::particles::Particles;
 use super::tearing::Tears;
 use crate::constraints::Constraint;
 use crate::contact::{ContactLayer, Obstacle, Shape, Skin, Surface};
-use crate::coupling::{AxialCoupling, BlockCoupling, Coupling};
+use crate::coupling::{Coupling, RankOneCoupling};
 use crate::elements::Wind;
 use crate::elements::force::{At, Force};
 use crate::energy::Energy;
@@ -218,40 +218,24 @@ impl Force for ContactLayer {
     }
 
     /// Visits couplings along the normals alone: the part from the rotation of a normal is left
-    /// out, as if clamped. The weights w of a pair sum to zero, so its stiffness k w wT couples its
-    /// points i and j by -k wi wj. Points of obstacles are places.
+    /// out, as if clamped. Points of obstacles are places.
     fn couplings(&self, t: f64, x: &[f64], _clamped: bool, visit: &mut dyn FnMut(Coupling)) {
         let n = x.len() / 3;
         self.stiffnesses(t, x, |points, pair| {
-            for k in 0..4 {
-                for l in k + 1..4 {
-                    let weight = -pair.weights[k] * pair.weights[l];
-                    let [i, j] = [points[k], points[l]].map(|i| i as usize);
-                    if weight == 0.0 || i >= n && j >= n {
-                        continue;
-                    }
-                    let [x, y, z]: [f64; 3] = pair.normal.into();
-                    let (along, damping) = (weight * pair.stiffness, weight * pair.damping);
-                    visit(if i < n && j < n {
-                        Coupling::Axial(AxialCoupling {
-                            i,
-                            j,
-                            direction: [x, y, z],
-                            along,
-                            across: 0.0,
-                            damping,
-                        })
-                    } else {
-                        let block = [x * x, y * y, z * z, x * y, x * z, y * z];
-                        Coupling::Block(BlockCoupling {
-                            i: i.min(j),
-                            j: i.min(j),
-                            stiffness: block.map(|b| b * along),
-                            damping: block.map(|b| b * damping),
-                        })
-                    });
+            let (mut ends, mut weights) = (points.map(|i| i as usize), pair.weights);
+            let particle = ends.into_iter().fold(usize::MAX, usize::min);
+            for (end, weight) in ends.iter_mut().zip(&mut weights) {
+                if *end >= n {
+                    (*end, *weight) = (particle, 0.0);
                 }
             }
+            visit(Coupling::RankOne(RankOneCoupling {
+                ends,
+                weights,
+                direction: pair.normal.into(),
+                stiffness: pair.stiffness,
+                damping: pair.damping,
+            }));
         });
     }
 

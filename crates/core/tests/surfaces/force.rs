@@ -111,38 +111,18 @@ fn its_differential_is_that_of_the_forces() {
 /// velocities by dv (m/s).
 fn add(coupling: &Coupling, dx: &[f64], dv: &[f64], df: &mut [f64]) {
     let n = df.len() / 3;
-    let (i, j, [k, c]) = match *coupling {
-        Coupling::Axial(a) => {
-            let [x, y, z] = a.direction;
-            let square = [x * x, y * y, z * z, x * y, x * z, y * z];
-            (
-                a.i,
-                a.j,
-                [a.along, a.damping].map(|size| square.map(|s| s * size)),
-            )
-        }
-        Coupling::Block(b) => (b.i, b.j, [b.stiffness, b.damping]),
-        Coupling::General(_) => panic!("contact has symmetric couplings"),
+    let Coupling::RankOne(c) = coupling else {
+        panic!("contact has couplings of rank one");
     };
-    let of = |a: &[f64]| {
-        if i == j {
-            row(a, i)
-        } else {
-            row(a, i) - row(a, j)
-        }
+    let u = Vector3::from(c.direction);
+    let along = |a: &[f64]| -> f64 {
+        let terms = c.ends.iter().zip(c.weights);
+        terms.map(|(i, weight)| weight * row(a, *i).dot(&u)).sum()
     };
-    let times = |[xx, yy, zz, xy, xz, yz]: [f64; 6], d: Vector3<f64>| {
-        Vector3::new(
-            xx * d.x + xy * d.y + xz * d.z,
-            xy * d.x + yy * d.y + yz * d.z,
-            xz * d.x + yz * d.y + zz * d.z,
-        )
-    };
-    let change = times(k, of(dx)) + times(c, of(dv));
-    for axis in 0..3 {
-        df[axis * n + i] -= change[axis];
-        if i != j {
-            df[axis * n + j] += change[axis];
+    let change = c.stiffness * along(dx) + c.damping * along(dv);
+    for (i, weight) in c.ends.iter().zip(c.weights) {
+        for axis in 0..3 {
+            df[axis * n + i] -= weight * change * u[axis];
         }
     }
 }
