@@ -32,12 +32,14 @@ const MAX_PASSES: usize = 12;
 const MAX_ROUNDS: usize = 20;
 
 /// Bodies on which impulses act: the inverse mass of each particle (1/kg), the joints of rigid
-/// bodies, if there are any, and whether the end of the step has impulses in it already.
+/// bodies, if there are any, whether the end of the step has impulses in it already, and whether
+/// velocities may lag behind the course.
 #[derive(Clone, Copy)]
 pub(crate) struct Bodies<'a> {
     pub inverse_masses: &'a [f64],
     pub joints: Option<&'a dyn Joints>,
     pub are_struck: bool,
+    pub may_lag: bool,
 }
 
 /// Applies the safeguard to the step of h (s) from the state y0 at time t (s) to y1. Changes y1
@@ -126,7 +128,7 @@ fn guard_with(
             moves,
             ..
         } = motion;
-        flight.read(h, [v0, v, moves]);
+        flight.read(h, bodies.may_lag, [v0, v, moves]);
         if bodies.are_struck {
             flight.straighten();
         }

@@ -202,7 +202,8 @@ impl Met<'_> {
                 } else {
                     self.velocity(row(x, n, i) - c)
                 };
-                set_row(v, n, i, own + outwards + slip * kept);
+                let left = self.left(i, (slip, kept), nearest.normal);
+                set_row(v, n, i, own + outwards + left);
             }
             noted.statistics.contacts += 1;
             let change = row(v, n, i) - own - velocity;
@@ -295,13 +296,9 @@ impl Met<'_> {
     /// Finds the end of the slide of particle i, whose slip at the end of the step (m/s) friction
     /// stops, where contact changed the velocity along the normal `up` by `change` (m/s).
     fn stop(&self, i: usize, slip: Vector3<f64>, (up, change): (Vector3<f64>, f64)) -> Stop {
-        let (Some(x0), Some(v0)) = (self.x0, self.v0) else {
+        let Some(begun) = self.begun(i, up) else {
             return Stop::default();
         };
-        let n = self.inverse_masses.len();
-        let d = row(x0, n, i) - self.before.place.position;
-        let begun = row(v0, n, i) - velocity(&self.before, d);
-        let begun = across(begun, up);
         let speed = begun.norm();
         // The speed falls linearly, by friction and by other forces.
         let fall = speed - slip.dot(&begun) / speed + self.friction * change;
@@ -312,6 +309,26 @@ impl Met<'_> {
         } else {
             Stop::default()
         }
+    }
+
+    /// Returns the slip of particle i at the beginning of the step (m/s), across `up`.
+    fn begun(&self, i: usize, up: Vector3<f64>) -> Option<Vector3<f64>> {
+        let n = self.inverse_masses.len();
+        let d = row(self.x0?, n, i) - self.before.place.position;
+        let begun = row(self.v0?, n, i) - velocity(&self.before, d);
+        Some(across(begun, up))
+    }
+
+    /// Returns what friction leaves of a slip (m/s) of which it keeps a share. On an obstacle that
+    /// turns, the slip turns too: friction acts in the mean of its directions at both ends.
+    fn left(&self, i: usize, (slip, kept): (Vector3<f64>, f64), up: Vector3<f64>) -> Vector3<f64> {
+        let turns = kept > 0.0 && self.after.orientation.is_some();
+        let begun = turns.then(|| self.begun(i, up)).flatten();
+        let begun = begun.and_then(|begun| begun.try_normalize(0.0));
+        let mean = begun.and_then(|begun| (begun + slip.normalize()).try_normalize(0.0));
+        mean.map_or(slip * kept, |along| {
+            slip - along * (slip.norm() * (1.0 - kept))
+        })
     }
 
     /// Returns the velocity (m/s) of the obstacle at the end of the step, at a point relative to

@@ -310,14 +310,19 @@ struct Bend {
 
 impl Flight {
     /// Reads the courses of a step of h (s) with these velocities at its beginning and its end, and
-    /// these displacements, before impacts.
-    pub fn read(&mut self, h: f64, [v0, v, moves]: [&Field; 3]) {
+    /// these displacements, before impacts. Velocities of a method with a tolerance are right, and
+    /// do not lag: its error is in the displacement.
+    pub fn read(&mut self, h: f64, may_lag: bool, [v0, v, moves]: [&Field; 3]) {
         self.h = h;
         let read = |bends: &mut Vec<Bend>, [v0, v, moves]: [&[Vector3<f64>]; 3]| {
             bends.clear();
             bends.extend(v0.iter().zip(v).zip(moves).map(|((v0, v), way)| Bend {
                 gain: v - v0,
-                lag: way / h - (v0 + v) * 0.5,
+                lag: if may_lag {
+                    way / h - (v0 + v) * 0.5
+                } else {
+                    Vector3::zeros()
+                },
             }));
         };
         read(&mut self.points, [&v0.points, &v.points, &moves.points]);
@@ -403,7 +408,7 @@ mod tests {
         let v0 = Vector3::new(1.0, -2.0, 3.0);
         let (v, way) = (v0 + g * h, v0 * h);
         let mut flight = Flight::default();
-        flight.read(h, [&field(v0), &field(v), &field(way)]);
+        flight.read(h, true, [&field(v0), &field(v), &field(way)]);
         let at = |share: f64| flight.position(0, share, [way, v]);
         assert!((at(0.0)).norm() < 1e-15 && (at(1.0) - way).norm() < 1e-15);
         for share in [0.1, 0.7] {

@@ -31,6 +31,8 @@ pub(super) struct Phases {
     pub contact: ContactPhase,
     /// Excess length of the longest limited spring at the beginning of the step, if it is needed.
     excess: f64,
+    /// Whether velocities may lag behind the course, as those of fixed steps of order 1 do.
+    pub may_lag: bool,
     /// States before contact.
     scratch: [Vec<f64>; 2],
 }
@@ -51,6 +53,7 @@ impl Phases {
             limiter: StrainLimiter::new(dim),
             contact: ContactPhase::new(dim),
             excess: 0.0,
+            may_lag: true,
             scratch: Default::default(),
         }
     }
@@ -144,7 +147,7 @@ impl Phases {
         if let Some(layer) = network.contact_layer() {
             // If prescribed motions leave no room, the step itself has ended the run.
             let none = &mut Impulses::default();
-            let joints = JointsOf::new(network);
+            let joints = JointsOf::new(network, self.may_lag);
             let _ = guard(layer, joints.bodies(false), Interval { t, h }, y0, y, none);
         } else if !knows_obstacles {
             resolve(network.obstacles(), inverse_masses, &Step { t, h, y0 }, y);
@@ -184,7 +187,7 @@ impl Phases {
         times: Interval,
         y1: &mut [f64],
     ) -> Result<Statistics, Cause> {
-        let joints = JointsOf::new(network);
+        let joints = JointsOf::new(network, self.may_lag);
         let touches = network.contact_layer().is_some();
         let takes_turns = network.is_constrained() && (touches || !network.obstacles().is_empty());
         if touches || takes_turns {
@@ -303,14 +306,16 @@ const ROUNDING: f64 = 1e-12;
 /// Joints of the rigid bodies of a network.
 struct JointsOf<'a> {
     network: &'a Network,
+    may_lag: bool,
     /// Sum of the magnitudes of the impulses that they have passed on (N s), and their work (J).
     noted: Cell<[f64; 2]>,
 }
 
 impl<'a> JointsOf<'a> {
-    pub fn new(network: &'a Network) -> Self {
+    pub fn new(network: &'a Network, may_lag: bool) -> Self {
         Self {
             network,
+            may_lag,
             noted: Cell::default(),
         }
     }
@@ -325,6 +330,7 @@ impl<'a> JointsOf<'a> {
             inverse_masses: self.network.inverse_masses(),
             joints: has_joints(self.network).then_some(self),
             are_struck,
+            may_lag: self.may_lag,
         }
     }
 

@@ -264,6 +264,7 @@ impl Pipeline {
         {
             return Err(Setback::BlowUp(cause));
         }
+        self.phases.may_lag = !self.stepper.is_adaptive();
         let settled = self.phases.settle(model, Interval { t, h }, &mut state.y);
         let settled = settled.map_err(Setback::BlowUp)?;
         let planes = PLANE_PRICE * settled.met.guarded.planes as f64 / model.work();

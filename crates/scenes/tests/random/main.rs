@@ -12,6 +12,7 @@ mod numbered;
 mod ranges;
 mod run;
 mod sense;
+mod units;
 
 use std::collections::BTreeSet;
 use std::panic::{AssertUnwindSafe, catch_unwind};
