@@ -173,7 +173,8 @@ impl Frame {
         if self.turn != 0.0 && says(&["orientations"]) {
             return false;
         }
-        // The pressure of the air is 101325 Pa, and weightless surfaces keep apart against 100 m/s2.
+        // The pressure of the air is 101325 Pa, and weightless surfaces keep apart against 100
+        // m/s2.
         let touches = has("body") || says(&["self_collision", "thickness", "restitution"]);
         if self.length != 1.0 && (touches || says(&["fill"])) {
             return false;
