@@ -208,7 +208,7 @@ fn a_liquid_is_lit_by_its_normals() {
         let places = [[-1.0, -1.0, 0.0], [1.0, -1.0, 0.0], [0.0, 1.0, 0.0]];
         let corners = places.map(|place| a3_render::Corner {
             place,
-            value: -1.0,
+            value: -2.0,
             normal: normal.unwrap_or_default(),
         });
         let picture = a3_render::Picture {
