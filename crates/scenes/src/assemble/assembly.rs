@@ -43,8 +43,6 @@ pub(super) fn placed(
 pub(super) struct Assembly<'a> {
     /// Liquid that touches rigid bodies.
     pub liquid: Option<&'a Fluid>,
-    /// Smallest acceleration against which surfaces are kept apart (m/s2).
-    pub pull: f64,
     pub masses: Vec<f64>,
     pub positions: Vec<Vector3<f64>>,
     pub velocities: Vec<Vector3<f64>>,

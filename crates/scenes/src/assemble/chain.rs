@@ -43,11 +43,11 @@ impl Body for Chain {
         } else {
             0.0
         };
-        let spacing = if length > 0.0 { length } else { POINT_SPACING };
-        let skin = SkinSpec::of(self, [self.stiffness, time, assembly.pull]);
+        let skin = SkinSpec::of(self, self.stiffness, time);
         let masses = vec![self.mass; n];
         let places = (0..n).map(|i| from + (to - from) * (i as f64 / (n - 1) as f64));
         let first = assembly.add_particles(&masses, places, self.velocity);
+        let spacing = if length > 0.0 { length } else { POINT_SPACING };
         assembly.skins.extend(skin.uniform(&masses, spacing)?);
         let edges = (first..first + n - 1).map(|i| [i as u32, i as u32 + 1]);
         assembly.edges.extend(edges);
@@ -117,7 +117,7 @@ impl Body for Particles {
         let springs = springs(&self.springs, n)?;
         let stiffest = springs.iter().map(|s| s.law.stiffness).fold(0.0, f64::max);
         let time = springs.iter().map(|s| s.law.damping).fold(0.0, f64::max) / stiffest.max(1.0);
-        let skin = SkinSpec::of(self, [stiffest, time, assembly.pull]);
+        let skin = SkinSpec::of(self, stiffest, time);
         let given = self.thickness.map(|thickness| 4.0 * thickness);
         let skins = skin.uniform(&masses, given.unwrap_or(POINT_SPACING))?;
         assembly.skins.extend(skins);

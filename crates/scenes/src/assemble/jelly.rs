@@ -45,9 +45,9 @@ impl Body for Jelly {
         };
         let places = lattice.cells().map(from_center);
         let places = places.map(placed(self.at, self.rotation));
-        let nearest = spacing.into_iter().fold(f64::INFINITY, f64::min);
-        let skin = SkinSpec::of(self, [structural, time, assembly.pull]);
+        let skin = SkinSpec::of(self, structural, time);
         let masses = vec![mass; particles];
+        let nearest = spacing.into_iter().fold(f64::INFINITY, f64::min);
         assembly.skins.extend(skin.uniform(&masses, nearest)?);
         let first = assembly.add_particles(&masses, places, self.velocity);
         assembly.add_surface(first, lattice.triangles());

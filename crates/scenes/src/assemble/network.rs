@@ -8,7 +8,6 @@ use a3_core::{Network, ParticleSystem, Touch, Vector3};
 
 use super::assembly::{Assembly, Body};
 use super::files::Files;
-use super::skins::pull;
 use super::{constraints, fluid, forces, joints, laws, obstacles, state};
 use crate::budget::SPRINGS;
 use crate::check::{at, key_of};
@@ -153,10 +152,8 @@ fn assembled<'a>(description: &'a Description, files: &mut Files) -> Result<Asse
         let why = "the scene is empty: it needs at least one of cloth, jelly, mesh, solid, chain, particles, body, fluid, circle";
         return Err(Fault::new("", why));
     }
-    let gravity = description.gravity.map(|g| Vector3::from(g).norm());
     let mut assembly = Assembly {
         liquid: description.fluid.first(),
-        pull: pull(gravity.unwrap_or(0.0)),
         ..Assembly::default()
     };
     for (key, body) in bodies(description) {

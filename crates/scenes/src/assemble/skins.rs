@@ -15,23 +15,14 @@ pub fn max_thickness(spacing: f64) -> f64 {
     MAX_THICKNESS * spacing
 }
 
-/// Smallest acceleration (m/s2) against which the contact force keeps surfaces apart where gravity
-/// is that of the Earth, [`EARTH`] (m/s2). Elsewhere it is in proportion.
+/// Smallest acceleration (m/s2) against which the contact force keeps surfaces apart.
 const ACCELERATION: f64 = 100.0;
-const EARTH: f64 = 9.81;
-
-/// Returns the smallest acceleration (m/s2) against which the contact force keeps surfaces apart
-/// under that gravity (m/s2); without any, that on Earth.
-pub(super) fn pull(gravity: f64) -> f64 {
-    let own = if gravity > 0.0 { gravity } else { EARTH };
-    ACCELERATION * own / EARTH
-}
 
 /// Damping of contact, relative to that of a spring of the same stiffness.
 const DAMPING: f64 = 4.0;
 
 /// Damping of the contact of rigid bodies and of fluids: the speed that they gain over their
-/// thickness at that acceleration, relative to the speed at which damping counts fully.
+/// thickness at `ACCELERATION`, relative to the speed at which damping counts fully.
 const POINT_DAMPING: f64 = 1.5;
 
 /// Material of a body and the keys that describe its skin.
@@ -41,19 +32,16 @@ pub(super) struct SkinSpec {
     stiffness: f64,
     /// Damping over stiffness of its springs (s).
     time: f64,
-    /// Smallest acceleration against which it is kept apart from others (m/s2).
-    pull: f64,
 }
 
 impl SkinSpec {
     /// Creates the description of a body's skin, over springs of a stiffness (N/m) whose damping
-    /// over stiffness is `time` (s), against this pull (m/s2).
-    pub fn of(body: &dyn Keys, [stiffness, time, pull]: [f64; 3]) -> Self {
+    /// over stiffness is `time` (s).
+    pub fn of(body: &dyn Keys, stiffness: f64, time: f64) -> Self {
         Self {
             keys: body.skin(),
             stiffness,
             time,
-            pull,
         }
     }
 
@@ -62,7 +50,7 @@ impl SkinSpec {
         Skin {
             thickness,
             stiffness: (self.keys.contact_stiffness)
-                .unwrap_or_else(|| self.stiffness.max(mass * self.pull / thickness)),
+                .unwrap_or_else(|| self.stiffness.max(mass * ACCELERATION / thickness)),
             // Damping counts fully where the gap would close within four times the springs' own
             // time: bounces die away as fast as the springs' oscillations.
             damping: DAMPING * self.time / thickness,
@@ -116,9 +104,8 @@ impl SkinSpec {
     }
 }
 
-/// Creates the skin of a point of a rigid body, or of a fluid, of this mass (kg) and thickness (m),
-/// against this pull (m/s2).
-pub(super) fn point_skin([mass, thickness, pull]: [f64; 3], keys: SkinKeys) -> Result<Skin, Fault> {
+/// Creates the skin of a point of a rigid body, or of a fluid, of this mass (kg).
+pub(super) fn point_skin(mass: f64, thickness: f64, keys: SkinKeys) -> Result<Skin, Fault> {
     let spec = SkinSpec {
         keys: SkinKeys {
             thickness: Some(thickness),
@@ -126,11 +113,10 @@ pub(super) fn point_skin([mass, thickness, pull]: [f64; 3], keys: SkinKeys) -> R
         },
         stiffness: 0.0,
         time: 0.0,
-        pull,
     };
     spec.check()?;
     Ok(Skin {
-        damping: POINT_DAMPING / (pull * thickness).sqrt(),
+        damping: POINT_DAMPING / (ACCELERATION * thickness).sqrt(),
         ..spec.skin(mass, thickness)
     })
 }

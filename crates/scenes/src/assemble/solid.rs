@@ -148,9 +148,7 @@ impl Body for Solid {
             }
         }
         let mean = spacings.iter().sum::<f64>() / spacings.len() as f64;
-        let stiffness = material.young * mean;
-        let pull = assembly.pull;
-        let skin = SkinSpec::of(self, [stiffness, material.damping, pull]);
+        let skin = SkinSpec::of(self, material.young * mean, material.damping);
         assembly.skins.extend(skin.fitted(&masses, &spacings)?);
         let places = positions.into_iter().map(placed(self.at, self.rotation));
         assembly.add_particles(&masses, places, self.velocity);

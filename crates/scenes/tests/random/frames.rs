@@ -34,8 +34,6 @@ pub struct Frame {
     is_mirrored: bool,
     /// The old unit of length in the new one.
     pub length: f64,
-    /// The old unit of time in the new one.
-    pub time: f64,
     pub shift: Vector3<f64>,
     /// Velocity that all gets (m/s).
     velocity: Vector3<f64>,
@@ -50,20 +48,10 @@ impl Frame {
         turn: 0.0,
         is_mirrored: false,
         length: 1.0,
-        time: 1.0,
         shift: Vector3::new(0.0, 0.0, 0.0),
         velocity: Vector3::new(0.0, 0.0, 0.0),
         is_reversed: false,
     };
-
-    /// Returns the frame with other units of length and time.
-    pub fn in_units(length: f64, time: f64) -> Self {
-        Self {
-            length,
-            time,
-            ..Self::SAME
-        }
-    }
 
     /// Lists the frames in which a scene has to move alike.
     pub fn all() -> Vec<Self> {
@@ -173,8 +161,7 @@ impl Frame {
         if self.turn != 0.0 && says(&["orientations"]) {
             return false;
         }
-        // The pressure of the air is 101325 Pa, and weightless surfaces keep apart against 100
-        // m/s2.
+        // The pressure of the air is 101325 Pa, and surfaces keep apart against 100 m/s2.
         let touches = has("body") || says(&["self_collision", "thickness", "restitution"]);
         if self.length != 1.0 && (touches || says(&["fill"])) {
             return false;

@@ -12,7 +12,6 @@ mod numbered;
 mod ranges;
 mod run;
 mod sense;
-mod units;
 
 use std::collections::BTreeSet;
 use std::panic::{AssertUnwindSafe, catch_unwind};
