@@ -285,7 +285,7 @@ fn documented_scenes_are_scenes() {
     let scenes: Vec<_> = files
         .filter(|file| file.extension().is_some_and(|e| e == "toml"))
         .collect();
-    assert_eq!(scenes.len(), 24);
+    assert_eq!(scenes.len(), 25);
     for file in scenes {
         let text = fs::read_to_string(&file).unwrap();
         let description = Description::parse(&text).unwrap();

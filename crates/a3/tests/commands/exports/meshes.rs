@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use super::{COUNT, distance, normals, positions, run, triangles, write};
+use super::{COUNT, ELLIPSE, distance, normals, positions, run, triangles, write};
 use crate::common::{TEARING, a3, text};
 use serde_json::Value;
 
@@ -253,7 +253,7 @@ fn normals_are_as_many_as_vertices() {
         ("cloth", true),
         ("chain", false),
         ("boxes", true),
-        ("drop", true),
+        (ELLIPSE, true),
     ] {
         write(folder.path(), scene, "x.obj", &[]);
         let obj = fs::read_to_string(folder.path().join("x.obj")).unwrap();

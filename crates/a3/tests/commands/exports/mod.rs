@@ -21,6 +21,12 @@ const RATE: f64 = 25.0;
 /// Number of frames: the last one is at 0.2 s, before the end.
 const COUNT: usize = 6;
 
+/// Scene of a drop that is drawn out.
+const ELLIPSE: &str = concat!(
+    env!("CARGO_MANIFEST_DIR"),
+    "/../../docs/scenes/ellipse.toml"
+);
+
 /// Returns the arguments of the program.
 fn words<'a>(scene: &'a str, output: &'a str, more: &[&'a str]) -> Vec<&'a str> {
     let run = [

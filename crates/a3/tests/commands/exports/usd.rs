@@ -4,7 +4,7 @@
 use std::collections::BTreeMap;
 use std::fs;
 
-use super::{COUNT, RATE, distance, normals, positions, run, triangles, write};
+use super::{COUNT, ELLIPSE, RATE, distance, normals, positions, run, triangles, write};
 
 /// Values of an attribute at each frame, as numbers one after another; at frame -1 if the attribute
 /// is constant.
@@ -98,7 +98,7 @@ fn usd_of_each_scene_is_whole() {
         ("double-pendulum", &["Points particles"]),
         ("jelly", &["Mesh surface"]),
         ("t-handle", &["Mesh surface"]),
-        ("drop", &["Mesh liquid", "Points particles"]),
+        (ELLIPSE, &["Mesh liquid", "Points particles"]),
     ] {
         write(folder.path(), scene, "f.usda", &["--fps", "25"]);
         let (_, prims) = read(&fs::read_to_string(folder.path().join("f.usda")).unwrap());
