@@ -42,7 +42,7 @@ fn name_runtime_folder(args: &[OsString]) {
         Ok(None | Some(Command::Compare(_) | Command::Render(_)))
     );
     if draws
-        && std::env::var_os(NAME).is_none()
+        && std::env::var_os(NAME).is_none_or(|folder| folder.is_empty())
         && let (Ok(own), [name, rest @ ..]) = (std::env::current_exe(), args)
     {
         // This returns only if it fails.

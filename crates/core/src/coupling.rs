@@ -70,6 +70,8 @@ pub struct RankOneCoupling {
     /// Particles.
     pub ends: [usize; 4],
     /// Weight w of each; 0 instead of a place that does not depend on the state, as on an obstacle.
+    /// Where the forces reach any distance, systems are solved by the couplings of each two alone:
+    /// there, weights sum to 0 and ends are distinct.
     pub weights: [f64; 4],
     /// Direction u.
     pub direction: [f64; 3],

@@ -320,14 +320,16 @@ impl Met<'_> {
     }
 
     /// Returns what friction leaves of a slip (m/s) of which it keeps a share. On an obstacle that
-    /// turns, the slip turns too: friction acts in the mean of its directions at both ends.
+    /// turns, the slip turns too: friction acts in the mean of its directions at both ends, unless
+    /// it turns back within the step.
     fn left(&self, i: usize, (slip, kept): (Vector3<f64>, f64), up: Vector3<f64>) -> Vector3<f64> {
         let turns = kept > 0.0 && self.after.orientation.is_some();
         let begun = turns.then(|| self.begun(i, up)).flatten();
-        let begun = begun.and_then(|begun| begun.try_normalize(0.0));
-        let mean = begun.and_then(|begun| (begun + slip.normalize()).try_normalize(0.0));
-        mean.map_or(slip * kept, |along| {
-            slip - along * (slip.norm() * (1.0 - kept))
+        let begun = begun.filter(|begun| begun.dot(&slip) > 0.0);
+        begun.map_or(slip * kept, |begun| {
+            let (speed, along) = (slip.norm(), begun.normalize() + slip.normalize());
+            let left = slip - along.normalize() * (speed * (1.0 - kept));
+            left.cap_magnitude(speed * kept)
         })
     }
 

@@ -104,6 +104,7 @@ fn links(network: &Network, x: &[f64]) -> Vec<[u32; 2]> {
                 Coupling::Axial(AxialCoupling { i, j, .. })
                 | Coupling::Block(BlockCoupling { i, j, .. })
                 | Coupling::General(GeneralCoupling { i, j, .. }) => (i, j),
+                // Contact alone, which lasts as long as its surfaces touch.
                 Coupling::RankOne(_) => return,
             };
             links.insert([i.min(j) as u32, i.max(j) as u32]);

@@ -160,9 +160,7 @@ impl Ode {
             ..self
         })
     }
-}
 
-impl Ode {
     /// Returns whether f(t, y) is finite.
     fn is_defined(&self, t: f64, y: &[f64]) -> bool {
         let mut dydt = vec![0.0; self.dim];

@@ -151,7 +151,8 @@ class Method:
             (n,). f(t, y) is the derivative, (n,); it may be called at any time and state. For particles the state is
             all x, all y, all z (m), and then the velocities (m/s) in the same order.
             A class is called without arguments when a run begins, and its instance is the step of that run: a
-            multistep method keeps its past there.
+            multistep method keeps its past there. It has to see whether t and h go on from its last step: a3 takes a
+            step again where an event or a shown state lies within it, and `stability` measures single steps.
         order: the error of a run falls as h to this power. By default it is measured, by a few steps of logistic
             growth.
         default_step: step of runs for which none is given (s).
@@ -178,9 +179,11 @@ class Method:
             raise InputError(f"step: a function of f, t, y and h is expected, not {type(step).__name__}")
         if not (math.isfinite(default_step) and default_step > 0):
             raise InputError(f"default_step is a number of seconds above 0, such as 0.01, not {default_step}")
+        if adaptive and default_step != 1e-3:
+            raise InputError("default_step: a method with adaptive=True takes a tolerance")
         if adaptive and isinstance(step, type):
             raise InputError("step: with adaptive=True a function is expected, not a class")
-        self.name, self.step, self.adaptive = name, step, adaptive
+        self.name, self.step, self._options = name, step, {"default_step": default_step, "adaptive": adaptive}
         self.order, evaluations = _measure(step, name, adaptive) if order is None else (order, order)
         if adaptive:
             _a3.add_adaptive(name, step, self.order, evaluations)
@@ -210,7 +213,7 @@ class Method:
         return _Tableau(name, A, b, b_hat, c)
 
     def __reduce__(self) -> Any:
-        make = functools.partial(Method, adaptive=self.adaptive)
+        make = functools.partial(Method, **self._options)
         return make, (self.name, self.step, self.order)
 
     def __repr__(self) -> str:

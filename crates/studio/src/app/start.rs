@@ -76,7 +76,7 @@ pub fn spawn(
 fn prepare(session: &mut Session, opening: &Opening, settings: Option<&Settings>) {
     session.readings.in_window = true;
     if let Some(settings) = settings {
-        if settings.panel {
+        if settings.panel && session.panel.hidden.refusal(RunAction::Panel).is_none() {
             session.panel.beside.get_or_insert(RunAction::Panel);
         }
         session.pulled = settings.pulled;

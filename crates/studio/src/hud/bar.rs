@@ -231,8 +231,8 @@ fn is_there(session: &Session, action: Action) -> bool {
 fn colour(session: &Session, action: Action) -> Color32 {
     let is_open = match action {
         Action::Window(WindowAction::Record) => return ALARM.colour,
-        Action::Run(pane @ (RunAction::Measure | RunAction::Panel)) => session.panel.has(pane),
         Action::Run(RunAction::Edit) => session.panel.editor.open,
+        Action::Run(pane) => session.panel.has(pane),
         _ => false,
     };
     if is_open { FAINT } else { TEXT }

@@ -18,7 +18,7 @@ use super::widgets::{
 };
 use crate::session::WindowAction;
 use crate::session::panel::{self, Knob};
-use crate::session::{Action, Dial, DialScale, PanelRequest, RunAction, Session, Turn};
+use crate::session::{Action, Dial, DialScale, PanelRequest, RunAction, Session, Turn, is_here};
 
 pub use plots::csv;
 
@@ -173,7 +173,8 @@ fn buttons(ui: &Ui, inner: Rect, session: &Session) -> Option<Action> {
     let top = inner.bottom() - BUTTONS_HEIGHT + 8.0;
     let room = Rect::from_x_y_ranges(inner.x_range(), top..=inner.bottom() - 10.0);
     let mut request = None;
-    for (place, (words, key, action)) in columns(room, 4, 5.0).zip(buttons) {
+    let here = buttons.into_iter().filter(|(.., action)| is_here(*action));
+    for (place, (words, key, action)) in columns(room, 4, 5.0).zip(here) {
         let clicked = button(ui, place, words, key).clicked();
         request = clicked.then_some(action).or(request);
     }

@@ -482,7 +482,7 @@ pub fn toggle(session: &mut Session, action: RunAction) {
         return session.readings.say(why);
     }
     let panel = &mut session.panel;
-    panel.typed = None;
+    (panel.typed, panel.all_marked, panel.lessons.typing) = (None, false, false);
     panel.beside = Some(action).filter(|pane| !panel.has(*pane));
     if panel.has(RunAction::Plots) {
         plotting::pick_first(&mut session.runs.panes);

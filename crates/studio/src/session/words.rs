@@ -170,8 +170,12 @@ pub fn read(words: &[String]) -> Result<Opening, Failure> {
     }
     let mut plain = plain.into_iter();
     let method = plain.next().map(|word| {
-        solver(word)
-            .map_err(|why| wrong(word, format!("{why}; a page has no command except compare")))
+        solver(word).map_err(|why| {
+            wrong(
+                word,
+                format!("{why}; a link or a lesson has no command except compare"),
+            )
+        })
     });
     let step = plain
         .next()

@@ -45,7 +45,9 @@ fn measuring(ui: &Ui, rect: Rect, session: &Session) -> Option<PanelRequest> {
     let place = rect.shrink2(vec2(0.0, 3.0));
     let number = measuring_row();
     let known = session.measuring.known_of(Question::Simplify);
-    let (words, state) = match (session.measuring.progress(), known) {
+    let progress = session.measuring.progress();
+    let progress = progress.filter(|(question, ..)| *question == Question::Simplify);
+    let (words, state) = match (progress, known) {
         (Some((.., true)), _) => ("stopping", String::new()),
         (Some((_, progress, _)), _) => ("stop", format!("{:.0} %", 100.0 * progress.share())),
         (None, Some(known)) if known.answer.is_err() => ("measure again", "no answer".into()),

@@ -11,7 +11,7 @@ use super::values::{
     damping, drag, floor, gravity, gusts, material, network, own, radii, solver, sphere,
     springs_of, step, stiffness, strain_limit, strain_limits, switch,
 };
-use crate::session::{Change, Dial, DialScale, RunAction, Session, Tuning, Turn, looks};
+use crate::session::{Change, Dial, DialScale, IS_PAGE, RunAction, Session, Tuning, Turn, looks};
 
 /// A knob: a row of the table.
 #[derive(Clone, Copy)]
@@ -321,7 +321,7 @@ pub static KNOBS: &[Knob] = &[
     knob(
         "film of",
         "Simulated time that key n films, in s.",
-        |session, _| Some(film_seconds(session)),
+        |session, _| (!IS_PAGE).then(|| film_seconds(session)),
         |session, _, seconds| {
             session.panel.film_seconds = seconds;
         },

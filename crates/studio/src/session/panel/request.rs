@@ -103,6 +103,11 @@ fn turn_row(session: &mut Session, at: usize, row: usize, turn: Turn) {
         return;
     }
     let Some(part) = row.checked_sub(part_row(0)) else {
+        let measured = session.measuring.progress().map(|(question, ..)| question);
+        if let Some(other) = measured.filter(|question| *question != Question::Simplify) {
+            let why = format!("{} is being measured; key q shows it.", other.words());
+            return session.readings.say(why);
+        }
         asking::apply(session, MeasureRequest::Ask(Question::Simplify), at);
         asking::apply(session, MeasureRequest::Toggle, at);
         return;

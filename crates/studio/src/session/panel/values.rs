@@ -11,7 +11,7 @@ use a3_media::show::{Arrows, Quantity, Show};
 use a3_render::Style;
 use a3_scenes::MATERIALS;
 
-use crate::session::{DEFAULT_FILM_SECONDS, Dial, DialScale, SPAN, Session, looks};
+use crate::session::{DEFAULT_FILM_SECONDS, Dial, DialScale, IS_PAGE, SPAN, Session, looks};
 
 /// Returns the index of the panel's pane.
 pub fn pane(session: &Session) -> usize {
@@ -339,7 +339,8 @@ pub fn frame_limit(session: &Session, _: usize) -> Option<Dial> {
 }
 
 pub fn film(session: &Session, _: usize) -> Option<Dial> {
-    let place = Ending::ALL.iter().position(|e| *e == session.panel.film)?;
+    let ending = Ending::ALL.iter().position(|e| *e == session.panel.film);
+    let place = ending.filter(|_| !IS_PAGE)?;
     Some(Dial {
         value: place as f64,
         own: 0.0,
