@@ -111,9 +111,12 @@ fn an_own_step_with_an_estimate_takes_the_steps_of_its_tableau() {
     }
 }
 
+/// State at the end of a step and the estimate of its error, from t (s) and the state before it.
+type Estimated = fn(f64, &[f64]) -> Result<[Vec<f64>; 2], Error>;
+
 #[test]
 fn an_own_step_with_an_estimate_says_why_it_fails() {
-    let fails = |name: &str, step: fn(f64, &[f64]) -> Result<[Vec<f64>; 2], Error>| {
+    let fails = |name: &str, step: Estimated| {
         let method = Method::from_estimated_step(name, 2, move |_, t, y, _| step(t, y));
         let method = method.unwrap().register();
         let run = Simulation::new(rotation(1.0), method, Control::Tolerance(1e-3));
