@@ -55,6 +55,8 @@ struct Field {
     /// Sum of the weights of the particles around each node, and of their places from there, in
     /// spacings, times their weights.
     sums: Vec<[f32; 4]>,
+    /// Depth of each node below the surface, in spacings; negative outside.
+    depths: Vec<f32>,
     /// Sum of the weights, each times the value that colours its particle; empty without colours.
     coloured: Vec<f32>,
     /// Height of the liquid above each node, in spacings; 0 outside. Empty with colours.
@@ -117,12 +119,14 @@ impl Field {
             cell,
             step: (cell / spacing) as f32,
             sums: vec![[0.0; 4]; counts.iter().product()],
+            depths: vec![],
             coloured: vec![0.0; values.map_or(0, |_| counts.iter().product())],
             heights: vec![],
         };
         for (k, place) in places.iter().enumerate() {
             field.add(place, radius, values.map_or(0.0, |values| values[k]));
         }
+        field.depths = field.sums.iter().map(depth).collect();
         if values.is_none() {
             field.find_heights();
         }
@@ -131,13 +135,6 @@ impl Field {
 
     fn index(&self, [i, j, k]: [usize; 3]) -> usize {
         (k * self.counts[1] + j) * self.counts[0] + i
-    }
-
-    /// Returns the depth of a node below the surface, in spacings; negative outside.
-    fn depth(&self, node: usize) -> f32 {
-        let [weight, x, y, z] = self.sums[node];
-        let distance = (x * x + y * y + z * z).sqrt() / weight.max(f32::MIN_POSITIVE);
-        (RADIUS - distance).min(weight - LEAST_WEIGHT)
     }
 
     /// Adds a particle with its weight (1 - r^2 / reach^2)^3 and the value that colours it.
@@ -177,7 +174,7 @@ impl Field {
         let nodes: [usize; 8] = std::array::from_fn(|corner| {
             self.index([0, 1, 2].map(|axis| cell[axis] + (corner >> axis & 1)))
         });
-        let values = nodes.map(|node| self.depth(node));
+        let values = nodes.map(|node| self.depths[node]);
         let inside = values.iter().filter(|value| **value > 0.0).count();
         if inside == 0 || inside == 8 {
             return None;
@@ -220,7 +217,7 @@ impl Field {
             for k in 0..z {
                 for i in 0..x {
                     let node = self.index([i, j, k]);
-                    if self.depth(node) > 0.0 {
+                    if self.depths[node] > 0.0 {
                         let sides = [
                             [i.saturating_sub(1), k],
                             [i + 1, k],
@@ -230,7 +227,7 @@ impl Field {
                         let above = [[i, k]].into_iter().chain(sides);
                         let above = above.filter(|[i, k]| *i < x && *k < z);
                         let above = above.map(|[i, k]| self.index([i, j + 1, k]));
-                        let wet = above.filter(|node| self.depth(*node) > 0.0);
+                        let wet = above.filter(|node| self.depths[*node] > 0.0);
                         let (sum, count) = wet.fold((0.0, 0.0_f32), |(sum, count), node| {
                             (sum + self.heights[node], count + 1.0)
                         });
@@ -279,7 +276,7 @@ impl Field {
                     for axis in 0..3 {
                         let mut next = node;
                         next[axis] += 1;
-                        let [a, b] = [node, next].map(|n| self.depth(self.index(n)) > 0.0);
+                        let [a, b] = [node, next].map(|n| self.depths[self.index(n)] > 0.0);
                         if a == b {
                             continue;
                         }
@@ -302,6 +299,12 @@ impl Field {
         }
         liquid
     }
+}
+
+/// Returns the depth of a node below the surface, in spacings, by the sums there; negative outside.
+fn depth([weight, x, y, z]: &[f32; 4]) -> f32 {
+    let distance = (x * x + y * y + z * z).sqrt() / weight.max(f32::MIN_POSITIVE);
+    (RADIUS - distance).min(weight - LEAST_WEIGHT)
 }
 
 #[cfg(test)]
