@@ -63,8 +63,9 @@ pub struct GeneralCoupling {
     pub damping: [f64; 9],
 }
 
-/// Coupling of four particles, of which several may be the same, along one direction u. With the
-/// sum d of all wi xi it adds dFi = -wi u uT (k dd + c dd'), so that K is a matrix of rank one.
+/// Coupling of four particles along one direction u; a particle may stand at several of the four
+/// places. With the sum d of all wi xi it adds dFi = -wi u uT (k dd + c dd'), so that K is a matrix
+/// of rank one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RankOneCoupling {
     /// Particles.

@@ -319,9 +319,10 @@ impl Met<'_> {
         Some(across(begun, up))
     }
 
-    /// Returns what friction leaves of a slip (m/s) of which it keeps a share. On an obstacle that
-    /// turns, the slip turns too: friction acts in the mean of its directions at both ends, unless
-    /// it turns back within the step.
+    /// Returns the slip of particle i after friction (m/s), from the slip before it and the share
+    /// of its speed that friction leaves. The slip turns with an obstacle that turns: friction acts
+    /// along the mean of its directions at the beginning and the end of the step, or along the
+    /// latter if the slip has reversed within the step.
     fn left(&self, i: usize, (slip, kept): (Vector3<f64>, f64), up: Vector3<f64>) -> Vector3<f64> {
         let turns = kept > 0.0 && self.after.orientation.is_some();
         let begun = turns.then(|| self.begun(i, up)).flatten();

@@ -31,7 +31,8 @@ pub(super) struct Phases {
     pub contact: ContactPhase,
     /// Excess length of the longest limited spring at the beginning of the step, if it is needed.
     excess: f64,
-    /// Whether velocities may lag behind the course, as in fixed steps, of which some have order 1.
+    /// Whether velocities may lag behind the displacement of the step: they do with fixed steps of
+    /// order 1, and never with a tolerance.
     pub may_lag: bool,
     /// States before contact.
     scratch: [Vec<f64>; 2],

@@ -1,6 +1,7 @@
-//! Buttons over the picture: another run beside each one, and its end; what a message offers, to
-//! bring surfaces apart where they cross and, after a blow-up, to run again with what would have
-//! held, or with what is measured; and the question whether to quit.
+//! Buttons over the picture: those that add a run beside a pane and remove it, the buttons below a
+//! message, and the question whether to quit. A message of crossing surfaces offers to bring them
+//! apart; one of a blow-up offers to run again with a step that would have held, or to measure
+//! which solver and step serve best.
 
 use a3_core::Control;
 use a3_files::holding::Sought;
@@ -149,7 +150,7 @@ pub fn offer(ctx: &Context, session: &Session) -> Option<Action> {
     request
 }
 
-/// Returns what is offered: words, a key, and the action.
+/// Returns the buttons below the message, each with its words, its key and its action.
 fn offers(session: &Session) -> Vec<(String, &'static str, Action)> {
     let mut all = vec![];
     if session.readings.offers_apart {

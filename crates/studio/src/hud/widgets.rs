@@ -17,9 +17,9 @@ pub const EDGE: Color32 = Color32::from_rgb(188, 189, 192);
 pub const CARD: Color32 = Color32::from_gray(238);
 /// Colour of the empty part of a track, and of a switch that is off.
 pub const TRACK: Color32 = Color32::from_rgb(186, 188, 194);
-/// Colour of what is chosen, and of a small button under the pointer.
+/// Background of a chosen row or choice, and of a small button under the pointer.
 pub const CHOSEN: Color32 = Color32::from_rgb(207, 211, 218);
-/// Colour of what is under the pointer.
+/// Background of a row or choice under the pointer.
 pub const HOVERED: Color32 = Color32::from_rgb(217, 218, 220);
 
 /// The place of words is the middle of their left or right side, or their own.

@@ -117,7 +117,8 @@ fn in_words(row: &[String]) -> Option<String> {
     })
 }
 
-/// Returns the tooltip of a part: what was measured of it, and the use of the switch.
+/// Returns the tooltip of a part: its measured effect in words, if there is one, and the use of the
+/// switch.
 fn tooltip(name: &str, measured: Option<&str>) -> String {
     let measured = measured.map_or(String::new(), |words| format!("{name}: {words}.\n"));
     format!(
