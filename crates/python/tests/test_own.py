@@ -602,7 +602,23 @@ class Bashforth:
         return y + h * (1.5 * k - 0.5 * last)
 
 
+class Bashforth3(Bashforth):
+    """Adams and Bashforth's method of order 3, which starts with two steps of order 2."""
+
+    def __init__(self):
+        self.past = []
+
+    def __call__(self, f, t, y, h):
+        k = f(t, y)
+        self.past = [k, *self.past[:2]]
+        if len(self.past) < 3:
+            return y + h / 2 * (k + f(t + h, y + h * k))
+        a, b, c = self.past
+        return y + h / 12 * (23 * a - 16 * b + 5 * c)
+
+
 def test_classes_begin_with_each_run():
+    assert a3.Method("my-bashforth-3", Bashforth3).order == 3
     method = a3.Method("my-bashforth", Bashforth)
     assert method.order == 2
     errors, begun = [], Bashforth.begun
@@ -654,6 +670,8 @@ def test_steps_with_estimates_are_chosen_to_a_tolerance():
             a3.Simulation(system, wrong, tolerance=1e-4).advance_to(1.0)
     with pytest.raises(a3.InputError, match="not a class"):
         a3.Method("my-class", Bashforth, adaptive=True)
+    with pytest.raises(a3.InputError, match="takes a tolerance"):
+        a3.Method("my-step", shampine, adaptive=True, default_step=0.1)
 
 
 def test_events_are_located():

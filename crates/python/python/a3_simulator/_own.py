@@ -358,8 +358,10 @@ def _measure(step: Any, name: str, adaptive: bool) -> "tuple[int, int]":
             y = _numbers(f"what the step of {name} returned", found, (2,))
         return float(np.abs(y - exact).max())
 
-    errors = [error(n) for n in (4, 8)]
-    evaluations = max(1, round(count / 12))
+    # Starting steps of a multistep method are of another order.
+    steps = (32, 64) if isinstance(step, type) else (4, 8)
+    errors = [error(n) for n in steps]
+    evaluations = max(1, round(count / sum(steps)))
     if errors[1] < 1e-13 or errors[1] >= errors[0]:
         return 1, evaluations
     return min(max(round(math.log2(errors[0] / errors[1])), 1), 12), evaluations
