@@ -1,9 +1,12 @@
 //! Edits of a scene: bodies, particles, springs, rods and ropes that come or go.
 
 use a3_core::Network;
-use a3_core::elements::Fluid;
+use a3_core::elements::Fluid as Liquid;
+use a3_core::rigid::Body;
 
-use crate::description::{ConstraintSpec, Description, Particles, RigidBody, SpringSpec, Triple};
+use crate::description::{
+    ConstraintSpec, Description, Fluid, Particles, RigidBody, SpringSpec, Triple,
+};
 use crate::renumber;
 use crate::snapshot::rows;
 use crate::splice::{Splice, keep};
@@ -115,10 +118,11 @@ fn check_ends(network: &Network, [i, j]: [usize; 2]) -> Result<(), String> {
     Ok(())
 }
 
-/// Returns the number of the first particle of the fluids, which are the last.
+/// Returns the number of the first particle of the fluids, which are the last, in a network without
+/// rigid bodies.
 fn first_of_fluid(network: &Network) -> usize {
     let n = network.particles();
-    let first = |fluid: &Fluid| {
+    let first = |fluid: &Liquid| {
         let all = fluid.particles().iter().chain(fluid.members().drained());
         all.min().copied()
     };
@@ -129,28 +133,40 @@ fn first_of_fluid(network: &Network) -> usize {
 /// Returns the number after that of the last single particle: rigid bodies and fluids follow.
 fn end_of_single(network: &Network) -> usize {
     let body = network.bodies().first();
-    body.map_or_else(|| first_of_fluid(network), a3_core::rigid::Body::center)
+    body.map_or_else(|| first_of_fluid(network), Body::center)
+}
+
+/// Returns the number after that of the last particle of the rigid bodies: fluids follow.
+fn end_of_bodies(network: &Network) -> usize {
+    let end = |body: &Body| body.center() + 1 + body.points().len();
+    network
+        .bodies()
+        .last()
+        .map_or_else(|| first_of_fluid(network), end)
 }
 
 impl Edited {
     fn add_body(&mut self, body: &RigidBody, network: &Network) -> Result<(), String> {
-        if network.fluid().is_some() {
-            let why = "A rigid body carries particles of the fluid, which no tool adds: write it into the \
-                       scene file.";
-            return Err(why.into());
-        }
+        let fluid = self.description.fluid.first();
         let alone = Description {
             body: vec![body.clone()],
+            // The body carries points that the liquid touches.
+            fluid: fluid.map(Fluid::drop_of).into_iter().collect(),
             ..Description::default()
         };
         let mut no_file = |_: &str| Err("a file has no place here".into());
         let alone = alone.build(None, &mut no_file);
         let alone = alone.map_err(|fault| fault.to_string())?.scene;
         let n = alone.model.particles();
+        let own = n - usize::from(fluid.is_some());
         self.description.body.push(body.clone());
         let mut halves = alone.state.chunks_exact(3 * n);
-        let mut next = || halves.next().map(rows).unwrap_or_default();
-        self.insert(network.particles(), (next(), next()));
+        let mut next = || {
+            let mut all = halves.next().map(rows).unwrap_or_default();
+            all.truncate(own);
+            all
+        };
+        self.insert(end_of_bodies(network), (next(), next()));
         self.bodies = Splice::new(network.bodies().len(), 0, 1);
         if let Some(state) = &mut self.description.state {
             let turned = &alone.state[6 * n..];

@@ -49,6 +49,31 @@ pub struct Fluid {
 
 impl Keys for Fluid {}
 
+impl Fluid {
+    /// Returns a fluid of the same liquid that is one particle, far away.
+    pub(crate) fn drop_of(&self) -> Self {
+        let depth = if self.dimensions == 2 {
+            0.0
+        } else {
+            self.spacing
+        };
+        Self {
+            shape: FluidShape::Box,
+            size: [self.spacing, self.spacing, depth],
+            at: [0.0, FAR, 0.0],
+            velocity: None,
+            strain: None,
+            tank: None,
+            inflow: None,
+            outflow: vec![],
+            ..self.clone()
+        }
+    }
+}
+
+/// Height of a particle that is far away (m).
+const FAR: f64 = 1e8;
+
 /// Shape in which a fluid begins.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]

@@ -161,6 +161,50 @@ fn an_edit_leaves_all_else_as_it_was() {
     assert_eq!(fewer.description.trail, Some(20));
 }
 
+/// A body that comes into a liquid, or goes, leaves the particles of the liquid and of the other
+/// body as they are, and the scene is that of a file with the body in it.
+#[test]
+fn a_body_comes_into_a_liquid() {
+    for size in ["2", "3"] {
+        let [depth, z] = if size == "2" {
+            ["1", "0"]
+        } else {
+            ["0.4", "0.4"]
+        };
+        let cube = |x: f64| {
+            format!(
+                "[[body]]\nparts = [{{ box = [0.4, 0.4, {depth}] }}]\nmass = 90\nat = [{x}, 2, 0]\n"
+            )
+        };
+        let text = |bodies: &str| {
+            let text = format!(
+                "gravity = [0, -9.81, 0]\n{bodies}[[fluid]]\ndimensions = {size}\nsize = [0.8, 0.4, {z}]\n\
+                 spacing = 0.1\nat = [0, 0.2, 0]\ndensity = 1000\nsound = 30\nviscosity = 0.05\n\
+                 velocity = [0.1, 0, 0]\ntank = {{ size = [2, 1, {z}], at = [0, 0.5, 0] }}\n"
+            );
+            Description::parse(&text).unwrap()
+        };
+        for before in [String::new(), cube(-0.5)] {
+            let own = text(&before);
+            let scene = built(&own);
+            let wanted = text(&(before.clone() + &cube(0.5)));
+            let body = wanted.body.last().unwrap().clone();
+            let edited = Edit::AddBody(body).apply(&own, network(&scene)).unwrap();
+            assert_eq!(edited.description, wanted);
+            let after = built(&wanted);
+            assert!(edited.particles.added > 10, "{}", edited.particles.added);
+            for i in 0..scene.model.particles() {
+                let now = edited.particles.number(i).unwrap();
+                assert_eq!(particle(&scene, i), particle(&after, now), "{i}");
+            }
+            let gone = Edit::RemoveBody(network(&after).bodies().len() - 1);
+            let gone = gone.apply(&wanted, network(&after)).unwrap();
+            assert_eq!(gone.description, own);
+            assert_eq!(gone.particles, edited.particles.back());
+        }
+    }
+}
+
 #[test]
 fn an_edit_that_makes_no_sense_is_refused() {
     let own = Description::parse(MANY).unwrap();

@@ -1,6 +1,7 @@
 //! The tools that edit the scene, with the sizes, speeds and masses of what they add.
 
 use a3_core::Network;
+use a3_core::elements::Fluid;
 use a3_files::rounding::short;
 
 use super::runs::Runs;
@@ -71,6 +72,12 @@ impl Tool {
     }
 }
 
+/// Size of a body in a liquid, over the liquid's spacing: the liquid feels such bodies well.
+const LAYERS: f64 = 4.0;
+
+/// Mass of a body over the liquid's in a cube of its size, so that a ball floats.
+const FLOATING: f64 = 0.25;
+
 /// State of the tools.
 #[derive(Default)]
 pub struct Editor {
@@ -136,10 +143,15 @@ fn fitting(runs: &Runs) -> [f64; 5] {
         points / count as f64
     };
     let stiffness = network.and_then(|network| Some(network.springs().next()?.law.stiffness));
+    let liquid = network.and_then(Network::fluid).map(Fluid::law);
+    let layers = liquid.map_or(0.0, |law| LAYERS * law.spacing);
+    let size = layers.max(0.035 * distance);
     let values = [
-        0.035 * distance,
+        size,
         1.3 * distance,
-        if points > 0.0 {
+        if let Some(law) = liquid {
+            FLOATING * law.density * size.powi(law.dimensions.into())
+        } else if points > 0.0 {
             0.05 * total
         } else {
             0.5 * total

@@ -1,5 +1,8 @@
 //! What the chosen tool does to the scene where the mouse clicks.
 
+use std::f64::consts::FRAC_PI_2;
+
+use a3_core::elements::Fluid;
 use a3_core::{Network, Vector3};
 use a3_files::rounding::short;
 use a3_media::show::Target;
@@ -88,15 +91,32 @@ pub fn throw(session: &mut Session, aim: &Aim, how: Throw) {
     session.readings.say(done.unwrap_or_else(|why| why));
 }
 
-/// Makes the body of the chosen tool, and names it.
+/// Returns the liquid of the scene if it is a sheet across z, 1 m deep.
+fn sheet(session: &Session) -> Option<&Fluid> {
+    let fluid = session.runs.first().model().network()?.fluid();
+    fluid.filter(|fluid| fluid.law().dimensions == 2)
+}
+
+/// Makes the body of the chosen tool, and names it. In a liquid that is a sheet, it reaches across.
 fn body(session: &Session, at: Vector3<f64>, velocity: Vector3<f64>) -> (RigidBody, &'static str) {
     let editor = &session.panel.editor;
     let size = editor.value(Measure::Size);
     let is_ball = matches!(editor.tool, Tool::ThrowBall | Tool::AddBall);
-    let part = PartSpec {
-        ball: is_ball.then_some(0.5 * size),
-        cuboid: (!is_ball).then_some([size; 3]),
-        ..PartSpec::default()
+    let part = match (is_ball, sheet(session)) {
+        (true, None) => PartSpec {
+            ball: Some(0.5 * size),
+            ..PartSpec::default()
+        },
+        // As long as a disc of its volume is deep.
+        (true, Some(_)) => PartSpec {
+            capsule: Some([1.0 - 2.0 / 3.0 * size, 0.5 * size]),
+            rotation: Some([FRAC_PI_2, 0.0, 0.0]),
+            ..PartSpec::default()
+        },
+        (false, across) => PartSpec {
+            cuboid: Some([size, size, across.map_or(size, |_| 1.0)]),
+            ..PartSpec::default()
+        },
     };
     let body = RigidBody {
         parts: vec![part],
@@ -157,10 +177,19 @@ fn thrown_from(
     if let Some(ground) = show.ground() {
         start.y = start.y.max(ground + size);
     }
+    let mut point = aim.point;
+    if sheet(session).is_some() {
+        // It falls within the sheet, from above all liquid and all walls, now and at the start.
+        let run = session.runs.first();
+        let n = run.particles();
+        let heights = |y: &[f64]| y[n..2 * n].iter().copied().fold(start.y, f64::max);
+        start.y = heights(run.state()).max(heights(&run.scene().state)) + size;
+        (start.z, point.z) = (0.0, 0.0);
+    }
     let network = session.runs.first().model().network();
     let gravity = network.and_then(Network::gravity).unwrap_or_default();
-    let time = (aim.point - start).norm() / speed;
-    let velocity = (aim.point - start) / time - 0.5 * time * gravity;
+    let time = (point - start).norm() / speed;
+    let velocity = (point - start) / time - 0.5 * time * gravity;
     let (mut body, name) = body(session, start, velocity);
     body.mass = body.mass.map(|mass| short(how.mass * mass, 2));
     edit(session, &Edit::AddBody(body), &format!("throw of a {name}"))?;

@@ -228,7 +228,6 @@ fn what_is_impossible_is_refused_and_changes_nothing() {
     assert!(said.contains("cross"), "{said}");
     assert!(!session.scenes.shown.edited);
     for (scene, tool, why) in [
-        ("dam-break", Tool::ThrowBall, "particles of the fluid"),
         ("dam-break", Tool::Delete, "cannot be removed"),
         ("simple", Tool::ThrowBall, "first-order"),
     ] {
@@ -439,7 +438,7 @@ fn balls_are_thrown_into_every_scene() {
             frames(&mut session, start);
             let said = throw_two(&mut session);
             let added = match entry.name {
-                "simple" | "drop" | "dam-break" => 0,
+                "simple" => 0,
                 _ => 2,
             };
             assert_eq!(bodies(&session), before + added, "{}: {said:?}", entry.name);
