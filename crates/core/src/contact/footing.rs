@@ -25,7 +25,7 @@ use super::surface::Surface;
 use crate::geometry::{PairKind, closest};
 
 /// Place at which a single point touches a primitive of a rigid shape.
-pub(super) struct Footing {
+struct Footing {
     point: u32,
     /// Depth within the thickness (m).
     depth: f64,
@@ -76,23 +76,40 @@ fn visit_bare<R>(found: Vec<(Option<Footing>, R)>, mut visit: impl FnMut(R)) {
 }
 
 impl Surface {
-    /// Does what [`Candidates::each`] does for the pairs that may be nearer than a distance (m),
-    /// except those with a primitive of a rigid shape that others hide from the point that it
-    /// touches: `find` adds the place at which it does.
+    /// Visits what `find` has found for the pairs that may be within their reach at an instant, by
+    /// their velocities (m/s), in canonical order. Left out are pairs with a primitive of a rigid
+    /// shape that others hide from the point that it touches. Several threads may call `find`.
     pub(super) fn each_bare<R: Send>(
         &self,
         candidates: &Candidates,
         still: &Linear,
-        distance: impl Fn(&Candidate) -> Option<f64> + Sync,
-        find: impl Fn(&Candidate) -> Option<(Option<Footing>, R)> + Sync,
-        mut visit: impl FnMut(R),
+        speeds: &[Vector3<f64>],
+        find: impl Fn(&Candidate, &Pair) -> Option<R> + Sync,
+        visit: impl FnMut(R),
     ) {
+        let reach = |candidate: &Candidate| Some(self.reach(candidate.kind, &candidate.points));
+        let pair = |candidate: &Candidate| Pair {
+            kind: candidate.kind,
+            law: self.law(candidate.kind, &candidate.points),
+            x: candidate.of(still.x),
+            v: candidate.of(speeds),
+        };
+        let find = |candidate: &Candidate, pair: &Pair| {
+            let is_inner = self.is_inner(candidate);
+            (!is_inner).then(|| find(candidate, pair)).flatten()
+        };
         if self.has_points {
+            let standing = |candidate: &Candidate| {
+                let pair = pair(candidate);
+                let result = find(candidate, &pair)?;
+                Some((self.footing(candidate, &pair), result))
+            };
             let mut found = vec![];
-            candidates.each(0.0, still, distance, find, |result| found.push(result));
+            candidates.each(0.0, still, reach, standing, |result| found.push(result));
             visit_bare(found, visit);
         } else {
-            candidates.each(0.0, still, distance, find, |(_, result)| visit(result));
+            let find = |candidate: &Candidate| find(candidate, &pair(candidate));
+            candidates.each(0.0, still, reach, find, visit);
         }
     }
 
@@ -115,7 +132,7 @@ impl Surface {
 
     /// Returns whether a pair is of a round body with an edge between coplanar triangles, which
     /// does not repel it: the faces on either side do.
-    pub(super) fn is_inner(&self, candidate: &Candidate) -> bool {
+    fn is_inner(&self, candidate: &Candidate) -> bool {
         let [i, a, b, c] = candidate.points;
         candidate.kind == PairKind::EdgeEdge
             && (self.is_flat([i, a]) && self.is_single(b)
@@ -124,7 +141,7 @@ impl Surface {
 
     /// Returns the place at which a pair touches, if it is a single point with a primitive of a
     /// rigid shape.
-    pub(super) fn footing(&self, candidate: &Candidate, pair: &Pair) -> Option<Footing> {
+    fn footing(&self, candidate: &Candidate, pair: &Pair) -> Option<Footing> {
         let [i, a, b, c] = candidate.points;
         let [xi, xa, xb, xc] = pair.x;
         let is_edge = candidate.kind == PairKind::EdgeEdge;

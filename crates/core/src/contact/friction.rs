@@ -48,16 +48,11 @@ pub(super) fn apply_friction(
     if !surface.is_rough() {
         return false;
     }
-    let find = |candidate: &Candidate| {
-        let law = surface.law(candidate.kind, &candidate.points);
-        let (x0, moves) = (candidate.of(&motion.x0), candidate.of(&motion.moves));
-        let x = std::array::from_fn(|k| x0[k] + moves[k]);
-        let skin = law.skin;
-        if skin.friction == 0.0 && skin.rolling == 0.0 || surface.is_inner(candidate) {
+    let find = |candidate: &Candidate, pair: &Pair| {
+        let skin = pair.law.skin;
+        if skin.friction == 0.0 && skin.rolling == 0.0 {
             return None;
         }
-        let (kind, v) = (candidate.kind, candidate.of(&motion.v));
-        let pair = Pair { kind, law, x, v };
         let (force, weights, normal) = pair.force()?;
         let mut contact = ContactPair::new(surface, candidate, weights, normal, motion);
         contact.resist_turns(skin.rolling * force * h, surface, motion);
@@ -67,9 +62,8 @@ pub(super) fn apply_friction(
         };
         let [first, .., last] = candidate.points;
         let most = skin.friction * force * h;
-        let footing = surface.footing(candidate, &pair);
         let spin = spin(first) + spin(last);
-        (contact.inverse_mass > 0.0).then_some((footing, (contact, most, spin)))
+        (contact.inverse_mass > 0.0).then_some((contact, most, spin))
     };
     let mut pressed = Pressed::default();
     let ended = Linear {
@@ -77,10 +71,8 @@ pub(super) fn apply_friction(
         moves: None,
         rounding: surface.rounding(),
     };
-    let reach = |pair: &Candidate| Some(surface.reach(pair.kind, &pair.points));
-    surface.each_bare(candidates, &ended, reach, find, |(contact, most, spin)| {
-        pressed.add(contact, most, spin);
-    });
+    let found = |(contact, most, spin)| pressed.add(contact, most, spin);
+    surface.each_bare(candidates, &ended, &motion.v, find, found);
     if pressed.contacts.is_empty() {
         return false;
     }

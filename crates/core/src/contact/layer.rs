@@ -98,27 +98,13 @@ impl ContactLayer {
             speeds: Some(speeds),
         };
         candidates.cover(&self.surface, &stretch);
-        let find = |candidate: &Candidate| {
-            if self.surface.is_inner(candidate) {
-                return None;
-            }
-            let pair = Pair {
-                kind: candidate.kind,
-                law: self.surface.law(candidate.kind, &candidate.points),
-                x: candidate.of(places),
-                v: candidate.of(speeds),
-            };
-            let result = find(candidate, &pair)?;
-            Some((self.surface.footing(candidate, &pair), result))
-        };
         let still = Linear {
             x: places,
             moves: None,
             rounding: self.surface.rounding(),
         };
-        let reach = |pair: &Candidate| Some(self.surface.reach(pair.kind, &pair.points));
         self.surface
-            .each_bare(candidates, &still, reach, find, visit);
+            .each_bare(candidates, &still, speeds, find, visit);
     }
 
     /// Adds the forces (N) at time t (s) in the state (x, v) to f.
