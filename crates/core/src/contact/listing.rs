@@ -198,9 +198,9 @@ impl Query<'_> {
         let trees = [&first_trees.vertices, &second_trees.triangles];
         let primitives = |[k, l]: [u32; 2]| {
             let (v, [a, b, c]) = (first.vertices[k as usize], second.triangles()[l as usize]);
-            let is_corner = v == a || v == b || v == c;
-            (!is_corner && !self.surface.are_one(&[v], &[a, b, c]))
-                .then(|| ([v, second.ranks[l as usize]], [v, a, b, c]))
+            let is_corner = (v == a) | (v == b) | (v == c);
+            let touches = !(is_corner | self.surface.are_one(&[v], &[a, b, c]));
+            (touches, ([v, second.ranks[l as usize]], [v, a, b, c]))
         };
         self.search(PairKind::VertexTriangle, trees, primitives, blocks, pairs);
     }
@@ -216,20 +216,14 @@ impl Query<'_> {
         let primitives = |[k, l]: [u32; 2]| {
             let (k, l) = (k as usize, l as usize);
             let (e, f) = (first.edges[k], second.edges[l]);
-            if e[0] == f[0] || e[0] == f[1] || e[1] == f[0] || e[1] == f[1] {
-                return None;
-            }
+            let meet = (e[0] == f[0]) | (e[0] == f[1]) | (e[1] == f[0]) | (e[1] == f[1]);
             // A point and an edge of a triangle: the point and its corners are a pair already.
-            let is_point = e[0] == e[1] && second.is_side(l) || f[0] == f[1] && first.is_side(k);
-            if is_point || self.surface.are_one(&e, &f) {
-                return None;
-            }
-            let [mut e, mut f] = [(first.edge_ranks[k], e), (second.edge_ranks[l], f)];
-            if f.0 < e.0 {
-                std::mem::swap(&mut e, &mut f);
-            }
-            let ((m, [a, b]), (n, [c, d])) = (e, f);
-            Some(([m, n], [a, b, c, d]))
+            let is_point = (e[0] == e[1]) & second.is_side(l) | (f[0] == f[1]) & first.is_side(k);
+            let touches = !(meet | is_point | self.surface.are_one(&e, &f));
+            let all = [(first.edge_ranks[k], e), (second.edge_ranks[l], f)];
+            let swapped = usize::from(all[1].0 < all[0].0);
+            let ((m, [a, b]), (n, [c, d])) = (all[swapped], all[1 - swapped]);
+            (touches, ([m, n], [a, b, c, d]))
         };
         self.search(PairKind::EdgeEdge, trees, primitives, blocks, pairs);
     }
@@ -239,7 +233,7 @@ impl Query<'_> {
         &self,
         kind: PairKind,
         trees: [&Tree; 2],
-        primitives: impl Fn([u32; 2]) -> Option<Primitives> + Sync,
+        primitives: impl Fn([u32; 2]) -> (bool, Primitives) + Sync,
         blocks: &mut Vec<[u32; 2]>,
         pairs: &mut Vec<Listed>,
     ) {
@@ -254,11 +248,7 @@ impl Query<'_> {
                 found,
             }
             .find();
-            self.bound(
-                kind,
-                near.iter().filter_map(|pair| primitives(*pair)),
-                pairs,
-            );
+            self.bound(kind, near.iter().map(|pair| primitives(*pair)), pairs);
         };
         if self.parallel {
             pairs.par_extend(blocks.par_chunks(CHUNK).flat_map_iter(|blocks| {
@@ -274,24 +264,23 @@ impl Query<'_> {
         }
     }
 
-    /// Adds those of these pairs of primitives of one kind that come within reach.
+    /// Adds those of these pairs of primitives of one kind that touch and come within reach. Whether
+    /// one does is random, so nothing branches there.
     fn bound(
         &self,
         kind: PairKind,
-        mut near: impl Iterator<Item = Primitives>,
+        near: impl Iterator<Item = (bool, Primitives)>,
         pairs: &mut Vec<Listed>,
     ) {
         let mut block = Block::new();
         let mut members = [([0; 2], [0; 4]); LANES];
-        loop {
-            let mut count = 0;
-            for (lane, found) in near.by_ref().take(LANES).enumerate() {
-                members[lane] = found;
-                block.set(lane, found.1, self.course.base, Some(self.course.speeds));
-                count += 1;
+        let mut count = 0;
+        let mut empty = |members: &[Primitives]| {
+            for (lane, (_, points)) in members.iter().enumerate() {
+                block.set(lane, *points, self.course.base, Some(self.course.speeds));
             }
             block.bound(kind);
-            for (lane, (ranks, points)) in members[..count].iter().enumerate() {
+            for (lane, (ranks, points)) in members.iter().enumerate() {
                 let bounds = [block.distance[lane], block.closing[lane]];
                 pairs.extend(if bounds[0].is_finite() {
                     self.listed(kind, *ranks, *points, bounds)
@@ -299,10 +288,16 @@ impl Query<'_> {
                     self.pair(kind, *ranks, *points)
                 });
             }
-            if count < LANES {
-                return;
+        };
+        for (touches, found) in near {
+            members[count] = found;
+            count += usize::from(touches);
+            if count == LANES {
+                empty(&members);
+                count = 0;
             }
         }
+        empty(&members[..count]);
     }
 
     /// Lists the pair of these primitives, by their ranks and points, if it comes within reach.

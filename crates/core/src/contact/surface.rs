@@ -238,6 +238,9 @@ impl Surface {
     /// Returns whether two primitives, given by their vertices, do not touch: on the same rigid
     /// body, where a joint joins them, or as a fluid and a rigid body.
     pub(super) fn are_one(&self, a: &[u32], b: &[u32]) -> bool {
+        if self.solids.is_empty() && self.joined.is_empty() {
+            return false;
+        }
         let solids = [self.solid(a[0]), self.solid(b[0])];
         let is_drop = |i: u32| self.drops.vertices.binary_search(&i).is_ok();
         match solids {
