@@ -104,7 +104,9 @@ impl Mouse {
                 if double {
                     let particle = hit.and_then(|(target, _)| target.particle());
                     looks::show_springs_of(&mut session.runs.panes, particle);
-                    if let Some(request) = plotting::picked(session, particle) {
+                    let link = tool::link_at(&self.pointer, session, screen, pane);
+                    let link = link.filter(|_| hit.is_none());
+                    if let Some(request) = plotting::picked(session, particle, link) {
                         apply(session, request, 0);
                     }
                 }

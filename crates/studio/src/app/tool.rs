@@ -108,20 +108,29 @@ pub fn target(pointer: &Pointer, session: &Session, screen: &Screen, at: usize) 
 
 /// Returns the particle, body, spring or obstacle under the pointer in pane `at`.
 fn aim(pointer: &Pointer, session: &Session, screen: &Screen, at: usize) -> Aim {
-    let tile = screen.tile(session, at);
-    let run = &session.runs.panes[at].simulation;
     let target = pointer.hit(session, screen, at);
     Aim {
         target: target.map(|(target, _)| target),
-        link: link(
-            run,
-            &session.view.camera,
-            tile.place(pointer.position),
-            tile.aspect(),
-            LINK_DISTANCE * screen.scale() / tile.height as f32,
-        ),
+        link: link_at(pointer, session, screen, at),
         ..sight(pointer.position, session, screen, at)
     }
+}
+
+/// Returns the particles that the spring, the rod or the rope under the pointer in pane `at` joins.
+pub fn link_at(
+    pointer: &Pointer,
+    session: &Session,
+    screen: &Screen,
+    at: usize,
+) -> Option<[usize; 2]> {
+    let tile = screen.tile(session, at);
+    link(
+        &session.runs.panes[at].simulation,
+        &session.view.camera,
+        tile.place(pointer.position),
+        tile.aspect(),
+        LINK_DISTANCE * screen.scale() / tile.height as f32,
+    )
 }
 
 /// Returns where the line of sight through a place (px) in pane `at` ends.

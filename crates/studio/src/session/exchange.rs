@@ -124,7 +124,7 @@ fn exchange(session: &mut Session, next: Former) -> Former {
         simulations.push(reference.exchange(run));
     }
     session.view.renumber(next.numbers[0]);
-    session.panel.plotting.renumber(next.numbers[0]);
+    session.panel.plotting.renumber(next.numbers);
     let tuning = std::mem::replace(&mut session.tuning, next.tuning);
     let origin = std::mem::replace(&mut session.scenes.shown, next.origin);
     let parts = &session.tuning.parts;

@@ -62,7 +62,7 @@ pub use state::{Beginning, Session};
 pub use state::{FilmProgress, Readings, Selection};
 pub use timeline::TimelinePosition;
 pub use traces::{Kind, Mode, Pick, PlotFile, Row, SPANS, Trigger, Variable};
-pub use traces::{PlotRequest, RulerEnd};
+pub use traces::{PlotRequest, Quantity, RulerEnd};
 pub use tuning::{DEFAULT_FILM_SECONDS, Hidden, Tuning};
 
 #[cfg(test)]

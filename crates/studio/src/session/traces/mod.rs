@@ -11,4 +11,4 @@ pub use section::Trigger;
 pub use series::{MAX_PICKS, Traces};
 pub use settings::{Mode, PlotFile, PlotRequest, PlotSettings, RulerEnd, SPANS};
 pub use variable::Row;
-pub use variable::{Kind, Variable};
+pub use variable::{Kind, Quantity, Variable};

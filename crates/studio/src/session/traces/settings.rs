@@ -5,7 +5,7 @@ use a3_scenes::Splice;
 
 use super::pick::Pick;
 use super::section::Trigger;
-use super::variable::Variable;
+use super::variable::{Quantity, Variable};
 
 /// Simulated times that plots can show (s).
 pub const SPANS: [f64; 3] = [5.0, 20.0, 60.0];
@@ -47,12 +47,14 @@ pub struct PlotSettings {
     pub mode: Mode,
     /// The variables that are shown over time.
     pub shown: Vec<Variable>,
-    /// The variables on the horizontal and on the vertical axis otherwise.
-    pub axes: [Variable; 2],
+    /// What is on the horizontal and on the vertical axis otherwise.
+    pub axes: [Quantity; 2],
     /// Simulated time that is shown (s).
     pub span: f64,
     /// The ends of the ruler that are chosen so far, if there is one.
     pub ruler: Option<Vec<RulerEnd>>,
+    /// Whether the formulas of what is computed are shown.
+    pub formulas: bool,
 }
 
 impl PlotSettings {
@@ -73,9 +75,12 @@ impl PlotSettings {
         ends.push(end);
     }
 
-    /// Keeps the ends of the ruler at the same particles by their numbers since an edit. If one was
-    /// removed, the ruler is, too.
-    pub fn renumber(&mut self, particles: Splice) {
+    /// Keeps axes and the ends of the ruler at the same things by the numbers of particles and
+    /// rigid bodies since an edit. If one was removed, the ruler is, too.
+    pub fn renumber(&mut self, [particles, bodies]: [Splice; 2]) {
+        for axis in &mut self.axes {
+            axis.of = axis.of.and_then(|of| of.renumbered([particles, bodies]));
+        }
         let now = |end: &RulerEnd| match *end {
             RulerEnd::Particle(i) => particles.number(i).map(RulerEnd::Particle),
             end @ RulerEnd::Point(_) => Some(end),
@@ -99,9 +104,10 @@ impl Default for PlotSettings {
         Self {
             mode: Mode::Time,
             shown: vec![Variable::X, Variable::Y, Variable::Length, Variable::Force],
-            axes: [Variable::X, Variable::VelocityX],
+            axes: [Variable::X, Variable::VelocityX].map(Quantity::of_each),
             span: SPANS[1],
             ruler: None,
+            formulas: false,
         }
     }
 }
@@ -124,8 +130,8 @@ pub enum PlotRequest {
     Mode(Mode),
     /// Show a variable over time, or no longer.
     Show(Variable),
-    /// Put a variable on the horizontal (0) or on the vertical axis (1).
-    Axis(usize, Variable),
+    /// Put a quantity on the horizontal (0) or on the vertical axis (1).
+    Axis(usize, Quantity),
     /// Take the points of the section at another event.
     Trigger(Trigger),
     /// Show another span of time (s).
@@ -134,6 +140,8 @@ pub enum PlotRequest {
     Clear,
     /// Draw a ruler in the picture, or remove it.
     Ruler,
+    /// Show the formulas of what is computed, or no longer.
+    Formulas,
 }
 
 impl RulerEnd {
