@@ -41,7 +41,6 @@ mod words;
 
 pub use action::{Action, RunAction, WindowAction};
 pub use action::{LessonRequest, MeasureRequest, PanelKey, PanelRequest};
-pub use acts::{come_apart, go_to, offer_at_start};
 pub use apply::{action_beside, apply, begin_plots, is_typing};
 pub use dial::{Dial, DialScale, Turn};
 pub use editor::{Measure, Tool};
