@@ -313,7 +313,9 @@ mod tests {
             show_all(ctx, session, &HashMap::new())
         });
         let is_in_pane = |rect: &Rect| {
-            if right > 0.0 {
+            if layout::is_covered(session, size) {
+                rect.bottom() < size[1] - bottom
+            } else if right > 0.0 {
                 rect.left() > size[0] - right
             } else {
                 rect.top() > size[1] - bottom && rect.bottom() < size[1] - 40.0
@@ -498,8 +500,15 @@ mod tests {
             let drawn = draw(session, size, Pos2::new(5.0, 5.0));
             drawn.all.iter().any(|it| it.contains(words))
         };
-        assert!(said(&session, [640.0, 400.0], "There is no room"));
-        assert!(!said(&session, [640.0, 400.0], "Choose what to show"));
+        // In a low one, a click goes on to the next variable.
+        assert!(!said(&session, [640.0, 400.0], "There is no room"));
+        assert!(!said(&session, [640.0, 400.0], "speed"));
+        let at = draw(&session, [640.0, 400.0], Pos2::new(5.0, 5.0)).place("x");
+        let next = Quantity::of_each(Variable::Y);
+        let wish = Action::Plot(PlotRequest::Axis(0, next));
+        assert_eq!(draw(&session, [640.0, 400.0], at).action, Some(wish));
+        assert!(said(&session, [640.0, 300.0], "There is no room"));
+        assert!(!said(&session, [640.0, 300.0], "Choose what to show"));
         assert!(!said(&session, [1280.0, 800.0], "There is no room"));
         apply(&mut session, PlotRequest::Mode(Mode::Time), 0);
         for variable in session.panel.plotting.shown.clone() {

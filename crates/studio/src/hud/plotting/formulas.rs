@@ -7,6 +7,8 @@ use egui::{FontId, Label, Rect, ScrollArea, Ui, UiBuilder};
 use super::super::style::{FAINT, TEXT};
 use crate::session::Session;
 
+/// Height of a line (points).
+const LINE: f32 = 18.0;
 /// Least height of a chart beside formulas (points). In less room, they are there alone.
 const MIN_CHART: f32 = 150.0;
 /// Largest share of the room that formulas take beside a chart.
@@ -212,13 +214,16 @@ fn lines<'a>(runs: impl Iterator<Item = &'a Simulation>) -> Vec<(String, &'stati
 /// Writes what is computed at the top of a room. Returns where the room goes on (points): at its
 /// bottom if there is none for a chart.
 pub fn show(ui: &mut Ui, room: Rect, session: &Session) -> f32 {
-    let format = |size, ink| TextFormat::simple(FontId::proportional(size), ink);
+    let format = |ink| TextFormat {
+        line_height: Some(LINE),
+        ..TextFormat::simple(FontId::proportional(13.0), ink)
+    };
     let mut job = LayoutJob::default();
     let runs = session.runs.panes.iter().map(|pane| &pane.simulation);
     for (k, (name, formula)) in lines(runs).into_iter().enumerate() {
         let start = if k == 0 { "" } else { "\n" };
-        job.append(&format!("{start}{name}   "), 0.0, format(12.5, FAINT));
-        job.append(formula, 0.0, format(12.5, TEXT));
+        job.append(&format!("{start}{name}   "), 0.0, format(FAINT));
+        job.append(formula, 0.0, format(TEXT));
     }
     job.wrap.max_width = room.width() - 12.0;
     let galley = ui.painter().layout_job(job);
@@ -236,7 +241,7 @@ pub fn show(ui: &mut Ui, room: Rect, session: &Session) -> f32 {
             .auto_shrink([false, false])
             .show(ui, |ui| ui.add(Label::new(galley).selectable(false)));
     });
-    bottom + if is_alone { 0.0 } else { 6.0 }
+    bottom + if is_alone { 0.0 } else { 8.0 }
 }
 
 #[cfg(test)]

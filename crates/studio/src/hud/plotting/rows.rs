@@ -15,6 +15,8 @@ use crate::session::{Mode, Pick, PlotRequest, Quantity, Session, Trigger, Variab
 const SAMPLE: f32 = 18.0;
 /// Largest number of springs, rods and ropes that are offered.
 const MAX_LINKS: usize = 24;
+/// Height below which a room has no lines of its own for the variables of each axis (points).
+const LOW: f32 = 260.0;
 /// Steps between the least and the greatest value of a variable that a section may pass.
 const STEPS: f64 = 20.0;
 
@@ -136,7 +138,8 @@ impl Rows<'_> {
         self.end(&flow);
     }
 
-    /// Draws the variables over time, or those on both axes.
+    /// Draws the variables over time, or those on both axes: in a low room, only the present ones,
+    /// and a click goes on to the next.
     pub fn variables(&mut self) {
         let settings = &self.session.panel.plotting;
         if settings.mode == Mode::Time {
@@ -148,17 +151,27 @@ impl Rows<'_> {
             }
             return self.end(&flow);
         }
+        let is_low = self.room.height() < LOW;
+        let mut flow = Flow::new(self.room);
         for (axis, words) in ["across", "up"].into_iter().enumerate() {
-            let mut flow = Flow::new(self.room);
             self.say(&mut flow, words);
             let now = of_plotted(&self.session.runs.panes, settings.axes[axis]);
-            for variable in self.all_variables() {
+            let all = self.all_variables();
+            let k = all.iter().position(|it| *it == now.variable);
+            let next = all[k.map_or(0, |k| (k + 1) % all.len())];
+            for (variable, name) in all.iter().map(|it| (*it, it.name())) {
                 let chosen = now.variable == variable;
+                let variable = if is_low { next } else { variable };
                 let wish = PlotRequest::Axis(axis, Quantity { variable, ..now });
-                self.button(&mut flow, variable.name(), chosen, wish);
+                if chosen || !is_low {
+                    self.button(&mut flow, name, chosen, wish);
+                }
             }
             self.owner(&mut flow, axis, now);
-            self.end(&flow);
+            if axis == 1 || !is_low {
+                self.end(&flow);
+                flow = Flow::new(self.room);
+            }
         }
         if settings.mode == Mode::Section {
             self.trigger();
