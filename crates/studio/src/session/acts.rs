@@ -383,8 +383,8 @@ impl Session {
         }
     }
 
-    /// Turns self-collision on or off. If surfaces cross, says which, and offers to bring them apart;
-    /// does so if that was offered.
+    /// Turns self-collision on or off. If surfaces cross, says which, and offers to bring them
+    /// apart; does so if that was offered.
     pub fn toggle_touch(&mut self) {
         if self.readings.offers_apart {
             return self.bring_apart();
@@ -442,7 +442,7 @@ impl Session {
                 // Turning self-collision off does not fail.
                 let _ = run.set_touching(false);
             } else {
-                // The energy that comes from elsewhere is no gain of the solver, which fits the run.
+                // The energy that comes from elsewhere is no gain of the solver, which fits.
                 let _ = run.set_method(run.method(), run.control());
             }
         }

@@ -5,7 +5,7 @@ use a3_scenes::Splice;
 
 use super::pick::Pick;
 use super::section::Trigger;
-use super::variable::{Quantity, Variable};
+use super::variable::Variable;
 
 /// Simulated times that plots can show (s).
 pub const SPANS: [f64; 3] = [5.0, 20.0, 60.0];
@@ -39,6 +39,42 @@ impl Mode {
     pub fn neighbour(self, by: isize) -> Self {
         let count = Self::ALL.len() as isize;
         Self::ALL[(self as isize + by).rem_euclid(count) as usize]
+    }
+}
+
+/// A variable of one thing that is plotted, or of each.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Quantity {
+    /// The thing; `None` for each.
+    pub of: Option<Pick>,
+    pub variable: Variable,
+}
+
+impl Quantity {
+    /// Creates the quantity of each thing.
+    pub fn of_each(variable: Variable) -> Self {
+        Self { of: None, variable }
+    }
+
+    /// Returns the short name.
+    pub fn name(self) -> String {
+        let [name, of] = [self.variable.name().into(), self.owner()];
+        name + &of
+    }
+
+    /// Returns the name with the unit, as on an axis.
+    pub fn label(self) -> String {
+        let (name, of) = (self.variable.long_name(), self.owner());
+        match self.variable.unit() {
+            "" => format!("{name}{of}"),
+            unit => format!("{name}{of} ({unit})"),
+        }
+    }
+
+    /// Says of which thing this is, if it is of one.
+    fn owner(self) -> String {
+        self.of
+            .map_or(String::new(), |pick| format!(" of {}", pick.name()))
     }
 }
 

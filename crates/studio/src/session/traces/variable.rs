@@ -1,7 +1,6 @@
 //! Variables of particles, rigid bodies, springs, rods and the whole scene that can be plotted, and
 //! their values at one time.
 
-use super::pick::Pick;
 use crate::session::rows;
 
 /// Kind of what is plotted.
@@ -117,7 +116,7 @@ impl Variable {
     }
 
     /// Returns the name on an axis.
-    fn long_name(self) -> &'static str {
+    pub fn long_name(self) -> &'static str {
         self.words()[1]
     }
 
@@ -181,42 +180,6 @@ impl Variable {
             Self::Z => Self::VelocityZ,
             _ => Self::VelocityX,
         }
-    }
-}
-
-/// A variable of one thing that is plotted, or of each.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Quantity {
-    /// The thing; `None` for each.
-    pub of: Option<Pick>,
-    pub variable: Variable,
-}
-
-impl Quantity {
-    /// Creates the quantity of each thing.
-    pub fn of_each(variable: Variable) -> Self {
-        Self { of: None, variable }
-    }
-
-    /// Returns the short name.
-    pub fn name(self) -> String {
-        let [name, of] = [self.variable.name().into(), self.owner()];
-        name + &of
-    }
-
-    /// Returns the name with the unit, as on an axis.
-    pub fn label(self) -> String {
-        let (name, of) = (self.variable.long_name(), self.owner());
-        match self.variable.unit() {
-            "" => format!("{name}{of}"),
-            unit => format!("{name}{of} ({unit})"),
-        }
-    }
-
-    /// Says of which thing this is, if it is of one.
-    fn owner(self) -> String {
-        self.of
-            .map_or(String::new(), |pick| format!(" of {}", pick.name()))
     }
 }
 
