@@ -193,6 +193,8 @@ pub fn apply(
 
 #[cfg(test)]
 mod tests {
+    use a3_core::Vector3;
+
     use super::*;
     use crate::session::{Row, RunAction, Session, compared, frames, session};
 
@@ -285,7 +287,7 @@ mod tests {
         let body = &run.model().network().unwrap().bodies()[0];
         let rotation = run.model().network().unwrap().rotation(0, run.state());
         let spin = &Pick::Body(0).read(run).values[10..13];
-        let spin = a3_core::Vector3::from_column_slice(spin);
+        let spin = Vector3::from_column_slice(spin);
         assert!((body.momentum(rotation.q, spin) - rotation.momentum).norm() < 1e-12);
     }
 
@@ -391,6 +393,13 @@ mod tests {
         let tilts = body.rows().map(|row| Variable::Tilt.of(row));
         let [low, high] = tilts.fold([9.0_f64, 0.0_f64], |[a, b], it| [a.min(it), b.max(it)]);
         assert!(low < 0.1 && high > 3.0, "{low} {high}");
+        let run = session.runs.first();
+        let pose = run.model().network().unwrap().pose(0, run.state());
+        let own = |axis: Vector3<f64>| pose.of(axis).position - pose.place.position;
+        let (x, y) = (own(Vector3::x()), own(Vector3::y()));
+        let row = Pick::Body(0).read(run);
+        assert!((Variable::Tilt.of(&row) - y.y.acos()).abs() < 1e-9);
+        assert!((Variable::Angle.of(&row) - x.y.atan2(x.x)).abs() < 1e-9);
         for (own, all) in body.rows().zip(scene.rows()) {
             let [a, b] = [own, all].map(|row| Variable::Energy.of(row));
             assert!((a - b).abs() < 1e-9 * b, "{a} {b}");
