@@ -177,6 +177,12 @@ fn draw(ui: &Ui, room: Rect, session: &Session) {
         let points = if drawn == 1 { "point" } else { "points" };
         panel.y_label = format!("{}   {drawn} {points}", panel.y_label);
     }
+    for (panel, axes) in plotted.chart.panels.iter_mut().zip(&plotted.axes) {
+        // Spaces keep the numbers of the axis away from long words.
+        if axes[0].is_some_and(|it| it.of.is_some()) {
+            panel.x_label.insert_str(0, "   ");
+        }
+    }
     let sheet = [room.width(), room.height()].map(f64::from);
     // The rows above the chart name the curves.
     let figure = plotted.chart.draw_compact(sheet, SIZE, false);

@@ -151,7 +151,7 @@ pub fn plotted(session: &Session, detail: usize) -> Plotted {
     let label = |axis: Option<Quantity>| axis.map_or("time (s)".into(), Quantity::label);
     let panels = all_axes.iter().zip(&sources).map(|(axes, sources)| {
         let line = |source: &[usize; 2]| Line {
-            name: name(session, *source, &picks),
+            name: name(session, *axes, *source, &picks),
             style: style(session, *source),
             pieces: pieces(session, *axes, *source, detail),
             dots: settings.mode == Mode::Section,
@@ -181,12 +181,18 @@ pub fn plotted(session: &Session, detail: usize) -> Plotted {
 }
 
 /// Returns the name of a curve.
-fn name(session: &Session, [pane, pick]: [usize; 2], picks: &[Pick]) -> String {
+fn name(session: &Session, axes: Axes, [pane, pick]: [usize; 2], picks: &[Pick]) -> String {
     let panes = &session.runs.panes;
+    let what = match axes.map(|axis| axis.and_then(|it| it.of)) {
+        [Some(across), Some(up)] if across != up => {
+            format!("{} over {}", up.name(), across.name())
+        }
+        _ => picks[pick].name(),
+    };
     match (panes.len(), picks.len()) {
-        (1, _) => picks[pick].name(),
+        (1, _) => what,
         (_, 1) => run_name(&panes[pane]),
-        _ => format!("{}: {}", run_name(&panes[pane]), picks[pick].name()),
+        _ => format!("{}: {what}", run_name(&panes[pane])),
     }
 }
 
@@ -443,6 +449,7 @@ mod tests {
         let panel = &plotted.chart.panels[0];
         assert_eq!(panel.x_label, "angle of rod 0 to 1 (rad)");
         assert_eq!(panel.y_label, "angle of rod 1 to 2 (rad)");
+        assert_eq!(panel.lines[0].name, "rod 1 to 2 over rod 0 to 1");
         let run = session.runs.first();
         let angle = |i: usize| {
             let way = run.position(i + 1) - run.position(i);
