@@ -12,7 +12,7 @@ use crate::session::{Session, show_edited};
 
 /// Saves the run of pane `at` under the first free name, in the folder of its scene file if it has
 /// one, and returns the path. Fails if the file cannot be written.
-pub fn save(session: &mut Session, at: usize) -> Result<PathBuf, Failure> {
+pub fn save(session: &Session, at: usize) -> Result<PathBuf, Failure> {
     let run = &session.runs.panes[at.min(session.runs.panes.len() - 1)].simulation;
     let (shown, own) = (&session.scenes.shown, session.scenes.unedited());
     let mut kept = Kept::new(&own.source, own.grid, run, None);
@@ -23,9 +23,7 @@ pub fn save(session: &mut Session, at: usize) -> Result<PathBuf, Failure> {
     kept.tuned = panel::tuned(session);
     let folder = own.source.path.as_deref().and_then(Path::parent);
     let folder = folder.unwrap_or("".as_ref());
-    let path = output::write_new(folder, &run.scene().name, ENDING, &kept.bytes()?)?;
-    session.scenes.checkpoint = Some(path.clone());
-    Ok(path)
+    output::write_new(folder, &run.scene().name, ENDING, &kept.bytes()?)
 }
 
 /// Loads a saved run into the window, with its tuning and with the edits of its scene, and releases
@@ -79,7 +77,7 @@ mod tests {
         }
         assert!(panel::tuned(&first).len() > 3, "{:?}", panel::tuned(&first));
         frames(&mut first, 0.5);
-        let path = save(&mut first, 0).ok().unwrap();
+        let path = save(&first, 0).ok().unwrap();
         assert_eq!(path, folder.path().join("a3-flag-1.checkpoint"));
         let mut second = session(&words[2..]);
         second.readings.in_window = true;
@@ -108,7 +106,7 @@ mod tests {
         let [mut third, mut fourth] = [&words; 2].map(|words| session(words));
         panel::tune(&mut third, &parts.clone().map(|part| (part, 1.0))).unwrap();
         frames(&mut third, 0.3);
-        let reduced = save(&mut third, 0).ok().unwrap();
+        let reduced = save(&third, 0).ok().unwrap();
         load(&mut fourth, &reduced)
             .map_err(|failure| failure.to_string())
             .unwrap();
@@ -119,7 +117,7 @@ mod tests {
         assert!(seen(&third) == seen(&fourth));
         // Loading an untuned run resets the tuning.
         let words = ["r", "0.002", "--scene", scene.to_str().unwrap()];
-        let plain = save(&mut session(&words), 0).ok().unwrap();
+        let plain = save(&session(&words), 0).ok().unwrap();
         load(&mut second, &plain)
             .map_err(|failure| failure.to_string())
             .unwrap();
@@ -139,14 +137,14 @@ mod tests {
         let words = ["r", "0.002", "--scene", scene.to_str().unwrap()];
         let mut first = session(&words);
         frames(&mut first, 0.2);
-        let plain = save(&mut first, 0).ok().unwrap();
+        let plain = save(&first, 0).ok().unwrap();
         let add = a3_scenes::Edit::AddParticle {
             position: [0.0, 3.0, 1.0],
             mass: 0.1,
         };
         panel::edit(&mut first, &add, "particle").unwrap();
         frames(&mut first, 0.1);
-        let edited = save(&mut first, 0).ok().unwrap();
+        let edited = save(&first, 0).ok().unwrap();
         let seen = |session: &Session| {
             let run = session.runs.first();
             let edited = session.scenes.shown.edited;

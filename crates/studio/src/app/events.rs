@@ -154,7 +154,7 @@ impl ApplicationHandler<Event> for App {
             }
             WindowEvent::CursorLeft { .. } => self.mouse.pointer.inside = false,
             WindowEvent::MouseWheel { delta, .. } if !taken => {
-                self.mouse.scroll(delta, &mut self.session, &self.screen);
+                self.session.view.camera = self.mouse.scroll(delta, &self.session, &self.screen);
                 self.screen.redraw();
             }
             WindowEvent::MouseInput { .. } | WindowEvent::MouseWheel { .. } => self.screen.redraw(),

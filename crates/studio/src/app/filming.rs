@@ -10,7 +10,7 @@ use a3_render::Gpu;
 use super::graphics::Graphics;
 use crate::hud::layout;
 use crate::recorder::{Format, Recorder};
-use crate::session::Session;
+use crate::session::{Readings, Session};
 
 /// The recorder of the film, if one is being made.
 #[derive(Default)]
@@ -22,7 +22,7 @@ impl Films {
     /// Starts a live film, or completes it.
     pub fn record(&mut self, session: &mut Session, graphics: Option<&Graphics>) {
         if self.recorder.as_ref().is_some_and(Recorder::is_live) {
-            return self.finish(session);
+            return self.finish(&mut session.readings);
         }
         self.begin(session, graphics, Recorder::from_now);
     }
@@ -56,7 +56,7 @@ impl Films {
             Ok(recorder) => self.recorder = Some(recorder),
             Err(why) => session.readings.warn(why.to_string()),
         }
-        self.show_progress(session);
+        self.show_progress(&mut session.readings);
     }
 
     /// Draws the next frame of the film, if one is due. Returns whether the window must draw
@@ -67,20 +67,20 @@ impl Films {
         };
         match recorder.draw_next(graphics.gpu(), session) {
             Ok(true) => {}
-            Ok(false) => self.finish(session),
+            Ok(false) => self.finish(&mut session.readings),
             Err(why) => {
                 self.recorder = None;
                 session.readings.warn(why.to_string());
             }
         }
-        self.show_progress(session);
+        self.show_progress(&mut session.readings);
         self.recorder.as_ref().is_some_and(|film| !film.is_live())
     }
 
     /// Completes a live film, because the scene has changed.
-    pub fn finish_live(&mut self, session: &mut Session) {
+    pub fn finish_live(&mut self, readings: &mut Readings) {
         if self.recorder.as_ref().is_some_and(Recorder::is_live) {
-            self.finish(session);
+            self.finish(readings);
         }
     }
 
@@ -92,15 +92,15 @@ impl Films {
     }
 
     /// Completes the film, and shows a message.
-    pub fn finish(&mut self, session: &mut Session) {
+    pub fn finish(&mut self, readings: &mut Readings) {
         let Some(recorder) = self.recorder.take() else {
             return;
         };
         match recorder.finish() {
-            Ok(said) => session.readings.say(said),
-            Err(why) => session.readings.warn(why.to_string()),
+            Ok(said) => readings.say(said),
+            Err(why) => readings.warn(why.to_string()),
         }
-        self.show_progress(session);
+        self.show_progress(readings);
     }
 
     /// Completes the film before the window closes. A film of the last seconds gets all of its
@@ -111,14 +111,14 @@ impl Films {
         {
             thread::sleep(Duration::from_millis(1));
         }
-        self.finish(session);
+        self.finish(&mut session.readings);
         if let Some(said) = session.readings.message.take() {
             terminal::warn(&said);
         }
     }
 
     /// Shows the progress of the film.
-    fn show_progress(&self, session: &mut Session) {
-        session.readings.film = self.recorder.as_ref().map(Recorder::progress);
+    fn show_progress(&self, readings: &mut Readings) {
+        readings.film = self.recorder.as_ref().map(Recorder::progress);
     }
 }

@@ -35,7 +35,9 @@ impl App {
             self.fingers.end_press();
             self.mouse.long_press(session, &self.screen);
         }
-        self.mouse.pull(session, &self.screen);
+        if let Some(target) = self.mouse.target(session, &self.screen) {
+            session.runs.pull(target);
+        }
         session.tick(self.platform.films.time_to_advance(session, real));
         session.view.track_followed(&session.runs.panes);
         session.read_state();

@@ -2,6 +2,7 @@
 
 use a3_core::Vector3;
 use a3_media::show::{self, Target};
+use a3_render::Camera;
 use egui::CursorIcon;
 use web_time::{Duration, Instant};
 use winit::dpi::PhysicalPosition;
@@ -104,7 +105,9 @@ impl Mouse {
                 if double {
                     let particle = hit.and_then(|(target, _)| target.particle());
                     looks::show_springs_of(&mut session.runs.panes, particle);
-                    if let Some(request) = plotting::picked(session, particle) {
+                    let link = tool::link_at(&self.pointer, session, screen, pane);
+                    let link = link.filter(|_| hit.is_none());
+                    if let Some(request) = plotting::picked(session, particle, link) {
                         apply(session, request, 0);
                     }
                 }
@@ -161,7 +164,11 @@ impl Mouse {
     /// Ends the drag: pins or frees the particles in the box, and releases a grabbed particle or
     /// obstacle.
     pub fn finish(&mut self, session: &mut Session, screen: &Screen) {
-        self.apply_selection(session, screen);
+        if let Drag::Select { pinned, .. } = self.drag
+            && session.readings.selection.take().is_some()
+        {
+            session.pin_all(&self.selected_particles(session, screen), pinned);
+        }
         session.release();
         for pane in &mut session.runs.panes {
             pane.show.joining = None;
@@ -196,40 +203,15 @@ impl Mouse {
             .collect()
     }
 
-    /// Shows the box and the number of particles in it.
-    fn show_selection(&self, session: &mut Session, screen: &Screen) {
-        let scale = screen.scale();
-        if let Drag::Select { from, pinned } = self.drag {
-            let corners = [from, self.pointer.position].map(|at| at.map(|px| px / scale));
-            let count = self.selected_particles(session, screen).len();
-            session.readings.selection = Some(Selection {
-                corners,
-                count,
-                pinned,
-            });
-        }
-    }
-
-    /// Pins or frees the particles in the box, if one is drawn.
-    fn apply_selection(&self, session: &mut Session, screen: &Screen) {
-        if let Drag::Select { pinned, .. } = self.drag
-            && session.readings.selection.take().is_some()
-        {
-            let particles = self.selected_particles(session, screen);
-            session.pin_all(&particles, pinned);
-        }
-    }
-
-    /// Pulls the grabbed particle or obstacle towards the pointer.
-    pub fn pull(&self, session: &mut Session, screen: &Screen) {
-        if let Drag::Pull(grip) = self.drag {
-            let tile = screen.tile(session, self.pane);
-            let place = tile.place(self.pointer.position);
-            let [x, y, z] = grip
-                .target(&session.view.camera, place, tile.aspect())
-                .map(f64::from);
-            session.runs.pull(Vector3::new(x, y, z));
-        }
+    /// Returns the point (m) to which the pointer pulls the grabbed particle or obstacle.
+    pub fn target(&self, session: &Session, screen: &Screen) -> Option<Vector3<f64>> {
+        let Drag::Pull(grip) = self.drag else {
+            return None;
+        };
+        let tile = screen.tile(session, self.pane);
+        let place = tile.place(self.pointer.position);
+        let target = grip.target(&session.view.camera, place, tile.aspect());
+        Some(Vector3::from(target).cast())
     }
 
     /// Moves the pointer, and continues the drag.
@@ -274,8 +256,18 @@ impl Mouse {
                 camera.orbit_above(-ORBIT_ANGLE * dx * aspect, ORBIT_ANGLE * dy, lowest);
             }
             Drag::Pan => camera.pan(-dx * aspect, dy),
-            Drag::Select { .. } => self.show_selection(session, screen),
-            Drag::Tool(Some(i)) => tool::drag(&self.pointer, i, session, screen, self.pane),
+            Drag::Select { from, pinned } => {
+                let scale = screen.scale();
+                session.readings.selection = Some(Selection {
+                    corners: [from, position].map(|at| at.map(|px| px / scale)),
+                    count: self.selected_particles(session, screen).len(),
+                    pinned,
+                });
+            }
+            Drag::Tool(Some(i)) => {
+                let end = tool::end(&self.pointer, i, session, screen, self.pane);
+                session.runs.panes[self.pane].show.joining = end.map(|end| (i, end));
+            }
             Drag::Pull(_) | Drag::Tool(None) | Drag::Rule | Drag::None => {}
         }
     }
@@ -299,15 +291,16 @@ impl Mouse {
         RulerEnd::Point(Vector3::from(point).cast())
     }
 
-    /// Zooms towards the pointer by the notches of the wheel.
-    pub fn scroll(&self, delta: MouseScrollDelta, session: &mut Session, screen: &Screen) {
+    /// Returns the camera zoomed towards the pointer by the notches of the wheel.
+    pub fn scroll(&self, delta: MouseScrollDelta, session: &Session, screen: &Screen) -> Camera {
         let notches = match delta {
             MouseScrollDelta::LineDelta(_, y) => y,
             MouseScrollDelta::PixelDelta(p) => p.y as f32 / PIXELS_PER_NOTCH,
         };
         let tile = screen.tile(session, self.pointer.pane(session, screen));
         let at = tile.place(self.pointer.position);
-        let factor = 0.9f32.powf(notches);
-        session.view.camera.zoom_at(factor, at, tile.aspect());
+        let (factor, mut camera) = (0.9f32.powf(notches), session.view.camera);
+        camera.zoom_at(factor, at, tile.aspect());
+        camera
     }
 }

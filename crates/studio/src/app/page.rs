@@ -15,7 +15,7 @@ use winit::window::{Window, WindowAttributes};
 use super::adapter;
 use super::graphics::Graphics;
 use super::screen::Screen;
-use crate::session::Session;
+use crate::session::{Readings, Session};
 
 thread_local! {
     /// Sender of events to the window.
@@ -156,7 +156,7 @@ impl Films {
     }
 
     /// Does nothing: a page makes no films.
-    pub fn finish_live(&mut self, _: &mut Session) {}
+    pub fn finish_live(&mut self, _: &mut Readings) {}
 
     /// Does nothing: a page makes no films.
     pub fn complete(&mut self, _: &mut Session, _: Option<&Graphics>) {}

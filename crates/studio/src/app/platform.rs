@@ -86,7 +86,7 @@ impl Platform {
     ) -> Option<Result<Graphics, GpuError>> {
         let window = screen.window.clone()?;
         // The recorder draws with the old device.
-        self.films.finish(session);
+        self.films.finish(&mut session.readings);
         // The window cannot have two surfaces.
         screen.graphics = None;
         let opened = pollster::block_on(adapter::open(window.clone(), screen.display.clone()));

@@ -263,7 +263,13 @@ impl App {
                 Ok(line) => self.platform.copy(&line),
                 Err(failure) => failure.to_string(),
             }),
-            WindowAction::SaveRun => Some(said("Saved", keep::save(session, pane))),
+            WindowAction::SaveRun => {
+                let saved = keep::save(session, pane);
+                if let Ok(path) = &saved {
+                    session.scenes.checkpoint = Some(path.clone());
+                }
+                Some(said("Saved", saved))
+            }
             WindowAction::LoadRun => {
                 let loaded = match session.scenes.checkpoint.clone() {
                     None => "No run was saved yet: key k saves one.".into(),
@@ -286,7 +292,7 @@ impl App {
     pub fn scene_changed(&mut self) {
         self.mouse.abort();
         begin_plots(&mut self.session);
-        self.platform.films.finish_live(&mut self.session);
+        self.platform.films.finish_live(&mut self.session.readings);
         self.screen.set_scene(&self.session);
     }
 

@@ -78,8 +78,14 @@ pub fn throw(pointer: &Pointer, heavy: bool, session: &mut Session, screen: &Scr
     session.panel.editor.tool = chosen;
 }
 
-/// Draws a line from particle i to the pointer, or to the particle under it.
-pub fn drag(pointer: &Pointer, i: usize, session: &mut Session, screen: &Screen, at: usize) {
+/// Returns where a line from particle i ends (m): at the pointer, or at the particle under it.
+pub fn end(
+    pointer: &Pointer,
+    i: usize,
+    session: &Session,
+    screen: &Screen,
+    at: usize,
+) -> Option<Vector3<f64>> {
     let hit = pointer
         .hit(session, screen, at)
         .and_then(|(target, _)| target.particle());
@@ -87,13 +93,12 @@ pub fn drag(pointer: &Pointer, i: usize, session: &mut Session, screen: &Screen,
     let (place, aspect) = (tile.place(pointer.position), tile.aspect());
     let run = &session.runs.panes[at].simulation;
     let camera = &session.view.camera;
-    let end = match hit.filter(|j| *j < run.particles()) {
+    match hit.filter(|j| *j < run.particles()) {
         Some(j) => Some(run.position(j)),
         None => camera
             .project(to_f32(run.position(i)), aspect)
             .map(|(_, depth)| Vector3::from(camera.unproject(place, depth, aspect)).cast()),
-    };
-    session.runs.panes[at].show.joining = end.map(|end| (i, end));
+    }
 }
 
 /// Returns what the chosen tool would act on under the pointer, if it acts on something.
@@ -108,20 +113,29 @@ pub fn target(pointer: &Pointer, session: &Session, screen: &Screen, at: usize) 
 
 /// Returns the particle, body, spring or obstacle under the pointer in pane `at`.
 fn aim(pointer: &Pointer, session: &Session, screen: &Screen, at: usize) -> Aim {
-    let tile = screen.tile(session, at);
-    let run = &session.runs.panes[at].simulation;
     let target = pointer.hit(session, screen, at);
     Aim {
         target: target.map(|(target, _)| target),
-        link: link(
-            run,
-            &session.view.camera,
-            tile.place(pointer.position),
-            tile.aspect(),
-            LINK_DISTANCE * screen.scale() / tile.height as f32,
-        ),
+        link: link_at(pointer, session, screen, at),
         ..sight(pointer.position, session, screen, at)
     }
+}
+
+/// Returns the particles that the spring, the rod or the rope under the pointer in pane `at` joins.
+pub fn link_at(
+    pointer: &Pointer,
+    session: &Session,
+    screen: &Screen,
+    at: usize,
+) -> Option<[usize; 2]> {
+    let tile = screen.tile(session, at);
+    link(
+        &session.runs.panes[at].simulation,
+        &session.view.camera,
+        tile.place(pointer.position),
+        tile.aspect(),
+        LINK_DISTANCE * screen.scale() / tile.height as f32,
+    )
 }
 
 /// Returns where the line of sight through a place (px) in pane `at` ends.

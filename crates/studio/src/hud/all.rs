@@ -4,11 +4,15 @@ use std::collections::HashMap;
 
 use egui::{Context, TextureId};
 
+use super::style::MARGIN;
 use super::{bar, edit, layout, list, marks, offers, plotting, text};
 use crate::session::{Action, Session};
 
 /// Shorter side of a picture that lists cover (points).
 const LIST_COVERS: f32 = 500.0;
+
+/// Largest width of the explanation of what is under the pointer (points).
+const WIDEST: f32 = 500.0;
 
 /// Heights of a picture without room for text above the tools, with one row of panes and with two
 /// (points).
@@ -22,6 +26,9 @@ pub fn show_all(
     pictures: &HashMap<String, TextureId>,
 ) -> Option<Action> {
     let window = ctx.viewport_rect().size();
+    // Explanations are beside a pane, over the picture.
+    let beside = ctx.content_rect().width() - 2.0 * MARGIN;
+    ctx.global_style_mut(|style| style.spacing.tooltip_width = beside.clamp(80.0, WIDEST));
     let on_picture = if layout::is_covered(session, window.into()) {
         None
     } else {
@@ -131,6 +138,29 @@ mod tests {
         }
         assert!(!seen.is_empty());
         faults
+    }
+
+    #[test]
+    fn an_explanation_fits_beside_a_pane_in_a_small_window() {
+        let mut session = session(&["r", "0.005", "--scene", "flag"]);
+        session.act(RunAction::Panel, 0);
+        let mut window = lay_out(&session, [480.0, 360.0], 1.0);
+        let taken = layout::insets(&session, (480, 360), 1.0);
+        let row = window
+            .written()
+            .into_iter()
+            .find(|it| it.0 == "strain limit");
+        let at = row.unwrap().1.center();
+        let moved = Some(egui::Event::PointerMoved(at));
+        for events in [moved, None, None, None] {
+            let events = events.into_iter().collect();
+            window.frame(taken, events, |ctx| {
+                show_all(ctx, &session, &HashMap::new())
+            });
+        }
+        let mut words = window.written().into_iter();
+        let (said, rect, seen) = words.find(|it| it.0.contains("Click the value")).unwrap();
+        assert!(seen.contains_rect(rect), "{said:?} at {rect:?}");
     }
 
     #[test]

@@ -2,18 +2,19 @@
 //! pointer, and buttons below it.
 
 mod chart;
+mod formulas;
 mod rows;
 
-use egui::{Align2, Area, Color32, Context, Id, Pos2, Rect, Sense, Stroke, Ui, pos2, vec2};
+use egui::{Align2, Area, Color32, Context, Id, Pos2, Rect, Sense, Stroke, Ui, Vec2, pos2, vec2};
 
 use super::charts::{Sheet, colour};
 use super::dock::Pane;
 use super::style::{FAINT, TEXT};
 use super::widgets::{chip, columns, write};
 use super::words::signed;
-use crate::session::{Action, Mode, Pick, PlotFile, PlotRequest, Row, RunAction, SPANS};
-use crate::session::{IS_PAGE, Session, Variable, WindowAction};
-use chart::{Plotted, place, plotted, rows};
+use crate::session::{Action, Mode, Pick, PlotFile, PlotRequest, Quantity, RunAction, SPANS};
+use crate::session::{IS_PAGE, Session, WindowAction};
+use chart::{Axes, Plotted, place, plotted, rows};
 use rows::Rows;
 
 pub use chart::{write as write_files, write_one};
@@ -33,17 +34,22 @@ pub const PANE: Pane = Pane {
 
 /// Height of the heading, of the modes, and of the buttons below the chart (points).
 const HEIGHTS: [f32; 3] = [38.0, 28.0, 26.0];
+/// Place and size of the button in the heading (points).
+const ASKED: [Vec2; 2] = [vec2(70.0, 5.0), vec2(136.0, 25.0)];
 /// Distance between rows (points).
 const GAP: f32 = 7.0;
 
 /// Draws all rows from the top of a room. Returns the request of the mouse.
-fn show(ui: &Ui, room: Rect, session: &Session) -> Option<Action> {
+fn show(ui: &mut Ui, room: Rect, session: &Session) -> Option<Action> {
     let [heading, modes, buttons] = HEIGHTS;
     let top = room.top() + heading;
     let tabs = Rect::from_x_y_ranges(room.x_range(), top..=top + modes);
-    let mut chosen = None;
+    let settings = &session.panel.plotting;
+    let asked = Rect::from_min_size(room.min + ASKED[0], ASKED[1]);
+    let asked = chip(ui, asked, "what is computed?", settings.formulas).clicked();
+    let mut chosen = asked.then_some(PlotRequest::Formulas);
     for (place, mode) in columns(tabs, 3, 6.0).zip(Mode::ALL) {
-        let is_shown = session.panel.plotting.mode == mode;
+        let is_shown = settings.mode == mode;
         let clicked = chip(ui, place, mode.name(), is_shown).clicked();
         chosen = clicked.then_some(PlotRequest::Mode(mode)).or(chosen);
     }
@@ -60,10 +66,13 @@ fn show(ui: &Ui, room: Rect, session: &Session) -> Option<Action> {
     }
     let (top, request) = (rows.room.top(), rows.request);
     let below = room.bottom() - buttons - 10.0;
-    let place = Rect::from_min_max(
+    let mut place = Rect::from_min_max(
         pos2(room.left(), top + 2.0),
         pos2(room.right(), below - GAP),
     );
+    if settings.formulas {
+        place.min.y = formulas::show(ui, place, session);
+    }
     if !is_empty && place.height() > 0.0 {
         draw(ui, place, session);
     }
@@ -135,11 +144,20 @@ pub fn offer(ctx: &Context, session: &Session) -> Option<Action> {
     clicked.then_some(RunAction::Plots.into())
 }
 
-/// Returns the request that a double click on a particle makes, if the plots are visible: to plot
-/// it, or its body, or no longer.
-pub fn picked(session: &Session, particle: Option<usize>) -> Option<PlotRequest> {
-    let i = particle.filter(|_| session.shows(RunAction::Plots))?;
-    Some(PlotRequest::Toggle(Pick::at(session.runs.first(), i)))
+/// Returns the request that a double click makes on a particle, or else on the spring, rod or rope
+/// between two, if the plots are visible: to plot it, or the body of the particle, or no longer.
+pub fn picked(
+    session: &Session,
+    particle: Option<usize>,
+    link: Option<[usize; 2]>,
+) -> Option<PlotRequest> {
+    let run = Some(session.runs.first()).filter(|_| session.shows(RunAction::Plots))?;
+    let of_link = || {
+        let mut links = Pick::links(run.model().network()?);
+        links.find(|it| link.is_some() && it.ends() == link)
+    };
+    let pick = particle.map(|i| Pick::at(run, i)).or_else(of_link);
+    pick.map(PlotRequest::Toggle)
 }
 
 /// Number of parts of the time in which a curve has a point.
@@ -158,6 +176,12 @@ fn draw(ui: &Ui, room: Rect, session: &Session) {
         let drawn: usize = panel.lines.iter().map(|it| it.points().count()).sum();
         let points = if drawn == 1 { "point" } else { "points" };
         panel.y_label = format!("{}   {drawn} {points}", panel.y_label);
+    }
+    for (panel, axes) in plotted.chart.panels.iter_mut().zip(&plotted.axes) {
+        // Spaces keep the numbers of the axis away from long words.
+        if axes[0].is_some_and(|it| it.of.is_some()) {
+            panel.x_label.insert_str(0, "   ");
+        }
     }
     let sheet = [room.width(), room.height()].map(f64::from);
     // The rows above the chart name the curves.
@@ -210,14 +234,14 @@ fn show_time(
     let mut lines = vec![];
     let mut shown = None;
     for k in 0..sheet.figure.panels.len() {
-        let variables = plotted.variables[k];
+        let axes = plotted.axes[k];
         let drawn = &plotted.chart.panels[k].lines;
         for ([pane, pick], line) in plotted.sources[k].iter().zip(drawn) {
             let (_, series) = &session.runs.panes[*pane].traces.iter().as_slice()[*pick];
             let Some(row) = series.nearest(time).filter(|row| row.time >= from) else {
                 continue;
             };
-            let point = place(variables, row);
+            let point = place(session, axes, [*pane, *pick], row);
             if !point[1].is_finite() {
                 continue;
             }
@@ -225,7 +249,7 @@ fn show_time(
             sheet.painter.circle_filled(sheet.at(k, point), 3.0, ink);
             shown = shown.or(Some(row.time));
             if k == over {
-                let words = format!("{}  {}", line.name, value(variables[1], row));
+                let words = format!("{}  {}", line.name, value(axes, point, 1));
                 lines.push((words, 12.5, ink));
             }
         }
@@ -240,16 +264,17 @@ fn show_time(
 
 /// Shows the point nearest to the pointer in a panel, and its values.
 fn show_point(sheet: &Sheet, session: &Session, plotted: &Plotted, panel: usize, at: Pos2) {
-    let variables = plotted.variables[panel];
+    let axes = plotted.axes[panel];
     let sources = plotted.sources[panel].iter();
     let lines = sources.zip(&plotted.chart.panels[panel].lines);
     let all = lines.flat_map(|(source, line)| {
         let rows = rows(session, *source).into_iter();
-        rows.map(move |row| (sheet.at(panel, place(variables, row)), row, line))
+        let placed = rows.map(|row| (place(session, axes, *source, row), row.time));
+        placed.map(move |(values, time)| (sheet.at(panel, values), values, time, line))
     });
     let near = all.filter(|(point, ..)| point.distance(at) < REACH);
     let nearest = near.min_by(|a, b| a.0.distance(at).total_cmp(&b.0.distance(at)));
-    let Some((point, row, line)) = nearest else {
+    let Some((point, values, time, line)) = nearest else {
         return;
     };
     let ink = colour(line.style.colour);
@@ -257,20 +282,19 @@ fn show_point(sheet: &Sheet, session: &Session, plotted: &Plotted, panel: usize,
     sheet.painter.circle(point, 4.0, Color32::WHITE, edge);
     let mut lines = vec![
         (line.name.clone(), 12.5, ink),
-        (format!("at {:.3} s", row.time), 12.5, TEXT),
+        (format!("at {time:.3} s"), 12.5, TEXT),
     ];
-    for variable in variables {
-        let name = variable.map_or("", Variable::name);
-        lines.push((format!("{name}  {}", value(variable, row)), 12.5, TEXT));
+    for (k, axis) in axes.into_iter().enumerate() {
+        let name = axis.map_or(String::new(), Quantity::name);
+        lines.push((format!("{name}  {}", value(axes, values, k)), 12.5, TEXT));
     }
     sheet.note(point, ink, lines);
 }
 
-/// Returns the value of a variable with its unit.
-fn value(variable: Option<Variable>, row: &Row) -> String {
-    variable.map_or(String::new(), |it| {
-        format!("{} {}", signed(it.of(row)), it.unit())
-    })
+/// Returns the value on one of the axes with its unit.
+fn value(axes: Axes, point: [f64; 2], axis: usize) -> String {
+    let unit = axes[axis].map_or("s", |it| it.variable.unit());
+    format!("{} {unit}", signed(point[axis]))
 }
 
 #[cfg(test)]
@@ -283,7 +307,7 @@ mod tests {
     use super::*;
     use crate::hud::window::Window;
     use crate::hud::{all::show_all, layout};
-    use crate::session::{RulerEnd, Trigger, apply, frames, session};
+    use crate::session::{RulerEnd, Trigger, Variable, apply, frames, session};
 
     /// Draws a window of a size (points), and clicks at a place. Returns the words of the pane,
     /// their places, and the action.
@@ -295,7 +319,9 @@ mod tests {
             show_all(ctx, session, &HashMap::new())
         });
         let is_in_pane = |rect: &Rect| {
-            if right > 0.0 {
+            if layout::is_covered(session, size) {
+                rect.bottom() < size[1] - bottom
+            } else if right > 0.0 {
                 rect.left() > size[0] - right
             } else {
                 rect.top() > size[1] - bottom && rect.bottom() < size[1] - 40.0
@@ -345,7 +371,9 @@ mod tests {
     fn no_words_cover_others_in_any_window() {
         let mut session = curtain();
         let away = Pos2::new(5.0, 5.0);
-        for mode in Mode::ALL {
+        for (mode, formulas) in [(0, true), (0, false), (1, false), (2, false)] {
+            let mode = Mode::ALL[mode];
+            session.panel.plotting.formulas = formulas;
             apply(&mut session, PlotRequest::Mode(mode), 0);
             for size in [
                 [1000.0, 560.0],
@@ -387,14 +415,20 @@ mod tests {
             wish
         };
         assert_eq!(click("vy"), PlotRequest::Show(Variable::VelocityY));
-        assert_eq!(
-            click("particle 399"),
-            PlotRequest::Toggle(Pick::Particle(399))
-        );
         assert_eq!(click("190"), PlotRequest::Toggle(Pick::Spring(190, 210)));
         assert_eq!(click("5 s"), PlotRequest::Span(5.0));
         assert_eq!(click("section"), PlotRequest::Mode(Mode::Section));
         assert_eq!(click("ruler"), PlotRequest::Ruler);
+        let on_next = |of| Quantity {
+            of,
+            variable: Variable::X,
+        };
+        let first = on_next(Some(Pick::Particle(210)));
+        assert_eq!(click("+ the scene"), PlotRequest::Toggle(Pick::Scene));
+        assert_eq!(click("of each"), PlotRequest::Axis(0, first));
+        assert_eq!(click("what is computed?"), PlotRequest::Formulas);
+        let other = Pick::Particle(399);
+        assert_eq!(click("particle 399"), PlotRequest::Toggle(other));
         let lower = Trigger::Rises(Variable::VelocityY, 0.0);
         let trigger = |session: &Session| session.runs.panes[0].traces.trigger();
         assert_eq!(trigger(&session), lower);
@@ -472,8 +506,15 @@ mod tests {
             let drawn = draw(session, size, Pos2::new(5.0, 5.0));
             drawn.all.iter().any(|it| it.contains(words))
         };
-        assert!(said(&session, [640.0, 400.0], "There is no room"));
-        assert!(!said(&session, [640.0, 400.0], "Choose what to show"));
+        // In a low one, a click goes on to the next variable.
+        assert!(!said(&session, [640.0, 400.0], "There is no room"));
+        assert!(!said(&session, [640.0, 400.0], "speed"));
+        let at = draw(&session, [640.0, 400.0], Pos2::new(5.0, 5.0)).place("x");
+        let next = Quantity::of_each(Variable::Y);
+        let wish = Action::Plot(PlotRequest::Axis(0, next));
+        assert_eq!(draw(&session, [640.0, 400.0], at).action, Some(wish));
+        assert!(said(&session, [640.0, 300.0], "There is no room"));
+        assert!(!said(&session, [640.0, 300.0], "Choose what to show"));
         assert!(!said(&session, [1280.0, 800.0], "There is no room"));
         apply(&mut session, PlotRequest::Mode(Mode::Time), 0);
         for variable in session.panel.plotting.shown.clone() {

@@ -56,7 +56,7 @@ impl Session {
                 self.runs.align();
                 self.runs.all_mut().for_each(|run| run.set_wind(on));
             }
-            RunAction::Touch => toggle_touch(self),
+            RunAction::Touch => self.toggle_touch(),
             RunAction::Wireframe => looks::next_style(&mut self.runs.panes),
             RunAction::Colour => self.readings.say(looks::next_colour(&mut self.runs.panes)),
             RunAction::Arrows => self.readings.say(looks::next_arrows(&mut self.runs.panes)),
@@ -96,7 +96,7 @@ impl Session {
             RunAction::SeeAll => self.view.see_all(&self.runs.panes),
             RunAction::NextView => self.readings.say(self.view.next_view()),
             RunAction::Panel | RunAction::Measure | RunAction::Lessons | RunAction::Plots => {
-                toggle(self, action);
+                self.toggle(action);
             }
             RunAction::Edit if self.runs.first().model().network().is_none() => {
                 let why = "Only scenes of masses can be edited.";
@@ -150,11 +150,10 @@ impl Session {
         self.advance(self.runs.longest_step(), KEY_BUDGET, KEY_BUDGET);
     }
 
-    /// Shows the error of a refused request.
-    fn report(&mut self, done: Result<(), impl ToString>) {
-        if let Err(why) = done {
-            self.readings.say(why.to_string());
-        }
+    /// Shows the error of a refused request. Returns whether there is none.
+    pub fn report(&mut self, done: Result<(), impl ToString>) -> bool {
+        done.map_err(|why| self.readings.say(why.to_string()))
+            .is_ok()
     }
 
     /// Sets the step (s) or the tolerance of one pane, or shows why that is refused.
@@ -261,9 +260,7 @@ impl Session {
                 let pane = pane.min(self.runs.panes.len() - 1);
                 let control = self.runs.panes[pane].control_of(method, &self.tuning.defaults);
                 let added = panes::add(self, pane, (method, control));
-                let is_new = added.is_ok();
-                self.report(added);
-                is_new
+                self.report(added)
             }
             None => false,
         }
@@ -371,35 +368,103 @@ impl Session {
         if let Some(said) = said {
             self.readings.say(said);
         }
-        offer_at_start(self);
+        self.offer_at_start();
     }
-}
 
-/// If the surfaces of the scene begin crossed, pauses, says so, and offers to bring them apart.
-pub fn offer_at_start(session: &mut Session) {
-    if session.scenes.shown.crossed {
-        let name = &session.runs.first().scene().name;
-        session.readings.offer(format!(
-            "The surfaces of the scene {name} begin crossed, so they do not touch yet: key x brings them apart, and \
-             Space plays."
-        ));
-        session.readings.paused = true;
+    /// If the surfaces of the scene begin crossed, pauses, says so, and offers to bring them apart.
+    pub fn offer_at_start(&mut self) {
+        if self.scenes.shown.crossed {
+            let name = &self.runs.first().scene().name;
+            self.readings.offer(format!(
+                "The surfaces of the scene {name} begin crossed, so they do not touch yet: key x brings them apart, and \
+                 Space plays."
+            ));
+            self.readings.paused = true;
+        }
     }
-}
 
-/// Turns self-collision on or off. If surfaces cross, says which, and offers to bring them apart;
-/// does so if that was offered.
-pub fn toggle_touch(session: &mut Session) {
-    if session.readings.offers_apart {
-        return bring_apart(session);
+    /// Turns self-collision on or off. If surfaces cross, says which, and offers to bring them
+    /// apart; does so if that was offered.
+    pub fn toggle_touch(&mut self) {
+        if self.readings.offers_apart {
+            return self.bring_apart();
+        }
+        let Err(why) = self.runs.toggle_touch() else {
+            return;
+        };
+        if self.runs.all().any(crosses) {
+            self.readings.offer(why);
+        } else {
+            self.readings.say(why);
+        }
     }
-    let Err(why) = session.runs.toggle_touch() else {
-        return;
-    };
-    if session.runs.all().any(crosses) {
-        session.readings.offer(why);
-    } else {
-        session.readings.say(why);
+
+    /// Brings the surfaces of all runs apart, and says so.
+    fn bring_apart(&mut self) {
+        match self.come_apart() {
+            Ok(()) => {
+                let plays = if self.readings.paused {
+                    ", Space plays"
+                } else {
+                    ""
+                };
+                self.readings.say(format!(
+                    "The surfaces are apart now, and touch: key z undoes that{plays}."
+                ));
+            }
+            Err(why) => self.readings.warn(why),
+        }
+    }
+
+    /// Brings the surfaces of all runs apart and lets them touch, as one change that can be undone.
+    /// Fails, and changes nothing, if a run has blown up or its surfaces do not come apart.
+    pub fn come_apart(&mut self) -> Result<(), String> {
+        if !self.runs.panes.iter().all(Pane::alive) {
+            let why = "A run has blown up: reset it (key r) before its surfaces come apart.";
+            return Err(why.into());
+        }
+        self.release();
+        self.runs.align();
+        let before = self.runs.moments();
+        let runs = self.runs.all();
+        let after: Result<Arc<[_]>, String> = runs.map(|run| apart(self, run).map(Some)).collect();
+        self.go_to(&after?);
+        self.history.record(Change::Apart, Some(before));
+        Ok(())
+    }
+
+    /// Goes to states in which surfaces touch, or to those before they came apart. If these are
+    /// forgotten, turns self-collision off alone.
+    pub fn go_to(&mut self, moments: &[Option<Checkpoint>]) {
+        self.return_to(moments);
+        for run in self.runs.all_mut() {
+            if moments.is_empty() {
+                // Turning self-collision off does not fail.
+                let _ = run.set_touching(false);
+            } else {
+                // The energy that comes from elsewhere is no gain of the solver, which fits.
+                let _ = run.set_method(run.method(), run.control());
+            }
+        }
+    }
+
+    /// Opens the panel, the measurements, the lessons or the plots beside the picture, or closes
+    /// it; the others are closed then.
+    pub fn toggle(&mut self, action: RunAction) {
+        if action == RunAction::Measure && self.measuring.answerer.is_none() {
+            let why = "Only the program measures: key y copies the command line for it.";
+            return self.readings.say(why);
+        }
+        let panel = &mut self.panel;
+        (panel.typed, panel.all_marked, panel.lessons.typing) = (None, false, false);
+        panel.beside = Some(action).filter(|pane| !panel.has(*pane));
+        if panel.has(RunAction::Plots) {
+            plotting::pick_first(&mut self.runs.panes);
+        }
+        if action != RunAction::Panel {
+            self.readings.help = false;
+            self.list = None;
+        }
     }
 }
 
@@ -409,55 +474,6 @@ fn crosses(run: &Simulation) -> bool {
         let (x, _) = network.halves(run.state());
         !network.crossed(run.time(), x).is_empty()
     })
-}
-
-/// Brings the surfaces of all runs apart, and says so.
-fn bring_apart(session: &mut Session) {
-    match come_apart(session) {
-        Ok(()) => {
-            let plays = if session.readings.paused {
-                ", Space plays"
-            } else {
-                ""
-            };
-            session.readings.say(format!(
-                "The surfaces are apart now, and touch: key z undoes that{plays}."
-            ));
-        }
-        Err(why) => session.readings.warn(why),
-    }
-}
-
-/// Brings the surfaces of all runs apart and lets them touch, as one change that can be undone.
-/// Fails, and changes nothing, if a run has blown up or its surfaces do not come apart.
-pub fn come_apart(session: &mut Session) -> Result<(), String> {
-    if !session.runs.panes.iter().all(Pane::alive) {
-        let why = "A run has blown up: reset it (key r) before its surfaces come apart.";
-        return Err(why.into());
-    }
-    session.release();
-    session.runs.align();
-    let before = session.runs.moments();
-    let runs = session.runs.all();
-    let after: Result<Arc<[_]>, String> = runs.map(|run| apart(session, run).map(Some)).collect();
-    go_to(session, &after?);
-    session.history.record(Change::Apart, Some(before));
-    Ok(())
-}
-
-/// Goes to states in which surfaces touch, or to those before they came apart. If these are
-/// forgotten, turns self-collision off alone.
-pub fn go_to(session: &mut Session, moments: &[Option<Checkpoint>]) {
-    session.return_to(moments);
-    for run in session.runs.all_mut() {
-        if moments.is_empty() {
-            // Turning self-collision off does not fail.
-            let _ = run.set_touching(false);
-        } else {
-            // The energy that comes from elsewhere is no gain of the solver, which fits the run.
-            let _ = run.set_method(run.method(), run.control());
-        }
-    }
 }
 
 /// Returns the state of a run with its surfaces apart, in which they touch.
@@ -472,25 +488,6 @@ fn apart(session: &Session, run: &Simulation) -> Result<Checkpoint, String> {
     state.y = setup.scene.state;
     moment.touching = true;
     Ok(moment)
-}
-
-/// Opens the panel, the measurements, the lessons or the plots beside the picture, or closes
-/// it; the others are closed then.
-pub fn toggle(session: &mut Session, action: RunAction) {
-    if action == RunAction::Measure && session.measuring.answerer.is_none() {
-        let why = "Only the program measures: key y copies the command line for it.";
-        return session.readings.say(why);
-    }
-    let panel = &mut session.panel;
-    (panel.typed, panel.all_marked, panel.lessons.typing) = (None, false, false);
-    panel.beside = Some(action).filter(|pane| !panel.has(*pane));
-    if panel.has(RunAction::Plots) {
-        plotting::pick_first(&mut session.runs.panes);
-    }
-    if action != RunAction::Panel {
-        session.readings.help = false;
-        session.list = None;
-    }
 }
 
 #[cfg(test)]

@@ -9,7 +9,6 @@ use a3_files::setup::{Request, SceneOptions};
 use a3_scenes::snapshot;
 
 use super::action::{MeasureRequest, RunAction};
-use super::acts::toggle;
 use super::panes;
 use super::question::{MethodSetting, Question, Task};
 use super::save;
@@ -33,7 +32,7 @@ pub fn apply(session: &mut Session, request: MeasureRequest, at: usize) -> bool 
         MeasureRequest::Choose => {
             measuring.question = Question::Choose;
             if !session.panel.has(RunAction::Measure) {
-                toggle(session, RunAction::Measure);
+                session.toggle(RunAction::Measure);
             }
             if session.measuring.progress().is_none() {
                 return apply(session, MeasureRequest::Toggle, at);
@@ -52,13 +51,19 @@ pub fn apply(session: &mut Session, request: MeasureRequest, at: usize) -> bool 
         }
         MeasureRequest::RowBeside(row) => {
             let setting = offer(session, row);
-            return setting.is_some_and(|setting| beside(session, at, setting));
+            return setting.is_some_and(|it| {
+                let added = panes::add(session, at, it);
+                session.report(added)
+            });
         }
         MeasureRequest::RunBeside { curve, run } => {
             let answer = session.measuring.known().map(|known| &known.answer);
             let diagram = answer.and_then(|answer| answer.as_ref().ok()?.diagram.as_ref());
             let setting = diagram.and_then(|it| it.runs.get(curve)?.get(run).copied());
-            return setting.is_some_and(|setting| beside(session, at, setting));
+            return setting.is_some_and(|it| {
+                let added = panes::add(session, at, it);
+                session.report(added)
+            });
         }
         MeasureRequest::OpenLean => return open_lean(session),
     }
@@ -69,16 +74,6 @@ pub fn apply(session: &mut Session, request: MeasureRequest, at: usize) -> bool 
 fn offer(session: &Session, row: usize) -> Option<MethodSetting> {
     let answer = session.measuring.known()?.answer.as_ref().ok()?;
     answer.offers.get(row).copied()
-}
-
-/// Adds a pane that continues the run of pane `at` by another method, or says why that is
-/// impossible. Returns whether there is one.
-fn beside(session: &mut Session, at: usize, setting: MethodSetting) -> bool {
-    let added = panes::add(session, at, setting);
-    if let Err(why) = &added {
-        session.readings.say(why);
-    }
-    added.is_ok()
 }
 
 /// Writes the leanest scene under the first free name, beside the scene's own file if it has one,

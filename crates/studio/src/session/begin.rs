@@ -8,7 +8,6 @@ use a3_files::scene_file::Source;
 use a3_files::setup::{Request, find};
 use a3_media::show::{check_drawing, check_particle};
 
-use super::acts::offer_at_start;
 use super::opening::Opening;
 use super::origin::{Origin, begins_crossed};
 use super::state::{Beginning, Session};
@@ -94,7 +93,7 @@ fn alone(
     {
         session.readings.say(why);
     }
-    offer_at_start(&mut session);
+    session.offer_at_start();
     Ok(session)
 }
 

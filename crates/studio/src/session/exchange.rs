@@ -106,13 +106,8 @@ fn go_on(
     Ok(exchange(session, next))
 }
 
-/// Goes back to what was before an exchange.
-pub fn go_back(session: &mut Session, former: Former) {
-    exchange(session, former);
-}
-
 /// Exchanges the runs, their scene and its tuning for others, and returns the former ones.
-fn exchange(session: &mut Session, next: Former) -> Former {
+pub fn exchange(session: &mut Session, next: Former) -> Former {
     let presentation = session.runs.panes[0].show.presentation.clone();
     let runs = &mut session.runs;
     let mut next_runs = next.simulations.into_iter();
@@ -124,7 +119,7 @@ fn exchange(session: &mut Session, next: Former) -> Former {
         simulations.push(reference.exchange(run));
     }
     session.view.renumber(next.numbers[0]);
-    session.panel.plotting.renumber(next.numbers[0]);
+    session.panel.plotting.renumber(next.numbers);
     let tuning = std::mem::replace(&mut session.tuning, next.tuning);
     let origin = std::mem::replace(&mut session.scenes.shown, next.origin);
     let parts = &session.tuning.parts;

@@ -112,7 +112,15 @@ pub static GROUPS: [Group; 8] = [
             window(&["F11"], WindowAction::FullScreen, "full screen"),
             run(&["F1"], RunAction::Lessons, "lessons"),
             run(&["h", "?"], RunAction::Help, "this help"),
-            window(&["Esc"], WindowAction::Quit, "close the help; quit"),
+            window(
+                &["Esc"],
+                WindowAction::Quit,
+                if IS_PAGE {
+                    "close the help"
+                } else {
+                    "close the help; quit"
+                },
+            ),
         ],
     },
 ];

@@ -41,7 +41,6 @@ mod words;
 
 pub use action::{Action, RunAction, WindowAction};
 pub use action::{LessonRequest, MeasureRequest, PanelKey, PanelRequest};
-pub use acts::{come_apart, go_to, offer_at_start};
 pub use apply::{action_beside, apply, begin_plots, is_typing};
 pub use dial::{Dial, DialScale, Turn};
 pub use editor::{Measure, Tool};
@@ -62,7 +61,7 @@ pub use state::{Beginning, Session};
 pub use state::{FilmProgress, Readings, Selection};
 pub use timeline::TimelinePosition;
 pub use traces::{Kind, Mode, Pick, PlotFile, Row, SPANS, Trigger, Variable};
-pub use traces::{PlotRequest, RulerEnd};
+pub use traces::{PlotRequest, Quantity, RulerEnd};
 pub use tuning::{DEFAULT_FILM_SECONDS, Hidden, Tuning};
 
 #[cfg(test)]

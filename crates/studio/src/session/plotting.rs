@@ -6,10 +6,23 @@ use a3_core::{Path, Simulation};
 use a3_media::show::Target;
 
 use super::pane::Pane;
-use super::traces::{MAX_PICKS, Mode, Pick, PlotRequest, PlotSettings, Trigger, Variable};
+use super::traces::{Kind, MAX_PICKS, Mode, Pick, PlotRequest, PlotSettings};
+use super::traces::{Quantity, Trigger, Variable};
 
 /// Largest number of things that are plotted without being picked.
 const FEW: usize = 3;
+
+/// Returns the kinds of what is plotted.
+pub fn kinds(panes: &[Pane]) -> Vec<Kind> {
+    let picks = panes[0].traces.iter();
+    picks.map(|(pick, _)| pick.kind()).collect()
+}
+
+/// Returns what is on an axis: of each if what it was of is plotted no longer.
+pub fn of_plotted(panes: &[Pane], quantity: Quantity) -> Quantity {
+    let of = quantity.of.filter(|pick| panes[0].traces.has(*pick));
+    Quantity { of, ..quantity }
+}
 
 /// Plots something of all panes, or no longer. Returns why that is impossible, if it is.
 pub fn toggle(panes: &mut [Pane], pick: Pick) -> Result<(), String> {
@@ -90,11 +103,46 @@ pub fn set_trigger(panes: &mut [Pane], trigger: Trigger) {
     }
 }
 
+/// Shows a variable of a new kind of things: their phase plane in place of axes that nothing has,
+/// and over time both of it, if neither is shown.
+fn fit(settings: &mut PlotSettings, panes: &[Pane]) {
+    let kinds = kinds(panes);
+    let Some(last) = kinds.last() else {
+        return;
+    };
+    let plane = last.plane();
+    if !plane.iter().any(|it| settings.shown.contains(it)) {
+        settings.shown.extend(plane);
+    }
+    let has = |axis: &Quantity| kinds.iter().any(|kind| axis.variable.is_of(*kind));
+    if !settings.axes.iter().all(has) {
+        settings.axes = plane.map(Quantity::of_each);
+    }
+}
+
+/// Returns a quantity for an axis. Where nothing has both its variable and that on the other axis,
+/// it is of the first thing that has it.
+fn on_axis(panes: &[Pane], quantity: Quantity, other: Quantity) -> Quantity {
+    let has = |kind: Kind, it: Quantity| it.variable.is_of(kind);
+    let other = of_plotted(panes, other);
+    let both = |kind: &Kind| has(*kind, quantity) && (other.of.is_some() || has(*kind, other));
+    let mut picks = panes[0].traces.iter().map(|(pick, _)| *pick);
+    let of = match quantity.of.filter(|pick| has(pick.kind(), quantity)) {
+        None if !kinds(panes).iter().any(both) => picks.find(|it| has(it.kind(), quantity)),
+        of => of,
+    };
+    Quantity { of, ..quantity }
+}
+
 /// Sets the trigger of a section that is shown for the first time.
-pub fn begin_section(panes: &mut [Pane], mode: Mode, across: Variable) {
+fn begin_section(panes: &mut [Pane], mode: Mode, across: Variable) {
     if mode == Mode::Section && panes[0].traces.trigger() == Trigger::Off {
         let trigger = first_trigger(&panes[0].simulation, across);
-        set_trigger(panes, trigger);
+        let kinds = kinds(panes);
+        let fits = |kind: &Kind| trigger.of(*kind) != Trigger::Off;
+        let own = kinds.first().filter(|_| !kinds.iter().any(fits));
+        let own = own.map(|kind| Trigger::Rises(kind.plane()[1], 0.0));
+        set_trigger(panes, own.unwrap_or(trigger));
     }
 }
 
@@ -105,10 +153,15 @@ pub fn apply(
     request: PlotRequest,
 ) -> Option<String> {
     match request {
-        PlotRequest::Toggle(pick) => return toggle(panes, pick).err(),
+        PlotRequest::Toggle(pick) => {
+            let refused = toggle(panes, pick).err();
+            fit(settings, panes);
+            return refused;
+        }
         PlotRequest::Mode(mode) => {
             settings.mode = mode;
-            begin_section(panes, mode, settings.axes[0]);
+            fit(settings, panes);
+            begin_section(panes, mode, settings.axes[0].variable);
         }
         PlotRequest::Show(variable) => {
             let before = settings.shown.len();
@@ -117,13 +170,13 @@ pub fn apply(
                 settings.shown.push(variable);
             }
         }
-        PlotRequest::Axis(axis, variable) => {
+        PlotRequest::Axis(axis, quantity) => {
+            let [across, up] = settings.axes.map(|it| it.variable);
             // The velocity goes with its coordinate.
-            let [across, up] = &mut settings.axes;
-            if axis == 0 && *up == across.velocity() && variable.is_coordinate() {
-                *up = variable.velocity();
+            if axis == 0 && up == across.velocity() && quantity.variable.is_coordinate() {
+                settings.axes[1].variable = quantity.variable.velocity();
             }
-            settings.axes[axis] = variable;
+            settings.axes[axis] = on_axis(panes, quantity, settings.axes[1 - axis]);
         }
         PlotRequest::Trigger(trigger) => set_trigger(panes, trigger),
         PlotRequest::Span(span) => settings.span = span,
@@ -133,12 +186,15 @@ pub fn apply(
             return Some("Drag from one point to another, or click on both.".into());
         }
         PlotRequest::Ruler => {}
+        PlotRequest::Formulas => settings.formulas = !settings.formulas,
     }
     None
 }
 
 #[cfg(test)]
 mod tests {
+    use a3_core::Vector3;
+
     use super::*;
     use crate::session::{Row, RunAction, Session, compared, frames, session};
 
@@ -202,6 +258,16 @@ mod tests {
                 (sum - all).abs() < 1e-9 * all.abs().max(1.0),
                 "{scene}: {sum} {all}"
             );
+            let run = session.runs.first();
+            let (energy, row) = (run.energy().unwrap(), Pick::Scene.read(run));
+            for (part, right) in [
+                (Variable::Kinetic, energy.kinetic),
+                (Variable::Elastic, energy.elastic),
+                (Variable::Gravitational, energy.gravitational),
+                (Variable::Contact, energy.contact),
+            ] {
+                assert_eq!(part.of(&row), right, "{scene}");
+            }
         }
     }
 
@@ -220,8 +286,8 @@ mod tests {
         let run = handle.runs.first();
         let body = &run.model().network().unwrap().bodies()[0];
         let rotation = run.model().network().unwrap().rotation(0, run.state());
-        let spin = &Pick::Body(0).read(run).values[8..];
-        let spin = a3_core::Vector3::from_column_slice(spin);
+        let spin = &Pick::Body(0).read(run).values[10..13];
+        let spin = Vector3::from_column_slice(spin);
         assert!((body.momentum(rotation.q, spin) - rotation.momentum).norm() < 1e-12);
     }
 
@@ -267,6 +333,80 @@ mod tests {
             let errors = [point.time - t, point.values[0] - x, point.values[3] - v];
             assert!(errors.iter().all(|e| e.abs() < 2e-5), "{errors:?}");
         }
+    }
+
+    /// The angles of the rods of a double pendulum are those between their ends, they go on past
+    /// whole turns, and their rates are the angular velocities.
+    #[test]
+    fn angles_of_rods_are_those_between_their_ends() {
+        let mut session = session(&["r", "0.002", "--scene", "double-pendulum"]);
+        let rods = [Pick::Rod(0, 1), Pick::Rod(1, 2)];
+        for rod in rods {
+            apply(
+                &mut session.panel.plotting,
+                &mut session.runs.panes,
+                PlotRequest::Toggle(rod),
+            );
+        }
+        assert!(
+            session
+                .panel
+                .plotting
+                .shown
+                .ends_with(&rods[0].kind().plane())
+        );
+        frames(&mut session, 20.0);
+        let run = session.runs.first();
+        let mut most = 0.0_f64;
+        for (k, (rod, series)) in session.runs.panes[0].traces.iter().enumerate() {
+            let way = run.position(k + 1) - run.position(k);
+            let last = series.nearest(1e9).unwrap();
+            assert_eq!((*rod, last.values[0]), (rods[k], way.norm()));
+            let angle = Variable::Angle.of(last);
+            let turns = (angle - way.x.atan2(-way.y)) / TAU;
+            assert!((turns - turns.round()).abs() < 1e-12, "{angle}");
+            assert!((Variable::Tilt.of(last) - (-way.y / way.norm()).acos()).abs() < 1e-9);
+            let rows: Vec<_> = series.rows().collect();
+            for pair in rows.windows(2) {
+                let [before, now] = [0, 1].map(|k| Variable::Angle.of(pair[k]));
+                let rates = pair[0].values[12] + pair[1].values[12];
+                let turned = 0.5 * rates * (pair[1].time - pair[0].time);
+                assert!((now - before - turned).abs() < 1e-3, "{turned}");
+                most = most.max(now.abs());
+            }
+        }
+        assert!(most > 1.1 * TAU / 2.0, "{most}");
+    }
+
+    /// A handle that spins about its middle axis stands upright and upside down in turn, and energy
+    /// is kept: of the body, and of the whole scene.
+    #[test]
+    fn the_tilt_of_a_handle_goes_from_one_end_to_the_other() {
+        let mut session = session(&["r", "0.01", "--scene", "t-handle"]);
+        for pick in [Pick::Body(0), Pick::Scene] {
+            toggle(&mut session.runs.panes, pick).unwrap();
+        }
+        frames(&mut session, 20.0);
+        let [(_, body), (_, scene)] = session.runs.panes[0].traces.iter().as_slice() else {
+            panic!("two picks");
+        };
+        let tilts = body.rows().map(|row| Variable::Tilt.of(row));
+        let [low, high] = tilts.fold([9.0_f64, 0.0_f64], |[a, b], it| [a.min(it), b.max(it)]);
+        assert!(low < 0.1 && high > 3.0, "{low} {high}");
+        let run = session.runs.first();
+        let pose = run.model().network().unwrap().pose(0, run.state());
+        let own = |axis: Vector3<f64>| pose.of(axis).position - pose.place.position;
+        let (x, y) = (own(Vector3::x()), own(Vector3::y()));
+        let row = Pick::Body(0).read(run);
+        assert!((Variable::Tilt.of(&row) - y.y.acos()).abs() < 1e-9);
+        assert!((Variable::Angle.of(&row) - x.y.atan2(x.x)).abs() < 1e-9);
+        for (own, all) in body.rows().zip(scene.rows()) {
+            let [a, b] = [own, all].map(|row| Variable::Energy.of(row));
+            assert!((a - b).abs() < 1e-9 * b, "{a} {b}");
+        }
+        let total = session.runs.first().energy().unwrap().total();
+        let last = scene.nearest(1e9).unwrap();
+        assert!((Variable::Energy.of(last) - total).abs() < 1e-9 * total);
     }
 
     /// The phase plane of a small swing of a rod is the ellipse (x / a)2 + (v / (w a))2 = 1, but
@@ -347,7 +487,7 @@ mod tests {
                 assert!(series.rows().len() > 40);
                 let last = series.nearest(1e9).unwrap();
                 assert_eq!(last.time, with.simulation.time());
-                assert_eq!(last.values[..8], pick.read(&with.simulation).values[..8]);
+                assert_eq!(last.values[..10], pick.read(&with.simulation).values[..10]);
             }
         }
         toggle(&mut plotted.runs.panes, Pick::Particle(200)).unwrap();

@@ -9,7 +9,7 @@ use a3_media::show::Target;
 use a3_scenes::{ConstraintSpec, Edit, PartChange, PartSpec, RigidBody};
 
 use crate::session::panel::{edit, of_one_body, turn_part, undo};
-use crate::session::{Measure, Session, Tool, Turn, come_apart, exchange};
+use crate::session::{Measure, Session, Tool, Turn, exchange};
 
 /// Coefficient of friction of bodies that are added.
 const FRICTION: f64 = 0.4;
@@ -46,12 +46,15 @@ pub struct Aim {
     pub link: Option<[usize; 2]>,
 }
 
+/// An edit, its name, and what is said of it.
+type Planned = (Edit, String, String);
+
 /// Does what the chosen tool does by a click, and shows a message.
 pub fn click(session: &mut Session, aim: &Aim) {
     let done = match session.panel.editor.tool {
         Tool::ThrowBall | Tool::ThrowBox => thrown(session, aim, Throw::default()),
-        Tool::AddBall | Tool::AddBox => add_body(session, aim),
-        Tool::Particle => add_particle(session, aim),
+        Tool::AddBall | Tool::AddBox => carry_out(session, another_body(session, aim)),
+        Tool::Particle => carry_out(session, another_particle(session, aim)),
         Tool::Spring | Tool::Rod | Tool::Rope => {
             Err("Drag from one particle to another to join them.".into())
         }
@@ -62,8 +65,13 @@ pub fn click(session: &mut Session, aim: &Aim) {
 
 /// Joins two particles by a spring, a rod or a rope, and shows a message.
 pub fn join(session: &mut Session, ends: [usize; 2]) {
-    let done = joined(session, ends);
+    let done = link(session, ends).and_then(|planned| carry_out(session, planned));
     session.readings.say(done.unwrap_or_else(|why| why));
+}
+
+/// Makes an edit, and returns what is said of it.
+fn carry_out(session: &mut Session, (change, name, said): Planned) -> Result<String, String> {
+    edit(session, &change, &name).map(|()| said)
 }
 
 /// A throw of the body of the chosen tool.
@@ -146,7 +154,7 @@ fn thrown(session: &mut Session, aim: &Aim, how: Throw) -> Result<String, String
         }
     }
     // What lies on an obstacle without thickness may cross it.
-    if touched || done.is_ok() || come_apart(session).is_err() {
+    if touched || done.is_ok() || session.come_apart().is_err() {
         return done.map(|name| format!("A {name} flies."));
     }
     let done = thrown_from(session, aim, how, first).inspect_err(|_| undo(session, false))?;
@@ -197,8 +205,8 @@ fn thrown_from(
     Ok(name)
 }
 
-/// Puts a body on the surface under the pointer.
-fn add_body(session: &mut Session, aim: &Aim) -> Result<String, String> {
+/// Plans a body on the surface under the pointer.
+fn another_body(session: &Session, aim: &Aim) -> Planned {
     let size = session.panel.editor.value(Measure::Size);
     let reach = |normal: Vector3<f64>| match session.panel.editor.tool {
         Tool::AddBox => 0.5 * size * normal.abs().sum(),
@@ -207,20 +215,21 @@ fn add_body(session: &mut Session, aim: &Aim) -> Result<String, String> {
     let offset = aim.normal.map(|n| n * (reach(n) + GAP * size));
     let at = aim.point + offset.unwrap_or_default();
     let (body, name) = body(session, at, Vector3::zeros());
-    edit(session, &Edit::AddBody(body), name)?;
-    Ok(format!("There is another {name} now."))
+    let said = format!("There is another {name} now.");
+    (Edit::AddBody(body), name.into(), said)
 }
 
-fn add_particle(session: &mut Session, aim: &Aim) -> Result<String, String> {
+fn another_particle(session: &Session, aim: &Aim) -> Planned {
     let add = Edit::AddParticle {
         position: aim.point.into(),
         mass: session.panel.editor.value(Measure::PointMass),
     };
-    edit(session, &add, "particle")?;
-    Ok("There is another particle now.".into())
+    let said = "There is another particle now.".into();
+    (add, "particle".into(), said)
 }
 
-fn joined(session: &mut Session, [i, j]: [usize; 2]) -> Result<String, String> {
+/// Plans a spring, a rod or a rope between two particles.
+fn link(session: &Session, [i, j]: [usize; 2]) -> Result<Planned, String> {
     let editor = &session.panel.editor;
     let run = session.runs.first();
     let network = run.model().network().ok_or("There are no masses here.")?;
@@ -278,8 +287,8 @@ fn joined(session: &mut Session, [i, j]: [usize; 2]) -> Result<String, String> {
             )
         }
     };
-    edit(session, &add, &format!("{name} between {i} and {j}"))?;
-    Ok(format!("A {name} joins the particles {i} and {j}."))
+    let said = format!("A {name} joins the particles {i} and {j}.");
+    Ok((add, format!("{name} between {i} and {j}"), said))
 }
 
 fn delete(session: &mut Session, aim: &Aim) -> Result<String, String> {
@@ -287,7 +296,14 @@ fn delete(session: &mut Session, aim: &Aim) -> Result<String, String> {
     let network = network.ok_or("There are no masses here.")?;
     let body_of = |target: Target| network.body_of(target.particle()?);
     let (edits, name) = match (aim.target, aim.link) {
-        (Some(Target::Obstacle(k)), _) => return leave_out_obstacle(session, k),
+        (Some(Target::Obstacle(k)), _) => {
+            turn_part(
+                session,
+                part_of_obstacle(session, network, k)?,
+                Turn::To(0.0),
+            );
+            return Ok(session.readings.message.clone().unwrap_or_default());
+        }
         (Some(target), _) if body_of(target).is_some() => {
             let k = body_of(target).unwrap_or_default();
             (Edit::RemoveBody(k), format!("body {k}"))
@@ -312,16 +328,15 @@ fn delete(session: &mut Session, aim: &Aim) -> Result<String, String> {
     })
 }
 
-/// Leaves out an obstacle, as the panel's page of parts does.
-fn leave_out_obstacle(session: &mut Session, k: usize) -> Result<String, String> {
-    let network = session.runs.first().model().network();
-    let ids = network.map(|network| exchange::obstacle_ids(network, &session.tuning.changes()));
-    let mut ids = ids.into_iter().flatten();
-    let id = ids.find(|(number, _)| *number == k).map(|(_, id)| id);
+/// Returns the part of the scene that an obstacle is, as the panel's page of parts lists it.
+fn part_of_obstacle(session: &Session, network: &Network, k: usize) -> Result<usize, String> {
+    let ids = exchange::obstacle_ids(network, &session.tuning.changes());
+    let id = ids
+        .into_iter()
+        .find(|(number, _)| *number == k)
+        .map(|(_, id)| id);
     let change = id.map(|(kind, own)| PartChange::Obstacle(kind, own));
     let mut parts = session.tuning.parts.iter();
     let part = parts.position(|part| Some(part.change) == change);
-    let part = part.ok_or("This obstacle cannot be deleted.")?;
-    turn_part(session, part, Turn::To(0.0));
-    Ok(session.readings.message.clone().unwrap_or_default())
+    part.ok_or("This obstacle cannot be deleted.".into())
 }

@@ -7,7 +7,8 @@ use a3_files::output;
 use a3_plot::{CurveStyle, Line, LineChart, LinePanel, Marker};
 
 use super::super::words::{self, signed};
-use crate::session::{IS_PAGE, Kind, Mode, Pane, Pick, PlotFile, Row, Session};
+use crate::session::plotting::{kinds, of_plotted};
+use crate::session::{IS_PAGE, Mode, Pane, Pick, PlotFile, Quantity, Row, Session};
 use crate::session::{Trigger, Variable};
 
 /// Colours of picks or, in a comparison, of panes, that every kind of colour vision tells apart
@@ -25,11 +26,14 @@ const DASHES: [&[f64]; 6] = [
     &[9.0, 2.0, 1.5, 2.0, 1.5, 2.0],
 ];
 
+/// What is on the axes of a panel; `None` for time.
+pub type Axes = [Option<Quantity>; 2];
+
 /// A chart, with where its curves come from.
 pub struct Plotted {
     pub chart: LineChart,
-    /// The variables on the axes of each panel; `None` for time.
-    pub variables: Vec<[Option<Variable>; 2]>,
+    /// What is on the axes of each panel.
+    pub axes: Vec<Axes>,
     /// The pane and the pick of each curve of each panel.
     pub sources: Vec<Vec<[usize; 2]>>,
 }
@@ -51,26 +55,24 @@ pub fn run_name(pane: &Pane) -> String {
     format!("{} {}", run.method().name, run.control().value())
 }
 
-/// Returns the kinds of the picked particles, bodies and springs.
-pub fn kinds(session: &Session) -> Vec<Kind> {
-    let traces = &session.runs.panes[0].traces;
-    traces.iter().map(|(pick, _)| pick.kind()).collect()
-}
-
 /// Returns whether anything that is plotted has a variable.
 pub fn has(session: &Session, variable: Variable) -> bool {
-    kinds(session).into_iter().any(|kind| variable.is_of(kind))
+    let kinds = kinds(&session.runs.panes);
+    kinds.into_iter().any(|kind| variable.is_of(kind))
 }
 
-/// Returns the variables that are on the axes of the panels; `None` for time.
-pub fn variables(session: &Session) -> Vec<[Option<Variable>; 2]> {
+/// Returns what is on the axes of the panels.
+fn axes(session: &Session) -> Vec<Axes> {
     let settings = &session.panel.plotting;
     if settings.mode != Mode::Time {
-        return vec![settings.axes.map(Some)];
+        let of = |it| Some(of_plotted(&session.runs.panes, it));
+        return vec![settings.axes.map(of)];
     }
     let all = Variable::ALL.into_iter();
     let shown = all.filter(|it| settings.shown.contains(it) && has(session, *it));
-    shown.map(|variable| [None, Some(variable)]).collect()
+    shown
+        .map(|variable| [None, Some(Quantity::of_each(variable))])
+        .collect()
 }
 
 /// Returns the time (s) at the end of the plots: the latest of any pane.
@@ -98,30 +100,58 @@ pub fn rows(session: &Session, [pane, pick]: [usize; 2]) -> Vec<&Row> {
     }
 }
 
-/// Returns the place of a row in a panel.
-pub fn place(variables: [Option<Variable>; 2], row: &Row) -> [f64; 2] {
-    variables.map(|variable| variable.map_or(row.time, |it| it.of(row)))
+/// Returns the value of a quantity at a row of a pick in a pane; NaN if it is not known.
+pub fn value(session: &Session, quantity: Quantity, [pane, pick]: [usize; 2], row: &Row) -> f64 {
+    let mut traces = session.runs.panes[pane].traces.iter();
+    let own = traces.as_slice().get(pick).map(|(own, _)| *own);
+    let Some(of) = quantity.of.filter(|of| Some(*of) != own) else {
+        let has = own.is_some_and(|own| quantity.variable.is_of(own.kind()));
+        return if has {
+            quantity.variable.of(row)
+        } else {
+            f64::NAN
+        };
+    };
+    let series = traces.find(|(other, _)| *other == of);
+    let row = series.and_then(|(_, series)| series.at(row.time));
+    row.map_or(f64::NAN, |row| quantity.variable.of(&row))
+}
+
+/// Returns the place of a row of a pick in a pane, in a panel with some axes.
+pub fn place(session: &Session, axes: Axes, source: [usize; 2], row: &Row) -> [f64; 2] {
+    axes.map(|axis| axis.map_or(row.time, |it| value(session, it, source, row)))
+}
+
+/// Returns the picks with curves in a panel with some axes: those that have all variables which are
+/// of each, or, if there is none, the thing across.
+fn picks_of(axes: Axes, picks: &[Pick]) -> Vec<usize> {
+    let all = 0..picks.len();
+    let of_each = axes.into_iter().flatten().filter(|it| it.of.is_none());
+    let of_each: Vec<_> = of_each.map(|it| it.variable).collect();
+    if of_each.is_empty() {
+        let across = axes[0].and_then(|it| it.of);
+        return all.filter(|k| Some(picks[*k]) == across).collect();
+    }
+    let has = |k: &usize| of_each.iter().all(|it| it.is_of(picks[*k].kind()));
+    all.filter(has).collect()
 }
 
 /// Returns the chart of all picks, with about `detail` points on a curve.
 pub fn plotted(session: &Session, detail: usize) -> Plotted {
     let (settings, panes) = (&session.panel.plotting, &session.runs.panes);
-    let variables = variables(session);
+    let all_axes = axes(session);
     let picks: Vec<Pick> = panes[0].traces.iter().map(|(pick, _)| *pick).collect();
-    let sources = variables.iter().map(|axes| {
-        let all = (0..panes.len()).flat_map(|pane| (0..picks.len()).map(move |pick| [pane, pick]));
-        let has = |[_, pick]: &[usize; 2]| {
-            let mut both = axes.iter().flatten();
-            both.all(|variable| variable.is_of(picks[*pick].kind()))
-        };
-        all.filter(has).collect::<Vec<_>>()
+    let sources = all_axes.iter().map(|axes| {
+        let own = picks_of(*axes, &picks);
+        let of_pane = |pane| own.iter().map(move |pick| [pane, *pick]);
+        (0..panes.len()).flat_map(of_pane).collect::<Vec<_>>()
     });
     let sources: Vec<_> = sources.collect();
     let to = latest(session).max(settings.span);
-    let label = |variable: Option<Variable>| variable.map_or("time (s)".into(), Variable::label);
-    let panels = variables.iter().zip(&sources).map(|(axes, sources)| {
+    let label = |axis: Option<Quantity>| axis.map_or("time (s)".into(), Quantity::label);
+    let panels = all_axes.iter().zip(&sources).map(|(axes, sources)| {
         let line = |source: &[usize; 2]| Line {
-            name: name(session, *source, &picks),
+            name: name(session, *axes, *source, &picks),
             style: style(session, *source),
             pieces: pieces(session, *axes, *source, detail),
             dots: settings.mode == Mode::Section,
@@ -145,18 +175,24 @@ pub fn plotted(session: &Session, detail: usize) -> Plotted {
     };
     Plotted {
         chart,
-        variables,
+        axes: all_axes,
         sources,
     }
 }
 
 /// Returns the name of a curve.
-fn name(session: &Session, [pane, pick]: [usize; 2], picks: &[Pick]) -> String {
+fn name(session: &Session, axes: Axes, [pane, pick]: [usize; 2], picks: &[Pick]) -> String {
     let panes = &session.runs.panes;
+    let what = match axes.map(|axis| axis.and_then(|it| it.of)) {
+        [Some(across), Some(up)] if across != up => {
+            format!("{} over {}", up.name(), across.name())
+        }
+        _ => picks[pick].name(),
+    };
     match (panes.len(), picks.len()) {
-        (1, _) => picks[pick].name(),
+        (1, _) => what,
         (_, 1) => run_name(&panes[pane]),
-        _ => format!("{}: {}", run_name(&panes[pane]), picks[pick].name()),
+        _ => format!("{}: {what}", run_name(&panes[pane])),
     }
 }
 
@@ -186,19 +222,14 @@ fn when(session: &Session) -> String {
 /// Returns the points of a curve, with a gap where a value is not known. Of many points, those are
 /// left out that could not be told apart: in each of `detail` parts of the time, the lowest and the
 /// highest stay, or in a phase plane the first four.
-fn pieces(
-    session: &Session,
-    axes: [Option<Variable>; 2],
-    source: [usize; 2],
-    detail: usize,
-) -> Vec<Vec<[f64; 2]>> {
+fn pieces(session: &Session, axes: Axes, source: [usize; 2], detail: usize) -> Vec<Vec<[f64; 2]>> {
     let settings = &session.panel.plotting;
     let width = settings.span / detail as f64;
     let mut pieces = vec![vec![]];
     let rows = rows(session, source);
     let places: Vec<_> = rows
         .iter()
-        .map(|row| (row.time, place(axes, row)))
+        .map(|row| (row.time, place(session, axes, source, row)))
         .collect();
     let part = |time: f64| match settings.mode {
         Mode::Section => time,
@@ -280,13 +311,20 @@ fn picture(session: &Session) -> Result<Vec<u8>, Failure> {
     figure.png(SCALE).map_err(Failure::run)
 }
 
-/// Returns the table: a row for each value of each pick of each pane, with the variables that are
-/// shown.
+/// Returns the table: a row for each value of each pick of each pane that has a curve, with what is
+/// on the axes.
 fn table(session: &Session) -> Result<Vec<u8>, csv::Error> {
-    let mut columns: Vec<Variable> = vec![];
-    for variable in variables(session).into_iter().flatten().flatten() {
-        if !columns.contains(&variable) {
-            columns.push(variable);
+    let all_axes = axes(session);
+    let picks: Vec<Pick> = session.runs.panes[0]
+        .traces
+        .iter()
+        .map(|(pick, _)| *pick)
+        .collect();
+    let is_shown = |n: usize| all_axes.iter().any(|it| picks_of(*it, &picks).contains(&n));
+    let mut columns: Vec<Quantity> = vec![];
+    for quantity in all_axes.iter().copied().flatten().flatten() {
+        if !columns.contains(&quantity) {
+            columns.push(quantity);
         }
     }
     let mut writer = csv::Writer::from_writer(vec![]);
@@ -296,7 +334,7 @@ fn table(session: &Session) -> Result<Vec<u8>, csv::Error> {
     for (k, pane) in session.runs.panes.iter().enumerate() {
         let run = &pane.simulation;
         let control = run.control().value().to_string();
-        for (n, (pick, _)) in pane.traces.iter().enumerate() {
+        for (n, pick) in picks.iter().enumerate().filter(|(n, _)| is_shown(*n)) {
             for row in rows(session, [k, n]) {
                 let first = [
                     run.scene().name.clone(),
@@ -305,9 +343,9 @@ fn table(session: &Session) -> Result<Vec<u8>, csv::Error> {
                     pick.name(),
                     row.time.to_string(),
                 ];
-                let values = columns.iter().map(|variable| {
-                    let value = Some(variable.of(row)).filter(|value| value.is_finite());
-                    let value = value.filter(|_| variable.is_of(pick.kind()));
+                let values = columns.iter().map(|it| {
+                    let value = value(session, *it, [k, n], row);
+                    let value = Some(value).filter(|value| value.is_finite());
                     value.map_or(String::new(), |value| value.to_string())
                 });
                 writer.write_record(first.into_iter().chain(values))?;
@@ -383,5 +421,80 @@ mod tests {
         apply(&mut session, PlotRequest::Clear, 0);
         assert_eq!(written(&session).lines().count(), 1);
         assert!(write_one(&session, PlotFile::Picture).is_err());
+    }
+
+    /// The angles of both rods of a double pendulum, one over the other, and in a table.
+    #[test]
+    fn quantities_of_two_things_are_on_the_axes_of_one_chart() {
+        let mut session = session(&["r", "0.005", "--scene", "double-pendulum"]);
+        let rods = [Pick::Rod(0, 1), Pick::Rod(1, 2)];
+        let begun = [PlotRequest::Toggle(rods[0]), PlotRequest::Toggle(rods[1])];
+        let axes = rods.map(|rod| Quantity {
+            of: Some(rod),
+            variable: Variable::Angle,
+        });
+        let axes = [PlotRequest::Axis(0, axes[0]), PlotRequest::Axis(1, axes[1])];
+        for request in begun.into_iter().chain([PlotRequest::Mode(Mode::Phase)]) {
+            apply(&mut session, request, 0);
+        }
+        frames(&mut session, 0.5);
+        let lines = |session: &Session| plotted(session, 1000).chart.panels[0].lines.len();
+        // Each rod has its own phase plane at first.
+        assert_eq!(lines(&session), 2);
+        for request in axes {
+            apply(&mut session, request, 0);
+        }
+        assert_eq!(lines(&session), 1);
+        let plotted = plotted(&session, 1000);
+        let panel = &plotted.chart.panels[0];
+        assert_eq!(panel.x_label, "angle of rod 0 to 1 (rad)");
+        assert_eq!(panel.y_label, "angle of rod 1 to 2 (rad)");
+        assert_eq!(panel.lines[0].name, "rod 1 to 2 over rod 0 to 1");
+        let run = session.runs.first();
+        let angle = |i: usize| {
+            let way = run.position(i + 1) - run.position(i);
+            way.x.atan2(-way.y)
+        };
+        let last = panel.lines[0].points().last().copied();
+        assert_eq!(last, Some([angle(0), angle(1)]));
+        let text = written(&session);
+        let ends = |line: Option<&str>| line.unwrap().splitn(4, ',').nth(3).unwrap().to_owned();
+        let heading = "of,time (s),angle of rod 0 to 1 (rad),angle of rod 1 to 2 (rad)";
+        assert_eq!(ends(text.lines().next()), heading);
+        let last = format!("rod 0 to 1,{},{},{}", run.time(), angle(0), angle(1));
+        assert_eq!(ends(text.lines().last()), last);
+        // Without the second rod, the axis is of what is left.
+        apply(&mut session, PlotRequest::Toggle(rods[1]), 0);
+        let panel = &super::plotted(&session, 1000).chart.panels[0];
+        assert_eq!((&*panel.y_label, panel.lines.len()), ("angle (rad)", 1));
+    }
+
+    /// The strain of a spring over the height of a particle: what nothing has both of.
+    #[test]
+    fn an_axis_that_nothing_else_has_is_of_the_first_thing_that_has_it() {
+        let mut session = session(&["r", "0.005", "--scene", "pendulum"]);
+        session.act(RunAction::Plots, 0);
+        let across = Quantity::of_each(Variable::Y);
+        let up = Quantity::of_each(Variable::Elastic);
+        for request in [
+            PlotRequest::Toggle(Pick::Spring(0, 1)),
+            PlotRequest::Mode(Mode::Phase),
+            PlotRequest::Axis(0, across),
+            PlotRequest::Axis(1, Quantity::of_each(Variable::Strain)),
+        ] {
+            apply(&mut session, request, 0);
+        }
+        frames(&mut session, 1.0);
+        let panel = &plotted(&session, 100).chart.panels[0];
+        assert_eq!(panel.y_label, "strain of spring 0 to 1");
+        let run = session.runs.first();
+        let last = panel.lines[0].points().last().copied().unwrap();
+        assert_eq!(last, [run.position(1).y, run.position(1).norm() - 1.0]);
+        apply(&mut session, PlotRequest::Axis(1, up), 0);
+        let panel = &plotted(&session, 100).chart.panels[0];
+        assert_eq!(
+            (&*panel.y_label, panel.lines.len()),
+            ("elastic energy (J)", 1)
+        );
     }
 }

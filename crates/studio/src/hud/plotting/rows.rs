@@ -1,7 +1,6 @@
 //! The rows above the chart: the picks, their variables, and the times of points of a section,
 //! side by side in as many lines as they need.
 
-use a3_media::show;
 use egui::{FontId, Pos2, Rect, Ui, pos2, vec2};
 
 use super::super::charts::line;
@@ -9,13 +8,15 @@ use super::super::style::{FAINT, TEXT};
 use super::super::widgets::{LEFT, MIDDLE, chip, write};
 use super::super::words::signed;
 use super::chart::{has, run_name, style};
-use crate::session::plotting::{drive, first_trigger};
-use crate::session::{Mode, Pick, PlotRequest, Session, Trigger, Variable};
+use crate::session::plotting::{drive, first_trigger, of_plotted};
+use crate::session::{Mode, Pick, PlotRequest, Quantity, Session, Trigger, Variable};
 
 /// Width of the sample of a curve (points).
 const SAMPLE: f32 = 18.0;
-/// Largest number of springs that are offered.
-const MAX_SPRINGS: usize = 24;
+/// Largest number of springs, rods and ropes that are offered.
+const MAX_LINKS: usize = 24;
+/// Height below which a room has no lines of its own for the variables of each axis (points).
+const LOW: f32 = 260.0;
 /// Steps between the least and the greatest value of a variable that a section may pass.
 const STEPS: f64 = 20.0;
 
@@ -66,6 +67,10 @@ impl Rows<'_> {
             let place = flow.words(self.ui, &name, 0.5 * SAMPLE + 17.0);
             self.pick(place, &name, [0, k], panes.len() > 1, pick);
         }
+        if !panes[0].traces.has(Pick::Scene) && panes[0].simulation.energy().is_some() {
+            let wish = PlotRequest::Toggle(Pick::Scene);
+            self.button(&mut flow, "+ the scene", false, wish);
+        }
         self.end(&flow);
         if panes.len() > 1 {
             let mut flow = Flow::new(self.room);
@@ -80,7 +85,7 @@ impl Rows<'_> {
             }
             self.end(&flow);
         }
-        self.springs();
+        self.links();
     }
 
     /// Draws one thing that is plotted.
@@ -105,28 +110,36 @@ impl Rows<'_> {
         }
     }
 
-    /// Offers the springs of the particle whose springs are listed.
-    fn springs(&mut self) {
+    /// Offers the springs, rods and ropes of the particle whose springs are listed.
+    fn links(&mut self) {
         let first = &self.session.runs.panes[0];
-        let Some(i) = first.show.springs_of else {
+        let network = first.simulation.model().network();
+        let (Some(i), Some(network)) = (first.show.springs_of, network) else {
             return;
         };
-        let springs = show::springs_of(&first.simulation, i);
-        if springs.is_empty() {
+        let links = Pick::links(network).filter_map(|link| {
+            let [a, b] = link.ends().filter(|ends| ends.contains(&i))?;
+            Some((link, (a + b - i).to_string()))
+        });
+        let links: Vec<_> = links.take(MAX_LINKS).collect();
+        if links.is_empty() {
             return;
         }
         let mut flow = Flow::new(self.room);
-        self.say(&mut flow, &format!("springs of particle {i} to"));
-        for spring in springs.iter().take(MAX_SPRINGS) {
-            let pick = Pick::Spring(spring.i, spring.j);
-            let other = (spring.i + spring.j - i).to_string();
-            let chosen = first.traces.has(pick);
-            self.button(&mut flow, &other, chosen, PlotRequest::Toggle(pick));
+        let are_springs = links
+            .iter()
+            .all(|(link, _)| matches!(link, Pick::Spring(..)));
+        let what = if are_springs { "springs" } else { "links" };
+        self.say(&mut flow, &format!("{what} of particle {i} to"));
+        for (link, other) in links {
+            let chosen = first.traces.has(link);
+            self.button(&mut flow, &other, chosen, PlotRequest::Toggle(link));
         }
         self.end(&flow);
     }
 
-    /// Draws the variables over time, or those on both axes.
+    /// Draws the variables over time, or those on both axes: in a low room, only the present ones,
+    /// and a click goes on to the next.
     pub fn variables(&mut self) {
         let settings = &self.session.panel.plotting;
         if settings.mode == Mode::Time {
@@ -138,19 +151,49 @@ impl Rows<'_> {
             }
             return self.end(&flow);
         }
+        let is_low = self.room.height() < LOW;
+        let mut flow = Flow::new(self.room);
         for (axis, words) in ["across", "up"].into_iter().enumerate() {
-            let mut flow = Flow::new(self.room);
             self.say(&mut flow, words);
-            for variable in self.all_variables() {
-                let chosen = settings.axes[axis] == variable;
-                let wish = PlotRequest::Axis(axis, variable);
-                self.button(&mut flow, variable.name(), chosen, wish);
+            let now = of_plotted(&self.session.runs.panes, settings.axes[axis]);
+            let all = self.all_variables();
+            let k = all.iter().position(|it| *it == now.variable);
+            let next = all[k.map_or(0, |k| (k + 1) % all.len())];
+            for (variable, name) in all.iter().map(|it| (*it, it.name())) {
+                let chosen = now.variable == variable;
+                let variable = if is_low { next } else { variable };
+                let wish = PlotRequest::Axis(axis, Quantity { variable, ..now });
+                if chosen || !is_low {
+                    self.button(&mut flow, name, chosen, wish);
+                }
             }
-            self.end(&flow);
+            self.owner(&mut flow, axis, now);
+            if axis == 1 || !is_low {
+                self.end(&flow);
+                flow = Flow::new(self.room);
+            }
         }
         if settings.mode == Mode::Section {
             self.trigger();
         }
+    }
+
+    /// Draws of what the quantity on an axis is, if several things have its variable. A click goes
+    /// on to the next one.
+    fn owner(&mut self, flow: &mut Flow, axis: usize, now: Quantity) {
+        let picks = self.session.runs.panes[0].traces.iter();
+        let own = picks.map(|(pick, _)| *pick);
+        let own: Vec<_> = own.filter(|pick| now.variable.is_of(pick.kind())).collect();
+        if own.len() < 2 && now.of.is_none() {
+            return;
+        }
+        let k = own.iter().position(|pick| Some(*pick) == now.of);
+        let next = own.get(k.map_or(0, |k| k + 1)).copied();
+        let words = now
+            .of
+            .map_or("of each".into(), |pick| format!("of {}", pick.name()));
+        let wish = PlotRequest::Axis(axis, Quantity { of: next, ..now });
+        self.button(flow, &words, now.of.is_some(), wish);
     }
 
     /// Returns the variables of anything that is plotted.

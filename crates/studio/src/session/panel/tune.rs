@@ -33,16 +33,9 @@ fn knobs(session: &Session) -> impl Iterator<Item = (String, f64)> {
 }
 
 /// Tunes the scene of a session to `tuned`, by names and values, and resets all other knobs that
-/// tune it. Fails, and changes nothing, if the parts cannot be left out.
+/// tune it. Leaves out the parts that are named there, and no others. Fails, and changes nothing,
+/// if the parts cannot be left out.
 pub fn tune(session: &mut Session, tuned: &[(String, f64)]) -> Result<(), String> {
-    leave_out_named(session, tuned)?;
-    turn_knobs(session, tuned);
-    Ok(())
-}
-
-/// Leaves out the parts that are named in `tuned`, and no others. If that changes the scene, it is
-/// untuned.
-pub fn leave_out_named(session: &mut Session, tuned: &[(String, f64)]) -> Result<(), String> {
     let is_named = |name: &str| {
         let mut names = tuned
             .iter()
@@ -60,12 +53,13 @@ pub fn leave_out_named(session: &mut Session, tuned: &[(String, f64)]) -> Result
         // Obstacles may have other numbers now than in the changes by hand.
         session.history.clear();
     }
+    turn_knobs(session, tuned);
     Ok(())
 }
 
 /// Turns all knobs that tune the scene to `tuned` or to the scene's own values. Values of knobs
 /// that the scene does not have now are parked.
-pub fn turn_knobs(session: &mut Session, tuned: &[(String, f64)]) {
+fn turn_knobs(session: &mut Session, tuned: &[(String, f64)]) {
     session.tuning.parked.clear();
     for knob in KNOBS.iter().filter(|knob| knob.tunes_scene) {
         let value = tuned.iter().find(|(name, _)| name == knob.name);
@@ -114,7 +108,7 @@ pub fn go_on(
     turn_knobs(session, &values);
     let mut runs = session.runs.panes.iter().map(|pane| &pane.simulation);
     if let Some(why) = runs.find_map(crossing) {
-        exchange::go_back(session, former);
+        exchange::exchange(session, former);
         return Err(format!("Surfaces would cross: {why}"));
     }
     Ok(())

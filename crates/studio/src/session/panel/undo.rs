@@ -3,13 +3,13 @@
 
 use std::sync::Arc;
 
-use a3_core::{Checkpoint, Network};
+use a3_core::Network;
 use a3_scenes::Edit;
 
 use super::knobs::KNOBS;
 use super::parts;
 use super::tune::go_on;
-use crate::session::{Change, EditChange, Passage, Recorded, Session, exchange, go_to};
+use crate::session::{Change, EditChange, Passage, Recorded, Session, exchange};
 
 /// Undoes the last change, or with `redo` redoes the one undone last, and shows a message.
 pub fn undo(session: &mut Session, redo: bool) {
@@ -64,11 +64,16 @@ fn apply(session: &mut Session, recorded: &Recorded, redo: bool) -> Result<Strin
             parts::name(session, *part)
         }
         Change::Apart => {
-            go_to(session, states.unwrap_or_default());
+            session.go_to(states.unwrap_or_default());
             "surfaces come apart".into()
         }
         Change::Edit(edit) => {
-            repeat(session, edit, states.unwrap_or_default(), redo)?;
+            let k = usize::from(redo);
+            let (origin, passage) = (&edit.origins[k], &edit.passages[k]);
+            go_on(session, passage.touching, &mut |session| {
+                let then = states.unwrap_or_default();
+                exchange::edit(session, origin.clone(), passage, then)
+            })?;
             edit.name.clone()
         }
         Change::Knob {
@@ -129,22 +134,6 @@ pub fn edit(session: &mut Session, edit: &Edit, name: &str) -> Result<(), String
         passages: [back, there],
     });
     session.history.record(Change::Edit(edit), before);
-    Ok(())
-}
-
-/// Undoes an edit, or with `redo` makes it again, and goes on from `then` if there are such states.
-/// Fails, and changes nothing, if surfaces touch and would cross.
-fn repeat(
-    session: &mut Session,
-    change: &EditChange,
-    then: &[Option<Checkpoint>],
-    redo: bool,
-) -> Result<(), String> {
-    let k = usize::from(redo);
-    let (origin, passage) = (&change.origins[k], &change.passages[k]);
-    go_on(session, passage.touching, &mut |session| {
-        exchange::edit(session, origin.clone(), passage, then)
-    })?;
     Ok(())
 }
 

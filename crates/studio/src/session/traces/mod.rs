@@ -9,6 +9,5 @@ mod variable;
 pub use pick::Pick;
 pub use section::Trigger;
 pub use series::{MAX_PICKS, Traces};
-pub use settings::{Mode, PlotFile, PlotRequest, PlotSettings, RulerEnd, SPANS};
-pub use variable::Row;
-pub use variable::{Kind, Variable};
+pub use settings::{Mode, PlotFile, PlotRequest, PlotSettings, Quantity, RulerEnd, SPANS};
+pub use variable::{Kind, Row, Variable};

@@ -1,18 +1,25 @@
-//! Particles, rigid bodies and springs, and their values in a state of a run.
+//! Particles, rigid bodies, springs, rods and the whole scene, and their values in a state of a
+//! run.
 
 use a3_core::elements::{Buckling, Cords};
-use a3_core::{Element, Network, Simulation, Spring, Vector3};
+use a3_core::{Constraint, Element, Network, Simulation, Spring, Vector3};
 use a3_scenes::Splice;
 
-use super::variable::{Kind, Row, VALUES};
+use super::variable::{ANGLE, Kind, Row, VALUES};
 
-/// A particle, a rigid body or a spring, by the numbers of its run.
+/// Something with values, by the numbers of its run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Pick {
     Particle(usize),
     Body(usize),
     /// The spring between two particles.
     Spring(usize, usize),
+    /// The rod between two particles.
+    Rod(usize, usize),
+    /// The rope between two particles.
+    Rope(usize, usize),
+    /// The whole scene.
+    Scene,
 }
 
 impl Pick {
@@ -23,6 +30,30 @@ impl Pick {
         body.map_or(Self::Particle(i), Self::Body)
     }
 
+    /// Returns all springs, rods and ropes of a network.
+    pub fn links(network: &Network) -> impl Iterator<Item = Self> {
+        let springs = network.all_springs().map(|s| Self::Spring(s.i, s.j));
+        springs.chain(Self::ties(network))
+    }
+
+    /// Returns all rods and ropes of a network.
+    fn ties(network: &Network) -> impl Iterator<Item = Self> {
+        let all = network.constraints().iter();
+        all.filter_map(|tie| match *tie {
+            Constraint::Rod { i, j, .. } => Some(Self::Rod(i, j)),
+            Constraint::Rope { i, j, .. } => Some(Self::Rope(i, j)),
+            _ => None,
+        })
+    }
+
+    /// Returns the particles at the ends of a spring, a rod or a rope.
+    pub fn ends(self) -> Option<[usize; 2]> {
+        match self {
+            Self::Spring(i, j) | Self::Rod(i, j) | Self::Rope(i, j) => Some([i, j]),
+            _ => None,
+        }
+    }
+
     /// Returns the same pick by the numbers of particles and rigid bodies since an edit; `None` if
     /// it was removed.
     pub fn renumbered(self, [particles, bodies]: [Splice; 2]) -> Option<Self> {
@@ -30,6 +61,9 @@ impl Pick {
             Self::Particle(i) => Self::Particle(particles.number(i)?),
             Self::Body(k) => Self::Body(bodies.number(k)?),
             Self::Spring(i, j) => Self::Spring(particles.number(i)?, particles.number(j)?),
+            Self::Rod(i, j) => Self::Rod(particles.number(i)?, particles.number(j)?),
+            Self::Rope(i, j) => Self::Rope(particles.number(i)?, particles.number(j)?),
+            Self::Scene => Self::Scene,
         })
     }
 
@@ -38,6 +72,8 @@ impl Pick {
             Self::Particle(_) => Kind::Particle,
             Self::Body(_) => Kind::Body,
             Self::Spring(..) => Kind::Spring,
+            Self::Rod(..) | Self::Rope(..) => Kind::Rod,
+            Self::Scene => Kind::Scene,
         }
     }
 
@@ -47,6 +83,9 @@ impl Pick {
             Self::Particle(i) => format!("particle {i}"),
             Self::Body(k) => format!("body {k}"),
             Self::Spring(i, j) => format!("spring {i} to {j}"),
+            Self::Rod(i, j) => format!("rod {i} to {j}"),
+            Self::Rope(i, j) => format!("rope {i} to {j}"),
+            Self::Scene => "the scene".into(),
         }
     }
 
@@ -68,11 +107,22 @@ impl Pick {
                 let mut values = moving(network, run, body.center(), 0.0);
                 values[6] += body.energy(&network.rotation(k, run.state()));
                 if let Some(turning) = network.pose(k, run.state()).orientation {
-                    values[8..].copy_from_slice(turning.spin.as_slice());
+                    let (spin, axes) = (turning.spin, turning.rotation);
+                    values[10..ANGLE].copy_from_slice(spin.as_slice());
+                    values[ANGLE..].copy_from_slice(&[
+                        axes[(1, 0)].atan2(axes[(0, 0)]),
+                        axes[(1, 1)].clamp(-1.0, 1.0).acos(),
+                    ]);
                 }
                 values
             }
             (Self::Spring(i, j), Some(network)) => spring(network, run, i, j),
+            (Self::Rod(i, j) | Self::Rope(i, j), Some(network))
+                if Self::ties(network).any(|tie| tie == self) =>
+            {
+                between(network, run, i, j)
+            }
+            (Self::Scene, _) => whole(run),
             _ => [f64::NAN; VALUES],
         };
         Row {
@@ -94,7 +144,17 @@ fn moving(network: &Network, run: &Simulation, i: usize, of_springs: f64) -> [f6
     values[..3].copy_from_slice(x.as_slice());
     values[3..6].copy_from_slice(v.as_slice());
     values[6] = 0.5 * mass * v.norm_squared();
-    values[7] = of_springs - mass * gravity.dot(&x);
+    values[7..10].copy_from_slice(&[of_springs, -mass * gravity.dot(&x), 0.0]);
+    values
+}
+
+/// Returns the energies of a run.
+fn whole(run: &Simulation) -> [f64; VALUES] {
+    let mut values = [f64::NAN; VALUES];
+    if let Some(all) = run.energy() {
+        let parts = [all.kinetic, all.elastic, all.gravitational, all.contact];
+        values[6..10].copy_from_slice(&parts);
+    }
     values
 }
 
@@ -115,12 +175,24 @@ fn velocity(network: &Network, run: &Simulation, i: usize) -> Vector3<f64> {
     Vector3::new(v[i], v[n + i], v[2 * n + i])
 }
 
-/// Returns length, strain and force of the spring between particles i and j.
-fn spring(network: &Network, run: &Simulation, i: usize, j: usize) -> [f64; VALUES] {
+/// Returns length, angles and angular velocity of the line from particle i to j.
+fn between(network: &Network, run: &Simulation, i: usize, j: usize) -> [f64; VALUES] {
     let mut values = [f64::NAN; VALUES];
+    let way = run.position(j) - run.position(i);
+    let rate = velocity(network, run, j) - velocity(network, run, i);
+    values[0] = way.norm();
+    values[12] = (way.x * rate.y - way.y * rate.x) / (way.x * way.x + way.y * way.y);
+    values[ANGLE] = way.x.atan2(-way.y);
+    values[ANGLE + 1] = way.x.hypot(way.z).atan2(-way.y);
+    values
+}
+
+/// Returns the same, strain, force and energy of the spring between particles i and j.
+fn spring(network: &Network, run: &Simulation, i: usize, j: usize) -> [f64; VALUES] {
     let Some((alone, rest)) = alone(network, i, j) else {
-        return values;
+        return [f64::NAN; VALUES];
     };
+    let mut values = between(network, run, i, j);
     let [x, v] = [
         [run.position(i), run.position(j)],
         [velocity(network, run, i), velocity(network, run, j)],
@@ -131,7 +203,7 @@ fn spring(network: &Network, run: &Simulation, i: usize, j: usize) -> [f64; VALU
     let way = run.position(j) - run.position(i);
     let length = way.norm();
     let pull = Vector3::new(force[0], force[2], force[4]);
-    values[0] = length;
+    values[7] = alone.energy(&x, &v).elastic;
     values[1] = if rest > 0.0 {
         length / rest - 1.0
     } else {

@@ -58,7 +58,7 @@ impl Trigger {
 }
 
 /// Returns the row at a time (s) on the polynomial through rows (Lagrange).
-fn interpolate(rows: &[Row], time: f64) -> Row {
+pub fn interpolate(rows: &[Row], time: f64) -> Row {
     let mut values = [0.0; _];
     for (k, row) in rows.iter().enumerate() {
         let others = rows.iter().enumerate().filter(|(j, _)| *j != k);

@@ -1,11 +1,13 @@
 //! Values of what is plotted over the last minute of a run.
 
+use std::f64::consts::TAU;
+
 use a3_core::Simulation;
 use a3_scenes::Splice;
 
 use super::pick::Pick;
-use super::section::Trigger;
-use super::variable::{Row, VALUES};
+use super::section::{Trigger, interpolate};
+use super::variable::{ANGLE, Row, VALUES};
 use crate::session::rows::{self, Rows};
 
 /// Simulated time that values cover (s).
@@ -40,9 +42,22 @@ impl Series {
         rows::nearest(&self.rows, time)
     }
 
+    /// Returns the row at a time (s) between the first and the last: one of the rows, or on the
+    /// cubic through those around.
+    pub fn at(&self, time: f64) -> Option<Row> {
+        let k = self.rows.partition_point(|row| row.time < time);
+        let row = self.rows.get(k)?;
+        if row.time == time || k == 0 {
+            return (row.time == time).then_some(*row);
+        }
+        let near = k.saturating_sub(2)..(k + 2).min(self.rows.len());
+        let near: Vec<_> = self.rows.range(near).copied().collect();
+        Some(interpolate(&near, time))
+    }
+
     /// Adds a row, and finds the points of the section that it completes. Rows and points of later
-    /// times are dropped first, because time may go back.
-    fn push(&mut self, row: Row, trigger: Trigger) {
+    /// times are dropped first, because time may go back. Angles continue past a whole turn.
+    fn push(&mut self, mut row: Row, trigger: Trigger) {
         rows::forget_after(&mut self.rows, row.time);
         let last = self.rows.back().map_or(f64::NEG_INFINITY, |last| last.time);
         rows::forget_after(&mut self.section, last);
@@ -50,6 +65,9 @@ impl Series {
         if last == row.time {
             return;
         }
+        let before = self.rows.back().map_or(f64::NAN, |last| last.values[ANGLE]);
+        let turns = ((before - row.values[ANGLE]) / TAU).round();
+        row.values[ANGLE] += if turns.is_nan() { 0.0 } else { TAU * turns };
         self.rows.push_back(row);
         self.search(trigger, self.rows.len().saturating_sub(3));
         while self.rows.len() > MAX_ROWS[0] || self.rows[0].time < row.time - KEPT {
@@ -175,8 +193,6 @@ impl Traces {
 
 #[cfg(test)]
 mod tests {
-    use std::f64::consts::TAU;
-
     use super::*;
     use crate::session::Variable;
 
@@ -229,6 +245,21 @@ mod tests {
         for (k, phase) in (1..).zip(phases) {
             assert!((phase - f64::from(k)).abs() < 1e-9, "{phase}");
         }
+    }
+
+    #[test]
+    fn values_between_the_rows_are_on_a_cubic() {
+        let mut series = Series::default();
+        for k in 0..400 {
+            series.push(row(0.01 * f64::from(k)), Trigger::Off);
+        }
+        for time in [0.004, 0.015, 1.236, 3.984] {
+            let [value, rate] = [0, 3].map(|k| series.at(time).unwrap().values[k]);
+            assert!((value - row(time).values[0]).abs() < 1e-5, "{time}");
+            assert!((rate - row(time).values[3]).abs() < 1e-4, "{time}");
+        }
+        assert_eq!(series.at(0.5), series.nearest(0.5).copied());
+        assert!(series.at(-0.1).is_none() && series.at(4.1).is_none());
     }
 
     #[test]

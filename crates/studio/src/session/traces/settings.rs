@@ -42,17 +42,55 @@ impl Mode {
     }
 }
 
+/// A variable of one thing that is plotted, or of each.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Quantity {
+    /// The thing; `None` for each.
+    pub of: Option<Pick>,
+    pub variable: Variable,
+}
+
+impl Quantity {
+    /// Creates the quantity of each thing.
+    pub fn of_each(variable: Variable) -> Self {
+        Self { of: None, variable }
+    }
+
+    /// Returns the short name.
+    pub fn name(self) -> String {
+        let [name, of] = [self.variable.name().into(), self.owner()];
+        name + &of
+    }
+
+    /// Returns the name with the unit, as on an axis.
+    pub fn label(self) -> String {
+        let (name, of) = (self.variable.long_name(), self.owner());
+        match self.variable.unit() {
+            "" => format!("{name}{of}"),
+            unit => format!("{name}{of} ({unit})"),
+        }
+    }
+
+    /// Says of which thing this is, if it is of one.
+    fn owner(self) -> String {
+        self.of
+            .map_or(String::new(), |pick| format!(" of {}", pick.name()))
+    }
+}
+
 /// The settings of plots.
 pub struct PlotSettings {
     pub mode: Mode,
     /// The variables that are shown over time.
     pub shown: Vec<Variable>,
-    /// The variables on the horizontal and on the vertical axis otherwise.
-    pub axes: [Variable; 2],
+    /// What is on the horizontal and on the vertical axis otherwise.
+    pub axes: [Quantity; 2],
     /// Simulated time that is shown (s).
     pub span: f64,
     /// The ends of the ruler that are chosen so far, if there is one.
     pub ruler: Option<Vec<RulerEnd>>,
+    /// Whether the formulas of what is computed are shown.
+    pub formulas: bool,
 }
 
 impl PlotSettings {
@@ -73,9 +111,12 @@ impl PlotSettings {
         ends.push(end);
     }
 
-    /// Keeps the ends of the ruler at the same particles by their numbers since an edit. If one was
-    /// removed, the ruler is, too.
-    pub fn renumber(&mut self, particles: Splice) {
+    /// Keeps axes and the ends of the ruler at the same things by the numbers of particles and
+    /// rigid bodies since an edit. If one was removed, the ruler is, too.
+    pub fn renumber(&mut self, [particles, bodies]: [Splice; 2]) {
+        for axis in &mut self.axes {
+            axis.of = axis.of.and_then(|of| of.renumbered([particles, bodies]));
+        }
         let now = |end: &RulerEnd| match *end {
             RulerEnd::Particle(i) => particles.number(i).map(RulerEnd::Particle),
             end @ RulerEnd::Point(_) => Some(end),
@@ -99,9 +140,10 @@ impl Default for PlotSettings {
         Self {
             mode: Mode::Time,
             shown: vec![Variable::X, Variable::Y, Variable::Length, Variable::Force],
-            axes: [Variable::X, Variable::VelocityX],
+            axes: [Variable::X, Variable::VelocityX].map(Quantity::of_each),
             span: SPANS[1],
             ruler: None,
+            formulas: false,
         }
     }
 }
@@ -124,8 +166,8 @@ pub enum PlotRequest {
     Mode(Mode),
     /// Show a variable over time, or no longer.
     Show(Variable),
-    /// Put a variable on the horizontal (0) or on the vertical axis (1).
-    Axis(usize, Variable),
+    /// Put a quantity on the horizontal (0) or on the vertical axis (1).
+    Axis(usize, Quantity),
     /// Take the points of the section at another event.
     Trigger(Trigger),
     /// Show another span of time (s).
@@ -134,6 +176,8 @@ pub enum PlotRequest {
     Clear,
     /// Draw a ruler in the picture, or remove it.
     Ruler,
+    /// Show the formulas of what is computed, or no longer.
+    Formulas,
 }
 
 impl RulerEnd {
