@@ -224,7 +224,9 @@ impl Ode {
             let back = back.clone();
             Box::new(move |t, y, out| {
                 function(back(t), y, out)?;
-                out.iter_mut().for_each(|out| *out *= sign);
+                for out in out {
+                    *out *= sign;
+                }
                 Ok(())
             })
         };
@@ -235,7 +237,9 @@ impl Ode {
                 let back = back.clone();
                 Jacobian::Sparse(Box::new(move |t, y, entries| {
                     write(back(t), y, entries)?;
-                    entries.iter_mut().for_each(|entry| entry.2 = -entry.2);
+                    for entry in entries {
+                        entry.2 = -entry.2;
+                    }
                     Ok(())
                 }))
             }

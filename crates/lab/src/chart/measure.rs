@@ -186,7 +186,7 @@ impl Study {
                 else {
                     return Ok(false);
                 };
-                if record.is_too_costly {
+                if record.given_up.is_some() {
                     self.too_costly.push(method);
                     break;
                 }
@@ -292,7 +292,7 @@ impl Study {
         };
         if let Some(record) = &record {
             check_contact(self.metric, record.still(self.metric), record.until)?;
-            if is_new && !record.is_too_costly {
+            if is_new && record.given_up.is_none() {
                 data.runs.add(record.clone());
             }
         }
@@ -445,6 +445,7 @@ pub fn compared(
     )
     .map_err(Failure::run)?;
     let is_too_costly = outcome.is_some_and(|outcome| outcome.is_too_costly());
+    let given_up = is_too_costly.then_some(reference.max_work);
     let Some(Outcome {
         errors,
         work,
@@ -490,7 +491,7 @@ pub fn compared(
         still_impact: still.impact,
         still_state: still.state,
         lost_at: lost.map(|lost| lost.time),
-        is_too_costly,
+        given_up,
         guard_impulses: guarded.impulses,
         guard_cuts: guarded.cuts,
         guard_lost: guarded.lost,

@@ -45,10 +45,9 @@ pub fn chart(
                 problem.title = format!("stiffness × {}", study.stiffness());
             }
             if is_own {
-                let curves = problem.curves.iter_mut();
-                curves
-                    .flat_map(|curve| &mut curve.runs)
-                    .for_each(|run| run.work *= until);
+                for run in problem.curves.iter_mut().flat_map(|curve| &mut curve.runs) {
+                    run.work *= until;
+                }
             }
             problem
         })

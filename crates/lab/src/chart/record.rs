@@ -114,9 +114,9 @@ pub struct Record {
     /// itself is within 4 % of it.
     #[serde(default)]
     pub beside: Option<f64>,
-    /// Whether the run was given up, because it takes too many evaluations.
+    /// Largest work beyond which the run was given up (evaluations), if it was.
     #[serde(skip)]
-    pub is_too_costly: bool,
+    pub given_up: Option<f64>,
     /// Checksum of the file up to this run, as it was read.
     #[serde(default, skip_serializing)]
     pub check: String,
