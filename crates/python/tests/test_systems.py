@@ -38,7 +38,8 @@ def test_a_choice_for_a_span_of_1e11_costs_few_calls():
     choice = a3.choose(system, 1e-5, until=1e11, methods=["radau", "bdf", "dopri5", "rk4"], progress=False)
     assert choice.method in ("radau", "bdf") and choice.until == 1e11 and calls < 1_000_000
     chart = a3.chart(system, ["bdf", "dopri5", "euler"], until=1e11, progress=False)
-    assert chart.too_costly == ["dopri5", "euler"] and chart.methods == ["bdf"]
+    assert chart.too_costly == ["dopri5", "euler"]
+    assert {point.method for point in chart.points if point.error < 1.0} == {"bdf"}
     assert "too costly" in chart.table and "t = 0 to 1e11" in chart.table
 
 
