@@ -45,8 +45,12 @@ pub fn chart(
                 problem.title = format!("stiffness × {}", study.stiffness());
             }
             if is_own {
-                for run in problem.curves.iter_mut().flat_map(|curve| &mut curve.runs) {
-                    run.work *= until;
+                // A run that blew up is drawn at the work that it took.
+                for (curve, method) in problem.curves.iter_mut().zip(methods) {
+                    let drawn = drawn(&records, method, metric);
+                    for (run, record) in curve.runs.iter_mut().zip(drawn) {
+                        run.work *= record.lost_at.unwrap_or(until);
+                    }
                 }
             }
             problem
