@@ -130,6 +130,11 @@ pub enum Cause {
         /// Largest number of them in a system in which each may act on all.
         most: usize,
     },
+    /// Run that was given up, because it takes more work than its comparison is worth.
+    TooCostly {
+        /// Largest work of a run (evaluations).
+        most: f64,
+    },
     /// Constraint with a large error.
     Unmet(Unmet),
     /// Constraint that cannot be met with any step: it contradicts others, or pins.
@@ -279,6 +284,9 @@ impl fmt::Display for BlowUp {
             ),
             &Cause::TooDense { numbers, most } => {
                 write!(f, "the solver {}", Refusal::TooDense { numbers, most })
+            }
+            Cause::TooCostly { most } => {
+                write!(f, "it takes more than {most:.0} evaluations")
             }
             Cause::Unmet(unmet) => {
                 write!(f, "{unmet}, is off by {:.0} %", 100.0 * unmet.share)

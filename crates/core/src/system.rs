@@ -74,6 +74,18 @@ pub trait ParticleSystem {
         false
     }
 
+    /// Adds the row, the column and the value of each entry of the Jacobian df/dy that is not 0 to
+    /// `entries`, and returns true; returns false if the system does not know it as a sparse one.
+    fn jacobian_entries(&self, _t: f64, _y: &[f64], _entries: &mut Vec<(u32, u32, f64)>) -> bool {
+        false
+    }
+
+    /// Returns the row and the column of each entry of the Jacobian that may differ from 0; empty
+    /// if that is not known beforehand: methods then search them.
+    fn sparsity(&self) -> &[(u32, u32)] {
+        &[]
+    }
+
     /// Returns the reason why an evaluation has failed since the last call, and forgets it.
     ///
     /// An evaluation that fails writes NaN and keeps its error, an [`Error::Callback`], for this

@@ -2,7 +2,7 @@
 
 use std::ops::RangeInclusive;
 
-use a3_core::Control;
+use a3_core::{Control, Model};
 
 use super::failure::Failure;
 
@@ -20,6 +20,15 @@ pub fn of(control: Control) -> RangeInclusive<f64> {
     match control {
         Control::Step(_) => SMALLEST_STEP..=LARGEST_STEP,
         Control::Tolerance(_) => TOLERANCES,
+    }
+}
+
+/// Returns the range of the steps or of the tolerances of a control of a model: the time of a
+/// system of one's own may have any unit.
+pub fn of_model(model: &Model, control: Control) -> RangeInclusive<f64> {
+    match (model.network(), control) {
+        (None, Control::Step(_)) => OWN_HORIZONS.range,
+        _ => of(control),
     }
 }
 
@@ -45,6 +54,11 @@ impl Allowed {
 pub const HORIZONS: Allowed = Allowed {
     range: 0.01..=1000.0,
     right: "the end is a number of seconds from 0.01 to 1000, such as 1",
+};
+/// Ends of runs of a system of one's own, whose time has any unit.
+pub const OWN_HORIZONS: Allowed = Allowed {
+    range: 1e-15..=1e15,
+    right: "the end of a system's runs is a number from 1e-15 to 1e15, such as 1",
 };
 /// Factors of the stiffness.
 pub const FACTORS: Allowed = Allowed {

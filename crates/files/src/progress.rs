@@ -6,18 +6,30 @@ use crate::platform::bar::RunBar;
 
 /// Simulated time between two calls of `frame` (s).
 const FRAME: f64 = 1.0 / 60.0;
+/// Largest number of steps between them, of systems of one's own, whose time has any unit.
+const STRIDE: u64 = 1000;
 
 /// Advances a simulation to `until` (s) in whole steps, the last one shortened. Calls `frame` about
-/// sixty times a simulated second, and stops if it returns false. Returns whether the run got to
-/// the end.
+/// sixty times a simulated second, or after a thousand steps of a system of one's own, and stops if
+/// it returns false. Returns whether the run got to the end.
 pub fn march(
     simulation: &mut Simulation,
     until: f64,
     mut frame: impl FnMut(&Simulation) -> bool,
 ) -> Result<bool, Error> {
     let control = simulation.control();
+    let is_own = simulation.model().network().is_none();
+    if is_own && control.step().is_none() {
+        while !simulation.advance_in(until, STRIDE)? {
+            if !frame(simulation) {
+                return Ok(false);
+            }
+        }
+        return Ok(frame(simulation));
+    }
     let step = control.step().unwrap_or(FRAME);
-    let stride = (FRAME / step).floor().max(1.0);
+    let most = if is_own { STRIDE as f64 } else { f64::INFINITY };
+    let stride = (FRAME / step).floor().clamp(1.0, most);
     loop {
         // Whole steps that end before the last one. If only rounding makes the last one shorter, it
         // is whole too.

@@ -2,7 +2,9 @@
 
 use std::sync::Arc;
 
-use a3_core::{Control, Disturbances, Grid, Method, Rounded, Scene, Simulation, integrators};
+use a3_core::{
+    Control, Disturbances, Grid, Method, Model, Rounded, Scene, Simulation, integrators,
+};
 use a3_scenes::{Description, Presentation, Setup};
 
 use crate::bounds;
@@ -158,7 +160,7 @@ pub fn simulate(
     check_disturbances(scene, on)?;
     let own = || setup.defaults.control_of(solver);
     let control = step.map_or_else(own, |value| solver.control(value));
-    check_control(solver, control)?;
+    check_control(&scene.model, solver, control)?;
     if let Err(e) = solver.check(scene.model.system()) {
         let serve = integrators::METHODS
             .iter()
@@ -213,14 +215,19 @@ pub fn check_count(count: usize) -> Result<(), Failure> {
 }
 
 /// Checks that the step or the tolerance is within its range.
-pub fn check_control(method: &Method, control: Control) -> Result<(), Failure> {
-    let range = bounds::of(control);
+pub fn check_control(model: &Model, method: &Method, control: Control) -> Result<(), Failure> {
+    let range = bounds::of_model(model, control);
     if range.contains(&control.value()) {
         return Ok(());
     }
     let (low, high) = (range.start(), range.end());
     Err(Failure::usage(match control {
         Control::Step(step) => {
+            let typed = |number: f64| match model.network() {
+                Some(_) => number.to_string(),
+                None => format!("{number:e}"),
+            };
+            let (low, high) = (typed(*low), typed(*high));
             format!("a step is a number of seconds from {low} to {high}, such as 0.01, not {step}")
         }
         Control::Tolerance(tolerance) => format!(

@@ -70,7 +70,7 @@ pub fn compare(
     monitor.expect(runs.len() as f64);
     let compared = runs.iter().map(|&(method, control)| {
         monitor.stage(method.name);
-        check_control(method, control)?;
+        check_control(&scene.model, method, control)?;
         let run = follow(scene, method, control, &times, monitor);
         monitor.advance(1.0);
         run

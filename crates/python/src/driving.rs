@@ -3,6 +3,7 @@
 use std::time::{Duration, Instant};
 
 use a3_core::{Error, Simulation};
+use a3_files::bounds::OWN_HORIZONS;
 use a3_files::{progress, verdict};
 use pyo3::prelude::*;
 
@@ -94,10 +95,15 @@ pub fn advance(run: &mut Simulation, time: f64, calls: bool, go_on: GoOn) -> Dri
 }
 
 /// Checks that a run can advance to a time (s).
-pub fn check_time(now: f64, time: f64) -> Result<(), String> {
-    if !(0.0..=1e9).contains(&time) {
+pub fn check_time(run: &Simulation, time: f64) -> Result<(), String> {
+    let now = run.time();
+    let most = match run.model().network() {
+        Some(_) => 1e9,
+        None => *OWN_HORIZONS.range.end(),
+    };
+    if !(0.0..=most).contains(&time) {
         return Err(format!(
-            "a time is a number of seconds from 0 to 1e9, such as 10, not {time}"
+            "a time is a number of seconds from 0 to {most:e}, such as 10, not {time}"
         ));
     }
     if time < now {

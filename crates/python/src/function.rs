@@ -117,6 +117,31 @@ impl Function {
         })
     }
 
+    /// Adds the rows, columns and values that the function returns for a time and a flat array, an
+    /// array 3 x n, to `entries`.
+    ///
+    /// # Errors
+    /// It raised an exception, which is kept, or returned something else.
+    pub fn entries_of_state(
+        &self,
+        t: f64,
+        y: &[f64],
+        entries: &mut Vec<(u32, u32, f64)>,
+    ) -> Result<(), String> {
+        Python::attach(|py| {
+            self.called(py, Ok((t, arrays::numbers(py, y))), |result| {
+                let array = array(result).ok_or_else(|| wrong(py, kind(result)))?;
+                let numbers = array.readonly();
+                let numbers: Vec<f64> = numbers.as_array().iter().copied().collect();
+                let (rows, others) = numbers.split_at(numbers.len() / 3);
+                let (columns, values) = others.split_at(rows.len());
+                let places = rows.iter().zip(columns).zip(values);
+                entries.extend(places.map(|((i, j), value)| (*i as u32, *j as u32, *value)));
+                Ok(())
+            })
+        })
+    }
+
     /// Writes the numbers that the function returns for these arguments to `out`.
     ///
     /// # Errors
@@ -127,6 +152,17 @@ impl Function {
         arguments: PyResult<impl PyCallArgs<'py>>,
         out: &mut [f64],
     ) -> Result<(), String> {
+        let read = |result: &Bound<'py, PyAny>| read(result, &self.name, self.shape, out);
+        self.called(py, arguments, read)
+    }
+
+    /// Calls the function with these arguments, and reads its result.
+    fn called<'py>(
+        &self,
+        py: Python<'py>,
+        arguments: PyResult<impl PyCallArgs<'py>>,
+        read: impl FnOnce(&Bound<'py, PyAny>) -> PyResult<()>,
+    ) -> Result<(), String> {
         let (calls, thread) = (&self.raised.0, thread(py));
         locked(&calls.threads).push(thread);
         let called = arguments.and_then(|arguments| self.call.bind(py).call1(arguments));
@@ -135,7 +171,7 @@ impl Function {
             threads.swap_remove(k);
         }
         drop(threads);
-        let read = called.and_then(|result| read(&result, &self.name, self.shape, out));
+        let read = called.and_then(|result| read(&result));
         read.map_err(|error| self.raised.keep(error))
     }
 }

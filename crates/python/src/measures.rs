@@ -91,6 +91,15 @@ impl Chart {
         self.0.table()
     }
 
+    /// Returns the names of the methods whose runs take too many evaluations.
+    fn too_costly(&self) -> Vec<&'static str> {
+        self.0
+            .too_costly()
+            .iter()
+            .map(|method| method.name)
+            .collect()
+    }
+
     /// Returns the name of the error that counts, the end of the runs (s), and whether all were
     /// measured.
     fn about(&self) -> (&'static str, f64, bool) {

@@ -181,13 +181,18 @@ pub fn add_tableau(
 pub fn add_foreign(py: Python<'_>, name: &str, solve: &Bound<PyAny>) -> PyResult<()> {
     let raised = Raised::default();
     let function = Function::new(solve, Shape::Flat, &raised)?;
+    let of_function = raised.clone();
     let method = Method::foreign(name, move |f, times, y, tolerance| {
         let mut states = vec![0.0; times.len() * y.len()];
-        with(f, |py| {
+        let solved = with(f, |py| {
             let arguments = (Derivative, numbers(py, times), numbers(py, y), tolerance);
             function.call(py, Ok(arguments), &mut states)
-        })?;
-        Ok(states)
+        });
+        if f.is_spent() {
+            // That exception is a3's own.
+            of_function.take();
+        }
+        solved.map(|()| states)
     });
     register(
         method.map_err(|error| wrong(py, error.to_string()))?,

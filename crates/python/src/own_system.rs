@@ -50,9 +50,17 @@ pub fn scene(system: &Bound<PyAny>, raised: &Raised) -> PyResult<Scene> {
         let mut made = made.map_err(failed)?;
         let jacobian = system.getattr("_jac")?;
         if !jacobian.is_none() {
-            let jacobian = Function::new(&jacobian, Shape::Square, raised)?;
-            made = made.with_jacobian(move |t, y, out| jacobian.of_state(t, y, out));
+            let sparse = system.call_method0("_entries")?;
+            made = if sparse.is_none() {
+                let jacobian = Function::new(&jacobian, Shape::Square, raised)?;
+                made.with_jacobian(move |t, y, out| jacobian.of_state(t, y, out))
+            } else {
+                let entries = Function::new(&sparse, Shape::Flat, raised)?;
+                made.with_jacobian_entries(move |t, y, out| entries.entries_of_state(t, y, out))
+            };
         }
+        let sparsity: Vec<(u32, u32)> = system.getattr("_sparsity")?.extract()?;
+        made = made.with_sparsity(sparsity).map_err(failed)?;
         let jumps: Vec<f64> = system.getattr("_jumps")?.extract()?;
         made = made.with_jumps(jumps).map_err(failed)?;
         let (count, quantities): (usize, Bound<PyAny>) =
@@ -61,6 +69,9 @@ pub fn scene(system: &Bound<PyAny>, raised: &Raised) -> PyResult<Scene> {
             let quantities = Function::new(&quantities, Shape::Flat, raised)?;
             let write = move |t: f64, y: &[f64], out: &mut [f64]| quantities.of_state(t, y, out);
             made = made.with_quantities(count, write).map_err(failed)?;
+        }
+        if system.getattr("_backward")?.extract()? {
+            made = made.reversed();
         }
         if scales.is_empty() {
             made.into()

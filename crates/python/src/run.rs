@@ -133,8 +133,9 @@ impl Run {
     /// Advances to a time (s). `progress` is called with the time now and then.
     #[pyo3(signature = (time, progress=None))]
     fn advance(&self, py: Python<'_>, time: f64, progress: Option<&Bound<PyAny>>) -> PyResult<()> {
-        let (now, calls) = (self.simulation(py)?.time(), self.calls);
-        check_time(now, time).map_err(|why| wrong(py, why))?;
+        let calls = self.calls;
+        let checked = check_time(&*self.simulation(py)?, time);
+        checked.map_err(|why| wrong(py, why))?;
         self.work(py, progress, move |run, go_on| {
             advance(run, time, calls, go_on)
         })
@@ -150,7 +151,8 @@ impl Run {
         time: f64,
         direction: i64,
     ) -> PyResult<bool> {
-        check_time(self.simulation(py)?.time(), time).map_err(|why| wrong(py, why))?;
+        let checked = check_time(&*self.simulation(py)?, time);
+        checked.map_err(|why| wrong(py, why))?;
         let function = Function::new(function, Shape::Number, &self.raised)?;
         let passage = match direction.signum() {
             0 => Passage::Either,

@@ -139,6 +139,8 @@ pub fn choose_among(
         let outcome = measure(scene, method, control, reference, go_on)?;
         Ok(outcome.map(|outcome| Trial {
             error: match outcome.lost {
+                // Smaller steps would cost even more.
+                Some(_) if outcome.is_too_costly() => f64::MAX,
                 Some(_) => f64::INFINITY,
                 None => metric.of(&outcome.errors),
             },
@@ -152,7 +154,10 @@ pub fn choose_among(
     } else {
         MAX_COST_RATIO
     };
-    let max_cost = |found: &[Candidate]| found.get(1).map(|second| max_ratio * second.work);
+    let max_cost = |found: &[Candidate]| {
+        let second = found.get(1).map_or(f64::INFINITY, |c| max_ratio * c.work);
+        Some(second.min(reference.max_work))
+    };
     // Methods of high order come first: their cost limits the runs of methods of low order. In a
     // stiff system, so do implicit ones, above all those that choose their steps.
     let mut methods = methods.to_vec();

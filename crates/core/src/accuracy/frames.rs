@@ -1,6 +1,10 @@
 //! Frames: times at which runs are compared.
 
+use crate::scene::Model;
 use crate::simulation::Simulation;
+
+/// Number of frames of a system of one's own, whose time may have any unit.
+const OWN: u64 = 240;
 
 /// Function that is called between frames and returns whether to continue.
 pub type GoOn<'a> = &'a dyn Fn() -> bool;
@@ -21,6 +25,16 @@ impl Frames {
         Self {
             until,
             count: 60 * until.ceil().max(1.0) as u64,
+        }
+    }
+
+    /// Creates frames for runs of a model up to `until` (s): those of [`new`](Self::new) for a
+    /// network, and 240 for a system of one's own, whatever its time is measured in.
+    #[must_use]
+    pub fn of(model: &Model, until: f64) -> Self {
+        match model.network() {
+            Some(_) => Self::new(until),
+            None => Self { until, count: OWN },
         }
     }
 

@@ -63,8 +63,8 @@ pub struct Horizon {
 ///
 /// Both runs take the same fixed steps, so that their distance is that of the motion and not of two
 /// sequences of steps. The steps are shorter where a hundred of them separate the runs, and where
-/// shorter steps in contact separate them less. In a stiff system, implicit runs at a tight
-/// tolerance replace them.
+/// shorter steps in contact separate them less. In a stiff system and in one of
+/// one's own, whose runs last until `until`, runs at a tight tolerance replace them.
 ///
 /// # Errors
 /// The scene cannot be run.
@@ -78,7 +78,10 @@ pub fn horizon(scene: &Scene, until: f64, go_on: GoOn) -> Result<Option<Horizon>
         .network()
         .and_then(Linearized::baumgarte_frequency);
     let fastest = fastest(&modes, feedback).map_or(1.0, Mode::frequency);
-    let longest = if fastest > 20.0 * std::f64::consts::PI {
+    let is_own = scene.model.network().is_none();
+    let longest = if is_own && until.is_finite() {
+        until
+    } else if fastest > 20.0 * std::f64::consts::PI {
         3.0
     } else {
         10.0
@@ -90,9 +93,10 @@ pub fn horizon(scene: &Scene, until: f64, go_on: GoOn) -> Result<Option<Horizon>
     let Some((is_stiff, _)) = is_stiff(scene, longest, go_on)? else {
         return Ok(None);
     };
-    if is_stiff {
+    // The time of a system of one's own has any unit.
+    if is_stiff || is_own {
         let control = Control::Tolerance(TOLERANCE_SHARE * SEPARATION);
-        let found = TwoRuns::start(scene, accurate(true)?, control, longest, go_on)?;
+        let found = TwoRuns::start(scene, accurate(is_stiff)?, control, longest, go_on)?;
         return Ok(found.map(|runs| runs.horizon));
     }
     let mut found = TwoRuns::start(scene, method, Control::Step(step), longest, go_on)?;
@@ -149,8 +153,14 @@ impl TwoRuns {
             squares.sum::<f64>().sqrt()
         };
         let first = distance(run.state(), beside.state());
-        let rounds = ROUND_TIMES.into_iter().filter(|t| *t < longest);
-        let (mut until, mut motion) = (ROUND_TIMES[0], 0.0f64);
+        let last = ROUND_TIMES[ROUND_TIMES.len() - 1];
+        let unit = match run.model().network() {
+            None if longest < ROUND_TIMES[0] || longest > last => longest / last,
+            _ => 1.0,
+        };
+        let rounds = ROUND_TIMES.map(|t| t * unit).into_iter();
+        let rounds = rounds.filter(|t| *t < longest);
+        let (mut until, mut motion) = (ROUND_TIMES[0] * unit, 0.0f64);
         let (mut time, mut most, mut parted_at) = (0.0, 1.0f64, None);
         let mut grown = (until, most);
         'rounds: for round in rounds.chain([longest]) {

@@ -29,6 +29,16 @@ pub struct Outcome {
     pub time: Duration,
 }
 
+impl Outcome {
+    /// Returns whether the run was given up, because it took more work than its
+    /// [reference](Reference::max_work) allows.
+    #[must_use]
+    pub fn is_too_costly(&self) -> bool {
+        let lost = self.lost.as_ref();
+        lost.is_some_and(|lost| matches!(lost.cause, Cause::TooCostly { .. }))
+    }
+}
+
 /// Runs a scene and compares the run with its reference. Returns `None` if `go_on` returned false.
 ///
 /// # Errors
@@ -77,6 +87,7 @@ pub fn measure_by(
         visit: &mut visit,
         clock,
         spent: Duration::ZERO,
+        max_work: reference.max_work,
     };
     let begun = clock();
     let end = run_observed(
@@ -154,10 +165,28 @@ fn measure_whole(
         .filter(|k| reference.counts(*k))
         .collect();
     let times: Vec<f64> = frames.iter().map(|k| reference.frames.time(*k)).collect();
-    let mut f = Derivative::new(scene.model.system());
+    let most = reference.max_work;
+    let mut f = Derivative::new(scene.model.system()).with_most(most);
+    let lost_at = |frame: u64, cause: Cause| BlowUp {
+        method: method.title,
+        control,
+        step: frame,
+        time: reference.frames.time(frame),
+        cause,
+    };
     let begun = clock();
-    let states = solve(&mut f, &times, &scene.state, tolerance)?;
+    let solved = solve(&mut f, &times, &scene.state, tolerance);
     let time = clock().saturating_sub(begun);
+    if f.is_spent() {
+        return Ok(Outcome {
+            time,
+            errors: tally.errors,
+            work: f.work(),
+            guarded: Guarded::default(),
+            lost: Some(lost_at(0, Cause::TooCostly { most })),
+        });
+    }
+    let states = solved?;
     if states.len() != times.len() * dim {
         return Err(Error::Callback(format!(
             "{} returned {} numbers, but {dim} at each of {} times were asked for",
@@ -169,13 +198,7 @@ fn measure_whole(
     let mut lost = None;
     for (k, state) in frames.into_iter().zip(states.chunks_exact(dim)) {
         if let Some(index) = state.iter().position(|y| !y.is_finite()) {
-            lost = Some(BlowUp {
-                method: method.title,
-                control,
-                step: k,
-                time: reference.frames.time(k),
-                cause: Cause::NumberNotFinite { index },
-            });
+            lost = Some(lost_at(k, Cause::NumberNotFinite { index }));
             break;
         }
         tally.add(k, &scene.model, state, None);

@@ -83,6 +83,9 @@ pub struct Reference {
     pub still: Errors,
     /// Work of all runs that make the reference.
     pub work: Work,
+    /// Largest work of a run that is measured (evaluations), beyond which it is given up; infinite
+    /// unless it is set.
+    pub max_work: f64,
     /// Whether the system is stiff, so that implicit methods make the reference.
     pub is_stiff: bool,
     /// State from which all runs start.
@@ -135,6 +138,7 @@ impl Reference {
                 floor: Errors::default(),
                 still: Errors::default(),
                 work: Work::default(),
+                max_work: f64::INFINITY,
                 is_stiff,
                 start: Snapshot::of(&scene.model, 0.0, &scene.state),
                 scope,
@@ -274,34 +278,53 @@ impl Making<'_> {
         } else {
             self.precision.uncertainty.clamp(tightest, loosest)
         };
-        let Some((mut looser, mut work)) =
-            self.run(method, Control::Tolerance(RATIO * tolerance))?
-        else {
-            return Ok(None);
-        };
+        tolerance *= RATIO;
+        let is_own = self.scene.model.network().is_none();
+        let mut looser: Option<Run> = None;
         let mut history = vec![];
         loop {
-            let Some((best, next)) = self.run(method, Control::Tolerance(tolerance))? else {
-                return Ok(None);
-            };
-            let scope = self.reference.scope;
-            self.reference.trajectory = Trajectory::new(best, tolerance, scope);
-            let found = self.reference.disagreement(&looser);
-            history.push(self.precision.metric.of(&found));
-            let predicted = next * next / work;
-            if is_stuck(&history) {
-                return Ok(Some((found, STUCK_TRUSTED_SHARE)));
+            match self.run(method, Control::Tolerance(tolerance)) {
+                // Errors that a tolerance allows may lead to another solution of a system.
+                Err(Error::BlowUp(_)) if is_own && tolerance > tightest => looser = None,
+                Err(error) => return Err(error),
+                Ok(None) => return Ok(None),
+                Ok(Some((best, next))) => {
+                    let scope = self.reference.scope;
+                    self.reference.trajectory = Trajectory::new(best, tolerance, scope);
+                    match looser.take() {
+                        None if tolerance <= tightest => {
+                            return Ok(Some((Errors::default(), TRUSTED_SHARE)));
+                        }
+                        None => {}
+                        Some((looser, work)) => {
+                            let found = self.reference.disagreement(&looser);
+                            history.push(self.told(&found));
+                            let predicted = next * next / work;
+                            if is_stuck(&history) {
+                                return Ok(Some((found, STUCK_TRUSTED_SHARE)));
+                            }
+                            if self.is_enough(&found)
+                                || tolerance <= tightest
+                                || predicted > self.precision.max_work
+                            {
+                                return Ok(Some((found, TRUSTED_SHARE)));
+                            }
+                        }
+                    }
+                    let best = std::mem::take(&mut self.reference.trajectory.snapshots);
+                    looser = Some((best, next));
+                }
             }
-            if self.is_enough(&found)
-                || tolerance <= tightest
-                || predicted > self.precision.max_work
-            {
-                return Ok(Some((found, TRUSTED_SHARE)));
-            }
-            work = next;
-            looser = std::mem::take(&mut self.reference.trajectory.snapshots);
             tolerance = (tolerance / RATIO).max(tightest);
         }
+    }
+
+    /// Returns an error in the metric; infinite if it is as large as the plain numbers themselves,
+    /// so that it says nothing.
+    fn told(&self, errors: &Errors) -> f64 {
+        let error = self.precision.metric.of(errors);
+        let is_all = self.precision.metric == Metric::State && error >= 1.0;
+        if is_all { f64::INFINITY } else { error }
     }
 
     /// Returns the fastest mode at each frame, if surfaces touch: contact may be much stiffer than
@@ -375,7 +398,7 @@ impl Making<'_> {
                         least = least.min(self.reference.disagreement(column));
                         self.reference.note_uncertainty(column);
                     }
-                    history.push(metric.of(&least));
+                    history.push(self.told(&least));
                     sum += work;
                     if self.is_enough(&least)
                         || metric.of(&least) <= own

@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use super::frames::{Frames, GoOn};
 use super::hermite::weights;
-use crate::error::{BlowUp, Error};
+use crate::error::{BlowUp, Cause, Error};
 use crate::simulation::Simulation;
 
 /// Largest distance of the end of a step from a frame, relative to the time, at which it counts as
@@ -46,6 +46,8 @@ pub(super) struct Observer<'a> {
     /// Clock: the time since some fixed moment.
     pub(super) clock: &'a dyn Fn() -> Duration,
     pub(super) spent: Duration,
+    /// Largest work of the run, in evaluations.
+    pub(super) max_work: f64,
 }
 
 impl Observer<'_> {
@@ -77,6 +79,7 @@ pub fn run(
         visit,
         clock: &|| Duration::ZERO,
         spent: Duration::ZERO,
+        max_work: f64::INFINITY,
     });
     run_observed(simulation, frames, go_on, observer.as_mut())
 }
@@ -123,12 +126,34 @@ fn to_a_tolerance(
         if !go_on() {
             return Ok(false);
         }
-        simulation.advance_to(frames.time(k))?;
+        let most = observer.as_ref().map(|observer| observer.max_work);
+        // Between two frames of a system of one's own there may be any number of steps.
+        while !simulation.advance_in(frames.time(k), MAX_PORTION.0)? {
+            check_work(simulation, most)?;
+            if !go_on() {
+                return Ok(false);
+            }
+        }
+        check_work(simulation, most)?;
         if let Some(observer) = &mut observer {
             observer.observe(|visit| visit(&at_end(simulation, k)));
         }
     }
     Ok(true)
+}
+
+/// Checks that a run has not taken more work than this (evaluations).
+fn check_work(run: &Simulation, most: Option<f64>) -> Result<(), Error> {
+    match most.filter(|most| run.work().total() > *most) {
+        None => Ok(()),
+        Some(most) => Err(Error::BlowUp(BlowUp {
+            method: run.method().title,
+            control: run.control(),
+            step: run.steps(),
+            time: run.time(),
+            cause: Cause::TooCostly { most },
+        })),
+    }
 }
 
 /// Returns the state of a run that has arrived at a frame.

@@ -20,7 +20,8 @@ use crate::work::Work;
 /// equation needs a shorter one, it has no solution, or the tolerance is too small for double
 /// precision.
 const MIN_STEP_SHARE: f64 = 1e-12;
-/// Longest first step (s), and first step of a motion that starts from rest (s).
+/// Longest first step (s), and first step of a motion that starts from rest (s). Plain numbers that
+/// change have a time of their own instead.
 const FIRST_STEPS: (f64, f64) = (1e-2, 1e-6);
 /// Least and greatest ratio of a step to the previous one.
 const STEP_RATIOS: (f64, f64) = (0.2, 8.0);
@@ -338,7 +339,12 @@ impl Adaptive {
         if slope.is_nan() {
             return FIRST_STEPS.0;
         }
-        let h = (0.01 * slope).min(FIRST_STEPS.0);
+        let longest = if slope.is_finite() && !norm.sizes.is_empty() {
+            slope
+        } else {
+            FIRST_STEPS.0
+        };
+        let h = (0.01 * slope).min(longest);
         scaled_sum(y1, y, h, f0);
         system.eval_f(t + h, y1, f1);
         for (f1, f0) in f1.iter_mut().zip(f0) {
@@ -350,6 +356,6 @@ impl Adaptive {
             return FIRST_STEPS.1;
         }
         let least = 0.01 * self.tolerance.relative;
-        (time * libm::pow(least, 1.0 / self.trial.exponent())).min(FIRST_STEPS.0)
+        (time * libm::pow(least, 1.0 / self.trial.exponent())).min(longest)
     }
 }

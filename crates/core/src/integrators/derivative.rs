@@ -11,6 +11,8 @@ pub struct Derivative<'a> {
     system: &'a dyn ParticleSystem,
     dim: usize,
     evaluations: u64,
+    /// Largest number of evaluations.
+    most: f64,
 }
 
 impl<'a> Derivative<'a> {
@@ -22,7 +24,19 @@ impl<'a> Derivative<'a> {
             system,
             dim: system.dim(),
             evaluations: 0,
+            most: f64::INFINITY,
         }
+    }
+
+    /// Refuses evaluations beyond this number.
+    pub(crate) fn with_most(self, most: f64) -> Self {
+        Self { most, ..self }
+    }
+
+    /// Returns whether an evaluation was refused, because there were too many.
+    #[must_use]
+    pub fn is_spent(&self) -> bool {
+        self.evaluations as f64 > self.most
     }
 
     /// Returns the evaluations until now.
@@ -51,6 +65,10 @@ impl Derivative<'_> {
         check_dim(self.dim, y)?;
         check_dim(self.dim, dydt)?;
         self.evaluations += 1;
+        if self.is_spent() {
+            let why = format!("more than {:.0} evaluations cost too much here", self.most);
+            return Err(Error::Callback(why));
+        }
         self.system.eval_f(t, y, dydt);
         self.system.take_failure().map_or(Ok(()), Err)
     }

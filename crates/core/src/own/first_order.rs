@@ -9,6 +9,15 @@ use crate::system::{ParticleSystem, evaluation_cost};
 
 /// Function of t and y that writes numbers.
 type Function = dyn Fn(f64, &[f64], &mut [f64]) -> Result<(), String> + Send + Sync;
+/// Function of t and y that adds the row, the column and the value of each entry of a matrix.
+type Entries = dyn Fn(f64, &[f64], &mut Vec<(u32, u32, f64)>) -> Result<(), String> + Send + Sync;
+
+/// The Jacobian as a function.
+enum Jacobian {
+    Unknown,
+    Full(Box<Function>),
+    Sparse(Box<Entries>),
+}
 
 /// System of first order, y' = f(t, y), whose f is a function. Its numbers have no unit that is
 /// known, and errors are those of its state.
@@ -39,7 +48,9 @@ type Function = dyn Fn(f64, &[f64], &mut [f64]) -> Result<(), String> + Send + S
 pub struct Ode {
     dim: usize,
     f: Box<Function>,
-    jacobian: Option<Box<Function>>,
+    jacobian: Jacobian,
+    /// Row and column of each entry of the Jacobian that may differ from 0, if they are known.
+    sparsity: Vec<(u32, u32)>,
     scales: Vec<f64>,
     quantities: Option<(usize, Box<Function>)>,
     /// Times at which f jumps (s), in order.
@@ -64,7 +75,8 @@ impl Ode {
         Ok(Self {
             dim,
             f: Box::new(move |t, y, dydt| f(t, y, dydt).outcome()),
-            jacobian: None,
+            jacobian: Jacobian::Unknown,
+            sparsity: vec![],
             scales: vec![],
             quantities: None,
             jumps: vec![],
@@ -82,9 +94,42 @@ impl Ode {
         jacobian: impl Fn(f64, &[f64], &mut [f64]) -> R + Send + Sync + 'static,
     ) -> Self {
         Self {
-            jacobian: Some(Box::new(move |t, y, out| jacobian(t, y, out).outcome())),
+            jacobian: Jacobian::Full(Box::new(move |t, y, out| jacobian(t, y, out).outcome())),
             ..self
         }
+    }
+
+    /// Adds the Jacobian of a system of any number of numbers: a function that adds the row, the
+    /// column and the value of each entry of df/dy that is not 0 to its last argument, and may
+    /// fail. Values of the same place are added up.
+    #[must_use]
+    pub fn with_jacobian_entries<R: Outcome>(
+        self,
+        entries: impl Fn(f64, &[f64], &mut Vec<(u32, u32, f64)>) -> R + Send + Sync + 'static,
+    ) -> Self {
+        Self {
+            jacobian: Jacobian::Sparse(Box::new(move |t, y, out| entries(t, y, out).outcome())),
+            ..self
+        }
+    }
+
+    /// Sets the row and the column of each entry of the Jacobian that may differ from 0: implicit
+    /// methods then take few differences of f, and need not search which. Entries that are missing
+    /// are found where a change of all numbers shows it.
+    ///
+    /// # Errors
+    /// A row or a column is not one of the system.
+    pub fn with_sparsity(self, mut entries: Vec<(u32, u32)>) -> Result<Self, Error> {
+        let dim = self.dim;
+        if let Some(wrong) = entries.iter().find(|entry| is_outside(dim, **entry)) {
+            return Err(Error::Invalid(outside(dim, *wrong)));
+        }
+        entries.sort_unstable_by_key(|(row, column)| (*column, *row));
+        entries.dedup();
+        Ok(Self {
+            sparsity: entries,
+            ..self
+        })
     }
 
     /// Sets the cost of an evaluation of f, in multiplications of two numbers within long rows:
@@ -161,11 +206,70 @@ impl Ode {
         })
     }
 
+    /// Returns the system with the time reversed: its state at t is that of this one at -t. A
+    /// solution to a time before the start is one of it.
+    #[must_use]
+    pub fn reversed(self) -> Self {
+        let jumps: Vec<f64> = self.jumps.iter().rev().map(|t| -t).collect();
+        let own = self.jumps;
+        // At a jump, f is that after it: a step that comes from there needs the one before.
+        let back = Arc::new(move |t: f64| {
+            if own.contains(&-t) {
+                (-t).next_down()
+            } else {
+                -t
+            }
+        });
+        let reversed = |function: Box<Function>, sign: f64| -> Box<Function> {
+            let back = back.clone();
+            Box::new(move |t, y, out| {
+                function(back(t), y, out)?;
+                for out in out {
+                    *out *= sign;
+                }
+                Ok(())
+            })
+        };
+        let jacobian = match self.jacobian {
+            Jacobian::Unknown => Jacobian::Unknown,
+            Jacobian::Full(jacobian) => Jacobian::Full(reversed(jacobian, -1.0)),
+            Jacobian::Sparse(write) => {
+                let back = back.clone();
+                Jacobian::Sparse(Box::new(move |t, y, entries| {
+                    write(back(t), y, entries)?;
+                    for entry in entries {
+                        entry.2 = -entry.2;
+                    }
+                    Ok(())
+                }))
+            }
+        };
+        Self {
+            f: reversed(self.f, -1.0),
+            jacobian,
+            quantities: self
+                .quantities
+                .map(|(count, write)| (count, reversed(write, 1.0))),
+            jumps,
+            ..self
+        }
+    }
+
     /// Returns whether f(t, y) is finite.
     fn is_defined(&self, t: f64, y: &[f64]) -> bool {
         let mut dydt = vec![0.0; self.dim];
         (self.f)(t, y, &mut dydt).is_ok() && dydt.iter().all(|f| f.is_finite())
     }
+}
+
+/// Returns whether a place, row and column, is outside the Jacobian of a system of `dim` numbers.
+fn is_outside(dim: usize, (row, column): (u32, u32)) -> bool {
+    row.max(column) as usize >= dim
+}
+
+/// Says that a place is outside that Jacobian.
+fn outside(dim: usize, (row, column): (u32, u32)) -> String {
+    format!("the Jacobian of {dim} numbers has no row {row} and column {column}: they begin at 0")
 }
 
 impl ParticleSystem for Ode {
@@ -178,8 +282,18 @@ impl ParticleSystem for Ode {
     }
 
     fn jacobian(&self, t: f64, y: &[f64], out: &mut [f64]) -> bool {
-        let Some(jacobian) = &self.jacobian else {
-            return false;
+        let jacobian = match &self.jacobian {
+            Jacobian::Unknown => return false,
+            Jacobian::Sparse(_) => {
+                let mut entries = vec![];
+                self.jacobian_entries(t, y, &mut entries);
+                out.fill(0.0);
+                for (row, column, value) in entries {
+                    out[row as usize * self.dim + column as usize] += value;
+                }
+                return true;
+            }
+            Jacobian::Full(jacobian) => jacobian,
         };
         self.failure.guard(out, |out| {
             jacobian(t, y, out)?;
@@ -195,6 +309,37 @@ impl ParticleSystem for Ode {
             }
         });
         true
+    }
+
+    fn jacobian_entries(&self, t: f64, y: &[f64], entries: &mut Vec<(u32, u32, f64)>) -> bool {
+        let Jacobian::Sparse(write) = &self.jacobian else {
+            return false;
+        };
+        let mut failed = [0.0];
+        self.failure.guard(&mut failed, |_| {
+            write(t, y, entries)?;
+            let is_wrong = |(i, j, value): &&(u32, u32, f64)| {
+                is_outside(self.dim, (*i, *j)) || !value.is_finite()
+            };
+            match entries.iter().find(is_wrong) {
+                Some((i, j, _)) if is_outside(self.dim, (*i, *j)) => {
+                    Err(outside(self.dim, (*i, *j)))
+                }
+                Some((i, j, value)) if self.is_defined(t, y) => Err(format!(
+                    "the Jacobian is {value} in row {i} and column {j} at t = {t} s, where f is finite"
+                )),
+                _ => Ok(()),
+            }
+        });
+        if failed[0].is_nan() {
+            // A matrix that no method can use.
+            *entries = vec![(0, 0, f64::NAN)];
+        }
+        true
+    }
+
+    fn sparsity(&self) -> &[(u32, u32)] {
+        &self.sparsity
     }
 
     fn scales(&self) -> &[f64] {

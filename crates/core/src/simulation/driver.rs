@@ -149,36 +149,38 @@ impl Driver {
         })
     }
 
-    /// Takes steps up to `time` (s), and shows the state there.
+    /// Takes at most `count` whole steps towards `time` (s), and shows the state there if it is
+    /// reached. Returns whether it is.
     ///
     /// # Errors
     /// The run blew up, or a step failed.
-    pub fn advance_to(
+    pub fn advance(
         &mut self,
         model: &mut Model,
         state: &mut RunState,
-        time: f64,
-    ) -> Result<(), Failure> {
-        among_threads(model.particles(), || self.advance(model, state, time))
+        (time, count): (f64, u64),
+    ) -> Result<bool, Failure> {
+        let particles = model.particles();
+        among_threads(particles, || self.advance_here(model, state, (time, count)))
     }
 
-    fn advance(
+    fn advance_here(
         &mut self,
         model: &mut Model,
         state: &mut RunState,
-        time: f64,
-    ) -> Result<(), Failure> {
-        loop {
+        (time, count): (f64, u64),
+    ) -> Result<bool, Failure> {
+        for _ in 0..=count {
             let step = self.pipeline.stepper.step_size(state.control);
             // Where nothing accelerates, an adaptive method takes steps far beyond the time.
             let sliver = STEP_END_TOLERANCE * step.unwrap_or(0.0).min(time.abs());
             if let Some(end) = self.within.until() {
                 if time <= state.time() {
-                    return Ok(());
+                    return Ok(true);
                 }
                 if time < end - sliver {
                     self.show(model, state, time);
-                    return Ok(());
+                    return Ok(true);
                 }
                 self.arrive(model, state);
             }
@@ -188,7 +190,7 @@ impl Driver {
                     // The last step ends there, except for rounding.
                     state.shown = Some(time).filter(|time| *time != begin);
                 }
-                return Ok(());
+                return Ok(true);
             }
             state.shown = None;
             let ends_later = |h: f64| begin + h * (1.0 - STEP_END_TOLERANCE) > time;
@@ -200,10 +202,11 @@ impl Driver {
             if ends_later(end - begin) {
                 self.within.enter([begin, end], &state.y);
                 self.show(model, state, time);
-                return Ok(());
+                return Ok(true);
             }
             self.pipeline.end_step(model, state);
         }
+        Ok(false)
     }
 
     /// Takes a step, unless the time shown is within one and before its end, so that any time from

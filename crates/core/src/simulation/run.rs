@@ -200,15 +200,24 @@ impl Simulation {
     /// # Errors
     /// The run blew up, now or earlier; or `time` is not finite.
     pub fn advance_to(&mut self, time: f64) -> Result<(), Error> {
+        self.advance_in(time, u64::MAX - 1).map(drop)
+    }
+
+    /// Does what [`advance_to`](Self::advance_to) does, in at most `count` whole steps and the one
+    /// that contains the time. Returns whether it has arrived: if not, the run is at the end of a
+    /// step.
+    ///
+    /// # Errors
+    /// As [`advance_to`](Self::advance_to).
+    pub fn advance_in(&mut self, time: f64, count: u64) -> Result<bool, Error> {
         if !time.is_finite() {
             return Err(Error::Invalid(format!(
                 "the end must be a finite number of seconds, not {time}"
             )));
         }
         self.save_if_sound()?;
-        let gone = self
-            .driver
-            .advance_to(&mut self.model, &mut self.state, time);
+        let (model, state) = (&mut self.model, &mut self.state);
+        let gone = self.driver.advance(model, state, (time, count));
         gone.map_err(|failure| self.fail(failure))
     }
 

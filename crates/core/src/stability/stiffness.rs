@@ -4,8 +4,9 @@ use crate::error::Error;
 use crate::integrators::{Adaptive, Method, Tolerance, Work, find};
 use crate::scene::Scene;
 
-/// Tolerance of both runs.
-const TOLERANCE: f64 = 1e-6;
+/// Tolerances of both runs: the second one if Radau fails with the first, whose errors may lead to
+/// another solution.
+const TOLERANCES: [f64; 2] = [1e-6, 1e-9];
 /// Work of the explicit method over that of the implicit one, from which on a system is stiff. To a
 /// tolerance of 1e-12 instead, the explicit method of order 8 takes 10^(6/8) = 6 times as many
 /// steps, if stiffness does not limit them, and the implicit one, whose estimate has order 3,
@@ -22,37 +23,68 @@ pub(crate) fn is_stiff(
     until: f64,
     go_on: &dyn Fn() -> bool,
 ) -> Result<Option<(bool, Work)>, Error> {
-    let (system, none) = (scene.model.system(), Work::default());
-    let tolerance = Tolerance::new(TOLERANCE)?;
+    let mut work = Work::default();
+    for tolerance in TOLERANCES {
+        match race(scene, until, tolerance, &mut work, go_on)? {
+            None => return Ok(None),
+            Some(Won::Explicit) => return Ok(Some((false, work))),
+            Some(Won::Implicit) => return Ok(Some((true, work))),
+            Some(Won::Neither) => {}
+        }
+    }
+    Ok(Some((false, work)))
+}
+
+/// End of a race.
+enum Won {
+    Explicit,
+    Implicit,
+    /// The implicit method failed before the explicit one arrived.
+    Neither,
+}
+
+/// Lets both methods race at a tolerance, and adds their work. `None` if `go_on` returned false.
+fn race(
+    scene: &Scene,
+    until: f64,
+    tolerance: f64,
+    work: &mut Work,
+    go_on: &dyn Fn() -> bool,
+) -> Result<Option<Won>, Error> {
+    let (system, tolerance) = (scene.model.system(), Tolerance::new(tolerance)?);
     let radau = find("radau").filter(|method| method.check(system).is_ok());
     let of = |method: Option<&Method>| method.and_then(|m| m.adaptive(system, tolerance));
     let (Some(explicit), Some(implicit)) = (of(find("dop853")), of(radau)) else {
-        return Ok(Some((false, none)));
+        return Ok(Some(Won::Explicit));
     };
     let begin = |adaptive: Adaptive| Racer {
         adaptive,
         t: 0.0,
         y: scene.state.clone(),
-        work: none,
+        work: 0.0,
     };
     let mut racers = [explicit, implicit].map(begin);
     loop {
         if !go_on() {
             return Ok(None);
         }
-        let [explicit, implicit] = racers.each_ref().map(|racer| racer.work.total());
-        let turn = usize::from(explicit > STIFF_RATIO * implicit);
-        let arrived = racers[turn].step(scene, until);
-        let mut work = none;
-        for racer in &racers {
-            work += racer.work;
-        }
+        let turn = usize::from(racers[0].work > STIFF_RATIO * racers[1].work);
+        let arrived = racers[turn].step(scene, until, work);
         match arrived {
+            Ok(false) if scene.model.network().is_none() && work.total() > MOST => {
+                let t = racers[0].t.max(racers[1].t);
+                return Err(Error::Invalid(format!(
+                    "{} takes {MOST:.0e} evaluations up to t = {t:.3e} of {until:.3e}: end the runs earlier",
+                    scene.name
+                )));
+            }
             Ok(false) => {}
-            Ok(true) => return Ok(Some((turn == 1, work))),
+            Ok(true) if turn == 0 => return Ok(Some(Won::Explicit)),
+            Ok(true) => return Ok(Some(Won::Implicit)),
             Err(Error::Callback(words)) => return Err(Error::Callback(words)),
             // The other one is left.
-            Err(_) => return Ok(Some((turn == 0, work))),
+            Err(_) if turn == 0 => return Ok(Some(Won::Implicit)),
+            Err(_) => return Ok(Some(Won::Neither)),
         }
     }
 }
@@ -66,23 +98,29 @@ pub(crate) fn accurate(is_stiff: bool) -> Result<&'static Method, Error> {
     find(if is_stiff { "radau" } else { "dop853" }).ok_or_else(none)
 }
 
+/// Largest work of both runs of a system of one's own (evaluations), whose time may be of any
+/// length.
+const MOST: f64 = 1e6;
+
 /// A method on its way.
 struct Racer {
     adaptive: Adaptive,
     t: f64,
     y: Vec<f64>,
-    work: Work,
+    /// Work until now (evaluations).
+    work: f64,
 }
 
 impl Racer {
-    /// Takes a step. Returns whether it ends at the time `until` (s).
-    fn step(&mut self, scene: &Scene, until: f64) -> Result<bool, Error> {
+    /// Takes a step, and adds its work. Returns whether it ends at the time `until` (s).
+    fn step(&mut self, scene: &Scene, until: f64, work: &mut Work) -> Result<bool, Error> {
         let system = scene.model.system();
         let taken = self
             .adaptive
             .advance(system, self.t, until - self.t, &mut self.y)?;
         self.t += taken.h;
-        self.work += taken.work;
+        self.work += taken.work.total();
+        *work += taken.work;
         Ok(self.t >= until)
     }
 }

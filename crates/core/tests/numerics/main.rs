@@ -21,6 +21,7 @@ mod observed;
 mod order;
 mod own;
 mod plain;
+mod problems;
 mod radau;
 mod reference;
 mod resting;

@@ -452,3 +452,33 @@ fn known_jumps_end_steps() {
     let wrong = Ode::new(1, |_, _: &[f64], _: &mut [f64]| {}).unwrap();
     assert!(wrong.with_jumps(vec![f64::NAN]).is_err());
 }
+
+/// y' = y cos t, plus a jump of f at -1, from the state at 0 back to that at -2.
+#[test]
+fn reversed_systems_go_back_in_time() {
+    let f = |t: f64, y: &[f64], dydt: &mut [f64]| {
+        dydt[0] = y[0] * t.cos();
+        dydt[1] = if t >= -1.0 { 1.0 } else { 5.0 };
+    };
+    let jacobian = |t: f64, _: &[f64], out: &mut [f64]| {
+        out.copy_from_slice(&[t.cos(), 0.0, 0.0, 0.0]);
+    };
+    for name in ["rk4", "dop853", "radau", "bdf"] {
+        let system = Ode::new(2, f).unwrap().with_jacobian(jacobian);
+        let system = system.with_jumps(vec![-1.0]).unwrap().reversed();
+        let method = method(name);
+        let control = if method.is_adaptive() {
+            Control::Tolerance(1e-9)
+        } else {
+            Control::Step(0.003)
+        };
+        let scene = Scene::new("back", system, vec![1.0, 0.0]);
+        let mut run = Simulation::new(scene, method, control).unwrap();
+        run.advance_to(2.0).unwrap();
+        let [grown, jumped] = [run.state()[0] - (-2f64).sin().exp(), run.state()[1] + 6.0];
+        assert!(
+            grown.abs() < 1e-6 && jumped.abs() < 1e-8,
+            "{name}: {grown:e} {jumped:e}"
+        );
+    }
+}

@@ -337,3 +337,47 @@ fn resumed_runs_keep_their_pattern() {
         assert_eq!(whole.work(), resumed.work(), "{name}");
     }
 }
+
+/// A pattern that is given spares the search for it, and entries spare differences. Entries that a
+/// pattern misses are found.
+#[test]
+fn patterns_and_entries_may_be_given() {
+    const N: u32 = 1500;
+    let rod = || {
+        let f = |_: f64, y: &[f64], dydt: &mut [f64]| {
+            for (k, rate) in dydt.iter_mut().enumerate() {
+                *rate = 1e3 * bend(y, k);
+            }
+        };
+        Ode::new(N as usize, f).unwrap()
+    };
+    let band = || (0..N).flat_map(|i| (i.saturating_sub(1)..(i + 2).min(N)).map(move |j| (i, j)));
+    let systems = [
+        rod(),
+        rod().with_sparsity(band().collect()).unwrap(),
+        rod().with_jacobian_entries(move |_t, _y, entries: &mut Vec<(u32, u32, f64)>| {
+            let value = |i, j| if i == j { -2e3 } else { 1e3 };
+            entries.extend(band().map(|(i, j)| (i, j, value(i, j))));
+        }),
+        rod()
+            .with_sparsity((0..N).map(|i| (i, i)).collect())
+            .unwrap(),
+    ];
+    let start: Vec<_> = (0..N).map(|k| (0.01 * f64::from(k)).sin()).collect();
+    for name in ["bdf", "radau"] {
+        let runs = systems.each_ref().map(|system| {
+            let (y, _, work) = run(name, system, 1.0, start.clone(), 1e-6).unwrap();
+            (y, work.evaluations)
+        });
+        let calls = runs.each_ref().map(|(_, calls)| *calls);
+        println!("{name}: {calls:?}");
+        assert!(calls[1] < calls[0] && calls[2] < calls[1] && calls[3] > calls[1]);
+        for (y, _) in &runs[1..] {
+            let apart = y.iter().zip(&runs[0].0).map(|(a, b)| (a - b).abs());
+            assert!(apart.fold(0.0, f64::max) < 1e-5, "{name}");
+        }
+    }
+    let outside = rod().with_sparsity(vec![(0, N)]);
+    let words = outside.err().unwrap().to_string();
+    assert!(words.contains("no row 0 and column 1500"), "{words}");
+}

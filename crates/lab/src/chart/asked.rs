@@ -4,6 +4,7 @@
 use a3_core::accuracy::Metric;
 use a3_core::{Error, Method, Scene, integrators};
 
+use a3_files::bounds::{HORIZONS, OWN_HORIZONS};
 use a3_files::failure::Failure;
 
 /// Returns the methods that were asked for, each once. If none was named, these are all that
@@ -55,6 +56,15 @@ pub fn check_methods(
         }
     }
     Ok(methods)
+}
+
+/// Checks the end of the runs of a scene (s), if it is given.
+pub fn check_until(scene: &Scene, until: Option<f64>) -> Result<Option<f64>, Failure> {
+    let allowed = match scene.model.network() {
+        Some(_) => HORIZONS,
+        None => OWN_HORIZONS,
+    };
+    until.map(|until| allowed.check(until)).transpose()
 }
 
 /// Checks that a scene's state has the length that its system needs, and finite numbers.

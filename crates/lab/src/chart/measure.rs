@@ -21,6 +21,9 @@ use crate::motion::words;
 
 /// Largest work of a run, in evaluations. A run that blows up may take more.
 const MAX_EVALUATIONS: f64 = 20_000.0;
+/// Largest work of a run of a system of one's own, in evaluations, unless all runs that make its
+/// reference take more: its equations may be stiff, and the time of its runs of any length.
+const MAX_OWN_EVALUATIONS: f64 = 50_000.0;
 /// Smallest ratio of the longest step of a method to its shortest, even if the runs take long.
 const MIN_STEP_RATIO: f64 = 6.0;
 /// Estimated work of a step of an implicit method, in evaluations, right within a factor of three.
@@ -39,6 +42,8 @@ pub struct Study {
     /// Record of the scene, whose other fields are filled in for each run.
     blank: Record,
     pub reference: Option<Reference>,
+    /// Methods that were given up, because a run takes too many evaluations.
+    pub too_costly: Vec<&'static Method>,
     methods: Vec<&'static Method>,
     metric: Metric,
     /// Measurements besides errors and work.
@@ -82,13 +87,14 @@ impl Study {
             ..Record::default()
         };
         Self {
-            frames: Frames::new(until),
+            frames: Frames::of(&scene.model, until),
             modes: spectrum(scene.model.system(), 0.0, &scene.state),
             scope,
             motion,
             scene,
             blank,
             reference: None,
+            too_costly: vec![],
             methods: methods.to_vec(),
             metric,
             measured,
@@ -132,7 +138,11 @@ impl Study {
         let limit = largest_step(method, &self.modes).map_err(Failure::run)?;
         let limit = limit.filter(|limit| limit.step > 0.0);
         let steps = limit.map_or(0.0, |limit| MIN_STEP_RATIO * self.frames.until / limit.step);
-        Ok(MAX_EVALUATIONS.max(steps * each(method)))
+        let most = MAX_EVALUATIONS.max(steps * each(method));
+        Ok(match self.scene.model.network() {
+            Some(_) => most,
+            None => most.min(MAX_OWN_EVALUATIONS),
+        })
     }
 
     /// Estimates the work of all runs, in evaluations.
@@ -165,6 +175,9 @@ impl Study {
     pub fn run(&mut self, data: &mut Data, monitor: &dyn Monitor) -> Result<bool, Failure> {
         for method in self.methods.clone() {
             let (rungs, max_work) = (self.rungs(method)?, self.max_work(method)?);
+            if rungs.is_empty() {
+                self.too_costly.push(method);
+            }
             let mut coarser_run: Option<Record> = None;
             for (i, &control) in rungs.iter().enumerate() {
                 let like = self.like(method, control);
@@ -173,6 +186,10 @@ impl Study {
                 else {
                     return Ok(false);
                 };
+                if record.given_up.is_some() {
+                    self.too_costly.push(method);
+                    break;
+                }
                 if !self.look_beside(method, control, &record, data, monitor)? {
                     return Ok(false);
                 }
@@ -275,7 +292,7 @@ impl Study {
         };
         if let Some(record) = &record {
             check_contact(self.metric, record.still(self.metric), record.until)?;
-            if is_new {
+            if is_new && record.given_up.is_none() {
                 data.runs.add(record.clone());
             }
         }
@@ -298,9 +315,13 @@ impl Study {
             monitor.start();
             monitor.stage(method.name);
         }
-        let Some(reference) = &self.reference else {
+        let Some(reference) = &mut self.reference else {
             return Ok(None);
         };
+        let most = reference.max_work;
+        if !(method.is_implicit() || method.is_own()) {
+            reference.max_work = explicit_work(reference);
+        }
         let timed = self.measured.timed && like.beside.is_none();
         let mut coordinates = match (&data.each, like.beside) {
             (Some(_), None) => vec![0.0; 3 * self.scene.model.particles()],
@@ -313,8 +334,9 @@ impl Study {
             reference,
             &mut coordinates,
             go_on,
-        )?;
-        let Some((record, once)) = found else {
+        );
+        reference.max_work = most;
+        let Some((record, once)) = found? else {
             return Ok(None);
         };
         if let Some(each) = data.each.as_mut().filter(|_| record.lost_at.is_none()) {
@@ -340,6 +362,16 @@ impl Study {
             None
         };
         Ok(Some(Record { seconds, ..record }))
+    }
+}
+
+/// Returns the largest work of a run of an explicit method, in evaluations: little where the system
+/// is stiff, because such runs take alike to any tolerance.
+pub fn explicit_work(reference: &Reference) -> f64 {
+    if reference.is_stiff {
+        MAX_EVALUATIONS.min(reference.max_work)
+    } else {
+        reference.max_work
     }
 }
 
@@ -412,6 +444,8 @@ pub fn compared(
         go_on,
     )
     .map_err(Failure::run)?;
+    let is_too_costly = outcome.is_some_and(|outcome| outcome.is_too_costly());
+    let given_up = is_too_costly.then_some(reference.max_work);
     let Some(Outcome {
         errors,
         work,
@@ -457,6 +491,7 @@ pub fn compared(
         still_impact: still.impact,
         still_state: still.state,
         lost_at: lost.map(|lost| lost.time),
+        given_up,
         guard_impulses: guarded.impulses,
         guard_cuts: guarded.cuts,
         guard_lost: guarded.lost,
@@ -474,10 +509,23 @@ pub fn compared(
 /// Returns the precision of a reference for all errors that a chart may show. `motion` is the
 /// largest distance of the particles from where they start (m).
 pub fn precision(scene: &Scene, motion: f64) -> Precision {
+    let of_numbers = MAX_REFERENCE_NUMBERS / scene.state.len() as f64;
+    let (metric, is_own) = (
+        Metric::of_motion(&scene.model),
+        scene.model.network().is_none(),
+    );
     Precision {
-        metric: Metric::of_motion(&scene.model),
-        uncertainty: UNCERTAINTY * motion,
-        max_work: MAX_REFERENCE_EVALUATIONS.max(MAX_REFERENCE_NUMBERS / scene.state.len() as f64),
+        metric,
+        // Errors of plain numbers are relative to their size.
+        uncertainty: match metric {
+            Metric::State => UNCERTAINTY,
+            _ => UNCERTAINTY * motion,
+        },
+        max_work: if is_own {
+            MAX_REFERENCE_EVALUATIONS
+        } else {
+            MAX_REFERENCE_EVALUATIONS.max(of_numbers)
+        },
     }
 }
 
@@ -489,8 +537,16 @@ pub fn reference(
     scope: Scope,
     precision: Precision,
 ) -> Result<Option<Reference>, Failure> {
-    Reference::new(scene, frames, scope, precision, go_on)
-        .map_err(|e| Failure::run(format!("the reference could not be computed: {e}")))
+    let made = Reference::new(scene, frames, scope, precision, go_on);
+    let made =
+        made.map_err(|e| Failure::run(format!("the reference could not be computed: {e}")))?;
+    let is_own = scene.model.network().is_none();
+    Ok(made.map(|mut reference| {
+        if is_own {
+            reference.max_work = MAX_OWN_EVALUATIONS.max(reference.work.total());
+        }
+        reference
+    }))
 }
 
 /// Measures the computing time of a run: the shortest of several, including `before` if it is

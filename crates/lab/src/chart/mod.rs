@@ -9,7 +9,7 @@ pub mod table;
 pub mod value;
 pub mod words;
 
-pub use asked::{check_contact, check_methods, check_metric, check_scene, methods};
+pub use asked::{check_contact, check_methods, check_metric, check_scene, check_until, methods};
 pub use record::Record;
 pub use value::{Chart, ChartOptions, chart};
 pub use value::{check_motion, look_ahead};

@@ -14,7 +14,7 @@ use super::data::Data;
 use super::measure::Study;
 use super::record::Record;
 use super::table;
-use super::words::unit;
+use super::words::{lasting, unit};
 
 /// Largest error of a run that is drawn, over the error of a run in which nothing moves.
 const MAX_ERROR_RATIO: f64 = 10.0;
@@ -32,6 +32,9 @@ pub fn chart(
     title: &str,
 ) -> WorkPrecision {
     let (until, scope) = (studies[0].frames.until, studies[0].scope());
+    let model = &studies[0].scene.model;
+    // The work of a second says nothing where time has another unit.
+    let is_own = model.network().is_none();
     let problems = studies
         .iter()
         .map(|study| {
@@ -41,13 +44,23 @@ pub fn chart(
             if studies.len() > 1 || study.stiffness() != 1.0 {
                 problem.title = format!("stiffness × {}", study.stiffness());
             }
+            if is_own {
+                // A run that blew up is drawn at the work that it took.
+                for (curve, method) in problem.curves.iter_mut().zip(methods) {
+                    let drawn = drawn(&records, method, metric);
+                    for (run, record) in curve.runs.iter_mut().zip(drawn) {
+                        run.work *= record.lost_at.unwrap_or(until);
+                    }
+                }
+            }
             problem
         })
         .collect();
     WorkPrecision {
         title: format!("Speed against accuracy: {title}"),
         subtitle: format!(
-            "{until} s of motion; each point is a run with another step or tolerance{}",
+            "{} of motion; each point is a run with another step or tolerance{}",
+            lasting(model, until),
             if studies
                 .iter()
                 .any(|study| study.beside(data).next().is_some())
@@ -58,10 +71,11 @@ pub fn chart(
             }
         ),
         x_label: x_label(metric, scope),
-        y_label: if timed {
-            "computing time per simulated second (s)"
-        } else {
-            WORK
+        y_label: match (timed, is_own) {
+            (true, false) => "computing time per simulated second (s)",
+            (true, true) => "computing time (s)",
+            (false, false) => WORK,
+            (false, true) => "work (evaluations of f, linear algebra included)",
         }
         .into(),
         problems,

@@ -114,6 +114,9 @@ pub struct Record {
     /// itself is within 4 % of it.
     #[serde(default)]
     pub beside: Option<f64>,
+    /// Largest work beyond which the run was given up (evaluations), if it was.
+    #[serde(skip)]
+    pub given_up: Option<f64>,
     /// Checksum of the file up to this run, as it was read.
     #[serde(default, skip_serializing)]
     pub check: String,

@@ -4,12 +4,13 @@ use std::fmt::Write;
 
 use a3_core::accuracy::Metric;
 use a3_core::{Control, Method};
+use a3_files::bounds::{LARGEST_STEP, SMALLEST_STEP};
 use a3_files::report::Report;
 
 use super::data::Data;
-use super::measure::Study;
+use super::measure::{Study, explicit_work};
 use super::record::Record;
-use super::words::unit;
+use super::words::{lasting, unit};
 
 /// Decimal digits of the errors in the table, which are 1e-2 to 1e-8.
 const DIGITS: std::ops::RangeInclusive<i32> = 2..=8;
@@ -67,6 +68,9 @@ pub fn words(control: Control) -> String {
         ("ms", 1e3)
     };
     let rounded = (1e3 * per_second * step).round() / 1e3;
+    if !(SMALLEST_STEP..=LARGEST_STEP).contains(&step) {
+        return format!("step {step:.3e} s");
+    }
     match fraction(step, MAX_NUMERATOR) {
         Some(fraction) if (10.0 * rounded).fract() != 0.0 => format!("step {fraction} s"),
         _ => format!("step {rounded} {unit}"),
@@ -129,10 +133,11 @@ pub fn reports(
         } else {
             format!(", stiffness x {}", study.stiffness())
         };
-        let until = study.frames.until;
+        let (model, until) = (&study.scene.model, study.frames.until);
         Report {
             head: format!(
-                "\n{what} for {until} s of {}{of}, to keep the error{of_errors} within\n",
+                "\n{what} for {} of {}{of}, to keep the error{of_errors} within\n",
+                lasting(model, until),
                 study.scene.name,
             ),
             rows: rows(study, data, methods, metric, timed, of_column),
@@ -214,6 +219,15 @@ fn winners(
             text,
             "the collision safeguard acted in {held} of {all} runs, whose order is 1 there (half-filled \
              markers)"
+        );
+    }
+    if !study.too_costly.is_empty() {
+        let names: Vec<_> = study.too_costly.iter().map(|method| method.name).collect();
+        let most = study.reference.as_ref().map_or(0.0, explicit_work);
+        let _ = writeln!(
+            text,
+            "too costly, with runs of more than {most:.0} evaluations: {}",
+            names.join(", ")
         );
     }
     text.push_str("* cheapest:\n");

@@ -3,14 +3,14 @@
 
 use a3_core::accuracy::{Frames, Horizon, Metric, Scope, horizon};
 use a3_core::{Control, Method, Scene};
-use a3_files::bounds::{FACTORS, HORIZONS};
+use a3_files::bounds::FACTORS;
 use a3_files::failure::Failure;
 use a3_files::monitor::Monitor;
 use a3_files::report::Report;
 use a3_files::rows;
 use a3_plot::{Figure, WorkPrecision};
 
-use super::asked::{check_methods, check_metric, check_scene};
+use super::asked::{check_methods, check_metric, check_scene, check_until};
 use super::data::Data;
 use super::data::Each;
 use super::measure::{Measured, Study, stiffened};
@@ -21,8 +21,8 @@ use super::{picture, table};
 /// Options of a [chart](chart()).
 #[derive(Clone, Debug, PartialEq)]
 pub struct ChartOptions {
-    /// End of the runs (s), from 0.01 to 1000; by default as long as errors mean something on the
-    /// scene.
+    /// End of the runs (s), from 0.01 to 1000, or from 1e-15 to 1e15 on a system of one's own; by
+    /// default as long as errors mean something on the scene.
     pub until: Option<f64>,
     /// Error that counts; by default that of the positions or, without particles, of the state.
     pub error: Option<Metric>,
@@ -110,10 +110,7 @@ impl Chart {
             at_end: options.at_end,
         };
         let scope = scope.checked(&scene.model).map_err(Failure::usage)?;
-        let mut until = options
-            .until
-            .map(|until| HORIZONS.check(until))
-            .transpose()?;
+        let mut until = check_until(scene, options.until)?;
         let mut scenes = vec![];
         for &factor in &options.stiffness {
             FACTORS.check(factor)?;
@@ -212,6 +209,13 @@ impl Chart {
     #[must_use]
     pub fn until(&self) -> f64 {
         self.studies[0].frames.until
+    }
+
+    /// Returns the methods whose ladder of steps or tolerances ended, or did not begin, because
+    /// a run takes too many evaluations: on systems of one's own alone.
+    #[must_use]
+    pub fn too_costly(&self) -> &[&'static Method] {
+        &self.studies[0].too_costly
     }
 
     /// Returns whether all runs were measured; false if the monitor stopped them.

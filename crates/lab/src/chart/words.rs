@@ -1,7 +1,7 @@
 //! Scenes and units of errors in words.
 
 use a3_core::accuracy::Metric;
-use a3_core::{Disturbances, Scene};
+use a3_core::{Disturbances, Model, Scene};
 
 /// Returns the unit of a metric, in words.
 pub fn unit(metric: Metric) -> &'static str {
@@ -13,6 +13,15 @@ pub fn unit(metric: Metric) -> &'static str {
         Metric::Momentum => "kg m/s",
         Metric::Penetration => "of thickness",
         Metric::Phase | Metric::Impact => "s",
+    }
+}
+
+/// Says how long runs of a model last: the time of a system of one's own may have any unit.
+pub fn lasting(model: &Model, until: f64) -> String {
+    match model.network() {
+        Some(_) => format!("{until} s"),
+        None if (1e-3..1e6).contains(&until.abs()) => format!("t = 0 to {until}"),
+        None => format!("t = 0 to {until:e}"),
     }
 }
 

@@ -15,6 +15,8 @@ const MIN_MARGIN: f64 = 3.0;
 pub const ENOUGH_MARGIN: f64 = 100.0;
 /// Number of candidates that are shown.
 const SHOWN: usize = 3;
+/// Largest number of steps of a run.
+const MAX_STEPS: f64 = 1e6;
 /// Simulated time of a frame (s).
 const FRAME_TIME: f64 = 1.0 / 60.0;
 
@@ -115,12 +117,16 @@ pub fn within(
     for &method in methods {
         monitor.stage(method.name);
         let mut best: Option<(Candidate, f64)> = None;
-        for control in ladder(&modes, method, &reference.frames, 1_000_000).map_err(Failure::run)? {
+        let most = MAX_STEPS.min(reference.max_work) as u64;
+        for control in ladder(&modes, method, &reference.frames, most).map_err(Failure::run)? {
             let outcome = measure(scene, method, control, reference, &|| monitor.go_on())
                 .map_err(Failure::run)?;
             let Some(outcome) = outcome else {
                 return Ok(None);
             };
+            if outcome.is_too_costly() {
+                break;
+            }
             let candidate = Candidate {
                 method,
                 control,

@@ -2,14 +2,15 @@
 
 use a3_core::accuracy::{Candidate, Frames, Metric, Precision, Reference, Scope, SetBy, shown};
 use a3_core::{Control, Method, Scene};
-use a3_files::bounds::{BUDGETS, ERRORS, HORIZONS};
+use a3_files::bounds::{BUDGETS, ERRORS};
 use a3_files::failure::Failure;
 use a3_files::monitor::Monitor;
 
 use super::search::{ENOUGH_MARGIN, cheapest, within};
 use crate::chart::measure::{precision, reference};
 use crate::chart::{
-    check_contact, check_methods, check_metric, check_motion, check_scene, look_ahead, unit,
+    check_contact, check_methods, check_metric, check_motion, check_scene, check_until, look_ahead,
+    unit,
 };
 use crate::motion::words;
 
@@ -29,8 +30,8 @@ pub struct ChooseOptions {
     pub goal: Goal,
     /// Error that counts; by default that of the positions or, without particles, of the state.
     pub metric: Option<Metric>,
-    /// End of the runs (s), from 0.01 to 1000; by default as long as errors mean something on the
-    /// scene.
+    /// End of the runs (s), from 0.01 to 1000, or from 1e-15 to 1e15 on a system of one's own; by
+    /// default as long as errors mean something on the scene.
     pub until: Option<f64>,
     /// The only particle whose position and phase count, or the only number of a system without
     /// particles; by default all.
@@ -166,10 +167,7 @@ impl<'a> Search<'a> {
             particle: options.particle,
             at_end: options.at_end,
         };
-        options
-            .until
-            .map(|until| HORIZONS.check(until))
-            .transpose()?;
+        check_until(scene, options.until)?;
         match options.goal {
             Goal::Budget(budget) => BUDGETS.check(budget)?,
             // Plain numbers may be of any size.
@@ -191,7 +189,7 @@ impl<'a> Search<'a> {
         let until = self.options.until;
         let horizon = look_ahead(scene, until, 1.0, monitor)?.ok_or_else(stopped)?;
         check_motion(scene, &horizon)?;
-        let frames = Frames::new(horizon.until);
+        let frames = Frames::of(&scene.model, horizon.until);
         monitor.stage("reference");
         let precision = match self.options.goal {
             Goal::Error(error) => Precision {

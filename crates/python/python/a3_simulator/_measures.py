@@ -109,16 +109,22 @@ class Chart(_Drawn):
         unit: unit of the errors; "" if they have none.
         until: end of the runs (s).
         complete: whether all runs were measured.
+        too_costly: names of the methods whose runs take too many evaluations on a system of one's own: their ladders of
+            steps or tolerances end early.
         table: the cost of each method for each error, as text.
         runs: all that was measured of each run, as `a3 chart --data` writes it.
     """
 
-    def __init__(self, source: _a3.Chart, size: Tuple[int, int]) -> None:
+    def __init__(self, source: _a3.Chart, size: Tuple[int, int], sign: int) -> None:
         self._source, self._size, self._forms = source, size, {}
-        self.error, self.until, self.complete = source.about()
+        self.error, until, self.complete = source.about()
+        self.until = sign * until
         self.unit = _UNITS.get(self.error, "")
+        self.too_costly: List[str] = source.too_costly()
         self.table = source.table()
         self.runs: List[Dict[str, Any]] = json.loads(source.json())
+        for run in self.runs:
+            run.update({key: sign * run[key] for key in ("until", "lost_at") if run[key] is not None})
         self.points = [self._point(run) for run in self.runs if run.get("beside") is None]
 
     def _point(self, run: Dict[str, Any]) -> Point:
@@ -272,7 +278,7 @@ class ComparedRun:
     method: str
     #: Step (s), or relative tolerance of an adaptive method.
     setting: float
-    #: States at the times of the comparison, up to a blow-up, (times, numbers).
+    #: States at the times of the comparison, up to a blow-up, (times, numbers), or (times, ...) of the shape of y0.
     states: np.ndarray
     #: Total energy (J) at these times, (times,); empty for scenes without forces.
     energies: np.ndarray
@@ -303,12 +309,12 @@ class Comparison:
     def distance(self, a: int = 0, b: int = 1) -> np.ndarray:
         """Returns the distance of run a from run b at each time that both reached: the root mean square over the
         particles (m) or, without particles, over the numbers of the state."""
-        a_states, b_states = self.runs[a].states, self.runs[b].states
+        a_states, b_states = (run.states.reshape(len(run.states), -1) for run in (self.runs[a], self.runs[b]))
         frames = min(len(a_states), len(b_states))
         n = self._particles
         coordinates, count = (3 * n, n) if n else (a_states.shape[1], a_states.shape[1])
         apart = a_states[:frames, :coordinates] - b_states[:frames, :coordinates]
-        return np.sqrt(np.sum(apart**2, axis=1) / count)
+        return np.sqrt(np.sum(np.abs(apart) ** 2, axis=1) / count)
 
     def to_pandas(self) -> Any:
         """Returns the runs as a `pandas.DataFrame`: a row for each run and time, with method, setting, time (s), energy
@@ -317,7 +323,8 @@ class Comparison:
 
         tables = []
         for run in self.runs:
-            numbers = {f"y{k}": run.states[:, k] for k in range(run.states.shape[1])}
+            flat = run.states.reshape(len(run.states), -1)
+            numbers = {f"y{k}": flat[:, k] for k in range(flat.shape[1])}
             energies = run.energies if len(run.energies) else np.full(len(run.states), np.nan)
             head = {"method": run.method, "setting": run.setting, "time": self.times[: len(run.states)]}
             tables.append(pandas.DataFrame({**head, "energy": energies, **numbers}))
@@ -350,7 +357,8 @@ def chart(
     Args:
         scene: scene as in `Simulation`.
         methods: names or letters, or `a3.Method`; by default all that support the scene.
-        until: end of the runs (s), from 0.01 to 1000; by default as long as errors mean something on the scene.
+        until: end of the runs (s), from 0.01 to 1000, or from 1e-15 to 1e15 for a system; below 0 for one of first
+            order that goes back in time. By default as long as errors mean something on the scene.
         error: what counts as the error: "position" (m, root mean square over the particles), "energy" (J), "strain",
             "momentum" (kg m/s), "phase" (s), "penetration", "impact" (s); "state" of systems without particles.
         particle: the only particle whose position counts.
@@ -366,16 +374,17 @@ def chart(
         options: grid, wind, swing, self_collision and forces, as in `Simulation`.
     """
     names = _names(methods)
-    scene_given = given(_measured(scene, quantity), **options)
+    measured, end, sign = _span(_measured(scene, quantity), until)
+    scene_given = given(measured, **options)
     one = _only(scene, particle, component)
     timed = _timed(work)
     source = _work(
         lambda monitor: _a3.chart(
-            scene_given, names, monitor, until, error, one, at_end, timed, spread, list(stiffness)
+            scene_given, names, monitor, end, error, one, at_end, timed, spread, list(stiffness)
         ),
         progress,
     )
-    return Chart(source, size)
+    return Chart(source, size, sign)
 
 
 def choose(
@@ -405,17 +414,18 @@ def choose(
         until, particle, component, quantity, at_end, work, progress, options: as in `chart`.
     """
     names = _names(methods)
-    scene_given = given(_measured(scene, quantity), **options)
+    measured, end, sign = _span(_measured(scene, quantity), until)
+    scene_given = given(measured, **options)
     one = _only(scene, particle, component)
     timed = _timed(work)
     found, _, end, floor = _work(
         lambda monitor: _a3.choose(
-            scene_given, names, monitor, error, budget, of, until, one, at_end, timed
+            scene_given, names, monitor, error, budget, of, end, one, at_end, timed
         ),
         progress,
     )
-    others = [Choice(*row, end, floor) for row in found[1:]]
-    return Choice(*found[0], end, floor, others)
+    others = [Choice(*row, sign * end, floor) for row in found[1:]]
+    return Choice(*found[0], sign * end, floor, others)
 
 
 def stability(
@@ -468,8 +478,10 @@ def compare(
     times, compared, particles, length = _work(
         lambda monitor: _a3.compare(scene_given, asked, monitor, until, frames), progress
     )
+    layout = getattr(scene, "_layout", None)
+    shaped = layout.shaped if layout else np.asarray
     of_runs = [
-        ComparedRun(method, setting, states.reshape(-1, length), energies, cost, blow_up, time, particles)
+        ComparedRun(method, setting, shaped(states.reshape(-1, length)), energies, cost, blow_up, time, particles)
         for method, setting, states, energies, cost, blow_up, time in compared
     ]
     return Comparison(times, of_runs, particles)
@@ -507,6 +519,8 @@ def _only(scene: SceneLike, particle: Optional[int], component: Optional[int]) -
             raise InputError(f"{wrong}: {getattr(scene, 'name', scene)} has {kind}: give {right}={value}")
         if isinstance(value, bool) or value is not None and value < 0:
             raise InputError(f"{name}: a number from 0 is expected, not {value}")
+    if component is not None and np.iscomplexobj(getattr(scene, "y0", None)):
+        raise InputError(f"component: the numbers are complex: give quantity=lambda t, y: y[{component}]")
     return component if is_plain else particle
 
 
@@ -517,6 +531,13 @@ def _measured(scene: SceneLike, quantity: Optional[Derivative]) -> SceneLike:
     if not isinstance(scene, System) or scene.masses is not None:
         raise InputError(f"quantity: {getattr(scene, 'name', scene)} has particles: give error=, or particle=")
     return scene._measured_by(quantity)
+
+
+def _span(scene: SceneLike, until: Optional[float]) -> Tuple[SceneLike, Optional[float], int]:
+    """Returns a scene, the length of its runs, and -1 if they go back in time, otherwise 1."""
+    if until is None or not until < 0 or not isinstance(scene, System):
+        return scene, until, 1
+    return scene._reversed("until"), -until, -1
 
 
 def _timed(work: str) -> bool:

@@ -32,20 +32,31 @@ class System:
     Args:
         f: function of the time t and the state y, an array (n,), that returns y', an array (n,). The result depends on
             t and y alone.
-        y0: state at t = 0, (n,).
+        y0: state at t = 0, (n,), or an array of any other shape, also of complex numbers: y and y' have that shape
+            then, and so have the states of runs.
         name: name, for charts and errors; by default that of f.
         scale: least size to which the errors of adaptive methods are relative, one for all numbers or (n,). By default
             an error is relative to the largest size that its number has had, and a billionth of that of the largest
             number of y0 is allowed besides.
-        jac: function of t and y that returns the Jacobian df/dy, (n, n), for stiff methods and stability. Without it,
-            differences of f are taken; of a system of more than 1024 numbers they always are.
+        jac: function of t and y that returns the Jacobian df/dy, (n, n), for stiff methods and stability: an array or, of
+            any number of numbers, a sparse matrix of SciPy. Of y0 of another shape, n is its size, and numbers are in
+            C order. Without it, differences of f are taken; in place of an array of a system of more than 1024 numbers
+            they are, too.
+        sparsity: which numbers act on which, so that few differences are taken: a sparse matrix of SciPy or an array,
+            (n, n), that is 0 where the Jacobian always is, or pairs of rows and columns, (k, 2). By default it is found
+            by some evaluations, of which it spares most.
         args: further arguments of f and jac, after t and y.
         tstops: times at which f or one of its derivatives jumps: a step of each of a3's methods ends there.
             f at such a time is that after the jump, so compare t with the same numbers.
 
-    Where a scene is expected, a system can stand. Arrays that f gets are its own: it may keep or change them.
+    Where a scene is expected, a system can stand. Arrays that f gets are its own: it may keep or change them. Methods of
+    one's own and of other libraries get states as flat real numbers: the real and the imaginary part of each in turn.
     """
 
+    #: How the state is an array of flat real numbers; `None` if it is one.
+    _layout: Optional["_Layout"] = None
+    #: Whether runs go back in time.
+    _backward = False
     #: Masses (kg), (n,), of a system of particles.
     masses: Optional[Floats] = None
     #: Whether forces depend on positions and time alone.
@@ -56,6 +67,8 @@ class System:
     _jac: Optional[Derivative] = None
     #: Least size of each number to which errors are relative; empty where it is derived.
     _scales: Sequence[float] = ()
+    #: Row and column of each entry of the Jacobian that may differ from 0; empty where they are found.
+    _sparsity: Sequence[Tuple[int, int]] = ()
     #: Times at which f jumps.
     _jumps: Sequence[float] = ()
     #: Number of quantities by which states are compared, and the function that returns them; 0 for the state's numbers.
@@ -69,20 +82,29 @@ class System:
         name: Optional[str] = None,
         scale: Optional[npt.ArrayLike] = None,
         jac: Optional[Derivative] = None,
+        sparsity: Any = None,
         args: Sequence[Any] = (),
         tstops: npt.ArrayLike = (),
     ) -> None:
         self.f: Union[Derivative, Forces] = _with(args, f)
         self._jac = None if jac is None else _with(args, jac)
-        self.y0 = _numbers("y0", y0, (-1,))
+        kind = complex if np.iscomplexobj(y0) else float
+        self.y0 = _numbers("y0", y0, None, kind)
         if self.y0.size == 0:
             raise InputError("y0: a system has at least one number")
         self.name = name or _name(f, "system")
         self._state = self.y0
+        if self.y0.ndim != 1 or kind is complex:
+            self._layout = layout = _Layout(self.y0)
+            self._state = layout.flat(self.y0)
+            self.f = _OfState(self.f, layout, layout.flat)
+            self._jac = self._jac and _OfState(self._jac, layout, layout.square)
         self._jumps = _numbers("tstops", tstops, (-1,))
+        if sparsity is not None:
+            self._sparsity = _places(sparsity, self.y0.size, self._state.size // self.y0.size)
         if scale is not None:
             same = np.broadcast_to(scale, self.y0.shape) if np.ndim(scale) == 0 else scale
-            self._scales = _numbers("scale", same, self.y0.shape)
+            self._scales = _numbers("scale", same, self.y0.shape).repeat(self._state.size // self.y0.size)
             if not (self._scales > 0).all():
                 raise InputError("scale: a size is a number above 0")
 
@@ -125,18 +147,37 @@ class System:
         system.y0 = system._state = np.concatenate([x.T.ravel(), v.T.ravel()])
         return system
 
+    def _entries(self) -> Optional["_Entries"]:
+        """Returns the Jacobian as a function that returns rows, columns and values, if it is a sparse matrix."""
+        jac: Any = self._jac
+        try:
+            is_sparse = hasattr(jac(0.0, self._state.copy()), "tocoo")
+        except Exception:
+            # It will come out where the Jacobian is used.
+            is_sparse = False
+        return _Entries(jac, self._state.size) if is_sparse else None
+
     def _measured_by(self, quantity: Derivative) -> "System":
         """Returns this system with states that are compared by a number, or an array, of t and y."""
         if not callable(quantity):
             raise InputError(f"quantity: a function is expected, not {type(quantity).__name__}")
 
-        def flat(t: float, y: Floats) -> Floats:
-            return np.ravel(quantity(t, y))
+        def ravel(found: npt.ArrayLike, name: str) -> Floats:
+            flat = np.ravel(found)
+            return flat.view(float) if np.iscomplexobj(flat) else flat
 
-        flat.__name__ = _name(quantity, "quantity")
+        flat = _OfState(quantity, self._layout, ravel, "quantity")
         measured = copy.copy(self)
-        measured._quantities = (flat(0.0, self.y0.copy()).size, flat)
+        measured._quantities = (flat(0.0, self._state.copy()).size, flat)
         return measured
+
+    def _reversed(self, what: str) -> "System":
+        """Returns this system with the time reversed: its time t is -t of this one. `what` asks for that."""
+        if self.masses is not None:
+            raise InputError(f"{what}: only a system y' = f(t, y) goes back in time: {self.name} has particles")
+        back = copy.copy(self)
+        back._backward, back.name = True, f"{self.name} backward"
+        return back
 
     def __repr__(self) -> str:
         return f"<System {self.name} of {self.y0.size} numbers>"
@@ -318,18 +359,102 @@ class _With:
         return self.function(*args, *self.args)
 
 
+class _Layout:
+    """How an array of a shape, perhaps of complex numbers, is one of flat real numbers."""
+
+    def __init__(self, like: Any) -> None:
+        self.shape, self.kind = like.shape, like.dtype
+
+    def shaped(self, flat: Floats) -> Any:
+        """Returns the array, or an array of such arrays, of flat real numbers."""
+        return flat.view(self.kind).reshape(flat.shape[:-1] + self.shape)
+
+    def flat(self, array: npt.ArrayLike, name: str = "y") -> Floats:
+        """Returns the flat real numbers of an array, which a function of this name returned."""
+        return self._read(array, name, self.shape).reshape(-1).view(float)
+
+    def square(self, jacobian: Any, name: str) -> Any:
+        """Returns a Jacobian, (n, n), for the flat real numbers."""
+        is_sparse = hasattr(jacobian, "tocoo")
+        size = math.prod(self.shape)
+        full = jacobian if is_sparse else self._read(jacobian, name, (size, size))
+        if self.kind != complex:
+            return full
+        if is_sparse:
+            raise InputError(f"{name} returned a sparse matrix, which is of real numbers only: return an array")
+        parts = np.array([[full.real, -full.imag], [full.imag, full.real]])
+        return parts.transpose(2, 0, 3, 1).reshape(2 * size, 2 * size)
+
+    def _read(self, array: npt.ArrayLike, name: str, shape: Sequence[int]) -> Any:
+        found = np.asarray(array)
+        if found.shape != tuple(shape) or not np.can_cast(found.dtype, self.kind, "same_kind"):
+            what = f"an array of shape {found.shape}" if found.dtype.kind in "biufc" else type(array).__name__
+            kind = "real " if found.dtype.kind == "c" else ""
+            raise InputError(f"{name} returned {what}, where {kind}numbers of shape {tuple(shape)} are expected")
+        return np.ascontiguousarray(found, self.kind)
+
+
+class _OfState:
+    """A function of t and an array of a layout, as one of t and flat real numbers. `read` reads its result."""
+
+    def __init__(self, function: Any, layout: Optional[_Layout], read: Any, otherwise: str = "the function") -> None:
+        self.function, self.layout, self.read = function, layout, read
+        self.__name__ = _name(function, otherwise)
+
+    def __call__(self, t: float, y: Floats) -> Any:
+        return self.read(self.function(t, self.layout.shaped(y) if self.layout else y), self.__name__)
+
+
+class _Entries:
+    """The rows, columns and values of a function that returns a sparse matrix of SciPy, (3, k)."""
+
+    def __init__(self, function: Any, size: int) -> None:
+        self.function, self.size, self.__name__ = function, size, _name(function, "jac")
+
+    def __call__(self, t: float, y: Floats) -> Floats:
+        found = self.function(t, y)
+        if not hasattr(found, "tocoo") or found.shape != (self.size, self.size):
+            what = f"an array of shape {found.shape}" if hasattr(found, "shape") else type(found).__name__
+            shape = (self.size, self.size)
+            raise InputError(f"{self.__name__} returned {what}, where a sparse matrix of shape {shape} is expected")
+        entries = found.tocoo()
+        return np.array([entries.row, entries.col, entries.data], dtype=float)
+
+
+def _places(sparsity: Any, size: int, parts: int) -> Sequence[Tuple[int, int]]:
+    """Returns the rows and columns of a pattern: a matrix, sparse or not, or an array of them. Each number has parts."""
+    if hasattr(sparsity, "tocoo"):
+        entries, shape = sparsity.tocoo(), sparsity.shape
+        places = np.column_stack([entries.row, entries.col])[entries.data != 0]
+    else:
+        array = np.asarray(sparsity)
+        is_matrix = array.dtype == bool or array.shape == (size, size) != (2, 2)
+        shape, places = (array.shape, np.argwhere(array)) if is_matrix else ((size, size), array)
+    if shape != (size, size) or places.ndim != 2 or places.shape[1] != 2 or places.dtype.kind not in "iu":
+        raise InputError(
+            f"sparsity: a sparse matrix or an array of shape {(size, size)}, or pairs of a row and a column are expected"
+        )
+    if places.size == 0:
+        raise InputError("sparsity: no entry may differ from 0: leave it out where f does not depend on y")
+    if (wrong := (places < 0) | (places >= size)).any():
+        row, column = places[wrong.any(axis=1)][0]
+        raise InputError(f"sparsity: there is no row {row} and column {column} of {size} numbers: they begin at 0")
+    of_parts = [(i, j) for i in range(parts) for j in range(parts)]
+    return [(parts * int(row) + i, parts * int(column) + j) for row, column in places for i, j in of_parts]
+
+
 def _name(function: Any, otherwise: str) -> str:
     name = getattr(function, "__name__", otherwise)
     return otherwise if name == "<lambda>" else name
 
 
-def _numbers(what: str, given: npt.ArrayLike, shape: Sequence[int]) -> Floats:
-    """Returns an array of its own, of finite numbers. A length of -1 is any."""
+def _numbers(what: str, given: npt.ArrayLike, shape: Optional[Sequence[int]], kind: Type[Any] = float) -> Floats:
+    """Returns an array of its own, of finite numbers of a kind. A length of -1 is any, as is a shape of `None`."""
     try:
-        array = np.array(given).astype(float, casting="same_kind")
+        array = np.array(given).astype(kind, order="C", casting="same_kind")
     except (TypeError, ValueError):
         raise InputError(f"{what}: numbers are expected, not {type(given).__name__}") from None
-    if array.ndim != len(shape) or any(n not in (-1, m) for n, m in zip(shape, array.shape)):
+    if shape is not None and (array.ndim != len(shape) or any(n not in (-1, m) for n, m in zip(shape, array.shape))):
         wanted = ", ".join("n" if n < 0 else str(n) for n in shape) + ("," if len(shape) == 1 else "")
         raise InputError(f"{what}: an array of shape ({wanted}) is expected, not {array.shape}")
     if not np.isfinite(array).all():

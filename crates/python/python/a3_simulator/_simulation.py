@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Dict, NamedTuple, Optional, Sequence, Tuple, Union
+import contextlib
+from typing import TYPE_CHECKING, Any, Callable, Dict, Iterator, NamedTuple, Optional, Sequence, Tuple, Union
 
 import numpy as np
 
 from . import _a3
+from ._errors import BlowUp, InputError
 from ._given import given
-from ._own import Forces, Method, method_name
+from ._own import Forces, Method, System, _numbers, method_name
 from ._progress import progress_bar
 from ._scenes import SceneLike
 
@@ -92,6 +94,7 @@ class Simulation(_a3.Run):
         forces: functions of one's own, each of the time t (s), the positions x (m), (n, 3), and the velocities v
             (m/s), (n, 3), that return forces (N), (n, 3), to be added to those of the scene. They depend on t, x and
             v alone. Implicit methods hold them constant within an iteration.
+        backward: whether a system y' = f(t, y) goes back in time: its times are then 0 and below.
 
     Raises:
         InputError: there is no such scene or method, a key of the scene has a fault, or the method does not support
@@ -103,6 +106,10 @@ class Simulation(_a3.Run):
 
     #: The arguments, to make the run again.
     _given: Tuple[tuple, Dict[str, Any]]
+    #: -1 of a run that goes back in time, otherwise 1.
+    _sign: int
+    #: How the state is an array of flat numbers; `None` if it is one.
+    _layout: Any
 
     def __new__(  # type: ignore[misc]
         cls,
@@ -118,10 +125,16 @@ class Simulation(_a3.Run):
         absolute: Optional[float] = None,
         max_step: Optional[float] = None,
         forces: Sequence[Forces] = (),
+        backward: bool = False,
     ) -> "Simulation":
         name = None if method is None else method_name(method)
+        run_scene = scene
+        if backward:
+            if not isinstance(scene, System):
+                raise InputError("backward: only a system y' = f(t, y) goes back in time")
+            run_scene = scene._reversed("backward")
         given_scene = given(
-            scene, grid=grid, wind=wind, swing=swing, self_collision=self_collision, forces=forces
+            run_scene, grid=grid, wind=wind, swing=swing, self_collision=self_collision, forces=forces
         )
         run: Any = super().__new__(cls, given_scene, name, step, tolerance, absolute, max_step)
         options = {
@@ -132,7 +145,9 @@ class Simulation(_a3.Run):
             "absolute": absolute,
             "max_step": max_step,
             "forces": forces,
+            "backward": backward,
         }
+        run._sign, run._layout = -1 if backward else 1, getattr(scene, "_layout", None)
         run._given = (scene, method, step, tolerance), options
         return run
 
@@ -151,11 +166,64 @@ class Simulation(_a3.Run):
             BlowUp: the run blew up. It is then back at its last sound state.
             InputError: the run is past that time, or the time is not finite.
         """
-        with progress_bar(progress, self.time, time) as report:
-            self.advance(time, report)
+        ends = self._passed(self.time), self._passed(time)
+        with progress_bar(progress, *ends) as report, self._told():
+            self.advance(ends[1], report)
+
+    def advance_until(self, function: Callable[[float, Any], float], time: float, direction: int = 0) -> bool:
+        """Advances to the first time at which a function of t and the state passes through 0, or else to a time (s).
+
+        The time is found on the method's own polynomial, to rounding. Returns whether it was found; the state is then
+        that just after it. A direction above 0 is a passage from below, one below 0 from above.
+        """
+        layout, sign = self._layout, self._sign
+
+        def seen(t: float, y: Any) -> float:
+            return function(sign * t, layout.shaped(y) if layout else y)
+
+        is_as_seen = layout is None and sign > 0 or not callable(function)
+        with self._told():
+            return super().advance_until(function if is_as_seen else seen, self._passed(time), direction)
+
+    def set_state(self, state: Any, time: Optional[float] = None) -> None:
+        """Continues from another state of a system of one's own, at another time or this one."""
+        layout, flat = self._layout, state
+        if layout:
+            flat = layout.flat(_numbers("state", state, layout.shape, layout.kind.type))
+        super().set_state(flat, None if time is None else self._passed(time))
+
+    @property
+    def time(self) -> float:
+        """The simulated time (s)."""
+        return self._sign * super().time + 0.0
+
+    @property
+    def state(self) -> Any:
+        """State y: all x, all y and all z (m), then the velocities (m/s) in the same order; then the rotations and angular
+        momenta of rigid bodies. Of a system of first order, its own numbers, in their shape."""
+        flat = super().state
+        return self._layout.shaped(flat) if self._layout else flat
+
+    def _passed(self, time: float) -> float:
+        """Returns how far a time is from 0, in the direction of the run."""
+        if self._sign < 0 < time:
+            raise InputError(f"the run goes back in time: a time is 0 or below, such as -10, not {time}")
+        return self._sign * time
+
+    @contextlib.contextmanager
+    def _told(self) -> Iterator[None]:
+        """Tells the time of a blow-up as that of the run."""
+        try:
+            yield
+        except BlowUp as lost:
+            if self._sign > 0:
+                raise
+            words = str(lost).replace("t = ", "t = -", 1)
+            raise BlowUp(words, lost.step, -lost.time, lost.particle) from None
 
     def states_at(self, times: Sequence[float], progress: bool = False) -> np.ndarray:
-        """Advances to each of these times (s), and returns the states there, (times, numbers).
+        """Advances to each of these times (s), and returns the states there, (times, numbers); for a state of another
+        shape, (times, ...) of it.
 
         Args:
             times: in their order, from the present time of the run on (s).
@@ -168,7 +236,7 @@ class Simulation(_a3.Run):
         for time in times:
             self.advance_to(time, progress)
             states.append(self.state)
-        return np.array(states).reshape(len(states), self.state.size)
+        return np.array(states).reshape(len(states), *self.state.shape)
 
     @property
     def energy(self) -> Optional[Energy]:

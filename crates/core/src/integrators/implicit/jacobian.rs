@@ -77,6 +77,10 @@ pub(super) struct Jacobian {
     changed: Vec<f64>,
     /// Changes of the unknowns that follow from a sparse matrix, and their sizes.
     follow: Vec<[f64; 2]>,
+    /// Entries of a sparse matrix that the system knows.
+    entries: Vec<(u32, u32, f64)>,
+    /// Whether the system knows its pattern.
+    is_given: bool,
 }
 
 impl Jacobian {
@@ -87,6 +91,8 @@ impl Jacobian {
         let mut is_plain = true;
         system.measures(&mut |_, measure| is_plain &= measure == Measure::Plain);
         let is_central = is_rigid || !is_plain && system.mechanics().is_none();
+        let given = system.sparsity().iter().copied();
+        let given = pattern_of(count, given).filter(|_| count >= MANY && !is_central);
         Self {
             units: Vec::with_capacity(count),
             evaluation: if is_rigid {
@@ -95,13 +101,15 @@ impl Jacobian {
                 system.evaluation_cost()
             },
             unknowns,
-            matrix: full(count),
+            is_given: given.is_some(),
+            searches: given.is_none() && count >= MANY && !is_central,
+            matrix: given.map_or_else(|| full(count), sparse),
             is_central,
-            searches: count >= MANY && !is_central,
             at: vec![0.0; dim],
             f: vec![0.0; dim],
             changed: vec![0.0; dim],
             follow: vec![],
+            entries: vec![],
         }
     }
 
@@ -147,6 +155,9 @@ impl Jacobian {
 
     /// Forgets the pattern, because the system may have changed.
     pub fn forget(&mut self) {
+        if self.is_given {
+            return;
+        }
         self.searches = self.unknowns.len() >= MANY && !self.is_central;
         if matches!(self.matrix, Matrix::Sparse(..)) {
             self.matrix = full(self.unknowns.len());
@@ -271,9 +282,12 @@ impl Jacobian {
     }
 
     /// Forms the Jacobian at y, for steps of about a (s). One that the system knows counts as an
-    /// evaluation for each of its columns.
+    /// evaluation for each of its columns or, if it is sparse, for each of their colours.
     pub fn form(&mut self, system: &dyn ParticleSystem, t: f64, a: f64, y: &[f64]) -> Work {
         let count = self.unknowns.len();
+        if let Some(work) = self.take_entries(system, t, y) {
+            return work;
+        }
         if let Matrix::Full(matrix) = &mut self.matrix
             && count == y.len()
             && count <= MAX_DENSE
@@ -305,6 +319,46 @@ impl Jacobian {
             }
         }
         work
+    }
+
+    /// Takes the entries at y of a sparse matrix that the system knows. Returns the cost; `None` if
+    /// the system is small, or its matrix is not known or not sparse.
+    fn take_entries(&mut self, system: &dyn ParticleSystem, t: f64, y: &[f64]) -> Option<Work> {
+        let is_dense = matches!(self.matrix, Matrix::Full(_)) && !self.searches;
+        self.entries.clear();
+        if is_dense || !system.jacobian_entries(t, y, &mut self.entries) {
+            return None;
+        }
+        let count = self.unknowns.len();
+        let entries = &self.entries;
+        loop {
+            if let Matrix::Sparse(pattern, values) = &mut self.matrix {
+                values.fill(0.0);
+                let put = |(row, column, value): &(u32, u32, f64)| {
+                    let places = pattern.column(*column as usize);
+                    let place = pattern.rows[places.clone()].binary_search(row).ok()?;
+                    values[places.start + place] += value;
+                    Some(())
+                };
+                if entries.iter().map(put).all(|is_put| is_put.is_some()) {
+                    self.units.clear();
+                    self.units.resize(count, [1.0, 0.0]);
+                    return Some(Work::of(pattern.colours.len() as u64));
+                }
+            }
+            // Entries that were 0 until now.
+            let known = match &self.matrix {
+                Matrix::Sparse(pattern, _) => pattern.places(),
+                Matrix::Full(_) => vec![],
+            };
+            let new = entries.iter().map(|(row, column, _)| (*row, *column));
+            self.searches = false;
+            let Some(found) = pattern_of(count, known.into_iter().chain(new)) else {
+                self.matrix = full(count);
+                return None;
+            };
+            self.matrix = sparse(found);
+        }
     }
 
     /// Searches the pattern of the matrix near y. Returns the cost, and whether it has become
@@ -467,6 +521,22 @@ impl Jacobian {
             });
         (Work::of(1), is_met)
     }
+}
+
+/// Returns the pattern of an order with entries in these rows and columns, if there are some, and
+/// few.
+fn pattern_of(order: usize, entries: impl Iterator<Item = (u32, u32)>) -> Option<Pattern> {
+    let mut columns = vec![vec![]; order];
+    let mut is_empty = true;
+    for (row, column) in entries {
+        columns[column as usize].push(row);
+        is_empty = false;
+    }
+    for rows in &mut columns {
+        rows.sort_unstable();
+        rows.dedup();
+    }
+    Pattern::of(&columns, MOST).filter(|_| !is_empty)
 }
 
 /// Returns a matrix of zeros of a pattern.

@@ -113,6 +113,13 @@ impl Pattern {
         self.starts[j]..self.starts[j + 1]
     }
 
+    /// Returns the row and the column of each entry.
+    pub fn places(&self) -> Vec<(u32, u32)> {
+        let columns = 0..self.starts.len() - 1;
+        let of = |j: usize| self.column(j).map(move |k| (self.rows[k], j as u32));
+        columns.flat_map(of).collect()
+    }
+
     /// Returns the pattern with the entries of both, of the same size; see [`find`](Self::find).
     pub fn joined(&self, other: &Self, most: usize) -> Option<Self> {
         let both = (0..self.starts.len() - 1).map(|j| {
