@@ -123,6 +123,22 @@ fn a_chart_has_the_runs_of_the_command() {
     let scene = a3::scene("pendulum").unwrap();
     let chart = a3::chart(&scene, &methods, &until(0.5), &()).unwrap();
     assert_eq!(chart.csv().unwrap(), written);
+    // What the table says in words, the winners are as values.
+    let (table, winners) = (chart.table(), chart.winners().collect::<Vec<_>>());
+    let (_, words) = table.split_once("* cheapest:\n").unwrap();
+    for method in methods {
+        let wins = winners.iter().any(|(_, run)| run.solver == method.name);
+        assert_eq!(words.contains(method.title), wins, "{}", method.name);
+    }
+    let is_cheapest = |(error, best): &(f64, &a3::Record)| {
+        let keeps = |run: &&a3::Record| run.error(chart.metric()) <= *error;
+        let works = chart.runs().filter(keeps).map(|run| run.work);
+        keeps(best) && best.work == works.fold(f64::INFINITY, f64::min)
+    };
+    assert!(
+        winners.len() > 2 && winners.iter().all(is_cheapest),
+        "{words}"
+    );
     assert!(String::from_utf8_lossy(&command.stdout).starts_with(&chart.table()));
 }
 

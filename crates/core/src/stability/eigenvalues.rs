@@ -1,4 +1,5 @@
-//! Eigenvalues of a matrix by the QR algorithm, in a limited number of iterations.
+//! Eigenvalues of a matrix by the QR algorithm, in a limited number of iterations, and eigenvectors
+//! by inverse iteration.
 
 use nalgebra::{Complex, DMatrix, DVector, Schur};
 
@@ -27,6 +28,19 @@ pub(super) fn eigenvalues(matrix: &DMatrix<f64>) -> Vec<Complex<f64>> {
         .or_else(|| schur(reflected(), PRECISIONS[1]))
         .map(|schur| schur.complex_eigenvalues().iter().copied().collect())
         .unwrap_or_default()
+}
+
+/// Returns the vector of length 1 that a nearly singular matrix nearly takes to zero, by inverse
+/// iteration; `None` if the matrix is exactly singular.
+pub(super) fn kernel(matrix: DMatrix<Complex<f64>>) -> Option<DVector<Complex<f64>>> {
+    let mut random = SplitMix(3);
+    let any = |_, _| Complex::new(random.between(-1.0, 1.0), 0.0);
+    let mut vector = DVector::from_fn(matrix.nrows(), any);
+    let factors = matrix.lu();
+    for _ in 0..3 {
+        vector = factors.solve(&vector)?.normalize();
+    }
+    Some(vector)
 }
 
 #[cfg(test)]

@@ -5,9 +5,9 @@
 //! Modes of a small first-order system, or of one with constraints or rigid bodies: eigenvalues and
 //! eigenvectors of its Jacobian.
 
-use nalgebra::{Complex, DMatrix, DVector, Vector3};
+use nalgebra::{Complex, DMatrix, Vector3};
 
-use super::eigenvalues::eigenvalues;
+use super::eigenvalues::{eigenvalues, kernel};
 use super::limit::{GROWTH, tenfold_time};
 use super::mode::Mode;
 use crate::columns::columns_mut;
@@ -371,13 +371,7 @@ impl Jacobian {
         for k in 0..self.unknowns.len() {
             matrix[(k, k)] -= l;
         }
-        let factors = matrix.lu();
-        let mut random = SplitMix(3);
-        let any = |_, _| Complex::new(random.between(-1.0, 1.0), 0.0);
-        let mut shape = DVector::from_fn(self.unknowns.len(), any);
-        for _ in 0..3 {
-            shape = factors.solve(&shape)?.normalize();
-        }
+        let shape = kernel(matrix)?;
         let mut whole = vec![0.0; self.length];
         for (k, z) in self.unknowns.iter().zip(&shape) {
             whole[*k] = z.re;

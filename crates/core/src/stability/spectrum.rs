@@ -6,12 +6,11 @@
 //! are those of the matrix [[0, w], [-K / w, -D]] of a first-order system, for any w > 0 (Tisseur,
 //! Meerbergen, *The quadratic eigenvalue problem*, SIAM Review 43, 2001).
 
-use nalgebra::{Complex, DMatrix, DVector, SymmetricEigen};
+use nalgebra::{Complex, DMatrix, SymmetricEigen};
 
-use super::eigenvalues::{MAX_ITERATIONS, PRECISIONS, eigenvalues};
+use super::eigenvalues::{MAX_ITERATIONS, PRECISIONS, eigenvalues, kernel};
 use super::linearised::{Jacobian, MAX_DENSE_LENGTH};
 use super::mode::{MIN_MIXING, Mixing, Mode, Normalised, dot, normalise, sort};
-use crate::random::SplitMix;
 use crate::system::{Linearized, Mechanics, ParticleSystem, kick_reads_velocity};
 
 /// Largest number of products with the stiffness for a spectrum: enough for three exact digits of
@@ -333,13 +332,7 @@ impl Pencil {
         for k in 0..self.unknowns.len() {
             matrix[(k, k)] += l * l;
         }
-        let factors = matrix.lu();
-        let mut random = SplitMix(3);
-        let any = |_, _| Complex::new(random.between(-1.0, 1.0), 0.0);
-        let mut shape = DVector::from_fn(self.unknowns.len(), any);
-        for _ in 0..3 {
-            shape = factors.solve(&shape)?.normalize();
-        }
+        let shape = kernel(matrix)?;
         // Phase of the moment with the largest displacements.
         let square: Complex<f64> = shape.iter().map(|z| z * z).sum();
         let turn = Complex::from_polar(1.0, -0.5 * square.arg());

@@ -141,7 +141,7 @@ pub fn reports(
                 study.scene.name,
             ),
             rows: rows(study, data, methods, metric, timed, of_column),
-            foot: winners(study, data, methods, metric, timed, unit),
+            foot: words_of_winners(study, data, methods, metric, timed, unit),
         }
     });
     reports.collect()
@@ -196,9 +196,32 @@ fn resolved(study: &Study, data: &Data, metric: Metric) -> f64 {
     of_runs.fold(0.0, f64::max)
 }
 
+/// Returns the largest error that says anything about a study: that of a run in which nothing
+/// moves.
+fn still(study: &Study, data: &Data, metric: Metric) -> f64 {
+    let of_runs = study.records(data).map(|r| r.still(metric));
+    of_runs.fold(f64::INFINITY, f64::min)
+}
+
+/// Returns each error of the table that says something about a study, and the cheapest run that
+/// keeps it.
+pub fn winners<'a>(
+    study: &'a Study,
+    data: &'a Data,
+    metric: Metric,
+    timed: bool,
+) -> impl Iterator<Item = (f64, &'a Record)> {
+    let known = resolved(study, data, metric)..=still(study, data, metric);
+    let errors = DIGITS.map(|digits| 10f64.powi(-digits));
+    let errors = errors.filter(move |error| known.contains(error));
+    errors.filter_map(move |error| {
+        cheapest(study.records(data), metric, timed, error).map(|run| (error, run))
+    })
+}
+
 /// Writes a line for each error with the cheapest method, below a note on the collision safeguard
 /// if it acted.
-fn winners(
+fn words_of_winners(
     study: &Study,
     data: &Data,
     methods: &[&'static Method],
@@ -207,10 +230,7 @@ fn winners(
     unit: &str,
 ) -> String {
     let resolved = resolved(study, data, metric);
-    let still = study
-        .records(data)
-        .map(|r| r.still(metric))
-        .fold(f64::INFINITY, f64::min);
+    let still = still(study, data, metric);
     let held = study.records(data).filter(|r| r.is_held()).count();
     let mut text = String::new();
     if held > 0 {

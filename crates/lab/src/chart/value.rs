@@ -193,6 +193,13 @@ impl Chart {
             .flat_map(|study| study.records(&self.data).chain(study.beside(&self.data)))
     }
 
+    /// Returns each error of the tables that says something, and the cheapest run that keeps it: by
+    /// computing time if that was asked for, or else by work.
+    pub fn winners(&self) -> impl Iterator<Item = (f64, &Record)> {
+        let studies = self.studies.iter();
+        studies.flat_map(|study| table::winners(study, &self.data, self.metric, self.timed))
+    }
+
     /// Returns the methods, in the order of the table and of the legend.
     #[must_use]
     pub fn methods(&self) -> &[&'static Method] {

@@ -16,7 +16,7 @@ const TRIES: usize = 5;
 const EXPLODED: f64 = 100.0;
 
 /// Speed (m/s) below which motion is invisible.
-const INVISIBLE_SPEED: f64 = 1e-3;
+pub const INVISIBLE_SPEED: f64 = 1e-3;
 
 /// How a run ended.
 #[derive(Debug, PartialEq)]
