@@ -109,7 +109,7 @@ pub fn without<'a>(scene: &Description, parts: impl IntoIterator<Item = &'a Part
 /// Makes a change, except for obstacles, whose indices depend on one another.
 fn leave_out(scene: &mut Description, change: Change) {
     match change {
-        Change::Gravity => scene.gravity = None,
+        Change::Gravity => scene.change_gravity(None),
         Change::Drag => (scene.drag, scene.drag_per_mass) = (None, None),
         Change::Damping => leave_out_damping(scene),
         Change::Springs(kind) => leave_out_springs(scene, kind),

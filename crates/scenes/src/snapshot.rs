@@ -85,7 +85,7 @@ pub fn begin_with(description: &mut Description, model: &Model, now: &Checkpoint
     let Some(network) = model.network() else {
         return;
     };
-    description.gravity = network.gravity().map(Into::into);
+    description.change_gravity(network.gravity().map(Into::into));
     (description.drag, description.drag_per_mass) = (network.drag(), None);
     description.torn.clone_from(&now.torn);
     description.self_collision = now.touching;

@@ -23,12 +23,16 @@
 use crate::geometry::{Closest, PairKind, closest, weighted};
 use nalgebra::Vector3;
 
-/// Distance (m) up to which two primitives count as touching.
-const MIN_DISTANCE: f64 = 1e-10;
+/// Share of the gap, or of a smaller distance at first, both without the radius, that does not
+/// matter.
+const GAP_TOLERANCE: f64 = 1e-5;
 
 /// Share of the sum of the magnitudes of all coordinates below which a distance may be a rounding
 /// error.
 const ROUNDING: f64 = 1e-13;
+
+/// Least gap, as a share of the same sum, that callers from outside get.
+const LEAST_GAP_SHARE: f64 = 1e-11;
 
 /// Share of the same sum by which rounding may change a distance.
 const ROUNDING_ERROR: f64 = 1e-15;
@@ -54,14 +58,14 @@ const MAX_PLANES_OF_PART: usize = 16;
 /// the pair is farther apart than the gap during the whole step. `Some(t)` is conservative: the
 /// pair is farther apart than the gap until t, and by at most a tenth of the gap or of its distance
 /// above the gap at first; only if 20 000 planes do not decide, it may be farther apart at t. Both
-/// allow for 1e-10 m and about 1e-12 of the largest coordinate, more than rounding here and in the
-/// sums `from + moves`.
+/// allow for 1e-5 of the gap, which is at least 1e-11 of the sum of all coordinates, and for about
+/// 1e-12 of the largest one, more than rounding here and in the sums `from + moves`.
 ///
 /// A pair that begins nearer than the gap is hit at once, `Some(0.0)`, if its closest points
 /// approach. Otherwise it may separate, slide and turn: it is only hit if it would lose a tenth of
 /// its room, the distance above the radius. A pair that begins touching is hit whatever its motion,
 /// because it is unknown on which sides its primitives belong. For round primitives that is known,
-/// so they may separate, and lose up to 3e-10 m if they turn.
+/// so they may separate, and lose up to three times that if they turn.
 ///
 /// Edges and triangles may be degenerate. The distance of a [`PairKind::VertexFloor`] is the signed
 /// height of the vertex above the floor; if it begins below the gap, it is hit if the vertex sinks.
@@ -89,7 +93,9 @@ pub fn time_of_impact(
     radius: f64,
     gap: f64,
 ) -> Option<f64> {
-    time_and_planes(kind, from, moves, radius, gap).0
+    // A gap of 0 leaves no room for rounding.
+    let least = radius + LEAST_GAP_SHARE * (magnitude(from) + magnitude(moves));
+    time_and_planes(kind, from, moves, radius, gap.max(least)).0
 }
 
 /// Returns what [`time_of_impact`] returns, with the number of planes that it took.
@@ -104,21 +110,23 @@ pub(super) fn time_and_planes(
     if !magnitude.is_finite() {
         return (Some(0.0), 0);
     }
-    let tolerance = MIN_DISTANCE + ROUNDING * magnitude;
+    let tolerance =
+        |room: f64| GAP_TOLERANCE * room.min(gap - radius).max(0.0) + ROUNDING * magnitude;
     // Approach (m) during the step above which a pair that begins nearer than the gap is hit.
     let approach =
-        |room: f64| tolerance.min(NEAR_SHARE * room.max(0.0)) + ROUNDING_ERROR * magnitude;
+        |room: f64| tolerance(room).min(NEAR_SHARE * room.max(0.0)) + ROUNDING_ERROR * magnitude;
     if kind == PairKind::VertexFloor {
         let (height, rise) = (from[0].y - from[1].y, moves[0].y - moves[1].y);
-        let time = sinks_to(gap, height, rise, tolerance, approach(height - radius));
+        let room = height - radius;
+        let time = sinks_to(gap, height, rise, tolerance(room), approach(room));
         return (time, 0);
     }
     // Relative to point 0, so that large coordinates do not spoil small distances.
     let (from, moves) = (from.map(|x| x - from[0]), moves.map(|u| u - moves[0]));
     let plane = Plane::between(kind, &from, &moves);
-    let mut least = gap;
+    let (mut least, room) = (gap, plane.apart - radius);
+    let tolerance = tolerance(room);
     if plane.apart <= gap + 2.0 * tolerance {
-        let room = plane.apart - radius;
         let touches = NEAR_SHARE * room <= 2.0 * tolerance;
         if plane.rate < -approach(room) || (touches && radius == 0.0) {
             return (Some(0.0), 1);
@@ -288,7 +296,7 @@ impl Plane {
     fn between(kind: PairKind, at: &[Vector3<f64>; 4], moves: &[Vector3<f64>; 4]) -> Self {
         let Closest { weights, offset } = closest(kind, at);
         let distance = offset.norm();
-        let normal = if distance > MIN_DISTANCE {
+        let normal = if distance > 0.0 {
             offset / distance
         } else {
             Vector3::zeros()

@@ -20,7 +20,7 @@ use super::motion::{Guarded, Motion};
 use super::response::{Joined, Joints};
 use super::strike::{find, strike};
 use super::surface::Surface;
-use crate::geometry::{Closest, closest};
+use crate::geometry::closest;
 use crate::interval::Interval;
 use crate::rigid::ROTATION;
 
@@ -218,6 +218,15 @@ fn push(
     guarded: &mut Guarded,
     moved: &mut [bool],
 ) {
+    let law = surface.law(candidate.kind, &candidate.points);
+    let mut time = time;
+    if law.skin.restitution > 0.0 {
+        // Its time is that on its course, which may already be past the other side on a line.
+        let Some(on_line) = motion.impact_after(surface, candidate, 0.0) else {
+            return;
+        };
+        time = on_line;
+    }
     let mut touch = contact_at(surface, candidate, time, motion);
     if touch
         .as_ref()
@@ -236,7 +245,7 @@ fn push(
         }
         return;
     };
-    let friction = surface.law(candidate.kind, &candidate.points).skin.friction;
+    let friction = law.skin.friction;
     let turning = motion.turning(surface, candidate);
     let Motion {
         moves,
@@ -285,12 +294,9 @@ fn contact_at(
 ) -> Option<ContactPair> {
     let (x0, moves) = (candidate.of(&motion.x0), candidate.of(&motion.moves));
     let at = std::array::from_fn(|k| x0[k] + moves[k] * time);
-    let Closest { weights, offset } = closest(candidate.kind, &at);
-    let distance = offset.norm();
-    let normal = offset / distance;
-    (distance > 0.0).then(|| {
-        let mut contact = ContactPair::new(surface, candidate, weights, normal, motion);
-        contact.restore_separation(surface.law(candidate.kind, &candidate.points), distance);
-        contact
-    })
+    let nearest = closest(candidate.kind, &at);
+    let (distance, normal) = nearest.apart(candidate.kind)?;
+    let mut contact = ContactPair::new(surface, candidate, nearest.weights, normal, motion);
+    contact.restore_separation(surface.law(candidate.kind, &candidate.points), distance);
+    Some(contact)
 }

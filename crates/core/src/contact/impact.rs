@@ -45,12 +45,14 @@ impl Impact {
     ) -> Option<Self> {
         let law: Law = surface.law(pair.kind, &pair.points);
         let at = motion.places(pair, &law, time);
-        let Closest { weights, offset } = closest(pair.kind, &at);
-        let distance = offset.norm();
-        if distance == 0.0 {
+        let nearest = closest(pair.kind, &at);
+        let (distance, normal) = nearest.apart(pair.kind)?;
+        let begun = closest(pair.kind, &pair.of(&motion.x0)).apart(pair.kind);
+        if begun.is_some_and(|(_, begun)| begun.dot(&normal) < 0.0) {
+            // Its course leads past the other side: the safeguard stops it before that.
             return None;
         }
-        let normal = offset / distance;
+        let Closest { weights, offset } = nearest;
         let first = pair.kind.first();
         // The middle between the two surfaces. A floor has no point below the vertex.
         let [radius, other] = [0, first].map(|k| surface.radius(pair.points[k]));

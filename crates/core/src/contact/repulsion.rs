@@ -78,15 +78,11 @@ impl Pair {
     fn within(&self) -> Option<Within> {
         let thickness = self.law.skin.thickness;
         let closest = closest(self.kind, &self.x);
-        let distance = if self.kind == PairKind::VertexFloor {
-            closest.offset.y
-        } else {
-            closest.offset.norm()
-        };
+        let (distance, normal) = closest.apart(self.kind)?;
         let share = (thickness - (distance - self.law.radius)) / thickness;
-        (share > 0.0 && distance != 0.0).then(|| Within {
+        (share > 0.0).then_some(Within {
             weights: closest.weights,
-            normal: closest.offset / distance,
+            normal,
             share,
         })
     }

@@ -53,6 +53,16 @@ pub struct Closest {
 }
 
 impl Closest {
+    /// Returns the distance (m) and the unit vector from the second primitive to the first, unless
+    /// they touch. The distance from a floor is the height above it, and its unit vector is known.
+    pub(crate) fn apart(&self, kind: PairKind) -> Option<(f64, Vector3<f64>)> {
+        if kind == PairKind::VertexFloor {
+            return Some((self.offset.y, Vector3::y()));
+        }
+        let distance = self.offset.norm();
+        (distance > 0.0).then(|| (distance, self.offset / distance))
+    }
+
     fn new(weights: [f64; 4], points: &[Vector3<f64>; 4]) -> Self {
         Self {
             weights,

@@ -80,7 +80,7 @@ impl RunState {
             let apart = network.check_apart(0.0, network.halves(y).0);
             apart.map_err(|e| {
                 Error::Invalid(format!(
-                    "surfaces cannot begin crossed, unless `untangle` brings them apart: {e}"
+                    "surfaces cannot begin crossed or without a gap, unless `untangle` brings them apart: {e}"
                 ))
             })?;
         }

@@ -255,6 +255,67 @@ fn bodies_that_begin_within_one_another_are_named() {
     assert!(error.contains("body 0 crosses body 1"), "{error}");
 }
 
+/// A box on an obstacle with a restitution of 1/2.
+fn on_elastic(obstacle: &str, gap: f64) -> String {
+    let height = 0.1 + gap;
+    format!(
+        "gravity = [0, -9.81, 0]
+        {obstacle}
+        restitution = 0.5
+        [[body]]
+        parts = [{{ box = [0.2, 0.2, 0.2] }}]
+        at = [0, {height}, 0]
+        mass = 1
+        "
+    )
+}
+
+/// A box that begins with hardly any gap above an elastic obstacle never passes through it: where
+/// a step leads to the other side of the gap and the force there throws the box, the run says so.
+#[test]
+fn a_box_that_begins_close_to_an_elastic_one_stays_above() {
+    let obstacle = "[[box]]\ncenter = [0, -0.5, 0]\nsize = [4, 1, 4]";
+    let methods = [
+        ("verlet", 5e-3),
+        ("verlet", 1e-3),
+        ("rk4", 5e-3),
+        ("implicit", 1e-2),
+    ];
+    for gap in [1e-9, 1e-8, 1e-7, 1e-6, 1e-5] {
+        for (method, step) in methods {
+            let mut run = run(&on_elastic(obstacle, gap), method, Control::Step(step));
+            for part in 1..=20 {
+                let ended = run.advance_to(0.05 * f64::from(part)).is_err();
+                let network = run.model().network().unwrap();
+                let crossed = network.crossed(run.time(), network.halves(run.state()).0);
+                assert!(crossed.is_empty(), "{gap:e} {method} {step}: {crossed:?}");
+                if ended {
+                    break;
+                }
+            }
+        }
+    }
+}
+
+/// A box that begins at gap 0 above a floor moves as one with hardly any gap, also by the implicit
+/// method.
+#[test]
+fn a_box_that_touches_a_floor_is_repelled() {
+    let floor = "[floor]\nheight = 0";
+    for (method, step) in [("verlet", 5e-3), ("rk4", 5e-3), ("implicit", 1e-2)] {
+        let [touching, near] = [0.0, 1e-12].map(|gap| {
+            let mut run = run(&on_elastic(floor, gap), method, Control::Step(step));
+            assert!(run.energy().unwrap().contact > 0.0, "{method}");
+            run.advance_to(0.5).unwrap();
+            center(&run, 0)[0].y
+        });
+        assert!(
+            (touching - near).abs() < 1e-6,
+            "{method}: {touching} {near}"
+        );
+    }
+}
+
 /// Boxes, balls and capsules that fall on one another.
 fn heap(seed: u64, bodies: usize) -> String {
     let mut random = Random(seed);

@@ -43,6 +43,8 @@ pub(super) fn placed(
 pub(super) struct Assembly<'a> {
     /// Liquid that touches rigid bodies.
     pub liquid: Option<&'a Fluid>,
+    /// Gravity that contact suits (m/s2).
+    pub gravity: f64,
     pub masses: Vec<f64>,
     pub positions: Vec<Vector3<f64>>,
     pub velocities: Vec<Vector3<f64>>,

@@ -43,7 +43,7 @@ impl Body for Chain {
         } else {
             0.0
         };
-        let skin = SkinSpec::of(self, self.stiffness, time);
+        let skin = SkinSpec::of(self, assembly.gravity, [self.stiffness, time]);
         let masses = vec![self.mass; n];
         let places = (0..n).map(|i| from + (to - from) * (i as f64 / (n - 1) as f64));
         let first = assembly.add_particles(&masses, places, self.velocity);
@@ -117,7 +117,7 @@ impl Body for Particles {
         let springs = springs(&self.springs, n)?;
         let stiffest = springs.iter().map(|s| s.law.stiffness).fold(0.0, f64::max);
         let time = springs.iter().map(|s| s.law.damping).fold(0.0, f64::max) / stiffest.max(1.0);
-        let skin = SkinSpec::of(self, stiffest, time);
+        let skin = SkinSpec::of(self, assembly.gravity, [stiffest, time]);
         let given = self.thickness.map(|thickness| 4.0 * thickness);
         let skins = skin.uniform(&masses, given.unwrap_or(POINT_SPACING))?;
         assembly.skins.extend(skins);

@@ -96,7 +96,7 @@ impl Body for Cloth {
                 assembly.velocities.push(velocity + sway * share);
             }
         }
-        let skin = SkinSpec::of(self, structural, time);
+        let skin = SkinSpec::of(self, assembly.gravity, [structural, time]);
         let masses = vec![mass; particles];
         assembly.skins.extend(skin.uniform(&masses, spacing)?);
         assembly.masses.extend(masses);

@@ -208,7 +208,7 @@ impl Body for Fluid {
             contact_stiffness: Some(stiffness),
             ..SkinKeys::default()
         };
-        let skin = point_skin(mass, thickness, keys)?;
+        let skin = point_skin(keys, assembly.gravity, [mass, thickness])?;
         assembly.skins.resize(free, skin);
         // Surfaces do not touch walls.
         assembly.skins.resize(all, Skin::default());

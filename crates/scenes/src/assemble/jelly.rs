@@ -45,7 +45,7 @@ impl Body for Jelly {
         };
         let places = lattice.cells().map(from_center);
         let places = places.map(placed(self.at, self.rotation));
-        let skin = SkinSpec::of(self, structural, time);
+        let skin = SkinSpec::of(self, assembly.gravity, [structural, time]);
         let masses = vec![mass; particles];
         let nearest = spacing.into_iter().fold(f64::INFINITY, f64::min);
         assembly.skins.extend(skin.uniform(&masses, nearest)?);

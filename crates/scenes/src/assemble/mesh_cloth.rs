@@ -78,7 +78,7 @@ impl Body for MeshCloth {
             }
             assembly.gases.push(at(key, Gas::new(law, triangles))?);
         }
-        let skin = SkinSpec::of(self, structural, time);
+        let skin = SkinSpec::of(self, assembly.gravity, [structural, time]);
         let skins = skin.fitted(&masses, &scaled.heights())?;
         assembly.skins.extend(skins);
         assembly.add_surface(first, mesh.triangles.iter().copied());

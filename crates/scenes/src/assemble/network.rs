@@ -10,7 +10,7 @@ use super::assembly::{Assembly, Body};
 use super::files::Files;
 use super::{constraints, fluid, forces, joints, laws, obstacles, state};
 use crate::budget::SPRINGS;
-use crate::check::{at, key_of};
+use crate::check::{at, key_of, positive};
 use crate::description::Description;
 use crate::fault::Fault;
 use crate::setup::Presentation;
@@ -152,7 +152,10 @@ fn assembled<'a>(description: &'a Description, files: &mut Files) -> Result<Asse
         let why = "the scene is empty: it needs at least one of cloth, jelly, mesh, solid, chain, particles, body, fluid, circle";
         return Err(Fault::new("", why));
     }
+    let gravity = description.contact_gravity();
+    at("contact_gravity", positive("it", gravity))?;
     let mut assembly = Assembly {
+        gravity,
         liquid: description.fluid.first(),
         ..Assembly::default()
     };

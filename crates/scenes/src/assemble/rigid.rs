@@ -98,12 +98,13 @@ impl Body for RigidBody {
         let (masses, places) = (vec![properties.mass; count], vec![place; count]);
         assembly.add_particles(&masses, places, self.velocity);
         let thickness = self.thickness.unwrap_or(THICKNESS * smallest);
+        let of_point = [0.25 * properties.mass, thickness];
         let rolling = self.rolling_friction;
         at("rolling_friction", at_least(0.0, "it", rolling))?;
         let skin = Skin {
             rolling,
             // A face rests on several points.
-            ..point_skin(0.25 * properties.mass, thickness, self.skin())?
+            ..point_skin(self.skin(), assembly.gravity, of_point)?
         };
         assembly.skins.extend(vec![skin; count]);
         if !wet.is_empty() {

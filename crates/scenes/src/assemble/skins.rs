@@ -3,7 +3,7 @@
 use a3_core::contact::Skin;
 
 use crate::check::{at, at_least, positive, share};
-use crate::description::{Keys, SkinKeys};
+use crate::description::{EARTH, Keys, SkinKeys};
 use crate::fault::Fault;
 
 /// Default and largest thickness of a surface, relative to the distance of its particles:
@@ -15,14 +15,15 @@ pub fn max_thickness(spacing: f64) -> f64 {
     MAX_THICKNESS * spacing
 }
 
-/// Smallest acceleration (m/s2) against which the contact force keeps surfaces apart.
+/// Smallest acceleration (m/s2) against which the contact force keeps surfaces apart on Earth.
+/// Elsewhere it is in proportion to gravity.
 const ACCELERATION: f64 = 100.0;
 
 /// Damping of contact, relative to that of a spring of the same stiffness.
 const DAMPING: f64 = 4.0;
 
 /// Damping of the contact of rigid bodies and of fluids: the speed that they gain over their
-/// thickness at `ACCELERATION`, relative to the speed at which damping counts fully.
+/// thickness at that acceleration, relative to the speed at which damping counts fully.
 const POINT_DAMPING: f64 = 1.5;
 
 /// Material of a body and the keys that describe its skin.
@@ -32,25 +33,35 @@ pub(super) struct SkinSpec {
     stiffness: f64,
     /// Damping over stiffness of its springs (s).
     time: f64,
+    /// Gravity that the contact suits (m/s2).
+    gravity: f64,
 }
 
 impl SkinSpec {
-    /// Creates the description of a body's skin, over springs of a stiffness (N/m) whose damping
-    /// over stiffness is `time` (s).
-    pub fn of(body: &dyn Keys, stiffness: f64, time: f64) -> Self {
+    /// Creates the description of a body's skin that suits this gravity (m/s2), over springs of a
+    /// stiffness (N/m) whose damping over stiffness is `time` (s).
+    pub fn of(body: &dyn Keys, gravity: f64, [stiffness, time]: [f64; 2]) -> Self {
         Self {
             keys: body.skin(),
             stiffness,
             time,
+            gravity,
         }
+    }
+
+    /// Returns the smallest acceleration (m/s2) against which the skin keeps surfaces apart.
+    fn acceleration(&self) -> f64 {
+        ACCELERATION * (self.gravity / EARTH)
     }
 
     /// Creates the skin of a particle of this mass (kg) with this thickness (m).
     fn skin(&self, mass: f64, thickness: f64) -> Skin {
         Skin {
             thickness,
-            stiffness: (self.keys.contact_stiffness)
-                .unwrap_or_else(|| self.stiffness.max(mass * ACCELERATION / thickness)),
+            stiffness: (self.keys.contact_stiffness).unwrap_or_else(|| {
+                let own = mass * self.acceleration() / thickness;
+                self.stiffness.max(own)
+            }),
             // Damping counts fully where the gap would close within four times the springs' own
             // time: bounces die away as fast as the springs' oscillations.
             damping: DAMPING * self.time / thickness,
@@ -104,8 +115,13 @@ impl SkinSpec {
     }
 }
 
-/// Creates the skin of a point of a rigid body, or of a fluid, of this mass (kg).
-pub(super) fn point_skin(mass: f64, thickness: f64, keys: SkinKeys) -> Result<Skin, Fault> {
+/// Creates the skin of a point of a rigid body, or of a fluid, of this mass (kg) and thickness (m),
+/// that suits this gravity (m/s2).
+pub(super) fn point_skin(
+    keys: SkinKeys,
+    gravity: f64,
+    [mass, thickness]: [f64; 2],
+) -> Result<Skin, Fault> {
     let spec = SkinSpec {
         keys: SkinKeys {
             thickness: Some(thickness),
@@ -113,10 +129,11 @@ pub(super) fn point_skin(mass: f64, thickness: f64, keys: SkinKeys) -> Result<Sk
         },
         stiffness: 0.0,
         time: 0.0,
+        gravity,
     };
     spec.check()?;
     Ok(Skin {
-        damping: POINT_DAMPING / (ACCELERATION * thickness).sqrt(),
+        damping: POINT_DAMPING / (spec.acceleration() * thickness).sqrt(),
         ..spec.skin(mass, thickness)
     })
 }

@@ -148,7 +148,8 @@ impl Body for Solid {
             }
         }
         let mean = spacings.iter().sum::<f64>() / spacings.len() as f64;
-        let skin = SkinSpec::of(self, material.young * mean, material.damping);
+        let law = [material.young * mean, material.damping];
+        let skin = SkinSpec::of(self, assembly.gravity, law);
         assembly.skins.extend(skin.fitted(&masses, &spacings)?);
         let places = positions.into_iter().map(placed(self.at, self.rotation));
         assembly.add_particles(&masses, places, self.velocity);

@@ -7,6 +7,7 @@ mod motion;
 mod obstacles;
 mod rigid;
 
+use a3_core::Vector3;
 use schemars::JsonSchema;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
@@ -54,6 +55,9 @@ pub struct Description {
     pub duration: Option<f64>,
     /// Gravity (m/s2), such as [0, -9.81, 0]; none if not given.
     pub gravity: Option<Triple>,
+    /// Gravity (m/s2) that the default stiffness of contact suits; if not given, the scene's, or
+    /// 9.81 m/s2 without any.
+    pub contact_gravity: Option<f64>,
     /// Viscous drag on each particle (kg/s). An alternative is `drag_per_mass`.
     pub drag: Option<f64>,
     /// Viscous drag on each particle over the mean mass of a particle (1/s). An alternative is
@@ -146,6 +150,9 @@ pub struct Description {
     /// Positions and velocities of all particles at the start, in place of those of the bodies.
     pub state: Option<State>,
 }
+
+/// Gravity of the Earth (m/s2).
+pub(crate) const EARTH: f64 = 9.81;
 
 /// Position of the camera, and the point that it looks at.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -258,6 +265,20 @@ impl Description {
             self.solid.iter_mut().try_for_each(|it| made_of(it, name))?;
             self.body.iter_mut().try_for_each(|it| made_of(it, name))
         }
+    }
+
+    /// Returns the gravity (m/s2) that the default stiffness of contact suits.
+    pub(crate) fn contact_gravity(&self) -> f64 {
+        let own = self.gravity.map(|g| Vector3::from(g).norm());
+        let own = own.filter(|g| *g > 0.0).unwrap_or(EARTH);
+        self.contact_gravity.unwrap_or(own)
+    }
+
+    /// Changes gravity (m/s2). Contact stays as stiff as it is.
+    pub(crate) fn change_gravity(&mut self, gravity: Option<Triple>) {
+        let suits = self.contact_gravity();
+        (self.gravity, self.contact_gravity) = (gravity, None);
+        self.contact_gravity = Some(suits).filter(|suits| *suits != self.contact_gravity());
     }
 
     /// Writes TOML that [`parse`](Self::parse) reads as the same description.

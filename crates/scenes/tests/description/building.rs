@@ -237,6 +237,58 @@ strain_limit = 1.5
     assert!(said.contains("never break at 1.25 times"), "{said}");
 }
 
+/// Contact is as stiff as gravity asks, and stays so where gravity changes in a run, or is left out.
+#[test]
+fn contact_keeps_the_gravity_of_the_scene() {
+    let body = "[[body]]\nparts = [{ ball = 0.1 }]\nmass = 4\n";
+    let skin = |description: &Description| {
+        let setup = description.build(None, &mut |_| unreachable!()).unwrap();
+        let network = setup.scene.model.network().unwrap();
+        let skin = network.touch().unwrap().skins[0];
+        [skin.stiffness, skin.damping]
+    };
+    for (gravity, stiffness) in [
+        ("[0, -9.81, 0]", 100.0 / 0.004),
+        ("[0, -981, 0]", 10_000.0 / 0.004),
+        ("[0, 0, 0]", 100.0 / 0.004),
+    ] {
+        let text = format!("gravity = {gravity}\n{body}");
+        let own = Description::parse(&text).unwrap();
+        let skin_of_own = skin(&own);
+        assert!(
+            (skin_of_own[0] / stiffness - 1.0).abs() < 1e-12,
+            "{gravity}"
+        );
+        let mut model = build(&text).unwrap().model;
+        if let Model::Network(network) = &mut model {
+            network.set_gravity(Vector3::new(1.0, -5.0, 0.0));
+        }
+        let scene = Scene {
+            model,
+            ..build(&text).unwrap()
+        };
+        let method = a3_core::integrators::find("verlet").unwrap();
+        let step = a3_core::Control::Step(0.01);
+        let run = a3_core::Simulation::new(scene, method, step).unwrap();
+        let mut tuned = own.clone();
+        snapshot::begin_with(&mut tuned, run.model(), &run.checkpoint());
+        assert_eq!(tuned.gravity, Some([1.0, -5.0, 0.0]));
+        let again = Description::parse(&tuned.to_toml().unwrap()).unwrap();
+        let weightless = a3_scenes::without(&tuned, &a3_scenes::parts(&tuned));
+        assert!(weightless.gravity.is_none());
+        assert_eq!([skin(&again), skin(&weightless)], [skin_of_own; 2]);
+    }
+    let unchanged = Description::parse(&format!("gravity = [0, -1.62, 0]\n{body}")).unwrap();
+    let mut written = unchanged.clone();
+    let run = build(&unchanged.to_toml().unwrap()).unwrap();
+    let method = a3_core::integrators::find("verlet").unwrap();
+    let run = a3_core::Simulation::new(run, method, a3_core::Control::Step(0.01)).unwrap();
+    snapshot::begin_with(&mut written, run.model(), &run.checkpoint());
+    assert_eq!(written.contact_gravity, None);
+    let said = said(&format!("contact_gravity = 0\n{body}"));
+    assert!(said.contains("contact_gravity"), "{said}");
+}
+
 /// A scene whose constraints are not met at the start is refused with the number of one of them.
 #[test]
 fn constraints_are_met_at_the_start() {

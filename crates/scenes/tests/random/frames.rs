@@ -161,9 +161,8 @@ impl Frame {
         if self.turn != 0.0 && says(&["orientations"]) {
             return false;
         }
-        // The pressure of the air is 101325 Pa, and surfaces keep apart against 100 m/s2.
-        let touches = has("body") || says(&["self_collision", "thickness", "restitution"]);
-        if self.length != 1.0 && (touches || says(&["fill"])) {
+        // The pressure of the air is 101325 Pa.
+        if self.length != 1.0 && says(&["fill"]) {
             return false;
         }
         if self.is_reversed {
@@ -198,6 +197,9 @@ impl Frame {
     /// Adds what is the same in each frame only if it is written down: turns of bodies, directions,
     /// places and velocities.
     fn complete(&self, scene: &mut Value) {
+        if scene["gravity"].is_null() && scene["contact_gravity"].is_null() {
+            scene["contact_gravity"] = json!(9.81);
+        }
         let all = scene.as_object_mut().unwrap().iter_mut();
         for (key, value) in all {
             let mut tables: Vec<&mut Value> = match value {
@@ -206,6 +208,12 @@ impl Frame {
             };
             let name = key.as_str();
             for table in tables.iter_mut().filter_map(|table| table.as_object_mut()) {
+                let parts = table.get_mut("parts").and_then(Value::as_array_mut);
+                for part in parts.into_iter().flatten() {
+                    if part.get("file").is_some() && part.get("scale").is_none() {
+                        part["scale"] = json!(1.0);
+                    }
+                }
                 let has_file = table.contains_key("file");
                 let mut default = |key: &str, value: Value| {
                     table.entry(key).or_insert(value);

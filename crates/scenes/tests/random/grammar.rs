@@ -91,7 +91,7 @@ impl Writer<'_> {
     fn is_there(&mut self, table: &str, key: &str) -> bool {
         match (table, key) {
             ("", key) if NUMBERED.contains(&key) || key == "circle" => false,
-            (_, "material") => false,
+            (_, "material" | "contact_gravity") => false,
             ("", "gravity") | ("HingeSpec" | "SliderSpec", _) => self.chance.once_in(2),
             ("", key) if BODIES.contains(&key) => self.chance.once_in(5),
             ("", _) => self.chance.once_in(6),

@@ -87,6 +87,7 @@ pub const KINDS: &[(&[&str], Kind)] = &[
         ],
         Number(1),
     ),
+    (&["contact_gravity"], Number(1)),
     (&["viscosity", "inertia"], Number(2)),
     (&["bending"], Number(3)),
     (&["pressure", "young"], Number(-1)),

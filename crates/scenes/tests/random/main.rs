@@ -2,6 +2,7 @@
 //! warning.
 
 mod alike;
+mod bodies;
 mod chance;
 mod energy;
 mod frames;
@@ -12,6 +13,7 @@ mod numbered;
 mod ranges;
 mod run;
 mod sense;
+mod units;
 
 use std::collections::BTreeSet;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -86,8 +88,13 @@ struct Trial {
     text: String,
 }
 
-/// Names a material in each body of a scene that can have one, and adds these keys.
+/// Names a material in each body of a scene that can have one, and in some scenes the gravity that
+/// contact suits, and adds these keys.
 fn name_materials(scene: &mut Value, k: usize, keys: &mut BTreeSet<String>) {
+    if k.is_multiple_of(64) {
+        scene["contact_gravity"] = 10.0.into();
+        keys.insert(".contact_gravity".into());
+    }
     for (kind, table) in [
         ("cloth", "Cloth"),
         ("mesh", "MeshCloth"),
