@@ -189,6 +189,10 @@ impl Query<'_> {
     }
 
     /// Adds the pairs of vertices of the first side and triangles of the second.
+    #[expect(
+        clippy::needless_bitwise_bool,
+        reason = "a branch would be guessed wrong"
+    )]
     fn touching(
         &self,
         [(first, first_trees), (second, second_trees)]: [Side; 2],
@@ -206,6 +210,10 @@ impl Query<'_> {
     }
 
     /// Adds the pairs of edges of both sides, which may be the same.
+    #[expect(
+        clippy::needless_bitwise_bool,
+        reason = "a branch would be guessed wrong"
+    )]
     fn crossing(
         &self,
         [(first, first_trees), (second, second_trees)]: [Side; 2],
