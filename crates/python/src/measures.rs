@@ -91,6 +91,16 @@ impl Chart {
         self.0.table()
     }
 
+    /// Returns the errors that say something, and the place among the runs of the cheapest that
+    /// keeps each.
+    fn winners(&self) -> Vec<(f64, usize)> {
+        let place = |best| self.0.runs().position(|run| std::ptr::eq(run, best));
+        let winners = self.0.winners();
+        winners
+            .filter_map(|(error, best)| Some((error, place(best)?)))
+            .collect()
+    }
+
     /// Returns the names of the methods whose runs take too many evaluations.
     fn too_costly(&self) -> Vec<&'static str> {
         self.0

@@ -44,6 +44,13 @@ def test_a_chart_has_runs_of_each_method_with_their_orders(chart):
     assert shared and set(own["evaluations"] * own["setting"]) == set(of_a3["evaluations"] * of_a3["setting"])
 
 
+def test_the_winners_of_a_chart_are_values(chart):
+    assert len(chart.winners) > 2
+    for error, run in chart.winners:
+        assert run in chart.points and run.error <= error
+        assert run.work == min(point.work for point in chart.points if point.error <= error)
+
+
 def test_a_chart_draws_itself(chart, tmp_path):
     assert chart._repr_svg_().startswith("<svg") or "<svg" in chart._repr_svg_()[:200]
     assert "my-midpoint" in chart.svg

@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from ._measures import Motion as Motion
     from ._measures import Point as Point
     from ._measures import Stability as Stability
+    from ._measures import Winner as Winner
     from ._measures import chart as chart
     from ._measures import choose as choose
     from ._measures import compare as compare
@@ -64,6 +65,7 @@ _MODULES = {
     "Motion": "_measures",
     "Point": "_measures",
     "Stability": "_measures",
+    "Winner": "_measures",
     "chart": "_measures",
     "choose": "_measures",
     "compare": "_measures",

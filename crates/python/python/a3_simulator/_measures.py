@@ -98,6 +98,15 @@ class Point(NamedTuple):
     stiffness: float
 
 
+class Winner(NamedTuple):
+    """The cheapest run that keeps an error."""
+
+    #: The error, in the unit of the chart.
+    error: float
+    #: The run.
+    run: Point
+
+
 class Chart(_Drawn):
     """Runs of methods at smaller and smaller steps or tolerances: their errors, and what they cost.
 
@@ -112,6 +121,8 @@ class Chart(_Drawn):
         too_costly: names of the methods whose runs take too many evaluations on a system of one's own: their ladders of
             steps or tolerances end early.
         table: the cost of each method for each error, as text.
+        winners: a `Winner` for each error of the table that says something, by computing time if that was asked for,
+            or else by work.
         runs: all that was measured of each run, as `a3 chart --data` writes it.
     """
 
@@ -125,7 +136,9 @@ class Chart(_Drawn):
         self.runs: List[Dict[str, Any]] = json.loads(source.json())
         for run in self.runs:
             run.update({key: sign * run[key] for key in ("until", "lost_at") if run[key] is not None})
-        self.points = [self._point(run) for run in self.runs if run.get("beside") is None]
+        points = [self._point(run) for run in self.runs]
+        self.points = [point for point, run in zip(points, self.runs) if run.get("beside") is None]
+        self.winners = [Winner(error, points[k]) for error, k in source.winners()]
 
     def _point(self, run: Dict[str, Any]) -> Point:
         def number(key: str) -> float:
