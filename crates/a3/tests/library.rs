@@ -245,8 +245,8 @@ fn wrong_requests_are_refused_with_one_line() {
         ..until(1.0)
     };
     for (options, word) in [
-        (until(0.0), "the end is"),
-        (until(f64::NAN), "the end is"),
+        (until(0.0), "the end of"),
+        (until(f64::NAN), "the end of"),
         (of(Metric::Energy), "energy"),
         (of(Metric::Position), "state"),
         (

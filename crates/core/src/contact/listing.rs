@@ -272,8 +272,8 @@ impl Query<'_> {
         }
     }
 
-    /// Adds those of these pairs of primitives of one kind that touch and come within reach. Whether
-    /// one does is random, so nothing branches there.
+    /// Adds those of these pairs of primitives of one kind that touch and come within reach.
+    /// Whether one does is random, so nothing branches there.
     fn bound(
         &self,
         kind: PairKind,

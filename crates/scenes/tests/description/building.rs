@@ -237,7 +237,8 @@ strain_limit = 1.5
     assert!(said.contains("never break at 1.25 times"), "{said}");
 }
 
-/// Contact is as stiff as gravity asks, and stays so where gravity changes in a run, or is left out.
+/// Contact is as stiff as gravity asks, and stays so where gravity changes in a run, or is left
+/// out.
 #[test]
 fn contact_keeps_the_gravity_of_the_scene() {
     let body = "[[body]]\nparts = [{ ball = 0.1 }]\nmass = 4\n";
