@@ -156,7 +156,7 @@ pub fn choose_among(
     };
     let max_cost = |found: &[Candidate]| {
         let second = found.get(1).map_or(f64::INFINITY, |c| max_ratio * c.work);
-        Some(second.min(reference.max_work))
+        second.min(reference.max_work)
     };
     // Methods of high order come first: their cost limits the runs of methods of low order. In a
     // stiff system, so do implicit ones, above all those that choose their steps.
@@ -182,7 +182,7 @@ pub fn choose_among(
         return Ok(Some(found));
     }
     // An explicit method that chooses its steps chooses those that stability allows.
-    let most = max_cost(&found).unwrap_or(f64::INFINITY);
+    let most = max_cost(&found);
     let modes = spectrum(scene.model.system(), 0.0, &scene.state);
     let mut affordable = vec![];
     for method in late {
@@ -192,7 +192,7 @@ pub fn choose_among(
             affordable.push(method);
         }
     }
-    let limit = |_: &[Candidate]| Some(most);
+    let limit = |_: &[Candidate]| most;
     let more = choose_by(&affordable, scene, frames, error, limit, measure, begin)?;
     let Some(more) = more else {
         return Ok(None);
@@ -215,7 +215,7 @@ pub fn choose_by<T: Copy, E: From<Error>>(
     scene: &Scene,
     frames: &Frames,
     error: f64,
-    max_cost: impl Fn(&[Candidate<T>]) -> Option<f64>,
+    max_cost: impl Fn(&[Candidate<T>]) -> f64,
     mut measure: impl FnMut(&'static Method, Control) -> Result<Option<Trial<T>>, E>,
     mut begin: impl FnMut(&'static Method),
 ) -> Result<Option<Vec<Candidate<T>>>, E> {
@@ -231,7 +231,7 @@ pub fn choose_by<T: Copy, E: From<Error>>(
             frames,
             error,
             method,
-            max_cost: max_cost(&found).unwrap_or(f64::INFINITY),
+            max_cost: max_cost(&found),
             measure: &mut measure,
         };
         match search.run()? {

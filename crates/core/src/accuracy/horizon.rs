@@ -30,7 +30,7 @@ const MAX_HALVINGS: u32 = 6;
 const MIN_CALMING: f64 = 1.5;
 /// Largest displacement of a coordinate between the two runs at the start, over the scene's radius.
 const SEPARATION: f64 = 1e-8;
-/// Tolerance of the runs of a stiff system, over the separation: their errors part them by less.
+/// Tolerance of runs that take one, over the separation: their errors part them by less.
 const TOLERANCE_SHARE: f64 = 1e-2;
 /// Number of comparisons of both runs between one round time and the next.
 const CHECKS_PER_ROUND: u32 = 10;
@@ -63,8 +63,8 @@ pub struct Horizon {
 ///
 /// Both runs take the same fixed steps, so that their distance is that of the motion and not of two
 /// sequences of steps. The steps are shorter where a hundred of them separate the runs, and where
-/// shorter steps in contact separate them less. In a stiff system and in one of
-/// one's own, whose runs last until `until`, runs at a tight tolerance replace them.
+/// shorter steps in contact separate them less. In a stiff system and in one of one's own, whose
+/// runs last until `until`, runs at a tight tolerance replace them.
 ///
 /// # Errors
 /// The scene cannot be run.
@@ -152,7 +152,14 @@ impl TwoRuns {
             let squares = a[..n].iter().zip(&b[..n]).map(|(a, b)| (a - b).powi(2));
             squares.sum::<f64>().sqrt()
         };
+        let norm = |y: &[f64]| y[..n].iter().map(|y| y * y).sum::<f64>().sqrt();
         let first = distance(run.state(), beside.state());
+        // Numbers that grow from a small start have errors of the size to which they grow.
+        let errors = match control {
+            Control::Tolerance(tolerance) => tolerance / TOLERANCE_SHARE,
+            Control::Step(_) => 0.0,
+        };
+        let mut largest = norm(run.state());
         let last = ROUND_TIMES[ROUND_TIMES.len() - 1];
         let unit = match run.model().network() {
             None if longest < ROUND_TIMES[0] || longest > last => longest / last,
@@ -174,7 +181,9 @@ impl TwoRuns {
                     parted_at = Some(time);
                     break 'rounds;
                 }
-                most = most.max(distance(run.state(), beside.state()) / first);
+                largest = largest.max(norm(run.state()));
+                let least = first.max(errors * largest);
+                most = most.max(distance(run.state(), beside.state()) / least);
                 let count = match run.particles() {
                     0 => n,
                     particles => particles,

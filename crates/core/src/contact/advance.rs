@@ -23,8 +23,8 @@
 use crate::geometry::{Closest, PairKind, closest, weighted};
 use nalgebra::Vector3;
 
-/// Share of the gap, or of a smaller distance at first, both without the radius, that does not
-/// matter.
+/// Share of the gap, or of the pair's distance at first if that is less, up to which an error of a
+/// distance does not matter. Both are without the radius.
 const GAP_TOLERANCE: f64 = 1e-5;
 
 /// Share of the sum of the magnitudes of all coordinates below which a distance may be a rounding
@@ -65,7 +65,7 @@ const MAX_PLANES_OF_PART: usize = 16;
 /// approach. Otherwise it may separate, slide and turn: it is only hit if it would lose a tenth of
 /// its room, the distance above the radius. A pair that begins touching is hit whatever its motion,
 /// because it is unknown on which sides its primitives belong. For round primitives that is known,
-/// so they may separate, and lose up to three times that if they turn.
+/// so they may separate, and lose up to three times this allowance if they turn.
 ///
 /// Edges and triangles may be degenerate. The distance of a [`PairKind::VertexFloor`] is the signed
 /// height of the vertex above the floor; if it begins below the gap, it is hit if the vertex sinks.

@@ -203,8 +203,8 @@ impl Query<'_> {
         let primitives = |[k, l]: [u32; 2]| {
             let (v, [a, b, c]) = (first.vertices[k as usize], second.triangles()[l as usize]);
             let is_corner = (v == a) | (v == b) | (v == c);
-            let touches = !(is_corner | self.surface.are_one(&[v], &[a, b, c]));
-            (touches, ([v, second.ranks[l as usize]], [v, a, b, c]))
+            let may_touch = !(is_corner | self.surface.are_one(&[v], &[a, b, c]));
+            (may_touch, ([v, second.ranks[l as usize]], [v, a, b, c]))
         };
         self.search(PairKind::VertexTriangle, trees, primitives, blocks, pairs);
     }
@@ -227,11 +227,11 @@ impl Query<'_> {
             let meet = (e[0] == f[0]) | (e[0] == f[1]) | (e[1] == f[0]) | (e[1] == f[1]);
             // A point and an edge of a triangle: the point and its corners are a pair already.
             let is_point = (e[0] == e[1]) & second.is_side(l) | (f[0] == f[1]) & first.is_side(k);
-            let touches = !(meet | is_point | self.surface.are_one(&e, &f));
+            let may_touch = !(meet | is_point | self.surface.are_one(&e, &f));
             let all = [(first.edge_ranks[k], e), (second.edge_ranks[l], f)];
             let swapped = usize::from(all[1].0 < all[0].0);
             let ((m, [a, b]), (n, [c, d])) = (all[swapped], all[1 - swapped]);
-            (touches, ([m, n], [a, b, c, d]))
+            (may_touch, ([m, n], [a, b, c, d]))
         };
         self.search(PairKind::EdgeEdge, trees, primitives, blocks, pairs);
     }
@@ -272,8 +272,8 @@ impl Query<'_> {
         }
     }
 
-    /// Adds those of these pairs of primitives of one kind that touch and come within reach.
-    /// Whether one does is random, so nothing branches there.
+    /// Adds those of these pairs of primitives of one kind that may touch and come within reach.
+    /// Whether they may is random, so nothing branches there.
     fn bound(
         &self,
         kind: PairKind,
@@ -297,9 +297,9 @@ impl Query<'_> {
                 });
             }
         };
-        for (touches, found) in near {
+        for (may_touch, found) in near {
             members[count] = found;
-            count += usize::from(touches);
+            count += usize::from(may_touch);
             if count == LANES {
                 empty(&members);
                 count = 0;

@@ -318,17 +318,16 @@ impl ParticleSystem for Ode {
         let mut failed = [0.0];
         self.failure.guard(&mut failed, |_| {
             write(t, y, entries)?;
-            let is_wrong = |(i, j, value): &&(u32, u32, f64)| {
-                is_outside(self.dim, (*i, *j)) || !value.is_finite()
-            };
-            match entries.iter().find(is_wrong) {
-                Some((i, j, _)) if is_outside(self.dim, (*i, *j)) => {
-                    Err(outside(self.dim, (*i, *j)))
-                }
-                Some((i, j, value)) if self.is_defined(t, y) => Err(format!(
+            let mut places = entries.iter().map(|(i, j, _)| (*i, *j));
+            if let Some(wrong) = places.find(|place| is_outside(self.dim, *place)) {
+                return Err(outside(self.dim, wrong));
+            }
+            let wrong = entries.iter().find(|(.., value)| !value.is_finite());
+            match wrong.filter(|_| self.is_defined(t, y)) {
+                Some((i, j, value)) => Err(format!(
                     "the Jacobian is {value} in row {i} and column {j} at t = {t} s, where f is finite"
                 )),
-                _ => Ok(()),
+                None => Ok(()),
             }
         });
         if failed[0].is_nan() {

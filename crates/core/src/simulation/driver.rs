@@ -149,8 +149,8 @@ impl Driver {
         })
     }
 
-    /// Takes at most `count` whole steps towards `time` (s), and shows the state there if it is
-    /// reached. Returns whether it is.
+    /// Takes at most `count` whole steps and one more towards `time` (s), and shows the state there
+    /// if it is reached. Returns whether it is.
     ///
     /// # Errors
     /// The run blew up, or a step failed.

@@ -203,8 +203,8 @@ impl Simulation {
         self.advance_in(time, u64::MAX - 1).map(drop)
     }
 
-    /// Does what [`advance_to`](Self::advance_to) does, in at most `count` whole steps and the one
-    /// that contains the time. Returns whether it has arrived: if not, the run is at the end of a
+    /// Does what [`advance_to`](Self::advance_to) does, in at most `count` whole steps and one
+    /// more. Returns whether it has arrived: if not, the run is at the end of a
     /// step.
     ///
     /// # Errors

@@ -13,11 +13,14 @@ const TOLERANCES: [f64; 2] = [1e-6, 1e-9];
 /// 10^(6/4) = 32 times as many.
 const STIFF_RATIO: f64 = 8.0;
 
+/// Largest work of all runs of a system of one's own (evaluations), whose time may be of any length.
+const MOST: f64 = 1e6;
+
 /// Returns whether Radau reaches a time (s) with less than an eighth of the work of DOP853, and the
 /// work of both. No system is stiff that Radau does not support. `None` if `go_on` returned false.
 ///
 /// # Errors
-/// A function of the system failed.
+/// A function of the system failed, or a system of one's own takes more than a million evaluations.
 pub(crate) fn is_stiff(
     scene: &Scene,
     until: f64,
@@ -97,10 +100,6 @@ pub(crate) fn accurate(is_stiff: bool) -> Result<&'static Method, Error> {
     let none = || Error::Invalid("no accurate method is in the table".into());
     find(if is_stiff { "radau" } else { "dop853" }).ok_or_else(none)
 }
-
-/// Largest work of both runs of a system of one's own (evaluations), whose time may be of any
-/// length.
-const MOST: f64 = 1e6;
 
 /// A method on its way.
 struct Racer {

@@ -85,3 +85,20 @@ fn stiff_motion_that_dies_out_is_no_chaos() {
         );
     }
 }
+
+/// Numbers that grow from a small start to their size are predictable, though the errors of both
+/// runs are larger than the distance at which they begin.
+#[test]
+fn growth_from_a_small_start_is_no_chaos() {
+    for (unit, until) in [(1.0, 10.0), (1e10, 1e11)] {
+        let driven = Ode::new(1, move |t: f64, _: &[f64], dydt: &mut [f64]| {
+            dydt[0] = (t / unit).cos() / unit;
+        });
+        let scene = Scene::new("driven", driven.unwrap(), vec![1e-8]);
+        let found = horizon(&scene, until, &|| true).unwrap().unwrap();
+        assert!(
+            found.lyapunov.is_infinite() && found.growth < 2.0,
+            "{unit:e}: {found:?}"
+        );
+    }
+}

@@ -377,6 +377,20 @@ fn patterns_and_entries_may_be_given() {
             assert!(apart.fold(0.0, f64::max) < 1e-5, "{name}");
         }
     }
+    // A matrix that is zero at the start has a pattern all the same.
+    let from_rest = |_: f64, y: &[f64], dydt: &mut [f64]| {
+        for (rate, y) in dydt.iter_mut().zip(y) {
+            *rate = 1.0 - 50.0 * y * y;
+        }
+    };
+    let entries = |_: f64, y: &[f64], out: &mut Vec<(u32, u32, f64)>| {
+        let diagonal = (0..N).zip(y).filter(|(_, y)| **y != 0.0);
+        out.extend(diagonal.map(|(k, y)| (k, k, -100.0 * y)));
+    };
+    let system = Ode::new(N as usize, from_rest).unwrap();
+    let system = system.with_jacobian_entries(entries);
+    let (y, _, work) = run("radau", &system, 1.0, vec![0.0; N as usize], 1e-6).unwrap();
+    assert!((y[0] - 50f64.sqrt().recip()).abs() < 1e-6 && work.evaluations < 500);
     let outside = rod().with_sparsity(vec![(0, N)]);
     let words = outside.err().unwrap().to_string();
     assert!(words.contains("no row 0 and column 1500"), "{words}");

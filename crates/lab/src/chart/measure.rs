@@ -186,7 +186,7 @@ impl Study {
                 else {
                     return Ok(false);
                 };
-                if record.given_up.is_some() {
+                if record.given_up {
                     self.too_costly.push(method);
                     break;
                 }
@@ -292,7 +292,7 @@ impl Study {
         };
         if let Some(record) = &record {
             check_contact(self.metric, record.still(self.metric), record.until)?;
-            if is_new && record.given_up.is_none() {
+            if is_new && !record.given_up {
                 data.runs.add(record.clone());
             }
         }
@@ -367,7 +367,7 @@ impl Study {
 
 /// Returns the largest work of a run of an explicit method, in evaluations: little where the system
 /// is stiff, because such runs take alike to any tolerance.
-pub fn explicit_work(reference: &Reference) -> f64 {
+fn explicit_work(reference: &Reference) -> f64 {
     if reference.is_stiff {
         MAX_EVALUATIONS.min(reference.max_work)
     } else {
@@ -444,8 +444,7 @@ pub fn compared(
         go_on,
     )
     .map_err(Failure::run)?;
-    let is_too_costly = outcome.is_some_and(|outcome| outcome.is_too_costly());
-    let given_up = is_too_costly.then_some(reference.max_work);
+    let given_up = outcome.is_some_and(|outcome| outcome.is_too_costly());
     let Some(Outcome {
         errors,
         work,

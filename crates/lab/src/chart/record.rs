@@ -114,9 +114,9 @@ pub struct Record {
     /// itself is within 4 % of it.
     #[serde(default)]
     pub beside: Option<f64>,
-    /// Largest work beyond which the run was given up (evaluations), if it was.
+    /// Whether the run was given up, because it took too many evaluations.
     #[serde(skip)]
-    pub given_up: Option<f64>,
+    pub given_up: bool,
     /// Checksum of the file up to this run, as it was read.
     #[serde(default, skip_serializing)]
     pub check: String,

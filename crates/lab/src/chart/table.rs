@@ -8,7 +8,7 @@ use a3_files::bounds::{LARGEST_STEP, SMALLEST_STEP};
 use a3_files::report::Report;
 
 use super::data::Data;
-use super::measure::{Study, explicit_work};
+use super::measure::Study;
 use super::record::Record;
 use super::words::{lasting, unit};
 
@@ -243,10 +243,9 @@ fn words_of_winners(
     }
     if !study.too_costly.is_empty() {
         let names: Vec<_> = study.too_costly.iter().map(|method| method.name).collect();
-        let most = study.reference.as_ref().map_or(0.0, explicit_work);
         let _ = writeln!(
             text,
-            "too costly, with runs of more than {most:.0} evaluations: {}",
+            "given up at smaller steps or tolerances, where runs take too many evaluations: {}",
             names.join(", ")
         );
     }

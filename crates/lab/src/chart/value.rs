@@ -178,12 +178,19 @@ impl Chart {
     /// None is left.
     pub fn finish(&mut self) -> Result<(), Failure> {
         let data = &self.data;
+        let costly = self.studies.iter().flat_map(|study| &study.too_costly);
+        let costly: Vec<_> = costly.map(|method| method.name).collect();
         self.studies
             .retain(|study| study.records(data).next().is_some());
-        if self.studies.is_empty() {
-            return Err(nothing());
+        match (self.studies.is_empty(), &costly[..]) {
+            (false, _) => Ok(()),
+            (true, []) => Err(nothing()),
+            (true, costly) => Err(Failure::run(format!(
+                "runs take too many evaluations ({}): name a solver for stiff systems, such as radau or bdf, or \
+                 end the runs earlier",
+                costly.join(", ")
+            ))),
         }
-        Ok(())
     }
 
     /// Returns the runs: by stiffness, and in the order in which they were measured.

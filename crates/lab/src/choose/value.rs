@@ -226,12 +226,18 @@ impl<'a> Search<'a> {
         }
         let goal = describe_goal(self.options.goal, metric, &words(self.scope, &scene.model));
         let name = &scene.name;
+        // On a system of one's own, runs may have been given up.
+        let or = if reference.max_work.is_finite() {
+            ", or name solvers for stiff systems, such as radau and bdf"
+        } else {
+            ""
+        };
         Err(Failure::run(match self.options.goal {
             Goal::Error(_) => {
-                format!("no solver meets {goal} on {name}: ask for a larger error")
+                format!("no solver meets {goal} on {name}: ask for a larger error{or}")
             }
             Goal::Budget(_) => format!(
-                "within {goal}, no solver's error on {name} is smaller than the motion: ask for a larger budget"
+                "within {goal}, no solver's error on {name} is smaller than the motion: ask for a larger budget{or}"
             ),
         }))
     }

@@ -173,7 +173,7 @@ pub fn solve(
     // The accurate run of the whole scene is a candidate, too.
     let max_cost = |found: &[Candidate<f64>]| {
         let least = found.first().map_or(f64::INFINITY, |best| best.work);
-        Some(least.min(models.whole.work))
+        least.min(models.whole.work)
     };
     let mut methods: Vec<_> = METHODS.iter().collect();
     methods.sort_by_key(|method| (method.name != first, Reverse(method.order)));

@@ -116,7 +116,8 @@ impl Body for Particles {
         let first = assembly.add_particles(&masses, places, None);
         let springs = springs(&self.springs, n)?;
         let stiffest = springs.iter().map(|s| s.law.stiffness).fold(0.0, f64::max);
-        let time = springs.iter().map(|s| s.law.damping).fold(0.0, f64::max) / stiffest.max(1.0);
+        let most = springs.iter().map(|s| s.law.damping).fold(0.0, f64::max);
+        let time = if stiffest > 0.0 { most / stiffest } else { 0.0 };
         let skin = SkinSpec::of(self, assembly.gravity, [stiffest, time]);
         let given = self.thickness.map(|thickness| 4.0 * thickness);
         let skins = skin.uniform(&masses, given.unwrap_or(POINT_SPACING))?;

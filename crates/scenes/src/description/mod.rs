@@ -55,8 +55,8 @@ pub struct Description {
     pub duration: Option<f64>,
     /// Gravity (m/s2), such as [0, -9.81, 0]; none if not given.
     pub gravity: Option<Triple>,
-    /// Gravity (m/s2) that the default stiffness of contact suits; if not given, the scene's, or
-    /// 9.81 m/s2 without any.
+    /// Gravity (m/s2) for which contact is made stiff enough where no `contact_stiffness` is given;
+    /// if not given, the scene's, or 9.81 m/s2 without any.
     pub contact_gravity: Option<f64>,
     /// Viscous drag on each particle (kg/s). An alternative is `drag_per_mass`.
     pub drag: Option<f64>,

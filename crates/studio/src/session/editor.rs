@@ -145,7 +145,7 @@ fn fitting(runs: &Runs) -> [f64; 5] {
     let stiffness = network.and_then(|network| Some(network.springs().next()?.law.stiffness));
     let liquid = network.and_then(Network::fluid).map(Fluid::law);
     let layers = liquid.map_or(0.0, |law| LAYERS * law.spacing);
-    let size = layers.max(0.035 * distance);
+    let size = short(layers.max(0.035 * distance), 1);
     let values = [
         size,
         1.3 * distance,

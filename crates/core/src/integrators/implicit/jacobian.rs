@@ -91,8 +91,9 @@ impl Jacobian {
         let mut is_plain = true;
         system.measures(&mut |_, measure| is_plain &= measure == Measure::Plain);
         let is_central = is_rigid || !is_plain && system.mechanics().is_none();
-        let given = system.sparsity().iter().copied();
-        let given = pattern_of(count, given).filter(|_| count >= MANY && !is_central);
+        let is_sparse = count >= MANY && count == dim && !is_central;
+        let given = is_sparse.then(|| system.sparsity().iter().copied());
+        let given = given.and_then(|given| pattern_of(count, given));
         Self {
             units: Vec::with_capacity(count),
             evaluation: if is_rigid {
@@ -324,7 +325,8 @@ impl Jacobian {
     /// Takes the entries at y of a sparse matrix that the system knows. Returns the cost; `None` if
     /// the system is small, or its matrix is not known or not sparse.
     fn take_entries(&mut self, system: &dyn ParticleSystem, t: f64, y: &[f64]) -> Option<Work> {
-        let is_dense = matches!(self.matrix, Matrix::Full(_)) && !self.searches;
+        let is_dense = matches!(self.matrix, Matrix::Full(_)) && !self.searches
+            || self.unknowns.len() != y.len();
         self.entries.clear();
         if is_dense || !system.jacobian_entries(t, y, &mut self.entries) {
             return None;
@@ -352,8 +354,11 @@ impl Jacobian {
                 Matrix::Full(_) => vec![],
             };
             let new = entries.iter().map(|(row, column, _)| (*row, *column));
+            // The matrix of a step has a diagonal, whatever the entries are.
+            let diagonal = (0..count as u32).map(|k| (k, k));
             self.searches = false;
-            let Some(found) = pattern_of(count, known.into_iter().chain(new)) else {
+            let all = known.into_iter().chain(new).chain(diagonal);
+            let Some(found) = pattern_of(count, all) else {
                 self.matrix = full(count);
                 return None;
             };

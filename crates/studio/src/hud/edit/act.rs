@@ -2,7 +2,6 @@
 
 use std::f64::consts::FRAC_PI_2;
 
-use a3_core::elements::Fluid;
 use a3_core::{Network, Vector3};
 use a3_files::rounding::short;
 use a3_media::show::Target;
@@ -99,10 +98,11 @@ pub fn throw(session: &mut Session, aim: &Aim, how: Throw) {
     session.readings.say(done.unwrap_or_else(|why| why));
 }
 
-/// Returns the liquid of the scene if it is a sheet across z, 1 m deep.
-fn sheet(session: &Session) -> Option<&Fluid> {
-    let fluid = session.runs.first().model().network()?.fluid();
-    fluid.filter(|fluid| fluid.law().dimensions == 2)
+/// Returns whether the scene has a liquid that is a sheet across z, 1 m deep.
+fn is_sheet(session: &Session) -> bool {
+    let network = session.runs.first().model().network();
+    let fluid = network.and_then(Network::fluid);
+    fluid.is_some_and(|fluid| fluid.law().dimensions == 2)
 }
 
 /// Makes the body of the chosen tool, and names it. In a liquid that is a sheet, it reaches across.
@@ -110,19 +110,20 @@ fn body(session: &Session, at: Vector3<f64>, velocity: Vector3<f64>) -> (RigidBo
     let editor = &session.panel.editor;
     let size = editor.value(Measure::Size);
     let is_ball = matches!(editor.tool, Tool::ThrowBall | Tool::AddBall);
-    let part = match (is_ball, sheet(session)) {
+    // With its ends, a capsule of this length has the volume of a disc of 1 m.
+    let length = Some(1.0 - 2.0 / 3.0 * size).filter(|length| is_sheet(session) && *length > 0.0);
+    let part = match (is_ball, length) {
         (true, None) => PartSpec {
             ball: Some(0.5 * size),
             ..PartSpec::default()
         },
-        // As long as a disc of its volume is deep.
-        (true, Some(_)) => PartSpec {
-            capsule: Some([1.0 - 2.0 / 3.0 * size, 0.5 * size]),
+        (true, Some(length)) => PartSpec {
+            capsule: Some([length, 0.5 * size]),
             rotation: Some([FRAC_PI_2, 0.0, 0.0]),
             ..PartSpec::default()
         },
-        (false, across) => PartSpec {
-            cuboid: Some([size, size, across.map_or(size, |_| 1.0)]),
+        (false, _) => PartSpec {
+            cuboid: Some([size, size, if is_sheet(session) { 1.0 } else { size }]),
             ..PartSpec::default()
         },
     };
@@ -186,8 +187,8 @@ fn thrown_from(
         start.y = start.y.max(ground + size);
     }
     let mut point = aim.point;
-    if sheet(session).is_some() {
-        // It falls within the sheet, from above all liquid and all walls, now and at the start.
+    if is_sheet(session) {
+        // It falls within the sheet, from above all particles, now and at the start.
         let run = session.runs.first();
         let n = run.particles();
         let heights = |y: &[f64]| y[n..2 * n].iter().copied().fold(start.y, f64::max);
@@ -213,7 +214,15 @@ fn another_body(session: &Session, aim: &Aim) -> Planned {
         _ => 0.5 * size,
     };
     let offset = aim.normal.map(|n| n * (reach(n) + GAP * size));
-    let at = aim.point + offset.unwrap_or_default();
+    let mut at = aim.point + offset.unwrap_or_default();
+    if is_sheet(session) {
+        // Where the line of sight crosses the sheet.
+        let share = aim.eye.z / (aim.eye.z - aim.point.z);
+        if share.is_finite() && share > 0.0 {
+            at = aim.eye + (aim.point - aim.eye) * share;
+        }
+        at.z = 0.0;
+    }
     let (body, name) = body(session, at, Vector3::zeros());
     let said = format!("There is another {name} now.");
     (Edit::AddBody(body), name.into(), said)

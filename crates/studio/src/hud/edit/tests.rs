@@ -422,6 +422,26 @@ fn throw_two(session: &mut Session) -> [String; 2] {
     })
 }
 
+/// Checks that a light ball in a liquid is lighter than what it displaces, and a heavy one heavier,
+/// and that they are within a liquid that is a sheet.
+fn check_floating(session: &Session) {
+    let run = session.runs.first();
+    let network = run.model().network();
+    let Some((network, fluid)) = network.and_then(|it| Some((it, it.fluid()?))) else {
+        return;
+    };
+    let (n, law) = (run.particles(), fluid.law());
+    for (k, body) in network.bodies().iter().rev().take(2).enumerate() {
+        let wet = body
+            .points()
+            .filter(|i| fluid.particles().contains(&(*i as u32)));
+        let displaced = wet.count() as f64 * law.mass();
+        assert!(displaced > 0.0);
+        assert_eq!(network.masses()[body.center()] > displaced, k == 0);
+        assert!(law.dimensions == 3 || run.state()[2 * n + body.center()].abs() < 1e-9);
+    }
+}
+
 fn bodies(session: &Session) -> usize {
     let network = session.runs.first().model().network();
     network.map_or(0, |network| network.bodies().len())
@@ -442,6 +462,7 @@ fn balls_are_thrown_into_every_scene() {
                 _ => 2,
             };
             assert_eq!(bodies(&session), before + added, "{}: {said:?}", entry.name);
+            check_floating(&session);
             let came_apart = said.iter().any(|said| said.contains("came apart"));
             assert!(!came_apart || entry.name == "mit-sphere", "{said:?}");
             let flies = said.iter().filter(|said| said.starts_with("A ball flies."));
