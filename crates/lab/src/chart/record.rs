@@ -9,6 +9,10 @@ use a3_files::rows::Row;
 /// Run of a method on a scene, with its errors and its work.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
+#[expect(
+    clippy::struct_excessive_bools,
+    reason = "columns of a file, which say yes or no"
+)]
 pub struct Record {
     /// Version of the program that measured the run.
     pub version: String,
