@@ -250,3 +250,49 @@ def test_a_sparse_jacobian_of_another_shape_is_one_clear_line():
     system = a3.System(lambda t, y: -y, np.ones(40), jac=lambda t, y: sparse.eye(39))
     with pytest.raises(a3.InputError, match=r"returned an array of shape \(39, 39\)"):
         a3.Simulation(system, "radau", tolerance=1e-4).step()
+        ([[0, 1], [1]], "pairs of a row and a column"),
+        ([[0, 1], [1, 0, 1]], "pairs of a row and a column"),
+
+
+@pytest.mark.parametrize(
+    "sparsity, places",
+    [
+        (np.eye(2), [(0, 0), (1, 1)]),
+        (np.eye(2, dtype=bool), [(0, 0), (1, 1)]),
+        ([[0, 1], [1, 0]], [(0, 1), (1, 0)]),
+        ([[0, 0], [1, 1]], [(0, 0), (1, 1)]),
+        ([[0, 1]], [(0, 1)]),
+    ],
+)
+def test_patterns_of_two_numbers(sparsity, places):
+    assert a3.System(lambda t, y: -y, [1.0, 2.0], sparsity=sparsity)._sparsity == places
+
+
+@pytest.mark.parametrize("size", [20, 2000])
+@pytest.mark.parametrize("method", ["radau", "bdf"])
+def test_an_exception_of_a_jacobian_comes_out(method, size):
+    def run(jac, since=0.0):
+        run = a3.Simulation(a3.System(lambda t, y: -y, np.ones(size), jac=jac), method, tolerance=1e-4)
+        run.set_state(np.ones(size), since)
+        run.advance_to(since + 1.0)
+        return run.state
+
+    with pytest.raises(ZeroDivisionError):
+        run(lambda t, y: 1 / 0)
+    sparse = pytest.importorskip("scipy.sparse")
+    calls = []
+
+    def later(t, y):
+        if t == 0.0:
+            raise ValueError("no slope at 0")
+        calls.append(t)
+        return -sparse.eye(size)
+
+    assert run(later, since=1.0) == pytest.approx(np.full(size, math.exp(-1)), abs=1e-3) and calls
+    if size > 1024:
+        with pytest.raises(a3.InputError, match=r"full returned an array .*, where a sparse matrix of shape"):
+
+            def full(t, y):
+                return -np.eye(size) if t > 0.0 else 1 / 0
+
+            run(full, since=1.0)
