@@ -104,6 +104,43 @@ def test_runs_go_back_in_time(method):
         run.advance_to(1.0)
 
 
+def test_runs_that_go_back_tell_their_own_times():
+    def lost():
+        return a3.Simulation(a3.System(lambda t, y: -y * y, [1.0]), "dopri5", backward=True)
+
+    for blow_up in (lambda run: run.step(1000), lambda run: run.advance(-2.0), lambda run: run.advance_to(-2.0)):
+        with pytest.raises(a3.BlowUp, match="t = -") as error:
+            blow_up(lost())
+        assert -1.1 < error.value.time < -0.9
+    no_slope = a3.System(lambda t, y: -y, [1.0], jac=lambda t, y: [[math.nan if t < -0.5 else -1.0]])
+    with pytest.raises(a3.Error, match="NaN in row 0 and column 0 at t = -0[.]"):
+        a3.Simulation(no_slope, "implicit", step=0.1, backward=True).advance_to(-2.0)
+    run = a3.Simulation(a3.System(growth, [1.0]), "rk4", step=1e-4, backward=True)
+    times = []
+    run.advance(-3.0, times.append)
+    assert run.time == -3.0 and times == sorted(times, reverse=True) and all(-3.0 <= time < 0.0 for time in times)
+    for past in (
+        lambda: run.advance_to(-1),
+        lambda: run.advance(-1),
+        lambda: run.states_at([-1]),
+        lambda: run.advance_until(lambda t, y: 1.0, -1),
+    ):
+        with pytest.raises(a3.InputError, match=r"the run is at t = -3.0 s already, past -1 s: reset\(\) goes back"):
+            past()
+    for wrong in (math.nan, -math.inf, 1.0):
+        with pytest.raises(a3.InputError, match=f"a time is from -1e15 to 0, such as -10, not {wrong}"):
+            run.advance_to(wrong)
+    run.set_state([1.0], -1.0)
+    assert run.time == -1.0
+
+
+def test_a_direction_is_as_the_run_goes():
+    run = a3.Simulation(a3.System(growth, [1.0]), "dopri5", backward=True)
+    assert not run.advance_until(lambda t, y: t + 1.0, -2.0, direction=1)
+    run.reset()
+    assert run.advance_until(lambda t, y: t + 1.0, -2.0, direction=-1) and run.time == pytest.approx(-1.0)
+
+
 def test_a_jump_is_met_from_either_side():
     system = a3.System(lambda t, y: [1.0 if t >= -1.0 else 5.0], [0.0], tstops=[-1.0])
     for method in ("rk4", "dopri5"):
@@ -164,6 +201,35 @@ def test_states_may_be_complex(jac):
     assert min(point.error for point in chart.points) < 1e-9
     with pytest.raises(a3.InputError, match="quantity"):
         a3.chart(system, ["rk4"], until=1.0, component=0, progress=False)
+
+
+@pytest.mark.parametrize("kind", [np.complex64, complex, np.clongdouble])
+def test_quantities_may_be_complex_numbers_of_any_size(kind):
+    def turned(t, z):
+        return z[0].astype(kind)
+
+    chart = a3.chart(a3.System(turning, [1.0 + 0j, 1j]), ["rk4"], until=1.0, quantity=turned, progress=False)
+    found = [point.error for point in chart.points]
+    assert all(error < 2.0 for error in found) and min(found) < (1e-6 if kind is np.complex64 else 1e-9)
+
+
+def test_complex_numbers_of_a_real_system_are_one_clear_line():
+    for y0 in (np.ones(4), np.ones((2, 2))):
+        run = a3.Simulation(a3.System(lambda t, y: -y, y0))
+        with pytest.raises(a3.InputError, match="state: real numbers are expected, not complex ones"):
+            run.set_state(y0 + 1j)
+        with pytest.raises(a3.InputError, match="scale: real numbers"):
+            a3.System(lambda t, y: -y, y0, scale=y0 + 1j)
+
+
+def test_a_wrong_result_of_a_watched_function_names_it():
+    def radius(t, y):
+        return y
+
+    run = a3.Simulation(a3.System(lambda t, y: -y, np.ones((2, 2))), "rk4", step=0.1)
+    for function, name in ((radius, "radius"), (lambda t, y: y, "the function")):
+        with pytest.raises(a3.InputError, match=rf"^{name} returned an array of shape \(2, 2\)"):
+            run.advance_until(function, 1.0)
 
 
 def test_a_wrong_shape_is_one_clear_line():
@@ -238,6 +304,8 @@ def test_a_pattern_that_misses_entries_is_completed():
         ([[0.5, 1.0]], "pairs of a row and a column"),
         (np.zeros((2, 2), dtype=bool), "no entry"),
         ("all", "pairs of a row and a column"),
+        ([[0, 1], [1]], "pairs of a row and a column"),
+        ([[0, 1], [1, 0, 1]], "pairs of a row and a column"),
     ],
 )
 def test_a_wrong_pattern_is_one_clear_line(sparsity, words):
@@ -250,3 +318,47 @@ def test_a_sparse_jacobian_of_another_shape_is_one_clear_line():
     system = a3.System(lambda t, y: -y, np.ones(40), jac=lambda t, y: sparse.eye(39))
     with pytest.raises(a3.InputError, match=r"returned an array of shape \(39, 39\)"):
         a3.Simulation(system, "radau", tolerance=1e-4).step()
+
+
+@pytest.mark.parametrize(
+    "sparsity, places",
+    [
+        (np.eye(2), [(0, 0), (1, 1)]),
+        (np.eye(2, dtype=bool), [(0, 0), (1, 1)]),
+        ([[0, 1], [1, 0]], [(0, 1), (1, 0)]),
+        ([[0, 0], [1, 1]], [(0, 0), (1, 1)]),
+        ([[0, 1]], [(0, 1)]),
+    ],
+)
+def test_patterns_of_two_numbers(sparsity, places):
+    assert a3.System(lambda t, y: -y, [1.0, 2.0], sparsity=sparsity)._sparsity == places
+
+
+@pytest.mark.parametrize("size", [20, 2000])
+@pytest.mark.parametrize("method", ["radau", "bdf"])
+def test_an_exception_of_a_jacobian_comes_out(method, size):
+    def run(jac, since=0.0):
+        run = a3.Simulation(a3.System(lambda t, y: -y, np.ones(size), jac=jac), method, tolerance=1e-4)
+        run.set_state(np.ones(size), since)
+        run.advance_to(since + 1.0)
+        return run.state
+
+    with pytest.raises(ZeroDivisionError):
+        run(lambda t, y: 1 / 0)
+    sparse = pytest.importorskip("scipy.sparse")
+    calls = []
+
+    def later(t, y):
+        if t == 0.0:
+            raise ValueError("no slope at 0")
+        calls.append(t)
+        return -sparse.eye(size)
+
+    assert run(later, since=1.0) == pytest.approx(np.full(size, math.exp(-1)), abs=1e-3) and calls
+    if size > 1024:
+        with pytest.raises(a3.InputError, match=r"full returned an array .*, where a sparse matrix of shape"):
+
+            def full(t, y):
+                return -np.eye(size) if t > 0.0 else 1 / 0
+
+            run(full, since=1.0)

@@ -13,6 +13,9 @@ import numpy.typing as npt
 from . import _a3
 from ._errors import InputError
 
+#: Most numbers of a state whose Jacobian may be an array: of more, a3 takes a sparse matrix or differences.
+_MOST_FULL = 1024
+
 Floats = npt.NDArray[np.float64]
 #: f(t, y): the derivative of the state y at time t, of the shape of y.
 Derivative = Callable[[float, Floats], npt.ArrayLike]
@@ -38,13 +41,14 @@ class System:
         scale: least size to which the errors of adaptive methods are relative, one for all numbers or (n,). By default
             an error is relative to the largest size that its number has had, and a billionth of that of the largest
             number of y0 is allowed besides.
-        jac: function of t and y that returns the Jacobian df/dy, (n, n), for stiff methods and stability: an array or, of
-            any number of numbers, a sparse matrix of SciPy. Of y0 of another shape, n is its size, and numbers are in
-            C order. Without it, differences of f are taken; in place of an array of a system of more than 1024 numbers
-            they are, too.
+        jac: function of t and y that returns the Jacobian df/dy, (n, n), for stiff methods and stability: an array or,
+            of any number of numbers, a sparse matrix of SciPy. Of y0 of another shape, n is its size, and numbers are
+            in C order. Without it, differences of f are taken; in place of an array of a system of more than 1024
+            numbers they are, too. Of complex numbers, `jac` is df/dz, an array, for f that has one (not of |z| or
+            conj(z)); real and imaginary parts are compared as numbers of their own.
         sparsity: which numbers act on which, so that few differences are taken: a sparse matrix of SciPy or an array,
-            (n, n), that is 0 where the Jacobian always is, or pairs of rows and columns, (k, 2). By default it is found
-            by some evaluations, of which it spares most.
+            (n, n), that is 0 where the Jacobian always is, or pairs of rows and columns, (k, 2); of two numbers,
+            integers are pairs. By default it is found by some evaluations, of which it spares most.
         args: further arguments of f and jac, after t and y.
         tstops: times at which f or one of its derivatives jumps: a step of each of a3's methods ends there.
             f at such a time is that after the jump, so compare t with the same numbers.
@@ -64,7 +68,7 @@ class System:
     #: Function that returns the energy, if there is one.
     _energy: Optional[Energy] = None
     #: Function that returns the Jacobian, if there is one.
-    _jac: Optional[Derivative] = None
+    _jac: Optional["_Full"] = None
     #: Least size of each number to which errors are relative; empty where it is derived.
     _scales: Sequence[float] = ()
     #: Row and column of each entry of the Jacobian that may differ from 0; empty where they are found.
@@ -87,7 +91,9 @@ class System:
         tstops: npt.ArrayLike = (),
     ) -> None:
         self.f: Union[Derivative, Forces] = _with(args, f)
-        self._jac = None if jac is None else _with(args, jac)
+        if jac is not None and not callable(jac):
+            raise InputError(f"jac: a function is expected, not {type(jac).__name__}")
+        slopes = None if jac is None else _with(args, jac)
         kind = complex if np.iscomplexobj(y0) else float
         self.y0 = _numbers("y0", y0, None, kind)
         if self.y0.size == 0:
@@ -98,7 +104,8 @@ class System:
             self._layout = layout = _Layout(self.y0)
             self._state = layout.flat(self.y0)
             self.f = _OfState(self.f, layout, layout.flat)
-            self._jac = self._jac and _OfState(self._jac, layout, layout.square)
+            slopes = slopes and _OfState(slopes, layout, layout.square)
+        self._jac = slopes and _Full(slopes)
         self._jumps = _numbers("tstops", tstops, (-1,))
         if sparsity is not None:
             self._sparsity = _places(sparsity, self.y0.size, self._state.size // self.y0.size)
@@ -150,12 +157,13 @@ class System:
     def _entries(self) -> Optional["_Entries"]:
         """Returns the Jacobian as a function that returns rows, columns and values, if it is a sparse matrix."""
         jac: Any = self._jac
+        size = self._state.size
         try:
-            is_sparse = hasattr(jac(0.0, self._state.copy()), "tocoo")
+            is_sparse = hasattr(jac.function(0.0, self._state.copy()), "tocoo")
         except Exception:
-            # It will come out where the Jacobian is used.
-            is_sparse = False
-        return _Entries(jac, self._state.size) if is_sparse else None
+            # It will come out where the Jacobian is used: beyond this size, only a sparse one is.
+            is_sparse = size > _MOST_FULL
+        return _Entries(jac.function, size) if is_sparse else None
 
     def _measured_by(self, quantity: Derivative) -> "System":
         """Returns this system with states that are compared by a number, or an array, of t and y."""
@@ -164,7 +172,7 @@ class System:
 
         def ravel(found: npt.ArrayLike, name: str) -> Floats:
             flat = np.ravel(found)
-            return flat.view(float) if np.iscomplexobj(flat) else flat
+            return flat.astype(complex).view(float) if np.iscomplexobj(flat) else flat
 
         flat = _OfState(quantity, self._layout, ravel, "quantity")
         measured = copy.copy(self)
@@ -405,6 +413,17 @@ class _OfState:
         return self.read(self.function(t, self.layout.shaped(y) if self.layout else y), self.__name__)
 
 
+class _Full:
+    """A function that returns a Jacobian, which is an array here also where it returns a sparse matrix of SciPy."""
+
+    def __init__(self, function: Any) -> None:
+        self.function, self.__name__ = function, _name(function, "jac")
+
+    def __call__(self, t: float, y: Floats) -> Any:
+        found = self.function(t, y)
+        return found.tocoo().toarray() if hasattr(found, "tocoo") else found
+
+
 class _Entries:
     """The rows, columns and values of a function that returns a sparse matrix of SciPy, (3, k)."""
 
@@ -427,8 +446,13 @@ def _places(sparsity: Any, size: int, parts: int) -> Sequence[Tuple[int, int]]:
         entries, shape = sparsity.tocoo(), sparsity.shape
         places = np.column_stack([entries.row, entries.col])[entries.data != 0]
     else:
-        array = np.asarray(sparsity)
-        is_matrix = array.dtype == bool or array.shape == (size, size) != (2, 2)
+        try:
+            array = np.asarray(sparsity)
+        except ValueError:
+            # A ragged list is refused below.
+            array = np.asarray(None)
+        # Integers (2, 2) of two numbers are pairs.
+        is_matrix = array.dtype == bool or array.shape == (size, size) and (size != 2 or array.dtype.kind == "f")
         shape, places = (array.shape, np.argwhere(array)) if is_matrix else ((size, size), array)
     if shape != (size, size) or places.ndim != 2 or places.shape[1] != 2 or places.dtype.kind not in "iu":
         raise InputError(
@@ -450,9 +474,13 @@ def _name(function: Any, otherwise: str) -> str:
 
 def _numbers(what: str, given: npt.ArrayLike, shape: Optional[Sequence[int]], kind: Type[Any] = float) -> Floats:
     """Returns an array of its own, of finite numbers of a kind. A length of -1 is any, as is a shape of `None`."""
+    found = None
     try:
-        array = np.array(given).astype(kind, order="C", casting="same_kind")
+        found = np.array(given)
+        array = found.astype(kind, order="C", casting="same_kind")
     except (TypeError, ValueError):
+        if np.iscomplexobj(found):
+            raise InputError(f"{what}: real numbers are expected, not complex ones") from None
         raise InputError(f"{what}: numbers are expected, not {type(given).__name__}") from None
     if shape is not None and (array.ndim != len(shape) or any(n not in (-1, m) for n, m in zip(shape, array.shape))):
         wanted = ", ".join("n" if n < 0 else str(n) for n in shape) + ("," if len(shape) == 1 else "")

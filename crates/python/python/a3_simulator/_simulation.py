@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import contextlib
+import re
 from typing import TYPE_CHECKING, Any, Callable, Dict, Iterator, NamedTuple, Optional, Sequence, Tuple, Union
 
 import numpy as np
 
 from . import _a3
-from ._errors import BlowUp, InputError
+from ._errors import BlowUp, Error, InputError
 from ._given import given
-from ._own import Forces, Method, System, _numbers, method_name
+from ._own import Forces, Method, System, _name, _numbers, method_name
 from ._progress import progress_bar
 from ._scenes import SceneLike
 
@@ -136,7 +137,8 @@ class Simulation(_a3.Run):
         given_scene = given(
             run_scene, grid=grid, wind=wind, swing=swing, self_collision=self_collision, forces=forces
         )
-        run: Any = super().__new__(cls, given_scene, name, step, tolerance, absolute, max_step)
+        kind = _Backward if backward and cls is Simulation else cls
+        run: Any = super().__new__(kind, given_scene, name, step, tolerance, absolute, max_step)
         options = {
             "grid": grid,
             "wind": wind,
@@ -166,30 +168,44 @@ class Simulation(_a3.Run):
             BlowUp: the run blew up. It is then back at its last sound state.
             InputError: the run is past that time, or the time is not finite.
         """
-        ends = self._passed(self.time), self._passed(time)
+        ends = self._passed(self.time), self._ahead(time)
         with progress_bar(progress, *ends) as report, self._told():
-            self.advance(ends[1], report)
+            super().advance(ends[1], report)
+
+    def advance(self, time: float, progress: Optional[Callable[[float], object]] = None) -> None:
+        """Advances to a time (s). A function `progress` is called with the time now and then."""
+        sign = self._sign
+
+        def report(gone: float) -> object:
+            return progress(sign * gone) if progress else None
+
+        with self._told():
+            super().advance(self._ahead(time), progress if sign > 0 or not callable(progress) else report)
 
     def advance_until(self, function: Callable[[float, Any], float], time: float, direction: int = 0) -> bool:
         """Advances to the first time at which a function of t and the state passes through 0, or else to a time (s).
 
         The time is found on the method's own polynomial, to rounding. Returns whether it was found; the state is then
-        that just after it. A direction above 0 is a passage from below, one below 0 from above.
+        that just after it. A direction above 0 is a passage from below, one below 0 from above: as the run goes, also
+        where it goes back in time.
         """
         layout, sign = self._layout, self._sign
 
         def seen(t: float, y: Any) -> float:
             return function(sign * t, layout.shaped(y) if layout else y)
 
+        seen.__name__ = _name(function, "the function")
         is_as_seen = layout is None and sign > 0 or not callable(function)
         with self._told():
-            return super().advance_until(function if is_as_seen else seen, self._passed(time), direction)
+            return super().advance_until(function if is_as_seen else seen, self._ahead(time), direction)
 
     def set_state(self, state: Any, time: Optional[float] = None) -> None:
         """Continues from another state of a system of one's own, at another time or this one."""
-        layout, flat = self._layout, state
+        layout = self._layout
         if layout:
             flat = layout.flat(_numbers("state", state, layout.shape, layout.kind.type))
+        else:
+            flat = _numbers("state", state, (-1,))
         super().set_state(flat, None if time is None else self._passed(time))
 
     @property
@@ -206,20 +222,32 @@ class Simulation(_a3.Run):
 
     def _passed(self, time: float) -> float:
         """Returns how far a time is from 0, in the direction of the run."""
-        if self._sign < 0 < time:
-            raise InputError(f"the run goes back in time: a time is 0 or below, such as -10, not {time}")
+        if self._sign < 0 and not -1e15 <= time <= 0:
+            raise InputError(f"the run goes back in time: a time is from -1e15 to 0, such as -10, not {time}")
         return self._sign * time
+
+    def _ahead(self, time: float) -> float:
+        """Returns how far a time is from 0, to which the run can advance."""
+        passed = self._passed(time)
+        if self._sign < 0 and time > self.time:
+            raise InputError(
+                f"the run is at t = {self.time} s already, past {time} s: reset() goes back to its beginning"
+            )
+        return passed
 
     @contextlib.contextmanager
     def _told(self) -> Iterator[None]:
-        """Tells the time of a blow-up as that of the run."""
+        """Tells the time of a failure as that of the run."""
         try:
             yield
-        except BlowUp as lost:
-            if self._sign > 0:
+        except Error as lost:
+            if self._sign > 0 or type(lost) not in (BlowUp, Error):
                 raise
-            words = str(lost).replace("t = ", "t = -", 1)
-            raise BlowUp(words, lost.step, -lost.time, lost.particle) from None
+            # A time of 0 has no sign.
+            words = re.sub(r"\bt = (?=[0.]*[1-9])", "t = -", str(lost), count=1)
+            if isinstance(lost, BlowUp):
+                raise BlowUp(words, lost.step, -lost.time, lost.particle) from None
+            raise Error(words) from None
 
     def states_at(self, times: Sequence[float], progress: bool = False) -> np.ndarray:
         """Advances to each of these times (s), and returns the states there, (times, numbers); for a state of another
@@ -274,6 +302,15 @@ class Simulation(_a3.Run):
     def __repr__(self) -> str:
         setting = "tolerance" if self.adaptive else "step"
         return f"<Simulation {self.scene} by {self.method}, {setting} {self.setting:g}: t = {self.time:g} s>"
+
+
+class _Backward(Simulation):
+    """A run that goes back in time. Others take their steps without this call, which short steps would feel."""
+
+    def step(self, count: int = 1) -> None:
+        """Takes steps. If the present time is within a step, that step is finished first, and counts."""
+        with self._told():
+            super().step(count)
 
 
 def _restored(given: tuple, options: Dict[str, Any], checkpoint: bytes) -> Simulation:
