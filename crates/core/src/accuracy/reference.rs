@@ -83,8 +83,8 @@ pub struct Reference {
     pub still: Errors,
     /// Work of all runs that make the reference.
     pub work: Work,
-    /// Largest work of a run to a tolerance, or by a solver of another library (evaluations), beyond
-    /// which it is given up; infinite unless it is set.
+    /// Largest work of a run to a tolerance, or by a solver of another library (evaluations),
+    /// beyond which it is given up; infinite unless it is set.
     pub max_work: f64,
     /// Whether the system is stiff, so that implicit methods make the reference.
     pub is_stiff: bool,

@@ -13,7 +13,8 @@ const TOLERANCES: [f64; 2] = [1e-6, 1e-9];
 /// 10^(6/4) = 32 times as many.
 const STIFF_RATIO: f64 = 8.0;
 
-/// Largest work of all runs of a system of one's own (evaluations), whose time may be of any length.
+/// Largest work of all runs of a system of one's own (evaluations), whose time may be of any
+/// length.
 const MOST: f64 = 1e6;
 
 /// Returns whether Radau reaches a time (s) with less than an eighth of the work of DOP853, and the
