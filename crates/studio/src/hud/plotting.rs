@@ -426,9 +426,9 @@ mod tests {
         let first = on_next(Some(Pick::Particle(210)));
         assert_eq!(click("+ the scene"), PlotRequest::Toggle(Pick::Scene));
         assert_eq!(click("of each"), PlotRequest::Axis(0, first));
-        assert_eq!(click("what is computed?"), PlotRequest::Formulas);
         let other = Pick::Particle(399);
         assert_eq!(click("particle 399"), PlotRequest::Toggle(other));
+        assert_eq!(click("what is computed?"), PlotRequest::Formulas);
         let lower = Trigger::Rises(Variable::VelocityY, 0.0);
         let trigger = |session: &Session| session.runs.panes[0].traces.trigger();
         assert_eq!(trigger(&session), lower);
