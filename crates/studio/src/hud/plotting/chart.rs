@@ -285,7 +285,7 @@ pub fn write(session: &Session) -> Result<String, Failure> {
 pub fn write_one(session: &Session, file: PlotFile) -> Result<PathBuf, Failure> {
     if session.runs.panes[0].traces.is_empty() {
         return Err(Failure::usage(
-            "nothing is plotted: double click on a particle",
+            "nothing is plotted: double click on a particle, a body, a spring or a rod",
         ));
     }
     let (ending, bytes) = match file {

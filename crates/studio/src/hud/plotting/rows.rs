@@ -51,28 +51,27 @@ impl Rows<'_> {
     }
 
     /// Draws what is plotted, each with its colour and a cross that ends it. In a comparison, the
-    /// colours are those of the panes.
+    /// colours are those of the panes, which are named if anything is plotted.
     pub fn picks(&mut self) {
         let (session, panes) = (self.session, &self.session.runs.panes);
         let mut flow = Flow::new(self.room);
         let picks: Vec<Pick> = panes[0].traces.iter().map(|(pick, _)| *pick).collect();
         if picks.is_empty() {
-            self.say(
-                &mut flow,
-                "Double click on a particle or a body to plot it.",
-            );
+            // In two parts, the words fit into a narrow window.
+            self.say(&mut flow, "Double click on a particle, a body,");
+            self.say(&mut flow, "a spring or a rod to plot it.");
         }
         for (k, pick) in picks.into_iter().enumerate() {
             let name = pick.name();
             let place = flow.words(self.ui, &name, 0.5 * SAMPLE + 17.0);
             self.pick(place, &name, [0, k], panes.len() > 1, pick);
         }
-        if !panes[0].traces.has(Pick::Scene) && panes[0].simulation.energy().is_some() {
+        if !panes[0].traces.has(Pick::Scene) && panes[0].simulation.model().network().is_some() {
             let wish = PlotRequest::Toggle(Pick::Scene);
             self.button(&mut flow, "+ the scene", false, wish);
         }
         self.end(&flow);
-        if panes.len() > 1 {
+        if panes.len() > 1 && !panes[0].traces.is_empty() {
             let mut flow = Flow::new(self.room);
             for (k, pane) in panes.iter().enumerate() {
                 let name = run_name(pane);
