@@ -7,7 +7,7 @@ use a3_files::output;
 use a3_plot::{CurveStyle, Line, LineChart, LinePanel, Marker};
 
 use super::super::words::{self, signed};
-use crate::session::plotting::{kinds, of_plotted};
+use crate::session::plotting::{self, kinds};
 use crate::session::{IS_PAGE, Mode, Pane, Pick, PlotFile, Quantity, Row, Session};
 use crate::session::{Trigger, Variable};
 
@@ -65,8 +65,7 @@ pub fn has(session: &Session, variable: Variable) -> bool {
 fn axes(session: &Session) -> Vec<Axes> {
     let settings = &session.panel.plotting;
     if settings.mode != Mode::Time {
-        let of = |it| Some(of_plotted(&session.runs.panes, it));
-        return vec![settings.axes.map(of)];
+        return vec![plotting::axes(settings, &session.runs.panes).map(Some)];
     }
     let all = Variable::ALL.into_iter();
     let shown = all.filter(|it| settings.shown.contains(it) && has(session, *it));
@@ -467,6 +466,31 @@ mod tests {
         apply(&mut session, PlotRequest::Toggle(rods[1]), 0);
         let panel = &super::plotted(&session, 1000).chart.panels[0];
         assert_eq!((&*panel.y_label, panel.lines.len()), ("angle (rad)", 1));
+    }
+
+    /// The velocity goes with its coordinate also where what the vertical axis is of lacks it.
+    #[test]
+    fn every_chart_after_a_choice_of_a_coordinate_has_a_curve() {
+        let mut session = session(&["r", "0.005", "--scene", "double-pendulum"]);
+        session.act(RunAction::Plots, 0);
+        let (rod, particle) = (Pick::Rod(0, 1), Pick::Particle(1));
+        let of = |of, variable| Quantity { of, variable };
+        for request in [PlotRequest::Toggle(rod), PlotRequest::Mode(Mode::Phase)] {
+            apply(&mut session, request, 0);
+        }
+        frames(&mut session, 0.5);
+        for (up, across) in [
+            (of(Some(particle), Variable::VelocityX), Variable::Angle),
+            (of(Some(rod), Variable::SpinZ), Variable::X),
+        ] {
+            apply(&mut session, PlotRequest::Axis(1, up), 0);
+            apply(&mut session, PlotRequest::Axis(0, of(None, across)), 0);
+            let plotted = plotted(&session, 10_000);
+            let variables = plotted.axes[0].map(|it| it.unwrap().variable);
+            assert_eq!(variables, [across, across.velocity()]);
+            let lines = &plotted.chart.panels[0].lines;
+            assert!(lines.iter().any(|line| line.points().count() > 50));
+        }
     }
 
     /// The strain of a spring over the height of a particle: what nothing has both of.

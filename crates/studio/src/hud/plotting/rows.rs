@@ -8,7 +8,7 @@ use super::super::style::{FAINT, TEXT};
 use super::super::widgets::{LEFT, MIDDLE, chip, write};
 use super::super::words::signed;
 use super::chart::{has, run_name, style};
-use crate::session::plotting::{drive, first_trigger, of_plotted};
+use crate::session::plotting::{axes, drive, fitting_trigger};
 use crate::session::{Mode, Pick, PlotRequest, Quantity, Session, Trigger, Variable};
 
 /// Width of the sample of a curve (points).
@@ -151,10 +151,11 @@ impl Rows<'_> {
             return self.end(&flow);
         }
         let is_low = self.room.height() < LOW;
+        let axes = axes(settings, &self.session.runs.panes);
         let mut flow = Flow::new(self.room);
         for (axis, words) in ["across", "up"].into_iter().enumerate() {
             self.say(&mut flow, words);
-            let now = of_plotted(&self.session.runs.panes, settings.axes[axis]);
+            let now = axes[axis];
             let all = self.all_variables();
             let k = all.iter().position(|it| *it == now.variable);
             let next = all[k.map_or(0, |k| (k + 1) % all.len())];
@@ -173,7 +174,7 @@ impl Rows<'_> {
             }
         }
         if settings.mode == Mode::Section {
-            self.trigger();
+            self.trigger(axes[0].variable);
         }
     }
 
@@ -202,9 +203,14 @@ impl Rows<'_> {
     }
 
     /// Draws when points of the section are taken.
-    fn trigger(&mut self) {
+    fn trigger(&mut self, across: Variable) {
         let session = self.session;
         let trigger = session.runs.panes[0].traces.trigger();
+        let fitting = fitting_trigger(&session.runs.panes, across);
+        if fitting != trigger {
+            let wish = PlotRequest::Trigger(fitting);
+            self.request.get_or_insert(wish);
+        }
         let run = &session.runs.panes[0].simulation;
         let mut flow = Flow::new(self.room);
         self.say(&mut flow, "when");
@@ -233,8 +239,6 @@ impl Rows<'_> {
                     self.say(&mut flow, &words);
                 }
             }
-        } else if trigger == Trigger::Off {
-            self.request = Some(PlotRequest::Trigger(first_trigger(run, Variable::X)));
         }
         self.end(&flow);
     }
