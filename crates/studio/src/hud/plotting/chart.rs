@@ -1,5 +1,6 @@
 //! What is plotted, as a chart, and in files: a table and a picture.
 
+use std::f64::consts::{PI, TAU};
 use std::path::PathBuf;
 
 use a3_files::failure::Failure;
@@ -99,8 +100,19 @@ pub fn rows(session: &Session, [pane, pick]: [usize; 2]) -> Vec<&Row> {
     }
 }
 
-/// Returns the value of a quantity at a row of a pick in a pane; NaN if it is not known.
-pub fn value(session: &Session, quantity: Quantity, [pane, pick]: [usize; 2], row: &Row) -> f64 {
+/// Returns the value of a quantity at a row of a pick in a pane; NaN if it is not known. In a
+/// section, where it does not matter how often a thing has turned, an angle is within half a turn.
+pub fn value(session: &Session, quantity: Quantity, source: [usize; 2], row: &Row) -> f64 {
+    let value = value_at(session, quantity, source, row);
+    if session.panel.plotting.mode == Mode::Section && quantity.variable == Variable::Angle {
+        value - TAU * ((value - PI) / TAU).ceil()
+    } else {
+        value
+    }
+}
+
+/// Returns the same, with angles that go on past a whole turn.
+fn value_at(session: &Session, quantity: Quantity, [pane, pick]: [usize; 2], row: &Row) -> f64 {
     let mut traces = session.runs.panes[pane].traces.iter();
     let own = traces.as_slice().get(pick).map(|(own, _)| *own);
     let Some(of) = quantity.of.filter(|of| Some(*of) != own) else {
@@ -490,6 +502,30 @@ mod tests {
             assert_eq!(variables, [across, across.velocity()]);
             let lines = &plotted.chart.panels[0].lines;
             assert!(lines.iter().any(|line| line.points().count() > 50));
+        }
+    }
+
+    /// The second rod of a double pendulum turns over and over.
+    #[test]
+    fn angles_of_sections_are_within_half_a_turn() {
+        let mut session = session(&["r", "0.002", "--scene", "double-pendulum"]);
+        let rod = Pick::Rod(1, 2);
+        for request in [
+            PlotRequest::Toggle(rod),
+            PlotRequest::Mode(Mode::Section),
+            PlotRequest::Trigger(Trigger::Rises(Variable::SpinZ, 0.0)),
+        ] {
+            apply(&mut session, request, 0);
+        }
+        frames(&mut session, 40.0);
+        let rows = rows(&session, [0, 0]);
+        let whole = |row: &&Row| Variable::Angle.of(row);
+        assert!(rows.iter().map(whole).any(|angle| angle.abs() > PI));
+        let across = Quantity::of_each(Variable::Angle);
+        for row in &rows {
+            let angle = value(&session, across, [0, 0], row);
+            let turns = (whole(row) - angle) / TAU;
+            assert!(-PI < angle && angle <= PI && (turns - turns.round()).abs() < 1e-9);
         }
     }
 

@@ -1,6 +1,8 @@
 //! The rows above the chart: the picks, their variables, and the times of points of a section,
 //! side by side in as many lines as they need.
 
+use std::f64::consts::TAU;
+
 use egui::{FontId, Pos2, Rect, Ui, pos2, vec2};
 
 use super::super::charts::line;
@@ -257,7 +259,13 @@ fn step(session: &Session, variable: Variable) -> f64 {
     let [low, high] = values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], value| {
         [low.min(value), high.max(value)]
     });
-    let part = (high - low) / STEPS;
+    // A section passes angles any number of turns away, too.
+    let most = if variable == Variable::Angle {
+        TAU
+    } else {
+        f64::INFINITY
+    };
+    let part = (high - low).min(most) / STEPS;
     if !(part > 0.0 && part.is_finite()) {
         return 0.1;
     }
