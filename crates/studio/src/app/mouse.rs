@@ -104,12 +104,9 @@ impl Mouse {
             MouseButton::Left => {
                 if double {
                     let particle = hit.and_then(|(target, _)| target.particle());
-                    looks::show_springs_of(&mut session.runs.panes, particle);
                     let link = tool::link_at(&self.pointer, session, screen, pane);
                     let link = link.filter(|_| hit.is_none());
-                    if let Some(request) = plotting::picked(session, particle, link) {
-                        apply(session, request, 0);
-                    }
+                    double_click(session, particle, link);
                 }
                 match hit {
                     Some((Target::Particle(i), grip)) if session.runs.grab(i) => Drag::Pull(grip),
@@ -302,5 +299,40 @@ impl Mouse {
         let (factor, mut camera) = (0.9f32.powf(notches), session.view.camera);
         camera.zoom_at(factor, at, tile.aspect());
         camera
+    }
+}
+
+/// Lists the springs of a particle, and with the plots open plots it, or the link between two
+/// particles. Without either, which is on the background, closes the list.
+fn double_click(session: &mut Session, particle: Option<usize>, link: Option<[usize; 2]>) {
+    if link.is_none() {
+        looks::show_springs_of(&mut session.runs.panes, particle);
+    }
+    if let Some(request) = plotting::picked(session, particle, link) {
+        apply(session, request, 0);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::session::{Pick, RunAction, session};
+
+    #[test]
+    fn a_double_click_on_a_link_plots_it_and_leaves_the_list_of_springs() {
+        let mut session = session(&["r", "0.01", "--scene", "cloth"]);
+        session.act(RunAction::Plots, 0);
+        let state = |session: &Session| {
+            let pane = &session.runs.panes[0];
+            let picks: Vec<_> = pane.traces.iter().map(|(pick, _)| *pick).collect();
+            (pane.show.springs_of, picks)
+        };
+        let (particle, spring) = (Pick::Particle(210), Pick::Spring(210, 211));
+        double_click(&mut session, Some(210), None);
+        assert_eq!(state(&session), (Some(210), vec![particle]));
+        double_click(&mut session, None, Some([210, 211]));
+        assert_eq!(state(&session), (Some(210), vec![particle, spring]));
+        double_click(&mut session, None, None);
+        assert_eq!(state(&session), (None, vec![particle, spring]));
     }
 }

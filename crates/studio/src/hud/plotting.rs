@@ -401,6 +401,30 @@ mod tests {
         }
     }
 
+    /// Where nothing is plotted, a narrow window says how to plot something, on whole lines.
+    #[test]
+    fn a_narrow_window_says_how_to_plot_something() {
+        let mut session = session(&["t", "0.01"]);
+        session.act(RunAction::Plots, 0);
+        for size in [[390.0, 844.0], [1280.0, 800.0]] {
+            let mut window = Window::new(size);
+            let insets = layout::insets(&session, (size[0] as u32, size[1] as u32), 1.0);
+            window.click(insets, Pos2::new(5.0, 5.0), |ctx| {
+                show_all(ctx, &session, &HashMap::new())
+            });
+            let all = window.written();
+            for said in [
+                "Double click on a particle, a body,",
+                "a spring or a rod to plot it.",
+                "+ the scene",
+            ] {
+                let (_, rect, seen) = all.iter().find(|it| it.0 == said).unwrap();
+                assert!(seen.contains_rect(*rect), "{said} in {size:?}");
+                assert!(rect.right() <= size[0] - 10.0, "{said} in {size:?}");
+            }
+        }
+    }
+
     #[test]
     fn clicks_choose_what_is_plotted_and_how() {
         let mut session = curtain();
@@ -426,9 +450,9 @@ mod tests {
         let first = on_next(Some(Pick::Particle(210)));
         assert_eq!(click("+ the scene"), PlotRequest::Toggle(Pick::Scene));
         assert_eq!(click("of each"), PlotRequest::Axis(0, first));
-        assert_eq!(click("what is computed?"), PlotRequest::Formulas);
         let other = Pick::Particle(399);
         assert_eq!(click("particle 399"), PlotRequest::Toggle(other));
+        assert_eq!(click("what is computed?"), PlotRequest::Formulas);
         let lower = Trigger::Rises(Variable::VelocityY, 0.0);
         let trigger = |session: &Session| session.runs.panes[0].traces.trigger();
         assert_eq!(trigger(&session), lower);

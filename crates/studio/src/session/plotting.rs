@@ -18,10 +18,29 @@ pub fn kinds(panes: &[Pane]) -> Vec<Kind> {
     picks.map(|(pick, _)| pick.kind()).collect()
 }
 
-/// Returns what is on an axis: of each if what it was of is plotted no longer.
-pub fn of_plotted(panes: &[Pane], quantity: Quantity) -> Quantity {
-    let of = quantity.of.filter(|pick| panes[0].traces.has(*pick));
+/// Returns a quantity: of each if what it was of is plotted no longer, or lacks its variable.
+fn of_plotted(panes: &[Pane], quantity: Quantity) -> Quantity {
+    let has = |pick: &Pick| panes[0].traces.has(*pick) && quantity.variable.is_of(pick.kind());
+    let of = quantity.of.filter(has);
     Quantity { of, ..quantity }
+}
+
+/// Returns what is on the axes: what was chosen, changed as far as nothing that is plotted has
+/// both. If one of the variables is of nothing, it is the phase plane of what was plotted last.
+pub fn axes(settings: &PlotSettings, panes: &[Pane]) -> [Quantity; 2] {
+    let kinds = kinds(panes);
+    let chosen = settings.axes_in(&panes[0].simulation.scene().name);
+    let has = |axis: &Quantity| kinds.iter().any(|kind| axis.variable.is_of(*kind));
+    let mut axes = match kinds.last() {
+        Some(last) if !chosen.iter().all(has) => last.plane().map(Quantity::of_each),
+        _ => chosen.map(|it| of_plotted(panes, it)),
+    };
+    // What lost its owner gets another one first.
+    let first = usize::from(axes[0].of == chosen[0].of);
+    for k in [first, 1 - first] {
+        axes[k] = on_axis(panes, axes[k], axes[1 - k]);
+    }
+    axes
 }
 
 /// Plots something of all panes, or no longer. Returns why that is impossible, if it is.
@@ -85,15 +104,37 @@ pub fn drive(run: &Simulation) -> Option<f64> {
     rates.map(|rate| TAU / rate).next()
 }
 
-/// Returns the trigger with which a section of a run begins: the phase of its drive, or else the
-/// lower turning point of another coordinate than that across.
-pub fn first_trigger(run: &Simulation, across: Variable) -> Trigger {
+/// Returns the trigger with which a section begins: the phase of the drive, or else the lower
+/// turning point of another coordinate than that across; if nothing that is plotted has its
+/// velocity, the second variable of the first thing's phase plane.
+fn first_trigger(panes: &[Pane], across: Variable) -> Trigger {
     let other = if across == Variable::Y {
         Variable::VelocityX
     } else {
         Variable::VelocityY
     };
-    drive(run).map_or(Trigger::Rises(other, 0.0), Trigger::Period)
+    let drive = drive(&panes[0].simulation).map(Trigger::Period);
+    let trigger = drive.unwrap_or(Trigger::Rises(other, 0.0));
+    match kinds(panes).first() {
+        Some(kind) if !fires(panes, trigger) => Trigger::Rises(kind.plane()[1], 0.0),
+        _ => trigger,
+    }
+}
+
+/// Returns whether a trigger takes points of anything that is plotted.
+fn fires(panes: &[Pane], trigger: Trigger) -> bool {
+    let kinds = kinds(panes);
+    kinds.iter().any(|kind| trigger.of(*kind) != Trigger::Off)
+}
+
+/// Returns the trigger of a section of what is plotted: the present one, unless it takes no points.
+pub fn fitting_trigger(panes: &[Pane], across: Variable) -> Trigger {
+    let present = panes[0].traces.trigger();
+    if fires(panes, present) {
+        present
+    } else {
+        first_trigger(panes, across)
+    }
 }
 
 /// Takes the points of sections of all panes at other events.
@@ -103,20 +144,21 @@ pub fn set_trigger(panes: &mut [Pane], trigger: Trigger) {
     }
 }
 
-/// Shows a variable of a new kind of things: their phase plane in place of axes that nothing has,
-/// and over time both of it, if neither is shown.
-fn fit(settings: &mut PlotSettings, panes: &[Pane]) {
-    let kinds = kinds(panes);
-    let Some(last) = kinds.last() else {
-        return;
-    };
-    let plane = last.plane();
+/// Shows the variables of a new kind of things over time, if none of its phase plane is shown.
+fn show(settings: &mut PlotSettings, kind: Kind) {
+    let plane = kind.plane();
     if !plane.iter().any(|it| settings.shown.contains(it)) {
         settings.shown.extend(plane);
     }
-    let has = |axis: &Quantity| kinds.iter().any(|kind| axis.variable.is_of(*kind));
-    if !settings.axes.iter().all(has) {
-        settings.axes = plane.map(Quantity::of_each);
+}
+
+/// Fits the axes, and the trigger of a section that is shown, to what is plotted.
+fn fit(settings: &mut PlotSettings, panes: &mut [Pane]) {
+    let axes = axes(settings, panes);
+    settings.take_axes(axes, &panes[0].simulation.scene().name);
+    let trigger = fitting_trigger(panes, axes[0].variable);
+    if settings.mode == Mode::Section && trigger != panes[0].traces.trigger() {
+        set_trigger(panes, trigger);
     }
 }
 
@@ -124,26 +166,14 @@ fn fit(settings: &mut PlotSettings, panes: &[Pane]) {
 /// it is of the first thing that has it.
 fn on_axis(panes: &[Pane], quantity: Quantity, other: Quantity) -> Quantity {
     let has = |kind: Kind, it: Quantity| it.variable.is_of(kind);
-    let other = of_plotted(panes, other);
+    let (quantity, other) = (of_plotted(panes, quantity), of_plotted(panes, other));
     let both = |kind: &Kind| has(*kind, quantity) && (other.of.is_some() || has(*kind, other));
     let mut picks = panes[0].traces.iter().map(|(pick, _)| *pick);
-    let of = match quantity.of.filter(|pick| has(pick.kind(), quantity)) {
+    let of = match quantity.of {
         None if !kinds(panes).iter().any(both) => picks.find(|it| has(it.kind(), quantity)),
         of => of,
     };
     Quantity { of, ..quantity }
-}
-
-/// Sets the trigger of a section that is shown for the first time.
-fn begin_section(panes: &mut [Pane], mode: Mode, across: Variable) {
-    if mode == Mode::Section && panes[0].traces.trigger() == Trigger::Off {
-        let trigger = first_trigger(&panes[0].simulation, across);
-        let kinds = kinds(panes);
-        let fits = |kind: &Kind| trigger.of(*kind) != Trigger::Off;
-        let own = kinds.first().filter(|_| !kinds.iter().any(fits));
-        let own = own.map(|kind| Trigger::Rises(kind.plane()[1], 0.0));
-        set_trigger(panes, own.unwrap_or(trigger));
-    }
 }
 
 /// Carries out a request, and returns what is to be said.
@@ -152,17 +182,27 @@ pub fn apply(
     panes: &mut [Pane],
     request: PlotRequest,
 ) -> Option<String> {
+    let said = carry_out(settings, panes, request);
+    fit(settings, panes);
+    said
+}
+
+/// Carries out a request as [`apply`] does, but leaves axes and trigger as they are.
+fn carry_out(
+    settings: &mut PlotSettings,
+    panes: &mut [Pane],
+    request: PlotRequest,
+) -> Option<String> {
     match request {
         PlotRequest::Toggle(pick) => {
+            let is_known = kinds(panes).contains(&pick.kind());
             let refused = toggle(panes, pick).err();
-            fit(settings, panes);
+            if !is_known && refused.is_none() {
+                show(settings, pick.kind());
+            }
             return refused;
         }
-        PlotRequest::Mode(mode) => {
-            settings.mode = mode;
-            fit(settings, panes);
-            begin_section(panes, mode, settings.axes[0].variable);
-        }
+        PlotRequest::Mode(mode) => settings.mode = mode,
         PlotRequest::Show(variable) => {
             let before = settings.shown.len();
             settings.shown.retain(|it| *it != variable);
@@ -171,12 +211,15 @@ pub fn apply(
             }
         }
         PlotRequest::Axis(axis, quantity) => {
-            let [across, up] = settings.axes.map(|it| it.variable);
+            let mut axes = axes(settings, panes);
+            let [across, up] = axes.map(|it| it.variable);
+            axes[axis] = on_axis(panes, quantity, axes[1 - axis]);
             // The velocity goes with its coordinate.
             if axis == 0 && up == across.velocity() && quantity.variable.is_coordinate() {
-                settings.axes[1].variable = quantity.variable.velocity();
+                axes[1].variable = quantity.variable.velocity();
+                axes[1] = on_axis(panes, axes[1], axes[0]);
             }
-            settings.axes[axis] = on_axis(panes, quantity, settings.axes[1 - axis]);
+            settings.take_axes(axes, &panes[0].simulation.scene().name);
         }
         PlotRequest::Trigger(trigger) => set_trigger(panes, trigger),
         PlotRequest::Span(span) => settings.span = span,
@@ -298,7 +341,7 @@ mod tests {
         let mut session = session(&["r", "0.002", "--scene", "pendulum"]);
         session.act(RunAction::Swing, 0);
         toggle(&mut session.runs.panes, Pick::Particle(1)).unwrap();
-        let trigger = first_trigger(session.runs.first(), Variable::X);
+        let trigger = first_trigger(&session.runs.panes, Variable::X);
         assert_eq!(trigger, Trigger::Period(TAU / 2.0));
         set_trigger(&mut session.runs.panes, trigger);
         frames(&mut session, 19.0);
@@ -376,6 +419,107 @@ mod tests {
             }
         }
         assert!(most > 1.1 * TAU / 2.0, "{most}");
+    }
+
+    /// Returns what is on the axes of a session.
+    fn shown(session: &Session) -> [Quantity; 2] {
+        axes(&session.panel.plotting, &session.runs.panes)
+    }
+
+    /// Carries out requests.
+    fn ask(session: &mut Session, requests: impl IntoIterator<Item = PlotRequest>) {
+        for request in requests {
+            let (own, panes) = (&mut session.panel.plotting, &mut session.runs.panes);
+            apply(own, panes, request);
+        }
+    }
+
+    #[test]
+    fn only_a_new_kind_of_things_shows_variables() {
+        let mut session = session(&["r", "0.002", "--scene", "double-pendulum"]);
+        pick_first(&mut session.runs.panes);
+        let rods = [Pick::Rod(0, 1), Pick::Rod(1, 2)].map(PlotRequest::Toggle);
+        ask(
+            &mut session,
+            [Variable::X, Variable::Length, Variable::Force].map(PlotRequest::Show),
+        );
+        assert_eq!(session.panel.plotting.shown, [Variable::Y]);
+        ask(&mut session, [rods[0]]);
+        let all = [Variable::Y, Variable::Angle, Variable::SpinZ];
+        assert_eq!(session.panel.plotting.shown, all);
+        // What was hidden stays so.
+        ask(
+            &mut session,
+            [Variable::Angle, Variable::SpinZ].map(PlotRequest::Show),
+        );
+        let modes = Mode::ALL.map(PlotRequest::Mode);
+        ask(
+            &mut session,
+            [rods[1], rods[1], rods[0]].into_iter().chain(modes),
+        );
+        assert_eq!(session.panel.plotting.shown, [Variable::Y]);
+    }
+
+    #[test]
+    fn axes_are_of_what_is_left_and_never_of_another_scenes_things() {
+        let mut session = session(&["r", "0.002", "--scene", "double-pendulum"]);
+        pick_first(&mut session.runs.panes);
+        let rods = [Pick::Rod(0, 1), Pick::Rod(1, 2)];
+        let (x, angle) = (
+            Quantity::of_each(Variable::X),
+            Quantity::of_each(Variable::Angle),
+        );
+        let of = |pick, quantity| Quantity {
+            of: Some(pick),
+            ..quantity
+        };
+        ask(&mut session, rods.map(PlotRequest::Toggle));
+        let begun = [
+            PlotRequest::Mode(Mode::Phase),
+            PlotRequest::Axis(0, of(rods[0], angle)),
+            PlotRequest::Axis(1, x),
+        ];
+        ask(&mut session, begun);
+        assert_eq!(shown(&session), [of(rods[0], angle), x]);
+        ask(&mut session, [PlotRequest::Toggle(rods[0])]);
+        assert_eq!(shown(&session), [of(rods[1], angle), x]);
+        // An edit that removes the rods asks for nothing.
+        toggle(&mut session.runs.panes, rods[1]).unwrap();
+        assert_eq!(
+            shown(&session),
+            Kind::Particle.plane().map(Quantity::of_each)
+        );
+        let first = Pick::Particle(1);
+        ask(&mut session, [PlotRequest::Axis(0, of(first, x))]);
+        assert_eq!(shown(&session)[0].of, Some(first));
+        session.act(RunAction::NextScene, 0);
+        toggle(&mut session.runs.panes, first).unwrap();
+        assert_eq!(shown(&session)[0], x);
+    }
+
+    #[test]
+    fn a_section_has_a_trigger_of_what_is_plotted() {
+        let mut session = session(&["r", "0.002", "--scene", "double-pendulum"]);
+        pick_first(&mut session.runs.panes);
+        let trigger = |session: &Session| session.runs.panes[0].traces.trigger();
+        assert_eq!(trigger(&session), Trigger::Off);
+        ask(&mut session, [PlotRequest::Mode(Mode::Section)]);
+        assert_eq!(trigger(&session), Trigger::Rises(Variable::VelocityY, 0.0));
+        let picks: Vec<_> = session.runs.panes[0].traces.iter().map(|it| it.0).collect();
+        let no_more = picks.iter().copied().map(PlotRequest::Toggle);
+        ask(&mut session, [PlotRequest::Toggle(Pick::Rod(0, 1))]);
+        assert_eq!(trigger(&session), Trigger::Rises(Variable::VelocityY, 0.0));
+        ask(&mut session, no_more);
+        assert_eq!(trigger(&session), Trigger::Rises(Variable::SpinZ, 0.0));
+        frames(&mut session, 5.0);
+        assert!(!section(&session).is_empty());
+        // One that fits stays.
+        let tilt = Trigger::Rises(Variable::Tilt, 0.5);
+        ask(
+            &mut session,
+            [PlotRequest::Trigger(tilt), PlotRequest::Toggle(picks[0])],
+        );
+        assert_eq!(trigger(&session), tilt);
     }
 
     /// A handle that spins about its middle axis stands upright and upside down in turn, and energy

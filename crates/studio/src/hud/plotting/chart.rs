@@ -1,5 +1,6 @@
 //! What is plotted, as a chart, and in files: a table and a picture.
 
+use std::f64::consts::{PI, TAU};
 use std::path::PathBuf;
 
 use a3_files::failure::Failure;
@@ -7,7 +8,7 @@ use a3_files::output;
 use a3_plot::{CurveStyle, Line, LineChart, LinePanel, Marker};
 
 use super::super::words::{self, signed};
-use crate::session::plotting::{kinds, of_plotted};
+use crate::session::plotting::{self, kinds};
 use crate::session::{IS_PAGE, Mode, Pane, Pick, PlotFile, Quantity, Row, Session};
 use crate::session::{Trigger, Variable};
 
@@ -65,8 +66,7 @@ pub fn has(session: &Session, variable: Variable) -> bool {
 fn axes(session: &Session) -> Vec<Axes> {
     let settings = &session.panel.plotting;
     if settings.mode != Mode::Time {
-        let of = |it| Some(of_plotted(&session.runs.panes, it));
-        return vec![settings.axes.map(of)];
+        return vec![plotting::axes(settings, &session.runs.panes).map(Some)];
     }
     let all = Variable::ALL.into_iter();
     let shown = all.filter(|it| settings.shown.contains(it) && has(session, *it));
@@ -100,8 +100,19 @@ pub fn rows(session: &Session, [pane, pick]: [usize; 2]) -> Vec<&Row> {
     }
 }
 
-/// Returns the value of a quantity at a row of a pick in a pane; NaN if it is not known.
-pub fn value(session: &Session, quantity: Quantity, [pane, pick]: [usize; 2], row: &Row) -> f64 {
+/// Returns the value of a quantity at a row of a pick in a pane; NaN if it is not known. In a
+/// section, where it does not matter how often a thing has turned, an angle is within half a turn.
+pub fn value(session: &Session, quantity: Quantity, source: [usize; 2], row: &Row) -> f64 {
+    let value = value_at(session, quantity, source, row);
+    if session.panel.plotting.mode == Mode::Section && quantity.variable == Variable::Angle {
+        value - TAU * ((value - PI) / TAU).ceil()
+    } else {
+        value
+    }
+}
+
+/// Returns the same, with angles that go on past a whole turn.
+fn value_at(session: &Session, quantity: Quantity, [pane, pick]: [usize; 2], row: &Row) -> f64 {
     let mut traces = session.runs.panes[pane].traces.iter();
     let own = traces.as_slice().get(pick).map(|(own, _)| *own);
     let Some(of) = quantity.of.filter(|of| Some(*of) != own) else {
@@ -285,7 +296,7 @@ pub fn write(session: &Session) -> Result<String, Failure> {
 pub fn write_one(session: &Session, file: PlotFile) -> Result<PathBuf, Failure> {
     if session.runs.panes[0].traces.is_empty() {
         return Err(Failure::usage(
-            "nothing is plotted: double click on a particle",
+            "nothing is plotted: double click on a particle, a body, a spring or a rod",
         ));
     }
     let (ending, bytes) = match file {
@@ -467,6 +478,55 @@ mod tests {
         apply(&mut session, PlotRequest::Toggle(rods[1]), 0);
         let panel = &super::plotted(&session, 1000).chart.panels[0];
         assert_eq!((&*panel.y_label, panel.lines.len()), ("angle (rad)", 1));
+    }
+
+    /// The velocity goes with its coordinate also where what the vertical axis is of lacks it.
+    #[test]
+    fn every_chart_after_a_choice_of_a_coordinate_has_a_curve() {
+        let mut session = session(&["r", "0.005", "--scene", "double-pendulum"]);
+        session.act(RunAction::Plots, 0);
+        let (rod, particle) = (Pick::Rod(0, 1), Pick::Particle(1));
+        let of = |of, variable| Quantity { of, variable };
+        for request in [PlotRequest::Toggle(rod), PlotRequest::Mode(Mode::Phase)] {
+            apply(&mut session, request, 0);
+        }
+        frames(&mut session, 0.5);
+        for (up, across) in [
+            (of(Some(particle), Variable::VelocityX), Variable::Angle),
+            (of(Some(rod), Variable::SpinZ), Variable::X),
+        ] {
+            apply(&mut session, PlotRequest::Axis(1, up), 0);
+            apply(&mut session, PlotRequest::Axis(0, of(None, across)), 0);
+            let plotted = plotted(&session, 10_000);
+            let variables = plotted.axes[0].map(|it| it.unwrap().variable);
+            assert_eq!(variables, [across, across.velocity()]);
+            let lines = &plotted.chart.panels[0].lines;
+            assert!(lines.iter().any(|line| line.points().count() > 50));
+        }
+    }
+
+    /// The second rod of a double pendulum turns over and over.
+    #[test]
+    fn angles_of_sections_are_within_half_a_turn() {
+        let mut session = session(&["r", "0.002", "--scene", "double-pendulum"]);
+        let rod = Pick::Rod(1, 2);
+        for request in [
+            PlotRequest::Toggle(rod),
+            PlotRequest::Mode(Mode::Section),
+            PlotRequest::Trigger(Trigger::Rises(Variable::SpinZ, 0.0)),
+        ] {
+            apply(&mut session, request, 0);
+        }
+        frames(&mut session, 40.0);
+        let rows = rows(&session, [0, 0]);
+        let whole = |row: &&Row| Variable::Angle.of(row);
+        assert!(rows.iter().map(whole).any(|angle| angle.abs() > PI));
+        let across = Quantity::of_each(Variable::Angle);
+        for row in &rows {
+            let angle = value(&session, across, [0, 0], row);
+            let turns = (whole(row) - angle) / TAU;
+            assert!(-PI < angle && angle <= PI && (turns - turns.round()).abs() < 1e-9);
+        }
     }
 
     /// The strain of a spring over the height of a particle: what nothing has both of.

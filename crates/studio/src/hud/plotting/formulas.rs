@@ -93,18 +93,21 @@ const METHODS: [(&str, &str); 23] = [
     ),
     (
         "xpbd",
-        "x₁ = x + h v + h² g. Then each spring in turn moves its ends along it by w ∆λ, where \
-         ∆λ = (r - L - α λ) / (w + w' + α), w = 1/m, α = 1/(k h²). v₁ = (x₁ - x) / h",
+        "x₁ = x + h v*, with v* = (m v + h F) / (m + h c) of all but the springs. Then each spring \
+         in turn moves its ends along it by w ∆λ, where (without damping) ∆λ = (r - L - α λ) / \
+         (w + w' + α), w = 1/(m + h c), α = 1/(k h²). v₁ = (x₁ - x) / h",
     ),
     (
         "xpbd10",
-        "x₁ = x + h v + h² g. Then ten times each spring in turn moves its ends along it by w ∆λ, \
-         where ∆λ = (r - L - α λ) / (w + w' + α), w = 1/m, α = 1/(k h²). v₁ = (x₁ - x) / h",
+        "x₁ = x + h v*, with v* = (m v + h F) / (m + h c) of all but the springs. Then ten times \
+         each spring in turn moves its ends along it by w ∆λ, where (without damping) ∆λ = \
+         (r - L - α λ) / (w + w' + α), w = 1/(m + h c), α = 1/(k h²). v₁ = (x₁ - x) / h",
     ),
     (
         "vbd",
-        "Ten times each particle in turn takes a step of Newton's method to the least \
-         m |x₁ - x - h v - h² g|² / (2 h²) + U(x₁). v₁ = (x₁ - x) / h",
+        "x₁ = x + h v*, with v* = (m v + h F) / (m + h c) of all but the springs. Then ten times \
+         each particle in turn takes a step of Newton's method to the least (without damping) \
+         (m + h c) |x₁ - x - h v*|² / (2 h²) + U(x₁). v₁ = (x₁ - x) / h",
     ),
     (
         "implicit-damping",
@@ -139,7 +142,8 @@ const FORCES: [(&str, &str); 22] = [
     ("gas pressure", "p ∂V/∂x of the volume V inside"),
     (
         "fluid",
-        "-m² Σ (p/ρ² + p'/ρ'²) ∂W/∂x over the neighbours, ρ = m Σ W",
+        "-m² Σ (p/ρ² + p'/ρ'² - k (v - v')·d / (r² + s²)) ∂W/∂x over the neighbours, d = x - x', \
+         r = |d|, ρ = m Σ W; k is proportional to the viscosity",
     ),
     ("spring damping", "c L' along each spring"),
     (
@@ -151,7 +155,8 @@ const FORCES: [(&str, &str); 22] = [
     ("wind", "of the air on each triangle, or on each particle"),
     (
         "contact",
-        "k d ((d - g) / d)³ where a gap g is below the thickness d",
+        "k d ((d - g) / d)³ where a gap g is below the thickness d, times a factor of g' for \
+         damping or restitution",
     ),
     (
         "attraction",
@@ -160,24 +165,21 @@ const FORCES: [(&str, &str); 22] = [
     ("own force", "one's own function"),
     ("constraints", "those that keep all C(x) = 0: λ ∂C/∂x"),
     ("motors", "torques on rigid bodies"),
-    (
-        "sphere",
-        "reaction and friction, as impulses after each step",
-    ),
-    ("box", "reaction and friction, as impulses after each step"),
-    (
-        "capsule",
-        "reaction and friction, as impulses after each step",
-    ),
-    (
-        "floor",
-        "reaction and friction, as impulses after each step",
-    ),
+    ("sphere", "reaction and friction, as impulses"),
+    ("box", "reaction and friction, as impulses"),
+    ("capsule", "reaction and friction, as impulses"),
+    ("floor", "reaction and friction, as impulses"),
     ("tearing", "a spring breaks at its largest L / r"),
-    (
-        "strain limit",
-        "springs are shortened to it after each step",
-    ),
+    ("strain limit", "springs are shortened to it"),
+];
+/// Those of them that are no forces, but act after each step.
+const AFTER: [&str; 6] = [
+    "sphere",
+    "box",
+    "capsule",
+    "floor",
+    "tearing",
+    "strain limit",
 ];
 
 /// Returns the formula by a name in a table.
@@ -202,12 +204,16 @@ fn lines<'a>(runs: impl Iterator<Item = &'a Simulation>) -> Vec<(String, &'stati
         lines.push(("y' = f(t, y)".into(), "the scene's own function"));
         return lines;
     };
-    let whole = "y = [x | v], x' = v, m v' = F(t, x, v), the sum of these:";
+    let whole = "y = [x | v], x' = v, m v' = F(t, x, v), the sum of these forces:";
     lines.push(("y' = f(t, y)".into(), whole));
-    for name in network.forces_in_use() {
-        let own = formula(&FORCES, name).unwrap_or_default();
-        lines.push((name.into(), own));
+    let all = network.forces_in_use().into_iter();
+    let (after, forces): (Vec<_>, Vec<_>) = all.partition(|name| AFTER.contains(name));
+    let own = |name: &'static str| (name.into(), formula(&FORCES, name).unwrap_or_default());
+    lines.extend(forces.into_iter().map(own));
+    if !after.is_empty() {
+        lines.push(("then".into(), "after each step:"));
     }
+    lines.extend(after.into_iter().map(own));
     lines
 }
 
@@ -258,23 +264,53 @@ mod tests {
         for method in integrators::METHODS {
             assert!(formula(&METHODS, method.name).is_some(), "{}", method.name);
         }
+        let docs = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/scenes");
+        let files = std::fs::read_dir(docs)
+            .unwrap()
+            .map(|it| it.unwrap().path());
+        let files = files.filter(|path| path.extension().is_some_and(|it| it == "toml"));
+        let files = files.map(|path| path.to_str().unwrap().to_owned());
+        let built_in = a3_scenes::SCENES.iter().map(|entry| entry.name.to_owned());
+        // Three that none of these scenes has.
+        let folder = tempfile::tempdir().unwrap();
+        let (mesh, own) = (folder.path().join("a.obj"), folder.path().join("a.toml"));
+        let corners = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n";
+        let sides = "f 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
+        std::fs::write(&mesh, [corners, sides].concat()).unwrap();
+        let text = "[[mesh]]\nfile = \"a.obj\"\ndensity = 1\nstiffness = [60, 10]\npressure = 50\n\
+            tension_only = true\nstrain_limit = 1.1\n";
+        std::fs::write(&own, text).unwrap();
+        let own = own.to_str().unwrap().to_owned();
         let mut seen = vec![];
-        for entry in a3_scenes::SCENES {
-            let session = session(&["--scene", entry.name]);
+        for scene in built_in.chain(files).chain([own]) {
+            let session = session(&["--scene", &scene]);
             let lines = lines([session.runs.first()].into_iter());
             assert!(lines.iter().all(|line| !line.1.is_empty()), "{lines:?}");
             seen.extend(lines.into_iter().map(|line| line.0));
         }
-        for name in [
-            "springs",
-            "solid",
-            "fluid",
-            "gravity",
-            "constraints",
-            "floor",
-        ] {
-            assert!(seen.iter().any(|it| it == name), "{name}");
-        }
+        // Hands pull only in a window, and only a program adds forces of its own.
+        let others = ["attraction", "own force"];
+        let rows = FORCES
+            .iter()
+            .map(|row| row.0)
+            .filter(|name| !others.contains(name));
+        let unseen: Vec<_> = rows
+            .filter(|name| !seen.iter().any(|it| it == name))
+            .collect();
+        assert!(unseen.is_empty(), "{unseen:?}");
+    }
+
+    /// What acts after a step is no part of the sum of forces.
+    #[test]
+    fn forces_come_before_what_acts_after_a_step() {
+        let session = session(&["--scene", "cloth"]);
+        let lines = lines([session.runs.first()].into_iter());
+        let at = |name: &str| lines.iter().position(|line| line.0 == name);
+        let (forces, then) = (at("y' = f(t, y)").unwrap(), at("then").unwrap());
+        assert_eq!(lines[then].1, "after each step:");
+        let is_after = |line: &(String, _)| AFTER.contains(&line.0.as_str());
+        assert!(!lines[forces..then].iter().any(is_after), "{lines:?}");
+        assert!(then + 1 < lines.len() && lines[then + 1..].iter().all(is_after));
     }
 
     #[test]

@@ -1,6 +1,8 @@
 //! The rows above the chart: the picks, their variables, and the times of points of a section,
 //! side by side in as many lines as they need.
 
+use std::f64::consts::TAU;
+
 use egui::{FontId, Pos2, Rect, Ui, pos2, vec2};
 
 use super::super::charts::line;
@@ -8,7 +10,7 @@ use super::super::style::{FAINT, TEXT};
 use super::super::widgets::{LEFT, MIDDLE, chip, write};
 use super::super::words::signed;
 use super::chart::{has, run_name, style};
-use crate::session::plotting::{drive, first_trigger, of_plotted};
+use crate::session::plotting::{axes, drive, fitting_trigger};
 use crate::session::{Mode, Pick, PlotRequest, Quantity, Session, Trigger, Variable};
 
 /// Width of the sample of a curve (points).
@@ -51,28 +53,27 @@ impl Rows<'_> {
     }
 
     /// Draws what is plotted, each with its colour and a cross that ends it. In a comparison, the
-    /// colours are those of the panes.
+    /// colours are those of the panes, which are named if anything is plotted.
     pub fn picks(&mut self) {
         let (session, panes) = (self.session, &self.session.runs.panes);
         let mut flow = Flow::new(self.room);
         let picks: Vec<Pick> = panes[0].traces.iter().map(|(pick, _)| *pick).collect();
         if picks.is_empty() {
-            self.say(
-                &mut flow,
-                "Double click on a particle or a body to plot it.",
-            );
+            // In two parts, the words fit into a narrow window.
+            self.say(&mut flow, "Double click on a particle, a body,");
+            self.say(&mut flow, "a spring or a rod to plot it.");
         }
         for (k, pick) in picks.into_iter().enumerate() {
             let name = pick.name();
             let place = flow.words(self.ui, &name, 0.5 * SAMPLE + 17.0);
             self.pick(place, &name, [0, k], panes.len() > 1, pick);
         }
-        if !panes[0].traces.has(Pick::Scene) && panes[0].simulation.energy().is_some() {
+        if !panes[0].traces.has(Pick::Scene) && panes[0].simulation.model().network().is_some() {
             let wish = PlotRequest::Toggle(Pick::Scene);
             self.button(&mut flow, "+ the scene", false, wish);
         }
         self.end(&flow);
-        if panes.len() > 1 {
+        if panes.len() > 1 && !panes[0].traces.is_empty() {
             let mut flow = Flow::new(self.room);
             for (k, pane) in panes.iter().enumerate() {
                 let name = run_name(pane);
@@ -152,10 +153,11 @@ impl Rows<'_> {
             return self.end(&flow);
         }
         let is_low = self.room.height() < LOW;
+        let axes = axes(settings, &self.session.runs.panes);
         let mut flow = Flow::new(self.room);
         for (axis, words) in ["across", "up"].into_iter().enumerate() {
             self.say(&mut flow, words);
-            let now = of_plotted(&self.session.runs.panes, settings.axes[axis]);
+            let now = axes[axis];
             let all = self.all_variables();
             let k = all.iter().position(|it| *it == now.variable);
             let next = all[k.map_or(0, |k| (k + 1) % all.len())];
@@ -174,7 +176,7 @@ impl Rows<'_> {
             }
         }
         if settings.mode == Mode::Section {
-            self.trigger();
+            self.trigger(axes[0].variable);
         }
     }
 
@@ -203,9 +205,14 @@ impl Rows<'_> {
     }
 
     /// Draws when points of the section are taken.
-    fn trigger(&mut self) {
+    fn trigger(&mut self, across: Variable) {
         let session = self.session;
         let trigger = session.runs.panes[0].traces.trigger();
+        let fitting = fitting_trigger(&session.runs.panes, across);
+        if fitting != trigger {
+            let wish = PlotRequest::Trigger(fitting);
+            self.request.get_or_insert(wish);
+        }
         let run = &session.runs.panes[0].simulation;
         let mut flow = Flow::new(self.room);
         self.say(&mut flow, "when");
@@ -234,8 +241,6 @@ impl Rows<'_> {
                     self.say(&mut flow, &words);
                 }
             }
-        } else if trigger == Trigger::Off {
-            self.request = Some(PlotRequest::Trigger(first_trigger(run, Variable::X)));
         }
         self.end(&flow);
     }
@@ -254,7 +259,13 @@ fn step(session: &Session, variable: Variable) -> f64 {
     let [low, high] = values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], value| {
         [low.min(value), high.max(value)]
     });
-    let part = (high - low) / STEPS;
+    // A section passes angles any number of turns away, too.
+    let most = if variable == Variable::Angle {
+        TAU
+    } else {
+        f64::INFINITY
+    };
+    let part = (high - low).min(most) / STEPS;
     if !(part > 0.0 && part.is_finite()) {
         return 0.1;
     }

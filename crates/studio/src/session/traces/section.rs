@@ -1,6 +1,8 @@
 //! Poincaré sections: the rows of a series at which a variable passes a value upwards, or a period
 //! ends, by cubic interpolation.
 
+use std::f64::consts::TAU;
+
 use super::variable::{Kind, Row, Variable};
 
 /// Number of halvings that find a crossing within an interval: as many as a double has bits.
@@ -12,7 +14,7 @@ pub enum Trigger {
     /// Never.
     #[default]
     Off,
-    /// Whenever a variable passes a value upwards.
+    /// Whenever a variable passes a value upwards; an angle, also any number of turns from it.
     Rises(Variable, f64),
     /// Once in each period (s), at its multiples.
     Period(f64),
@@ -39,6 +41,11 @@ impl Trigger {
                 (time > a.time).then(|| at(time))
             }
             Self::Rises(variable, value) => {
+                let value = if variable == Variable::Angle {
+                    value + TAU * ((variable.of(b) - value) / TAU).floor()
+                } else {
+                    value
+                };
                 if !(variable.of(a) < value && variable.of(b) >= value) {
                     return None;
                 }

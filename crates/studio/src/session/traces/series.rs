@@ -247,6 +247,31 @@ mod tests {
         }
     }
 
+    /// A thing that turns by 2 rad/s and back passes each angle once in each turn forwards.
+    #[test]
+    fn an_angle_is_passed_once_in_each_turn() {
+        let mut series = Series::default();
+        let trigger = Trigger::Rises(Variable::Angle, 0.5);
+        for k in 0..4000 {
+            let time = 0.01 * f64::from(k);
+            let angle = if time < 20.0 {
+                2.0 * time
+            } else {
+                80.0 - 2.0 * time
+            };
+            let mut values = [0.0; VALUES];
+            values[ANGLE] = angle.sin().atan2(angle.cos());
+            series.push(Row { time, values }, trigger);
+        }
+        let times: Vec<_> = series.section().map(|point| point.time).collect();
+        // 40 rad are 0.5 + 6.29 turns.
+        assert_eq!(times.len(), 7);
+        for (k, time) in (0..).zip(times) {
+            let right = 0.25 + 0.5 * TAU * f64::from(k);
+            assert!((time - right).abs() < 1e-9, "{time} {right}");
+        }
+    }
+
     #[test]
     fn values_between_the_rows_are_on_a_cubic() {
         let mut series = Series::default();

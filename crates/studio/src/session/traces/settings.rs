@@ -83,8 +83,10 @@ pub struct PlotSettings {
     pub mode: Mode,
     /// The variables that are shown over time.
     pub shown: Vec<Variable>,
-    /// What is on the horizontal and on the vertical axis otherwise.
-    pub axes: [Quantity; 2],
+    /// What is on the horizontal and on the vertical axis otherwise, as it was chosen.
+    axes: [Quantity; 2],
+    /// The name of the scene in which the axes were chosen, whose things they are of.
+    scene: String,
     /// Simulated time that is shown (s).
     pub span: f64,
     /// The ends of the ruler that are chosen so far, if there is one.
@@ -97,6 +99,18 @@ impl PlotSettings {
     /// Returns whether the mouse draws the ruler: an end is missing.
     pub fn is_ruling(&self) -> bool {
         self.ruler.as_ref().is_some_and(|ends| ends.len() < 2)
+    }
+
+    /// Returns what was chosen for the axes, in a scene: of each if that was in another one.
+    pub fn axes_in(&self, scene: &str) -> [Quantity; 2] {
+        let of = |it: Quantity| it.of.filter(|_| self.scene == scene);
+        self.axes.map(|it| Quantity { of: of(it), ..it })
+    }
+
+    /// Puts quantities of things in a scene on the axes.
+    pub fn take_axes(&mut self, axes: [Quantity; 2], scene: &str) {
+        self.axes = axes;
+        scene.clone_into(&mut self.scene);
     }
 
     /// Chooses the next end of the ruler.
@@ -141,6 +155,7 @@ impl Default for PlotSettings {
             mode: Mode::Time,
             shown: vec![Variable::X, Variable::Y, Variable::Length, Variable::Force],
             axes: [Variable::X, Variable::VelocityX].map(Quantity::of_each),
+            scene: String::new(),
             span: SPANS[1],
             ruler: None,
             formulas: false,
