@@ -29,7 +29,7 @@ impl Frames {
     }
 
     /// Creates frames for runs of a model up to `until` (s): those of [`new`](Self::new) for a
-    /// network, and 240 for a system of one's own, whatever its time is measured in.
+    /// network, and 240 for a system of one's own, whose time may have any unit.
     #[must_use]
     pub fn of(model: &Model, until: f64) -> Self {
         match model.network() {

@@ -11,7 +11,7 @@ use crate::session::{Action, Session};
 /// Shorter side of a picture that lists cover (points).
 const LIST_COVERS: f32 = 500.0;
 
-/// Largest width of the explanation of what is under the pointer (points).
+/// Largest width of the explanation of the row or button under the pointer (points).
 const WIDEST: f32 = 500.0;
 
 /// Heights of a picture without room for text above the tools, with one row of panes and with two

@@ -25,8 +25,9 @@ fn of_plotted(panes: &[Pane], quantity: Quantity) -> Quantity {
     Quantity { of, ..quantity }
 }
 
-/// Returns what is on the axes: what was chosen, changed as far as nothing that is plotted has
-/// both. If one of the variables is of nothing, it is the phase plane of what was plotted last.
+/// Returns the quantities on both axes: the chosen ones or, where no plotted thing has both, others
+/// that one has. If no plotted thing has one of the variables, they are those of the phase plane of
+/// the thing that was plotted last.
 pub fn axes(settings: &PlotSettings, panes: &[Pane]) -> [Quantity; 2] {
     let kinds = kinds(panes);
     let chosen = settings.axes_in(&panes[0].simulation.scene().name);
@@ -421,7 +422,7 @@ mod tests {
         assert!(most > 1.1 * TAU / 2.0, "{most}");
     }
 
-    /// Returns what is on the axes of a session.
+    /// Returns the quantities on the axes of a session.
     fn shown(session: &Session) -> [Quantity; 2] {
         axes(&session.panel.plotting, &session.runs.panes)
     }

@@ -354,7 +354,7 @@ impl Jacobian {
                 Matrix::Full(_) => vec![],
             };
             let new = entries.iter().map(|(row, column, _)| (*row, *column));
-            // The matrix of a step has a diagonal, whatever the entries are.
+            // The matrix of a step, 1 - a J, has a diagonal also where J has none.
             let diagonal = (0..count as u32).map(|k| (k, k));
             self.searches = false;
             let all = known.into_iter().chain(new).chain(diagonal);

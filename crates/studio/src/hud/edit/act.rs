@@ -45,7 +45,7 @@ pub struct Aim {
     pub link: Option<[usize; 2]>,
 }
 
-/// An edit, its name, and what is said of it.
+/// An edit, its name in the list of changes, and the message that is shown once it is made.
 type Planned = (Edit, String, String);
 
 /// Does what the chosen tool does by a click, and shows a message.
@@ -68,7 +68,7 @@ pub fn join(session: &mut Session, ends: [usize; 2]) {
     session.readings.say(done.unwrap_or_else(|why| why));
 }
 
-/// Makes an edit, and returns what is said of it.
+/// Makes a planned edit, and returns its message.
 fn carry_out(session: &mut Session, (change, name, said): Planned) -> Result<String, String> {
     edit(session, &change, &name).map(|()| said)
 }

@@ -62,7 +62,7 @@ pub fn has(session: &Session, variable: Variable) -> bool {
     kinds.into_iter().any(|kind| variable.is_of(kind))
 }
 
-/// Returns what is on the axes of the panels.
+/// Returns the quantities on the axes of each panel.
 fn axes(session: &Session) -> Vec<Axes> {
     let settings = &session.panel.plotting;
     if settings.mode != Mode::Time {
@@ -322,8 +322,8 @@ fn picture(session: &Session) -> Result<Vec<u8>, Failure> {
     figure.png(SCALE).map_err(Failure::run)
 }
 
-/// Returns the table: a row for each value of each pick of each pane that has a curve, with what is
-/// on the axes.
+/// Returns the plotted curves as a table in CSV: a row for each point, with the values of the
+/// quantities on the axes.
 fn table(session: &Session) -> Result<Vec<u8>, csv::Error> {
     let all_axes = axes(session);
     let picks: Vec<Pick> = session.runs.panes[0]
@@ -474,7 +474,7 @@ mod tests {
         assert_eq!(ends(text.lines().next()), heading);
         let last = format!("rod 0 to 1,{},{},{}", run.time(), angle(0), angle(1));
         assert_eq!(ends(text.lines().last()), last);
-        // Without the second rod, the axis is of what is left.
+        // Without the second rod, the axis shows the first one.
         apply(&mut session, PlotRequest::Toggle(rods[1]), 0);
         let panel = &super::plotted(&session, 1000).chart.panels[0];
         assert_eq!((&*panel.y_label, panel.lines.len()), ("angle (rad)", 1));

@@ -50,7 +50,7 @@ const METHODS: [(&str, &str); 23] = [
     ),
     (
         "implicit",
-        "y₁ = y + h f(t + h, y₁), solved by Newton's method",
+        "y₁ = y + h f(t + h, y₁), by Newton's method: for forces, by one iteration",
     ),
     (
         "rkf45",
