@@ -12,8 +12,7 @@ use a3_files::setup::Request;
 use a3_files::{interrupt, terminal};
 use a3_lab::chart::asked::{check_metric, methods};
 use a3_lab::chart::data::{Data, Each};
-use a3_lab::chart::value::{Chart, ChartOptions};
-use a3_lab::chart::words::Label;
+use a3_lab::chart::{Chart, ChartOptions, Label};
 use a3_lab::figure_file::PICTURES;
 use a3_lab::motion;
 

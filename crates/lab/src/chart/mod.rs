@@ -10,7 +10,8 @@ pub mod value;
 pub mod words;
 
 pub use asked::{check_contact, check_methods, check_metric, check_scene, check_until, methods};
+pub use measure::Chart;
 pub use record::Record;
-pub use value::{Chart, ChartOptions, chart};
+pub use value::{ChartOptions, chart};
 pub use value::{check_motion, look_ahead};
 pub use words::{Label, describe, unit};

@@ -10,8 +10,7 @@ use a3_core::accuracy::{Metric, Scope};
 use a3_core::{Method, Scene};
 use a3_plot::{Curve, CurveStyle, Marker, Measurement, Problem, WorkPrecision};
 
-use super::data::Data;
-use super::measure::Study;
+use super::measure::{Chart, Study};
 use super::record::Record;
 use super::table;
 use super::words::{lasting, unit};
@@ -22,64 +21,58 @@ const MAX_ERROR_RATIO: f64 = 10.0;
 /// Label of the vertical axis where work is shown, and not computing time.
 pub const WORK: &str = "evaluations per simulated second, linear algebra included";
 
-/// Creates the diagram, with a panel for each study.
-pub fn chart(
-    studies: &[Study],
-    data: &Data,
-    methods: &[&'static Method],
-    metric: Metric,
-    timed: bool,
-    title: &str,
-) -> WorkPrecision {
-    let (until, scope) = (studies[0].frames.until, studies[0].scope());
-    let model = &studies[0].scene.model;
+/// Creates the diagram of a chart, with a panel for each study.
+pub fn chart(chart: &Chart) -> WorkPrecision {
+    let Chart {
+        studies,
+        data,
+        methods,
+        metric,
+        timed,
+        ..
+    } = chart;
+    let (first, scope) = (&studies[0], studies[0].scope());
+    let (model, until) = (&first.scene.model, first.frames.until);
     // The work of a second says nothing where time has another unit.
     let is_own = model.network().is_none();
-    let problems = studies
-        .iter()
-        .map(|study| {
-            let records: Vec<_> = study.records(data).collect();
-            let beside: Vec<_> = study.beside(data).collect();
-            let mut problem = problem(&records, &beside, methods, metric, timed);
-            if studies.len() > 1 || study.stiffness() != 1.0 {
-                problem.title = format!("stiffness × {}", study.stiffness());
-            }
-            if is_own {
-                // A run that blew up is drawn at the work that it took.
-                for (curve, method) in problem.curves.iter_mut().zip(methods) {
-                    let drawn = drawn(&records, method, metric);
-                    for (run, record) in curve.runs.iter_mut().zip(drawn) {
-                        run.work *= record.lost_at.unwrap_or(until);
-                    }
+    let problems = studies.iter().map(|study| {
+        let records: Vec<_> = study.records(data).collect();
+        let beside: Vec<_> = study.beside(data).collect();
+        let mut problem = problem(&records, &beside, methods, *metric, *timed);
+        if studies.len() > 1 || study.stiffness() != 1.0 {
+            problem.title = format!("stiffness × {}", study.stiffness());
+        }
+        if is_own {
+            // A run that blew up is drawn at the work that it took.
+            for (curve, method) in problem.curves.iter_mut().zip(methods) {
+                let drawn = drawn(&records, method, *metric);
+                for (run, record) in curve.runs.iter_mut().zip(drawn) {
+                    run.work *= record.lost_at.unwrap_or(until);
                 }
             }
-            problem
-        })
-        .collect();
+        }
+        problem
+    });
+    let is_spread = |study: &Study| study.beside(data).next().is_some();
+    let bands = studies.iter().any(is_spread);
+    let bands = bands.then_some("; bands: errors at tolerances within 4 %");
     WorkPrecision {
-        title: format!("Speed against accuracy: {title}"),
+        title: format!("Speed against accuracy: {}", chart.title),
         subtitle: format!(
             "{} of motion; each point is a run with another step or tolerance{}",
             lasting(model, until),
-            if studies
-                .iter()
-                .any(|study| study.beside(data).next().is_some())
-            {
-                "; bands: errors at tolerances within 4 %"
-            } else {
-                ""
-            }
+            bands.unwrap_or_default()
         ),
-        x_label: x_label(metric, scope),
-        y_label: match (timed, is_own) {
+        x_label: x_label(*metric, scope),
+        y_label: match (*timed, is_own) {
             (true, false) => "computing time per simulated second (s)",
             (true, true) => "computing time (s)",
             (false, false) => WORK,
             (false, true) => "work (evaluations of f, linear algebra included)",
         }
         .into(),
-        problems,
-        foot: foot(methods) + turning(&studies[0].scene, methods),
+        problems: problems.collect(),
+        foot: foot(methods) + turning(&first.scene, methods),
         held: "held by impulses".into(),
     }
 }
@@ -90,10 +83,8 @@ const TURNING: [char; 3] = ['s', 'v', 'p'];
 /// Keeps the curves of the methods that are cheapest for some error in some panel, of those that
 /// the course teaches, and of own methods.
 pub fn keep_best(chart: &mut WorkPrecision, methods: &[&'static Method], scene: &Scene) {
-    let mut kept: Vec<_> = methods
-        .iter()
-        .map(|m| m.is_own() || is_of_course(m))
-        .collect();
+    let is_kept = |m: &&'static Method| m.is_own() || is_of_course(m);
+    let mut kept: Vec<_> = methods.iter().map(is_kept).collect();
     for problem in &chart.problems {
         for [curve, _] in problem.front() {
             kept[curve] = true;
@@ -103,16 +94,13 @@ pub fn keep_best(chart: &mut WorkPrecision, methods: &[&'static Method], scene: 
     if left_out == 0 {
         return;
     }
-    for problem in &mut chart.problems {
-        let mut kept = kept.iter();
-        problem
-            .curves
-            .retain(|_| kept.next().is_some_and(|kept| *kept));
-    }
     let drawn = methods.iter().zip(&kept);
     let drawn: Vec<_> = drawn.filter_map(|(m, kept)| kept.then_some(*m)).collect();
     let styles = together(&drawn);
     for problem in &mut chart.problems {
+        let mut kept = kept.iter();
+        let is_kept = |_: &Curve| kept.next().is_some_and(|kept| *kept);
+        problem.curves.retain(is_kept);
         for (curve, style) in problem.curves.iter_mut().zip(&styles) {
             curve.style = *style;
         }
@@ -141,17 +129,10 @@ pub fn foot(methods: &[&'static Method]) -> String {
 /// Returns a note on the methods that turn rigid bodies more accurately than their order says, if
 /// the chart has both.
 fn turning(scene: &Scene, methods: &[&'static Method]) -> &'static str {
-    let has_bodies = scene
-        .model
-        .network()
-        .is_some_and(|network| !network.bodies().is_empty());
-    if has_bodies
-        && methods.iter().any(|method| {
-            method
-                .letter
-                .is_some_and(|letter| TURNING.contains(&letter))
-        })
-    {
+    let network = scene.model.network();
+    let has_bodies = network.is_some_and(|network| !network.bodies().is_empty());
+    let turns = |m: &&'static Method| m.letter.is_some_and(|it| TURNING.contains(&it));
+    if has_bodies && methods.iter().any(turns) {
         " Symplectic Euler, Verlet and PEFRL turn bodies by a composition of order 6, whatever \
          their own order: in free flight their errors fall with it."
     } else {

@@ -1,7 +1,7 @@
 //! A run of a chart: its scene, its setting, its errors and its work. The names of the fields are
 //! the keys of data files.
 
-use a3_core::accuracy::{Errors, Metric};
+use a3_core::accuracy::Metric;
 use serde::{Deserialize, Serialize};
 
 use a3_files::rows::Row;
@@ -173,17 +173,17 @@ impl Record {
     /// Returns the error of the run; infinite if it blew up.
     #[must_use]
     pub fn error(&self, metric: Metric) -> f64 {
-        let or_infinite = |error: Option<f64>| error.unwrap_or(f64::INFINITY);
-        metric.of(&Errors {
-            position: or_infinite(self.error_position),
-            state: or_infinite(self.error_state),
-            energy: or_infinite(self.error_energy),
-            strain: or_infinite(self.error_strain),
-            momentum: or_infinite(self.error_momentum),
-            phase: or_infinite(self.error_phase),
-            penetration: or_infinite(self.error_penetration),
-            impact: or_infinite(self.error_impact),
-        })
+        let error = match metric {
+            Metric::Position => self.error_position,
+            Metric::State => self.error_state,
+            Metric::Energy => self.error_energy,
+            Metric::Strain => self.error_strain,
+            Metric::Momentum => self.error_momentum,
+            Metric::Phase => self.error_phase,
+            Metric::Penetration => self.error_penetration,
+            Metric::Impact => self.error_impact,
+        };
+        error.unwrap_or(f64::INFINITY)
     }
 
     /// Returns the smallest error that the reference can tell from 0: ten times its own.
@@ -195,16 +195,16 @@ impl Record {
     /// Returns the error of the reference itself.
     #[must_use]
     pub fn floor(&self, metric: Metric) -> f64 {
-        metric.of(&Errors {
-            position: self.floor_position,
-            state: self.floor_state,
-            energy: self.floor_energy,
-            strain: self.floor_strain,
-            momentum: self.floor_momentum,
-            phase: self.floor_phase,
-            penetration: self.floor_penetration,
-            impact: self.floor_impact,
-        })
+        match metric {
+            Metric::Position => self.floor_position,
+            Metric::State => self.floor_state,
+            Metric::Energy => self.floor_energy,
+            Metric::Strain => self.floor_strain,
+            Metric::Momentum => self.floor_momentum,
+            Metric::Phase => self.floor_phase,
+            Metric::Penetration => self.floor_penetration,
+            Metric::Impact => self.floor_impact,
+        }
     }
 
     /// Returns the error of a run in which nothing moves, beyond which an error says nothing;

@@ -7,8 +7,7 @@ use a3_core::{Control, Disturbances, Method, Scene};
 use a3_files::report::Report;
 use a3_files::setup::{Request, SceneOptions};
 
-use super::search::ENOUGH_MARGIN;
-use super::value::{Choice, Chosen, Goal, describe_goal};
+use super::value::{Choice, Chosen, ENOUGH_MARGIN, Goal, describe_goal};
 use crate::chart::table::fraction;
 use crate::chart::{describe, unit};
 use crate::motion::words as scope_in_words;

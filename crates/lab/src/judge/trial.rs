@@ -1,11 +1,12 @@
-//! Trials: a method, or a scheme with a mistake, against the rows of a file.
+//! Trials: a method, or a scheme with a mistake, against the rows of a file; and fits of a constant
+//! of the scene to these rows, by least squares.
 
 use a3_core::integrators::METHODS;
 use a3_core::{Control, Method, Scene, Simulation};
-use a3_files::monitor::Monitor;
 
-use super::constant::Mistake;
+use super::constant::{Change, Mistake};
 use super::grid::Pace;
+use super::judgement::Course;
 use super::plain::{Forces, Plain};
 use super::rows::{Rows, columns, distance};
 use super::scheme::{PlainRun, Scheme};
@@ -27,6 +28,23 @@ const BEGINNING: f64 = 20.0;
 const MAX_WORK: f64 = 5e8;
 /// Work of a step of an implicit method, over an evaluation.
 const IMPLICIT_WORK: f64 = 25.0;
+/// Number of rows of the first fit. Each further one has several times as many, up to all.
+const FIRST_ROWS: usize = 3;
+const MORE_ROWS: usize = 4;
+/// Largest number of iterations of each fit.
+const MAX_ITERATIONS: usize = 8;
+/// Change of the factor over which a rate of change is taken.
+const DELTA: f64 = 1e-6;
+/// Change of the factor that ends the iterations.
+const SETTLED: f64 = 1e-14;
+/// Least effect of a constant, over the distance that agrees, that tells its value.
+const MIN_EFFECT: f64 = 100.0;
+/// Largest factor.
+const MAX_FACTOR: f64 = 100.0;
+/// Largest work of fits, in springs and particles that are visited.
+const MAX_WORK_OF_FITS: f64 = 2e8;
+/// Distance of rows from a fit to some of them, over that which agrees.
+const SLACK: f64 = 3.0;
 
 /// Way to compute a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -34,7 +52,7 @@ pub enum Way {
     /// Solver of a3.
     Method(&'static Method),
     /// Scheme on plain masses and springs.
-    Scheme(Scheme, Option<Mistake>),
+    Scheme(&'static Scheme, Option<Mistake>),
 }
 
 impl Way {
@@ -42,7 +60,7 @@ impl Way {
     pub fn title(self) -> &'static str {
         match self {
             Self::Method(method) => method.title,
-            Self::Scheme(scheme, _) => scheme.title(),
+            Self::Scheme(scheme, _) => scheme.title,
         }
     }
 
@@ -61,21 +79,15 @@ impl Way {
         }
     }
 
-    /// Returns the slip or the mistake that it makes, in words that follow "with".
-    pub fn slip(self) -> Option<String> {
+    /// Returns the slip or the mistake that it makes, in words that follow "with", and the question
+    /// to the author of a program that computes steps so.
+    pub fn slip(self) -> [Option<String>; 2] {
         match self {
-            Self::Scheme(_, Some(mistake)) => Some(mistake.words()),
-            Self::Scheme(scheme, None) => scheme.slip().map(String::from),
-            Self::Method(_) => None,
-        }
-    }
-
-    /// Returns the question to the author of a program that computes steps so.
-    pub fn question(self) -> Option<String> {
-        match self {
-            Self::Scheme(scheme, None) => scheme.question().map(String::from),
-            Self::Scheme(_, Some(mistake)) => Some(mistake.question()),
-            Self::Method(_) => None,
+            Self::Scheme(_, Some(mistake)) => mistake.words().map(Some),
+            Self::Scheme(scheme, None) => {
+                [scheme.slip, scheme.question].map(|it| it.map(Into::into))
+            }
+            Self::Method(_) => [None, None],
         }
     }
 }
@@ -122,30 +134,26 @@ pub struct Compared {
 /// Scene and rows against which trials run.
 #[derive(Clone)]
 pub struct Judged<'a> {
-    /// Companion of the work, which may stop it.
-    pub monitor: &'a dyn Monitor,
-    pub scene: &'a Scene,
-    /// The scene as masses and springs, if it is that.
-    pub plain: Option<&'a Plain>,
+    pub course: &'a Course<'a>,
     pub rows: &'a Rows<'a>,
     /// Largest distance that the scene moves until the last row (m).
     pub motion: f64,
-    /// Step of the program (s), if it is known.
-    pub step: Option<f64>,
     /// Number of particles and springs, which an evaluation visits.
-    pub size: f64,
+    size: f64,
     /// Radius of the scene (m).
-    pub radius: f64,
+    radius: f64,
     /// Distance by which single precision changes a run until each row (m), if the program is
     /// taken to have it. Rows are compared as far as that tells anything.
     pub noise: Option<Vec<f64>>,
 }
 
-/// Returns the number of particles and springs of a scene.
-pub fn size(scene: &Scene) -> f64 {
-    let network = scene.model.network();
-    let springs = network.map_or(0, |network| network.all_springs().count());
-    (scene.model.particles() + springs) as f64
+/// Differences of a run from rows (m), and the square of the largest distance that agrees in their
+/// place, summed over them.
+struct Residuals {
+    all: Vec<f64>,
+    bound: f64,
+    /// Largest distance over that which agrees.
+    worst: f64,
 }
 
 /// A run of a trial.
@@ -161,7 +169,7 @@ impl Run<'_> {
             Self::Method(run) => run.take_steps(steps).is_ok(),
             Self::Plain(run) => {
                 (0..steps).for_each(|_| run.step());
-                run.positions().as_flattened().iter().all(|x| x.is_finite())
+                run.x.as_flattened().iter().all(|x| x.is_finite())
             }
         }
     }
@@ -173,18 +181,40 @@ impl Run<'_> {
                 let positions = run.state()[..3 * run.particles()].to_vec();
                 [positions, run.velocities()]
             }
-            Self::Plain(run) => [run.positions(), run.velocities()].map(columns),
+            Self::Plain(run) => [&run.x, &run.v].map(|vectors| columns(vectors)),
         }
     }
 }
 
-impl Judged<'_> {
+impl<'a> Judged<'a> {
+    /// Creates the trials of rows on a scene that moves by `motion` (m).
+    pub fn new(course: &'a Course<'a>, rows: &'a Rows<'a>, motion: f64) -> Self {
+        let network = course.scene.model.network();
+        let springs = network.map_or(0, |network| network.all_springs().count());
+        Self {
+            course,
+            rows,
+            motion,
+            size: (course.scene.model.particles() + springs) as f64,
+            radius: course.scene.extent().1,
+            noise: None,
+        }
+    }
+
+    /// Returns the scene.
+    pub fn scene(&self) -> &'a Scene {
+        self.course.scene
+    }
+
+    /// Returns the scene as masses and springs, if it is that.
+    pub fn plain(&self) -> Option<&'a Plain> {
+        self.course.plain.as_ref()
+    }
+
     /// Returns the largest distance of row k (m) that agrees, after a distance moved (m).
     pub fn tolerance(&self, k: usize, moved: f64) -> f64 {
-        let noise = self
-            .noise
-            .as_ref()
-            .map_or(0.0, |noise| noise.get(k).copied().unwrap_or(f64::INFINITY));
+        let known = |noise: &Vec<f64>| noise.get(k).copied().unwrap_or(f64::INFINITY);
+        let noise = self.noise.as_ref().map_or(0.0, known);
         AGREEMENT * moved + self.rounding(k) + SINGLE * noise
     }
 
@@ -197,18 +227,13 @@ impl Judged<'_> {
     pub fn start(&self, trial: Trial) -> &[f64] {
         match trial.start {
             Start::Row(row) if row < self.rows.len() => self.rows.positions(row),
-            _ => &self.scene.state[..3 * self.scene.model.particles()],
+            _ => &self.scene().state[..3 * self.scene().model.particles()],
         }
     }
 
     /// Returns the distance by which single precision changes a run by a scheme until each row
     /// (m), as far as it is much smaller than the motion.
-    pub fn noise(&self, scheme: Scheme, pace: Pace, work: &mut f64) -> Option<Vec<f64>> {
-        let trial = Trial {
-            way: Way::Scheme(scheme, None),
-            pace,
-            start: Start::Scene,
-        };
+    pub fn noise(&self, trial: Trial, work: &mut f64) -> Option<Vec<f64>> {
         let mut double = vec![None; self.rows.len()];
         self.follow(trial, false, self.rows.len(), work, &mut |k, [x, _]| {
             double[k] = Some(x.clone());
@@ -243,7 +268,7 @@ impl Judged<'_> {
                     IMPLICIT_WORK
                 }
                 Way::Method(method) => f64::from(method.evaluations.max(method.damped_evaluations)),
-                Way::Scheme(scheme, _) => scheme.evaluations(self.scene.model.particles()) as f64,
+                Way::Scheme(scheme, _) => scheme.evaluations(self.scene().model.particles()) as f64,
             }
     }
 
@@ -287,7 +312,7 @@ impl Judged<'_> {
                 (None, Run::Method(run)) => run.advance_to(self.rows.times[k]).is_ok(),
                 (None, Run::Plain(_)) => return None,
             };
-            if !is_there || !self.monitor.go_on() || !look(k, &run.motion()) {
+            if !is_there || !self.course.monitor.go_on() || !look(k, &run.motion()) {
                 return Some(k);
             }
         }
@@ -340,14 +365,13 @@ impl Judged<'_> {
     pub fn step_of(&self, trial: Trial) -> Option<f64> {
         match &self.rows.grid {
             Some(grid) => Some(trial.pace.points as f64 * grid.step / trial.pace.steps as f64),
-            None => self.step,
+            None => self.course.step,
         }
     }
 
     /// Returns the run of a trial, the first row that it shows, and the number of steps from the
     /// start of the grid to its beginning.
     fn begin(&self, trial: Trial, is_single: bool) -> Option<(Run<'_>, usize, u64)> {
-        let n = self.scene.model.particles();
         let step = self.step_of(trial)?;
         let (row, taken) = match trial.start {
             Start::Row(row) if row < self.rows.len() && trial.pace.points == 1 => {
@@ -361,14 +385,14 @@ impl Judged<'_> {
         // velocities.
         let given = match row {
             Some(row) => {
-                self.plain?;
+                self.plain()?;
                 Some([self.rows.positions(row), self.rows.velocities(row)?])
             }
             None => None,
         };
         let run = match trial.way {
             Way::Method(method) => {
-                let mut scene = self.scene.clone();
+                let mut scene = self.scene().clone();
                 if let Some(given) = given {
                     scene.state = given.concat();
                 }
@@ -376,13 +400,110 @@ impl Judged<'_> {
                 Run::Method(Box::new(run))
             }
             Way::Scheme(scheme, mistake) => {
-                let plain = self.plain?;
+                let (plain, n) = (self.plain()?, self.scene().model.particles());
                 let rows = |x: &[f64]| (0..n).map(|i| [x[i], x[n + i], x[2 * n + i]]).collect();
-                let start = given.map_or_else(|| plain.start.clone(), |given| given.map(rows));
+                let own = || [&plain.list.positions, &plain.list.velocities].map(Vec::clone);
+                let start = given.map_or_else(own, |given| given.map(rows));
                 let forces = Forces::new(plain, mistake, is_single);
                 Run::Plain(Box::new(PlainRun::new(forces, scheme, step, start)))
             }
         };
         Some((run, row.unwrap_or(0), taken))
+    }
+
+    /// Returns a trial whose constant is fitted to the rows, by the Gauss-Newton method: first to
+    /// those at the start, on which it acts almost linearly. `None` if rows differ by more than
+    /// their bound, a function of their number and of the distance moved (m).
+    pub fn fit(
+        &self,
+        trial: Trial,
+        bound: &dyn Fn(usize, f64) -> f64,
+        work: &mut f64,
+    ) -> Option<Trial> {
+        let Way::Scheme(scheme, Some(Mistake::Constant(mut change))) = trial.way else {
+            return Some(trial);
+        };
+        let with = |change: Change| Trial {
+            way: Way::Scheme(scheme, Some(Mistake::Constant(change))),
+            ..trial
+        };
+        let mut end = FIRST_ROWS;
+        let mut is_fitted = false;
+        loop {
+            end = end.min(self.last());
+            for _ in 0..MAX_ITERATIONS {
+                if *work > MAX_WORK_OF_FITS {
+                    return None;
+                }
+                let now = self.residuals(with(change), end, bound, work)?;
+                let factor = change.factor + DELTA;
+                let moved = with(Change { factor, ..change });
+                let moved = self.residuals(moved, end, bound, work)?;
+                let (mut slope, mut square) = (0.0, 0.0);
+                for (now, moved) in now.all.iter().zip(&moved.all) {
+                    let rate = (moved - now) / DELTA;
+                    slope += rate * now;
+                    square += rate * rate;
+                }
+                is_fitted = square > MIN_EFFECT.powi(2) * now.bound;
+                if !is_fitted {
+                    break;
+                }
+                let less = slope / square;
+                change.factor -= less;
+                if less.abs() <= SETTLED {
+                    break;
+                }
+            }
+            if change.factor.abs() > MAX_FACTOR || !change.factor.is_finite() {
+                change.factor = 1.0;
+                is_fitted = false;
+            }
+            if is_fitted {
+                let fitted = self.residuals(with(change), end, bound, work)?;
+                if fitted.worst > SLACK {
+                    return None;
+                }
+            }
+            if end == self.last() {
+                break;
+            }
+            end *= MORE_ROWS;
+        }
+        if !is_fitted {
+            return None;
+        }
+        let typed = with(change.typed());
+        let agrees = self.residuals(typed, end, bound, work)?.worst <= 1.0;
+        let exact = with(change);
+        Some(if agrees { typed } else { exact })
+    }
+
+    /// Returns the differences of a trial from the first rows. `None` if it blows up there.
+    fn residuals(
+        &self,
+        trial: Trial,
+        end: usize,
+        bound: &dyn Fn(usize, f64) -> f64,
+        work: &mut f64,
+    ) -> Option<Residuals> {
+        let mut found = Residuals {
+            all: vec![],
+            bound: 0.0,
+            worst: 0.0,
+        };
+        let (start, mut most) = (self.start(trial), 0.0);
+        let passed = self.follow(trial, false, end, work, &mut |k, [x, _]| {
+            let own = self.rows.positions(k);
+            most = f64::max(most, distance(own, start));
+            let bound = bound(k, most);
+            found.bound += own.len() as f64 / 3.0 * bound.powi(2);
+            found.worst = found
+                .worst
+                .max(distance(x, own) / bound.max(f64::MIN_POSITIVE));
+            found.all.extend(x.iter().zip(own).map(|(x, own)| x - own));
+            true
+        })?;
+        (passed == end).then_some(found)
     }
 }

@@ -12,7 +12,7 @@ use a3_scenes::{Regridded, regridded};
 
 use super::lean::Solved;
 use super::models::{FACTORS, Models};
-use crate::chart::measure::time;
+use crate::chart::measure::{stopped, time};
 use crate::chart::table::words;
 use crate::motion::{GridError, Motion, Places, Track, grid};
 
@@ -48,8 +48,8 @@ struct Grid {
 /// not limited by the grid.
 const LONG_STEPS: [&str; 2] = ["implicit", "tr-bdf2"];
 
-/// Measures the runs of the chart. `None` if the scene has one grid only, if grids differ by more
-/// than the motion, or if the monitor stopped it.
+/// Measures the runs of the chart. `None` if the scene has one grid only, or if grids differ by more
+/// than the motion.
 pub fn chart(
     models: &Models,
     whole: &Solved,
@@ -92,10 +92,7 @@ pub fn chart(
         let least = models.compared.distance(&truth, &grid.motion);
         let mut runs = vec![];
         for method in &methods {
-            let Some(own) = measured(models, grid, method, (&truth, least))? else {
-                return Ok(None);
-            };
-            runs.extend(own);
+            runs.extend(measured(models, grid, method, (&truth, least))?);
         }
         // Long steps that err less than short ones do so because their errors and those of the grid
         // cancel by chance.
@@ -215,7 +212,7 @@ fn grids(models: &Models) -> Result<Option<Vec<Grid>>, Failure> {
             None if factor == 1.0 => (own.clone(), None),
             None => continue,
         };
-        let Some(Ok(motion)) = models.follow(&description, places.as_deref())? else {
+        let Ok(motion) = models.follow(&description, places.as_deref())? else {
             continue;
         };
         let name = format!("grid of {}", grid(&description));
@@ -236,14 +233,13 @@ fn grids(models: &Models) -> Result<Option<Vec<Grid>>, Failure> {
 }
 
 /// Measures runs on a grid by a method at several steps or tolerances, from the coarsest on, until
-/// the grid makes nearly all of the error. `least` is the error of its accurate run. `None` if the
-/// monitor stopped it.
+/// the grid makes nearly all of the error. `least` is the error of its accurate run.
 fn measured(
     models: &Models,
     grid: &Grid,
     method: &'static Method,
     (truth, least): (&Track, f64),
-) -> Result<Option<Vec<Measurement>>, Failure> {
+) -> Result<Vec<Measurement>, Failure> {
     let (scene, compared) = (&grid.scene, models.compared);
     let go_on = &|| models.monitor.go_on();
     let modes = spectrum(scene.model.system(), 0.0, &scene.state);
@@ -256,22 +252,15 @@ fn measured(
     let places: Option<&Places> = grid.places.as_deref();
     for control in first.into_iter().chain(rungs).take(MAX_RUNS) {
         let run = compared.follow(scene, (method, control), places, go_on);
-        let measured = match run.map_err(Failure::run)? {
-            None => return Ok(None),
-            Some(Motion::Failed) => None,
-            Some(Motion::Known(track)) => {
-                let frames = &compared.frames;
-                let Some(time) = time(go_on, scene, method, control, frames, Some(track.time))?
-                else {
-                    return Ok(None);
-                };
-                Some((compared.distance(truth, &track), time))
-            }
-        };
-        models.monitor.advance(1.0);
-        let Some((error, time)) = measured else {
+        let run = run.map_err(Failure::run)?.ok_or_else(stopped)?;
+        let Motion::Known(track) = run else {
+            models.monitor.advance(1.0);
             continue;
         };
+        let (frames, before) = (&compared.frames, Some(track.time));
+        let time = time(go_on, scene, method, control, frames, before)?;
+        let error = compared.distance(truth, &track);
+        models.monitor.advance(1.0);
         found.push(Measurement {
             error,
             work: time.as_secs_f64() / compared.frames.until,
@@ -283,5 +272,5 @@ fn measured(
             break;
         }
     }
-    Ok(Some(found))
+    Ok(found)
 }

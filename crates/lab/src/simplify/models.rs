@@ -13,6 +13,7 @@ use a3_files::rows::Rows;
 use a3_files::setup::Request;
 use a3_scenes::{Description, Part, Regridded, parts, regridded, without};
 
+use crate::chart::measure::stopped;
 use crate::motion::{Compared, Known, Motion, Places, Track, grid};
 
 /// Relative tolerances at which the whole scene is tried, the largest first. The first that is
@@ -77,17 +78,17 @@ pub struct Model {
 
 impl<'a> Models<'a> {
     /// Integrates the whole scene much more accurately than to the error that is asked for, which
-    /// two methods of different orders have to agree about. `None` if the monitor stopped it.
+    /// two methods of different orders have to agree about.
     ///
     /// # Errors
-    /// No run is accurate enough.
+    /// No run is accurate enough, or the monitor stopped it.
     pub fn new(
         request: &'a Request,
         scene: Scene,
         compared: Compared,
         error: f64,
         monitor: &'a dyn Monitor,
-    ) -> Result<Option<Self>, Failure> {
+    ) -> Result<Self, Failure> {
         let go_on = &|| monitor.go_on();
         let [method, other] = ["verner65", "dop853"].map(|name| find(name).expect(name));
         let mut best: Option<(Track, f64, f64)> = None;
@@ -96,13 +97,8 @@ impl<'a> Models<'a> {
             let mut runs = vec![];
             for (method, tolerance) in [(method, tolerance), (other, CHECK_RATIO * tolerance)] {
                 let by = (method, Control::Tolerance(tolerance));
-                let Some(run) = compared
-                    .follow(&scene, by, None, go_on)
-                    .map_err(Failure::run)?
-                else {
-                    return Ok(None);
-                };
-                runs.push(run);
+                let run = compared.follow(&scene, by, None, go_on);
+                runs.push(run.map_err(Failure::run)?.ok_or_else(stopped)?);
             }
             let Ok([Motion::Known(track), Motion::Known(check)]) = <[Motion; 2]>::try_from(runs)
             else {
@@ -133,7 +129,7 @@ impl<'a> Models<'a> {
                 uncertainty / MAX_UNCERTAINTY
             )));
         }
-        Ok(Some(Self {
+        Ok(Self {
             request,
             monitor,
             scene,
@@ -141,22 +137,25 @@ impl<'a> Models<'a> {
             whole,
             accurate: (method, Control::Tolerance(tolerance)),
             uncertainty,
-        }))
+        })
     }
 
     /// Lists the models to be measured: without each part, and on each other grid. The second value
     /// gives the reason if the grids cannot be changed.
     pub fn all(&self) -> (Vec<Model>, Option<String>) {
         let own = &*self.request.source.description;
-        let model = |part: Part| Model {
-            name: part.name.clone(),
-            description: without(own, [&part]),
+        let model = |name, part, description| Model {
+            name,
+            description,
             places: None,
-            part: Some(part),
+            part,
             factor: 1.0,
             effect: Err("not measured".into()),
         };
-        let mut all: Vec<_> = parts(own).into_iter().map(model).collect();
+        let parts = parts(own).into_iter();
+        let mut all: Vec<_> = parts
+            .map(|part| model(part.name.clone(), Some(part.clone()), without(own, [&part])))
+            .collect();
         let mut why = None;
         for factor in FACTORS {
             match regridded(own, factor, self.scene.model.particles()) {
@@ -165,13 +164,11 @@ impl<'a> Models<'a> {
                     places,
                 }) => {
                     if all.iter().all(|model| model.description != description) {
+                        let name = format!("grid of {}", grid(&description));
                         all.push(Model {
-                            name: format!("grid of {}", grid(&description)),
-                            description,
                             places: Some(places),
-                            part: None,
                             factor,
-                            effect: Err("not measured".into()),
+                            ..model(name, None, description)
                         });
                     }
                 }
@@ -186,43 +183,43 @@ impl<'a> Models<'a> {
         (all, why.filter(|_| !has_grids))
     }
 
-    /// Measures a model, unless it is known. Returns `false` if the monitor stopped it.
-    pub fn measure(&self, model: &mut Model, known: &mut Rows<Known>) -> Result<bool, Failure> {
+    /// Measures a model, unless it is known.
+    fn measure(&self, model: &mut Model, known: &mut Rows<Known>) -> Result<(), Failure> {
         let like = Known {
             model: model.name.clone(),
             ..Known::new(self.request, &self.scene, self.compared, self.accurate)
         };
-        if let Some(&Known {
-            change, time, work, ..
-        }) = known.find(&like)
-        {
-            model.effect = Ok(Effect { change, time, work });
-            return Ok(true);
-        }
-        let Some(found) = self.follow(&model.description, model.places.as_deref())? else {
-            return Ok(false);
+        let effect = |it: &Known| Effect {
+            change: it.change,
+            time: it.time,
+            work: it.work,
         };
-        model.effect = match found {
-            Ok(track) => {
-                let scene = self.build(&model.description)?;
-                let Some(time) = self.time(&scene)? else {
-                    return Ok(false);
-                };
-                let (change, work) = (self.change(&track), track.work / self.whole.work);
-                Ok(Effect { change, time, work })
+        if let Some(known) = known.find(&like) {
+            model.effect = Ok(effect(known));
+            return Ok(());
+        }
+        let found = self.follow(&model.description, model.places.as_deref())?;
+        let track = match found {
+            Ok(track) => track,
+            Err(why) => {
+                model.effect = Err(why);
+                return Ok(());
             }
-            Err(why) => Err(why),
         };
-        if let Ok(Effect { change, time, work }) = model.effect {
-            known.add(Known {
-                change,
-                time,
-                work,
-                ..like
-            });
-            known.save()?;
-        }
-        Ok(true)
+        let scene = self.build(&model.description)?;
+        // The time of the model over that of the whole scene, which runs in turns with it.
+        let (method, control) = self.accurate;
+        let runs = [&scene, &self.scene].map(|scene| (scene, method, control));
+        let [own, whole] = in_turns(runs, &self.compared.frames, &|| self.monitor.go_on())?;
+        let row = Known {
+            change: self.change(&track),
+            time: own.as_secs_f64() / whole.as_secs_f64(),
+            work: track.work / self.whole.work,
+            ..like
+        };
+        model.effect = Ok(effect(&row));
+        known.add(row);
+        known.save()
     }
 
     /// Returns the change of the quantity in a model whose motion is known.
@@ -230,31 +227,21 @@ impl<'a> Models<'a> {
         self.compared.distance(&self.whole, track)
     }
 
-    /// Times a model and the whole scene in turns. Returns the time of the model over that of the
-    /// whole scene; `None` if the monitor stopped it.
-    fn time(&self, scene: &Scene) -> Result<Option<f64>, Failure> {
-        let (method, control) = self.accurate;
-        let runs = [scene, &self.scene].map(|scene| (scene, method, control));
-        let times = in_turns(runs, &self.compared.frames, &|| self.monitor.go_on())?;
-        Ok(times.map(|[model, whole]| model.as_secs_f64() / whole.as_secs_f64()))
-    }
-
-    /// Integrates a model. Returns its motion, or the reason why it cannot be integrated; `None` if
-    /// the command was interrupted.
+    /// Integrates a model. Returns its motion, or the reason why it cannot be integrated.
     pub fn follow(
         &self,
         description: &Description,
         places: Option<&Places>,
-    ) -> Result<Option<Result<Track, String>>, Failure> {
+    ) -> Result<Result<Track, String>, Failure> {
         let Ok(scene) = self.build(description) else {
-            return Ok(Some(Err("a scene without it cannot be built".into())));
+            return Ok(Err("a scene without it cannot be built".into()));
         };
         let go_on = &|| self.monitor.go_on();
         let found = self.compared.follow(&scene, self.accurate, places, go_on);
-        Ok(match found.map_err(Failure::run)? {
-            None => None,
-            Some(Motion::Failed) => Some(Err("it blows up".into())),
-            Some(Motion::Known(track)) => Some(Ok(track)),
+        let found = found.map_err(Failure::run)?.ok_or_else(stopped)?;
+        Ok(match found {
+            Motion::Failed => Err("it blows up".into()),
+            Motion::Known(track) => Ok(track),
         })
     }
 
@@ -264,13 +251,12 @@ impl<'a> Models<'a> {
     }
 }
 
-/// Measures all models that can be measured and are not known. Returns `false` if the monitor
-/// stopped it.
+/// Measures all models that can be measured and are not known.
 pub fn measure_all(
     models: &Models,
     all: &mut [Model],
     known: &mut Rows<Known>,
-) -> Result<bool, Failure> {
+) -> Result<(), Failure> {
     // A model on a finer grid has more particles and, by an explicit method, shorter steps.
     let weight = |model: &Model| model.factor.powi(4);
     let monitor = models.monitor;
@@ -278,12 +264,10 @@ pub fn measure_all(
     monitor.start();
     for model in all {
         monitor.stage(&model.name);
-        if !models.measure(model, known)? {
-            return Ok(false);
-        }
+        models.measure(model, known)?;
         monitor.advance(weight(model));
     }
-    Ok(true)
+    Ok(())
 }
 
 /// Least and largest number of turns.
@@ -292,12 +276,12 @@ const TURNS: std::ops::Range<u32> = 3..200;
 const ENOUGH: Duration = Duration::from_millis(300);
 
 /// Times two runs in turns, in processor time, so that other work of the machine slows both alike.
-/// The shortest time of each counts. `None` if `go_on` returned false.
+/// The shortest time of each counts.
 pub fn in_turns(
     runs: [(&Scene, &'static Method, Control); 2],
     frames: &Frames,
     go_on: GoOn,
-) -> Result<Option<[Duration; 2]>, Failure> {
+) -> Result<[Duration; 2], Failure> {
     let (mut best, mut sum) = ([Duration::MAX; 2], Duration::ZERO);
     for turn in 0..TURNS.end {
         if turn >= TURNS.start && sum > ENOUGH {
@@ -309,12 +293,10 @@ pub fn in_turns(
             let begun = processor::time();
             let end = accuracy::run(&mut run, frames, go_on, None);
             let elapsed = processor::time().saturating_sub(begun);
-            if end.map_err(Failure::run)?.is_none() {
-                return Ok(None);
-            }
+            end.map_err(Failure::run)?.ok_or_else(stopped)?;
             *best = elapsed.min(*best);
             sum += elapsed;
         }
     }
-    Ok(Some(best))
+    Ok(best)
 }
