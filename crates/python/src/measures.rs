@@ -1,4 +1,4 @@
-//! Charts, choices, limits and comparisons.
+//! Charts, choices, limits, comparisons, judgements, and what scenes can do without.
 
 use std::path::PathBuf;
 
@@ -6,38 +6,44 @@ use a3_core::accuracy::{Metric, SetBy};
 use a3_core::stability::Mode;
 use a3_core::{Control, Method};
 use a3_files::failure::Failure;
+use a3_files::quantity::Quantity;
 use a3_lab::chart::ChartOptions;
 use a3_lab::choose::{ChooseOptions, Goal};
 use a3_lab::judge::{JudgeOptions, StatesOf};
+use a3_lab::simplify::SimplifyOptions;
 use numpy::PyArray1;
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 
-use super::errors::{of_failure, wrong};
+use super::errors::{of_failure, told, wrong};
 use super::function::Raised;
 use super::monitor::Monitor;
 use super::scene::{Given, Opened};
 use super::tables::{control, methods_named};
 
-/// Finds a metric by its name.
+/// Finds one of the things of a kind by its name.
+fn named<T: Copy>(
+    py: Python<'_>,
+    name: &str,
+    (kind, kinds): (&str, &str),
+    all: impl IntoIterator<Item = T> + Clone,
+    name_of: fn(T) -> &'static str,
+) -> PyResult<T> {
+    let mut known = all.clone().into_iter();
+    let found = known.find(|it| name_of(*it) == name);
+    found.ok_or_else(|| {
+        let names: Vec<_> = all.into_iter().map(name_of).collect();
+        let names = names.join(", ");
+        let why = format!("there is no {kind} `{name}`: the {kinds} are {names}");
+        wrong(py, why)
+    })
+}
+
+/// Finds a metric by its name, if one is given.
 fn metric(py: Python<'_>, name: Option<&str>) -> PyResult<Option<Metric>> {
-    let Some(name) = name else {
-        return Ok(None);
-    };
-    let all = || Metric::OF_PARTICLES.iter().copied().chain([Metric::State]);
-    all()
-        .find(|metric| metric.name() == name)
-        .map(Some)
-        .ok_or_else(|| {
-            let names: Vec<_> = all().map(Metric::name).collect();
-            wrong(
-                py,
-                format!(
-                    "there is no error `{name}`: the errors are {}",
-                    names.join(", ")
-                ),
-            )
-        })
+    let all = Metric::OF_PARTICLES.into_iter().chain([Metric::State]);
+    let find = |name| named(py, name, ("error", "errors"), all, Metric::name);
+    name.map(find).transpose()
 }
 
 /// Runs work without the global lock. If it failed because a function raised an exception, that is
@@ -71,8 +77,7 @@ pub fn drawn<'py>(
             _ => figure.png(1.0).map_err(Failure::run),
         }
     });
-    let bytes = bytes.map_err(|failure| of_failure(py, &failure))?;
-    Ok(PyBytes::new(py, &bytes))
+    Ok(PyBytes::new(py, &told(py, bytes)?))
 }
 
 /// A measured chart.
@@ -83,7 +88,7 @@ pub struct Chart(a3_lab::chart::Chart);
 impl Chart {
     /// Returns the runs, as JSON.
     fn json(&self, py: Python<'_>) -> PyResult<String> {
-        self.0.json().map_err(|failure| of_failure(py, &failure))
+        told(py, self.0.json())
     }
 
     /// Returns the tables, as text.
@@ -103,11 +108,8 @@ impl Chart {
 
     /// Returns the names of the methods whose runs take too many evaluations.
     fn too_costly(&self) -> Vec<&'static str> {
-        self.0
-            .too_costly()
-            .iter()
-            .map(|method| method.name)
-            .collect()
+        let methods = self.0.too_costly().iter();
+        methods.map(|method| method.name).collect()
     }
 
     /// Returns the name of the error that counts, the end of the runs (s), and whether all were
@@ -247,7 +249,7 @@ pub struct Stability(a3_lab::stability::Stability);
 impl Stability {
     /// Returns the limits (s), as JSON.
     fn json(&self, py: Python<'_>) -> PyResult<String> {
-        self.0.json().map_err(|failure| of_failure(py, &failure))
+        told(py, self.0.json())
     }
 
     /// Returns the table, as text.
@@ -394,4 +396,82 @@ pub fn judge(
         a3_lab::judge::judge_states(&scene, states, &options, monitor)
     })?;
     Ok((verdict.text, verdict.json))
+}
+
+/// What a scene can do without.
+#[pyclass(frozen, module = "a3_simulator._a3")]
+pub struct Simplified(a3_lab::simplify::Simplified);
+
+#[pymethods]
+impl Simplified {
+    /// Returns whether the chart of models was measured.
+    fn has_chart(&self) -> bool {
+        self.0.has_chart()
+    }
+
+    /// Returns all of it in words.
+    fn text(&self) -> String {
+        self.0.text()
+    }
+
+    /// Returns all of it as JSON.
+    fn json(&self, py: Python<'_>) -> PyResult<String> {
+        told(py, self.0.json())
+    }
+
+    /// Draws a picture of the chart of models, of a kind and a size (px).
+    fn drawn<'py>(
+        &self,
+        py: Python<'py>,
+        kind: &str,
+        size: (u32, u32),
+    ) -> PyResult<Bound<'py, PyBytes>> {
+        drawn(py, kind, size, &|width, height| {
+            self.0.figure(width, height)?.ok_or_else(|| {
+                Failure::usage(
+                    "there is no chart: it needs chart=True, and a scene with grids that differ by less than the motion",
+                )
+            })
+        })
+    }
+}
+
+/// Finds what a scene can do without for an error.
+#[pyfunction]
+#[expect(clippy::too_many_arguments, reason = "each is an option")]
+pub fn simplify(
+    py: Python<'_>,
+    given: Given,
+    monitor: &Monitor,
+    error: f64,
+    of: &str,
+    until: Option<f64>,
+    particle: Option<usize>,
+    at_end: bool,
+    data: Option<PathBuf>,
+    chart: bool,
+) -> PyResult<Simplified> {
+    let opened = Opened::new(py, &given)?;
+    if opened.calls {
+        return Err(wrong(
+            py,
+            "what a scene can do without is found for scenes without functions of Python",
+        ));
+    }
+    let kind = ("quantity", "quantities");
+    let quantity = named(py, of, kind, Quantity::ALL, Quantity::name)?;
+    let options = SimplifyOptions {
+        of: quantity,
+        until,
+        particle,
+        at_end,
+        data,
+        chart,
+        ..SimplifyOptions::new(error)
+    };
+    let scene = &opened.scene;
+    work(py, &[], || {
+        a3_lab::simplify::simplify(&scene.described()?, &options, monitor)
+    })
+    .map(Simplified)
 }

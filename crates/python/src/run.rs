@@ -2,11 +2,11 @@
 
 use std::sync::Arc;
 
-use a3_core::{Checkpoint, Error, Network, Passage, Simulation, SpringKind, StepLimits, Vector3};
+use a3_core::{Checkpoint, Error, Network, Passage, Simulation, StepLimits, Vector3};
 use a3_files::failure::Failure;
 use a3_files::output;
 use a3_media::painter::Painter;
-use a3_media::show::{Arrows, Manner, Quantity, Show, check_drawing, style};
+use a3_media::show::{Arrows, Manner, Quantity, Show, check_drawing, kind_name, style};
 use a3_scenes::Presentation;
 use a3_studio::caption;
 use numpy::{PyArray1, PyArray2};
@@ -15,7 +15,7 @@ use pyo3::types::PyBytes;
 
 use super::arrays::{indices, numbers, rows};
 use super::driving::{Driven, GoOn, advance, check_time, drive, take_steps};
-use super::errors::{of_error, of_failure, wrong};
+use super::errors::{of_error, told, wrong};
 use super::function::{Function, Raised, Shape};
 use super::own_method::raised_by;
 use super::scene::{Given, Opened, setting};
@@ -115,7 +115,7 @@ impl Run {
             return Err(raised);
         }
         Ok(Self {
-            simulation: Turns::new(run.map_err(|failure| of_failure(py, &failure))?),
+            simulation: Turns::new(told(py, run)?),
             presentation: opened.setup.presentation.clone(),
             duration: opened.setup.defaults.duration,
             calls: opened.calls || method.is_own(),
@@ -316,15 +316,11 @@ impl Run {
     #[getter]
     fn velocities<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let simulation = self.simulation(py)?;
-        let velocities = simulation.velocities();
-        rows(
-            py,
-            if simulation.particles() > 0 {
-                &velocities
-            } else {
-                &[]
-            },
-        )
+        let mut velocities = simulation.velocities();
+        if simulation.particles() == 0 {
+            velocities.clear();
+        }
+        rows(py, &velocities)
     }
 
     /// Returns the contact forces (N), n x 3, if anything can touch.
@@ -353,11 +349,8 @@ impl Run {
     #[getter]
     fn triangles<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<i64>>> {
         let corners = &self.presentation.surface.triangles;
-        let corners: Vec<_> = corners
-            .iter()
-            .map(|corners| corners.map(i64::from))
-            .collect();
-        indices(py, &corners)
+        let corners = corners.iter().map(|corners| corners.map(i64::from));
+        indices(py, &corners.collect::<Vec<_>>())
     }
 
     /// Returns the ends, kinds and numbers of all springs.
@@ -366,17 +359,12 @@ impl Run {
         let network = simulation.model().network();
         let springs: Vec<_> = network.into_iter().flat_map(Network::all_springs).collect();
         let ends: Vec<_> = springs.iter().map(|s| [s.i as i64, s.j as i64]).collect();
-        let kind = |kind| match kind {
-            SpringKind::Structural => "structural",
-            SpringKind::Shear => "shear",
-            SpringKind::Bend => "bend",
-        };
         let column = |number: fn(&a3_core::Spring) -> f64| {
             PyArray1::from_iter(py, springs.iter().map(number))
         };
         Ok((
             indices(py, &ends)?,
-            springs.iter().map(|s| kind(s.kind)).collect(),
+            springs.iter().map(|s| kind_name(s.kind)).collect(),
             column(|s| s.law.stiffness),
             column(|s| s.law.rest_length),
             column(|s| s.law.damping),
@@ -428,10 +416,8 @@ impl Run {
             let mut painter = Painter::new(&show, run, size, caption(&show, size))?;
             output::png(&painter.draw(&mut show, run)?, size)
         };
-        let png = py
-            .detach(draw)
-            .map_err(|failure| of_failure(py, &failure))?;
-        Ok(PyBytes::new(py, &png))
+        let png = py.detach(draw);
+        Ok(PyBytes::new(py, &told(py, png)?))
     }
 }
 

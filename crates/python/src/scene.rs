@@ -10,7 +10,7 @@ use a3_lab::choose::command;
 use a3_scenes::{Defaults, Setup};
 use pyo3::prelude::*;
 
-use super::errors::{of_failure, wrong};
+use super::errors::{told, wrong};
 use super::function::Raised;
 use super::own_method::raised_by;
 use super::own_system::{self, add_forces};
@@ -175,14 +175,13 @@ impl Opened {
                 contact: given.self_collision,
             },
         };
-        let failed = |failure| of_failure(py, &failure);
         let raised = Raised::default();
         let made = match given.source.extract::<(String, String)>() {
-            Ok((kind, text)) => Made::Read(source(&kind, &text).map_err(failed)?),
+            Ok((kind, text)) => Made::Read(told(py, source(&kind, &text))?),
             Err(_) => Made::Built(Box::new(own_system::scene(&given.source, &raised)?)),
         };
         let scene = OpenScene { made, options };
-        let mut setup = py.detach(|| scene.build()).map_err(failed)?;
+        let mut setup = told(py, py.detach(|| scene.build()))?;
         add_forces(&mut setup.scene, &given.forces, &raised)?;
         Ok(Self {
             calls: scene.is_built() || !given.forces.is_empty(),
@@ -198,17 +197,15 @@ impl Opened {
         if let Some(raised) = self.raised.take() {
             return Err(raised);
         }
-        scene.map_err(|failure| of_failure(py, &failure))
+        told(py, scene)
     }
 
     /// Returns where the exceptions of the functions of this scene and of these methods are kept.
     /// They are empty then.
     pub fn raised<'m>(&self, methods: impl IntoIterator<Item = &'m Method>) -> Vec<Raised> {
         let of_methods = methods.into_iter().filter_map(raised_by);
-        let all: Vec<_> = [self.raised.clone()]
-            .into_iter()
-            .chain(of_methods)
-            .collect();
+        let all = [self.raised.clone()].into_iter().chain(of_methods);
+        let all: Vec<_> = all.collect();
         for raised in &all {
             raised.take();
         }

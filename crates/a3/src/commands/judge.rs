@@ -11,10 +11,11 @@ use a3_files::{interrupt, terminal};
 use a3_lab::chart::{Label, describe};
 use a3_lab::figure_file::{PICTURES, write_picture};
 use a3_lab::judge::judgement::{Course, Judgement};
-use a3_lab::judge::picture;
+use a3_lab::judge::picture::chart;
 use a3_lab::judge::value::Record;
 use a3_lab::judge::words::{is_resolved, is_within, orders, text, too_large};
 
+use super::picture;
 use crate::cli::Judge;
 
 /// Judges the files that the command line names.
@@ -32,16 +33,12 @@ pub fn run(options: &Judge) -> Result<(), Failure> {
     print(options, &course, &judged)?;
     if let Some(path) = &options.chart {
         let label = Label::asked(options.what.options().on, &scene, scene.name.clone());
-        let (chart, complete) = picture::chart(&label, &course, &judged, &bar)?;
+        let (chart, complete) = chart(&label, &course, &judged, &bar)?;
         let (width, height) = options.size;
         let figure = chart.draw(f64::from(width), f64::from(height));
         write_picture(path, &figure.map_err(Failure::usage)?)?;
         bar.pause(|| terminal::say(&format!("chart: {}\n", path.display())))?;
-        if !complete {
-            return Err(Failure::Interrupted(
-                "interrupted: the chart has what was measured until then".into(),
-            ));
-        }
+        picture::check_complete(complete)?;
     }
     bar.clear();
     verdict(options, &judged, refused.len())

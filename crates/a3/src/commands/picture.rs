@@ -1,11 +1,26 @@
-//! Pictures of commands: written to their file, named, and shown if that is asked for.
+//! Pictures of commands: written to their file, named, and shown if that is asked for; and the
+//! error of a scene's grid.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
+use a3_core::Scene;
+use a3_core::accuracy::{Frames, Scope};
 use a3_files::failure::Failure;
-use a3_files::terminal;
-use a3_lab::figure_file::write_picture;
+use a3_files::setup::Request;
+use a3_files::{interrupt, output, terminal};
+use a3_lab::figure_file::{PICTURES, write_picture};
+use a3_lab::motion;
 use a3_plot::Figure;
+
+/// Returns the path of the chart of a command, `given` or by the name of the scene, which can be
+/// written.
+pub fn path(given: Option<&Path>, command: &str, scene: &Scene) -> Result<PathBuf, Failure> {
+    let scene = output::part_of_name(&scene.name);
+    let default = || format!("a3-{command}-{scene}.svg").into();
+    let path = given.map_or_else(default, Path::to_owned);
+    output::check(&path, PICTURES)?;
+    Ok(path)
+}
 
 /// Writes a chart to its file, prints the path, and, if `open`, shows it in the desktop's viewer.
 pub fn finish(path: &Path, figure: &Figure, open: bool) -> Result<(), Failure> {
@@ -20,4 +35,30 @@ pub fn finish(path: &Path, figure: &Figure, open: bool) -> Result<(), Failure> {
         let path = path.display();
         Failure::run(format!("{path}: it is written, but no viewer opens it"))
     })
+}
+
+/// Fails if not all that a chart shows was measured.
+pub fn check_complete(complete: bool) -> Result<(), Failure> {
+    let why = "interrupted: the chart has what was measured until then";
+    let stopped = || Failure::Interrupted(why.into());
+    complete.then_some(()).ok_or_else(stopped)
+}
+
+/// Prints the error of a scene's grids at these frames, if it is larger than `least` (m), or in any
+/// case without that. What is measured is kept beside the file of a chart's data.
+pub fn print_grid_error(
+    request: &Request,
+    scene: &Scene,
+    (frames, scope): (Frames, Scope),
+    data: Option<&Path>,
+    least: Option<f64>,
+) -> Result<(), Failure> {
+    if !interrupt::go_on() {
+        return Ok(());
+    }
+    let mut known = motion::open(data.map(motion::beside).as_deref())?;
+    match motion::grid_error(request, scene, frames, scope, &mut known)? {
+        Some(own) if least.is_none_or(|least| own.error > least) => terminal::say(&own.sentence()),
+        _ => Ok(()),
+    }
 }

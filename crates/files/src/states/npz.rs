@@ -6,7 +6,7 @@ use std::io::{Cursor, Read};
 use zip::ZipArchive;
 use zip::result::ZipError;
 
-use super::build::{Digits, Raw};
+use super::build::{Digits, States};
 
 /// Largest size of the arrays that are unpacked, together (bytes).
 const MAX_SIZE: u64 = 256 << 20;
@@ -17,7 +17,7 @@ const MAX_HEADER: usize = 1 << 16;
 ///
 /// # Errors
 /// The bytes are no archive, or an array is missing, or has another shape.
-pub fn read(bytes: &[u8]) -> Result<Raw, String> {
+pub fn read(bytes: &[u8]) -> Result<States, String> {
     let archive = ZipArchive::new(Cursor::new(bytes));
     let mut archive = archive.map_err(|e| format!("it is no archive of NumPy arrays: {e}"))?;
     let mut left = MAX_SIZE;
@@ -45,12 +45,17 @@ pub fn read(bytes: &[u8]) -> Result<Raw, String> {
             times.shape
         ));
     }
-    Ok(Raw {
+    let digits = [&times, &positions].map(|array| Digits::binary(array.share));
+    let positions = rows("positions", &positions, &times)?;
+    let velocities = velocities.map(|array| rows("velocities", &array, &times));
+    let velocities = velocities.transpose()?;
+    Ok(States {
         seconds,
-        digits: [&times, &positions].map(|array| Digits::binary(array.share)),
-        positions: rows("positions", &positions, &times)?,
-        velocities: velocities.map_or(Ok(vec![]), |array| rows("velocities", &array, &times))?,
+        digits,
+        positions,
+        velocities: velocities.filter(|rows| !rows.is_empty()),
         times: times.numbers,
+        not_finite_at: None,
     })
 }
 

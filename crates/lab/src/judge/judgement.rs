@@ -1,5 +1,7 @@
 //! The judgement of a file.
 
+use std::cell::Cell;
+
 use a3_core::accuracy::{Frames, Horizon, Reference, Scope, horizon};
 use a3_core::stability::{Mode, spectrum};
 use a3_core::{Model, Network, Scene};
@@ -40,6 +42,8 @@ pub struct Course<'a> {
     pub horizon: Horizon,
     /// Step of the programs (s), if it is known.
     pub step: Option<f64>,
+    /// Work of the present search, in springs and particles that are visited.
+    pub work: Cell<f64>,
     /// References that were computed, each with states at the times of some file.
     references: Vec<Reference>,
 }
@@ -148,6 +152,7 @@ impl<'a> Course<'a> {
             plain: Plain::of(scene).ok(),
             horizon,
             step,
+            work: Cell::default(),
             references: vec![],
         })
     }

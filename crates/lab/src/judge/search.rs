@@ -182,10 +182,12 @@ impl Search<'_> {
         starts: &[Start],
         paces: &[Pace],
     ) -> Option<Vec<Agreement>> {
-        let (mut work, mut best, mut more) = (0.0, vec![], MORE_PARTS);
+        let (mut best, mut more) = (vec![], MORE_PARTS);
+        let work = &self.judged.course.work;
+        work.set(0.0);
         for &pace in paces {
             let is_found = !best.is_empty() || self.part.is_some();
-            let is_enough = is_found && more == 0 || work > MAX_WORK;
+            let is_enough = is_found && more == 0 || work.get() > MAX_WORK;
             if is_enough && !pace.is_one_of_few() {
                 continue;
             }
@@ -197,7 +199,7 @@ impl Search<'_> {
                         return None;
                     }
                     let trial = Trial { way, pace, start };
-                    found.extend(self.agreement(trial, &mut work));
+                    found.extend(self.agreement(trial));
                 }
             }
             if !found.is_empty() && (best.is_empty() || self.are_better(&found, &best)) {
@@ -219,30 +221,30 @@ impl Search<'_> {
     }
 
     /// Returns the agreement of a trial with all rows, in the precision of the search.
-    fn agreement(&mut self, trial: Trial, work: &mut f64) -> Option<Agreement> {
+    fn agreement(&mut self, trial: Trial) -> Option<Agreement> {
         if !self.is_single {
-            return self.agreement_by(self.judged, trial, work);
+            return self.agreement_by(self.judged, trial);
         }
         // A method that is far away is so in single precision, too.
         let near = |_: usize, _: f64| NEAR_SINGLE * self.judged.motion;
-        let compared = self.judged.compare(trial, &near, work)?;
+        let compared = self.judged.compare(trial, &near)?;
         if compared.at_steps < MIN_AT_STEPS {
             return None;
         }
         let mut single = self.judged.clone();
-        single.noise = Some(self.judged.noise(trial, work)?);
-        self.agreement_by(&single, trial, work)
+        single.noise = Some(self.judged.noise(trial)?);
+        self.agreement_by(&single, trial)
     }
 
     /// Returns the agreement of a trial with all rows that are compared. One with many of them is
     /// remembered.
-    fn agreement_by(&mut self, judged: &Judged, trial: Trial, work: &mut f64) -> Option<Agreement> {
+    fn agreement_by(&mut self, judged: &Judged, trial: Trial) -> Option<Agreement> {
         let bound = |k: usize, moved: f64| judged.tolerance(k, moved);
         let step = judged.step_of(trial)?;
         let [longest, shortest] = self.result.steps;
         self.result.steps = [longest.max(step), shortest.min(step)];
-        let trial = judged.fit(trial, &bound, work)?;
-        let compared = judged.compare(trial, &bound, work)?;
+        let trial = judged.fit(trial, &bound)?;
+        let compared = judged.compare(trial, &bound)?;
         let (rows, last) = (judged.rows, judged.last());
         let ends = (compared.rows < rows.len()).then(|| rows.times[compared.rows.max(1) - 1]);
         let agreement = Agreement {
@@ -286,9 +288,11 @@ impl Search<'_> {
     /// (m). `None` if the monitor stopped it.
     #[expect(clippy::option_option, reason = "stopped, or none below the bound")]
     fn nearest(&self, ways: &[Way], paces: &[Pace], bound: f64) -> Option<Option<Agreement>> {
-        let (mut nearest, mut least, mut work) = (None, bound, 0.0);
+        let (mut nearest, mut least) = (None, bound);
+        let work = &self.judged.course.work;
+        work.set(0.0);
         for &pace in paces {
-            if work > MAX_WORK {
+            if work.get() > MAX_WORK {
                 break;
             }
             for &way in ways {
@@ -297,12 +301,13 @@ impl Search<'_> {
                 }
                 let start = Start::Scene;
                 let trial = Trial { way, pace, start };
-                let Some(trial) = self.judged.fit(trial, &|_, _| least, &mut work) else {
+                let Some(trial) = self.judged.fit(trial, &|_, _| least) else {
                     continue;
                 };
-                let compared = self.judged.compare(trial, &|_, _| least, &mut work);
-                let whole = compared.filter(|compared| compared.rows == self.judged.rows.len());
-                if let Some(compared) = whole.filter(|compared| compared.distance < least) {
+                let compared = self.judged.compare(trial, &|_, _| least);
+                let is_better =
+                    |it: &Compared| it.rows == self.judged.rows.len() && it.distance < least;
+                if let Some(compared) = compared.filter(is_better) {
                     least = compared.distance;
                     nearest = Some(Agreement {
                         trial,

@@ -156,6 +156,11 @@ struct Residuals {
     worst: f64,
 }
 
+/// Largest distance of a row that agrees (m), by its number and the distance moved (m).
+type Bound<'b> = &'b dyn Fn(usize, f64) -> f64;
+/// Looks at the positions (m) and velocities (m/s) at a row, and returns whether the run goes on.
+type Look<'l> = &'l mut dyn FnMut(usize, &[Vec<f64>; 2]) -> bool;
+
 /// A run of a trial.
 enum Run<'a> {
     Method(Box<Simulation>),
@@ -233,14 +238,14 @@ impl<'a> Judged<'a> {
 
     /// Returns the distance by which single precision changes a run by a scheme until each row
     /// (m), as far as it is much smaller than the motion.
-    pub fn noise(&self, trial: Trial, work: &mut f64) -> Option<Vec<f64>> {
+    pub fn noise(&self, trial: Trial) -> Option<Vec<f64>> {
         let mut double = vec![None; self.rows.len()];
-        self.follow(trial, false, self.rows.len(), work, &mut |k, [x, _]| {
+        self.follow(trial, false, self.rows.len(), &mut |k, [x, _]| {
             double[k] = Some(x.clone());
             true
         })?;
         let (mut noise, mut most) = (vec![], 0.0);
-        let passed = self.follow(trial, true, self.rows.len(), work, &mut |k, [x, _]| {
+        let passed = self.follow(trial, true, self.rows.len(), &mut |k, [x, _]| {
             let Some(other) = &double[k] else {
                 return false;
             };
@@ -261,36 +266,28 @@ impl<'a> Judged<'a> {
     }
 
     /// Returns the work of a step of a way: springs and particles that are visited.
-    pub fn price(&self, way: Way) -> f64 {
-        self.size
-            * match way {
-                Way::Method(method) if method.is_implicit() || method.solves_linear_systems() => {
-                    IMPLICIT_WORK
-                }
-                Way::Method(method) => f64::from(method.evaluations.max(method.damped_evaluations)),
-                Way::Scheme(scheme, _) => scheme.evaluations(self.scene().model.particles()) as f64,
-            }
+    fn price(&self, way: Way) -> f64 {
+        let evaluations = match way {
+            Way::Method(m) if m.is_implicit() || m.solves_linear_systems() => IMPLICIT_WORK,
+            Way::Method(m) => f64::from(m.evaluations.max(m.damped_evaluations)),
+            Way::Scheme(scheme, _) => scheme.evaluations(self.scene().model.particles()) as f64,
+        };
+        self.size * evaluations
     }
 
     /// Runs a trial, in single precision if so, and shows each row before `end` that is at the end
     /// of a step to `look`: its number, the positions (m) and the velocities (m/s). Ends where
     /// that returns `false`, or the run blows up. Returns the number of rows until then; `None` if
-    /// the trial is not possible. `work` receives its price.
-    pub fn follow(
-        &self,
-        trial: Trial,
-        is_single: bool,
-        end: usize,
-        work: &mut f64,
-        look: &mut dyn FnMut(usize, &[Vec<f64>; 2]) -> bool,
-    ) -> Option<usize> {
+    /// the trial is not possible. The price is added to the work of the search.
+    fn follow(&self, trial: Trial, is_single: bool, end: usize, look: Look) -> Option<usize> {
+        let pay = |work: f64| self.course.work.set(self.course.work.get() + work);
         let steps = self.rows.until() / self.step_of(trial)?;
         if steps * self.price(trial.way) > MAX_WORK {
             return None;
         }
         let (mut run, first, mut taken) = self.begin(trial, is_single)?;
         if matches!(trial.way, Way::Method(_)) {
-            *work += BEGINNING * self.size;
+            pay(BEGINNING * self.size);
         }
         for k in first..end {
             let is_there = match (&self.rows.grid, &mut run) {
@@ -306,7 +303,7 @@ impl<'a> Judged<'a> {
                     };
                     let more = steps - taken;
                     taken = steps;
-                    *work += self.price(trial.way) * more as f64;
+                    pay(self.price(trial.way) * more as f64);
                     run.advance(more)
                 }
                 (None, Run::Method(run)) => run.advance_to(self.rows.times[k]).is_ok(),
@@ -319,15 +316,9 @@ impl<'a> Judged<'a> {
         Some(end)
     }
 
-    /// Compares a trial with the rows until a row differs by more than `bound`, a function of its
-    /// number and of the distance moved (m). `None` if the trial is not possible. `work` receives
-    /// its price.
-    pub fn compare(
-        &self,
-        trial: Trial,
-        bound: &dyn Fn(usize, f64) -> f64,
-        work: &mut f64,
-    ) -> Option<Compared> {
+    /// Compares a trial with the rows until a row differs by more than its bound. `None` if the
+    /// trial is not possible.
+    pub fn compare(&self, trial: Trial, bound: Bound) -> Option<Compared> {
         let start = self.start(trial);
         let mut compared = Compared {
             rows: 0,
@@ -336,7 +327,7 @@ impl<'a> Judged<'a> {
             moved: 0.0,
             velocities: self.rows.velocities(0).map(|_| [0.0; 2]),
         };
-        let rows = self.follow(trial, false, self.last(), work, &mut |k, [x, v]| {
+        let rows = self.follow(trial, false, self.last(), &mut |k, [x, v]| {
             let apart = distance(x, self.rows.positions(k));
             let moved = compared.moved.max(distance(x, start));
             // A distance that is no number agrees with nothing.
@@ -346,18 +337,15 @@ impl<'a> Judged<'a> {
             compared.at_steps += 1;
             compared.moved = moved;
             compared.distance = compared.distance.max(apart);
-            if let (Some([apart, speed]), Some(own)) =
-                (&mut compared.velocities, self.rows.velocities(k))
-            {
+            let seen = compared.velocities.as_mut().zip(self.rows.velocities(k));
+            if let Some(([apart, speed], own)) = seen {
                 *apart = apart.max(distance(v, own));
                 *speed = speed.max(distance(v, &vec![0.0; v.len()]));
             }
             true
         });
-        Some(Compared {
-            rows: rows?,
-            ..compared
-        })
+        compared.rows = rows?;
+        Some(compared)
     }
 
     /// Returns the step of a trial (s): a part of that between grid points or, without a grid, the
@@ -373,22 +361,19 @@ impl<'a> Judged<'a> {
     /// start of the grid to its beginning.
     fn begin(&self, trial: Trial, is_single: bool) -> Option<(Run<'_>, usize, u64)> {
         let step = self.step_of(trial)?;
-        let (row, taken) = match trial.start {
-            Start::Row(row) if row < self.rows.len() && trial.pace.points == 1 => {
-                let grid = self.rows.grid.as_ref()?;
-                (Some(row), grid.numbers[row] * trial.pace.steps)
-            }
-            Start::Row(_) => return None,
-            _ => (None, 0),
-        };
-        // Only masses and springs alone do not depend on time, nor on more than positions and
-        // velocities.
-        let given = match row {
-            Some(row) => {
+        let (row, taken, given) = match trial.start {
+            Start::Row(row) => {
+                // Only masses and springs alone do not depend on time, nor on more than positions
+                // and velocities.
                 self.plain()?;
-                Some([self.rows.positions(row), self.rows.velocities(row)?])
+                let grid = self.rows.grid.as_ref()?;
+                if row >= self.rows.len() || trial.pace.points != 1 {
+                    return None;
+                }
+                let given = [self.rows.positions(row), self.rows.velocities(row)?];
+                (row, grid.numbers[row] * trial.pace.steps, Some(given))
             }
-            None => None,
+            _ => (0, 0, None),
         };
         let run = match trial.way {
             Way::Method(method) => {
@@ -408,18 +393,13 @@ impl<'a> Judged<'a> {
                 Run::Plain(Box::new(PlainRun::new(forces, scheme, step, start)))
             }
         };
-        Some((run, row.unwrap_or(0), taken))
+        Some((run, row, taken))
     }
 
     /// Returns a trial whose constant is fitted to the rows, by the Gauss-Newton method: first to
     /// those at the start, on which it acts almost linearly. `None` if rows differ by more than
-    /// their bound, a function of their number and of the distance moved (m).
-    pub fn fit(
-        &self,
-        trial: Trial,
-        bound: &dyn Fn(usize, f64) -> f64,
-        work: &mut f64,
-    ) -> Option<Trial> {
+    /// their bound.
+    pub fn fit(&self, trial: Trial, bound: Bound) -> Option<Trial> {
         let Way::Scheme(scheme, Some(Mistake::Constant(mut change))) = trial.way else {
             return Some(trial);
         };
@@ -432,13 +412,13 @@ impl<'a> Judged<'a> {
         loop {
             end = end.min(self.last());
             for _ in 0..MAX_ITERATIONS {
-                if *work > MAX_WORK_OF_FITS {
+                if self.course.work.get() > MAX_WORK_OF_FITS {
                     return None;
                 }
-                let now = self.residuals(with(change), end, bound, work)?;
+                let now = self.residuals(with(change), end, bound)?;
                 let factor = change.factor + DELTA;
                 let moved = with(Change { factor, ..change });
-                let moved = self.residuals(moved, end, bound, work)?;
+                let moved = self.residuals(moved, end, bound)?;
                 let (mut slope, mut square) = (0.0, 0.0);
                 for (now, moved) in now.all.iter().zip(&moved.all) {
                     let rate = (moved - now) / DELTA;
@@ -459,11 +439,8 @@ impl<'a> Judged<'a> {
                 change.factor = 1.0;
                 is_fitted = false;
             }
-            if is_fitted {
-                let fitted = self.residuals(with(change), end, bound, work)?;
-                if fitted.worst > SLACK {
-                    return None;
-                }
+            if is_fitted && self.residuals(with(change), end, bound)?.worst > SLACK {
+                return None;
             }
             if end == self.last() {
                 break;
@@ -474,26 +451,19 @@ impl<'a> Judged<'a> {
             return None;
         }
         let typed = with(change.typed());
-        let agrees = self.residuals(typed, end, bound, work)?.worst <= 1.0;
-        let exact = with(change);
-        Some(if agrees { typed } else { exact })
+        let agrees = self.residuals(typed, end, bound)?.worst <= 1.0;
+        Some(if agrees { typed } else { with(change) })
     }
 
     /// Returns the differences of a trial from the first rows. `None` if it blows up there.
-    fn residuals(
-        &self,
-        trial: Trial,
-        end: usize,
-        bound: &dyn Fn(usize, f64) -> f64,
-        work: &mut f64,
-    ) -> Option<Residuals> {
+    fn residuals(&self, trial: Trial, end: usize, bound: Bound) -> Option<Residuals> {
         let mut found = Residuals {
             all: vec![],
             bound: 0.0,
             worst: 0.0,
         };
         let (start, mut most) = (self.start(trial), 0.0);
-        let passed = self.follow(trial, false, end, work, &mut |k, [x, _]| {
+        let passed = self.follow(trial, false, end, &mut |k, [x, _]| {
             let own = self.rows.positions(k);
             most = f64::max(most, distance(own, start));
             let bound = bound(k, most);

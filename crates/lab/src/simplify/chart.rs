@@ -97,9 +97,7 @@ pub fn chart(
         // Long steps that err less than short ones do so because their errors and those of the grid
         // cancel by chance.
         runs.retain(|run| run.error > LEAST_SHARE * least && run.error < motion);
-        let runs = best(runs);
-        balance.extend(balanced(&runs, BALANCE * least));
-        curves.push(Curve {
+        let mut curve = Curve {
             style: CurveStyle {
                 colour,
                 dash: &[],
@@ -107,7 +105,10 @@ pub fn chart(
             },
             name: grid.name.clone(),
             runs,
-        });
+        };
+        curve.runs = curve.joined().into_iter().cloned().collect();
+        balance.extend(balanced(&curve.runs, BALANCE * least));
+        curves.push(curve);
     }
     if curves.iter().all(|curve| curve.runs.is_empty()) {
         return Ok(None);
@@ -170,18 +171,6 @@ fn foot(is_balanced: bool, converges: bool) -> String {
 fn short(method: &Method) -> String {
     let name = || method.name.to_owned();
     method.letter.map_or_else(name, String::from)
-}
-
-/// Returns the runs that no other beats in both error and work, from the most accurate on.
-fn best(mut runs: Vec<Measurement>) -> Vec<Measurement> {
-    runs.sort_by(|a, b| a.error.total_cmp(&b.error).then(a.work.total_cmp(&b.work)));
-    let mut least = f64::INFINITY;
-    runs.retain(|run| {
-        let is_better = run.work < least;
-        least = least.min(run.work);
-        is_better
-    });
-    runs
 }
 
 /// Returns the point of a curve, an error and its work, at which the error is this: between the

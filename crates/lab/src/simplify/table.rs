@@ -1,7 +1,7 @@
 //! The table of the models, and the leanest scene in words.
 
 use a3_files::quantity::Quantity;
-use a3_files::report::Report;
+use a3_files::report::{Report, headings};
 use a3_scenes::Description;
 
 use super::lean::{Answer, LeanModel};
@@ -72,32 +72,20 @@ fn rows(
     error: f64,
     lean: Option<&LeanModel>,
 ) -> Vec<Vec<String>> {
-    let changes = format!(" changes ({unit})");
-    let heading = [
-        "left out or changed",
-        &changes,
-        " of motion",
-        " saves",
-        "verdict",
-    ];
-    let mut rows = vec![heading.map(String::from).to_vec()];
+    let columns = format!("left out or changed| changes ({unit})| of motion| saves|verdict");
+    let mut rows = headings(&columns);
     for model in models {
-        rows.push(match &model.effect {
-            Err(_) => vec![
-                model.name.clone(),
-                "-".into(),
-                "-".into(),
-                "-".into(),
-                verdict(model, error, lean).into(),
-            ],
-            Ok(effect) => vec![
-                model.name.clone(),
+        let numbers = match &model.effect {
+            Err(_) => ["-"; 3].map(String::from),
+            Ok(effect) => [
                 number(effect.change),
                 percent(effect.change / motion),
                 percent(1.0 - effect.time),
-                verdict(model, error, lean).into(),
             ],
-        });
+        };
+        let verdict = verdict(model, error, lean).into();
+        let name = [model.name.clone()].into_iter();
+        rows.push(name.chain(numbers).chain([verdict]).collect());
     }
     rows
 }

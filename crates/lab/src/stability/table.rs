@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use a3_core::stability::{Limit, Mode, Observation};
 use a3_files::failure::Failure;
-use a3_files::report::{Report, table};
+use a3_files::report::{Report, headings, table};
 use serde::Serialize;
 
 use super::measure::{MethodLimits, Stability};
@@ -48,15 +48,7 @@ pub fn observation(seen: Option<Observation>) -> String {
 /// Creates the table of all limits, below the fastest motion and above the meaning of the columns.
 pub fn report(found: &Stability) -> Report {
     let rows = &found.limits;
-    let heading = [
-        "solver",
-        " at rest",
-        " tenfold",
-        " observed",
-        " moving",
-        " accurate",
-    ];
-    let mut cells = vec![heading.map(String::from).to_vec()];
+    let mut cells = headings("solver| at rest| tenfold| observed| moving| accurate");
     for row in rows {
         cells.push(vec![
             row.method.name.to_owned(),
@@ -130,8 +122,7 @@ pub fn report(found: &Stability) -> Report {
 /// Creates the table of the largest stable step of each method with its reason, and of the largest
 /// accurate one.
 pub fn reasons(found: &Stability) -> Report {
-    let heading = ["solver", " stable", " accurate", "with longer steps"];
-    let mut rows = vec![heading.map(String::from).to_vec()];
+    let mut rows = headings("solver| stable| accurate|with longer steps");
     let modes = found.at_rest.as_deref().unwrap_or(&found.at_start);
     for row in &found.limits {
         let (stable, why) = reason(row, modes);

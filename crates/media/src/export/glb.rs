@@ -14,9 +14,7 @@ use a3_files::output::{Draft, Scratch};
 use a3_scenes::Surface;
 use serde_json::{Value, json};
 
-use super::format::Export;
-use super::format::rows;
-use super::geometry::{Geometry, positions};
+use super::geometry::{Export, Geometry, positions, rows};
 use crate::surfaces::Liquid;
 
 /// Largest number of frames. The animation has a weight for each morph target in each frame, so

@@ -15,8 +15,7 @@ use a3_files::output::{Draft, Scratch};
 use a3_files::rounding::{DIGITS, short};
 use crc32fast::Hasher;
 
-use super::format::Export;
-use super::format::velocities;
+use super::geometry::{Export, velocities};
 
 /// Alignment of the numbers, to which the header is padded (bytes).
 const ALIGNMENT: usize = 64;

@@ -14,8 +14,7 @@ use a3_files::rounding::{DIGITS, short};
 use a3_files::visible::in_a_line;
 use a3_scenes::{Presentation, Surface};
 
-use super::format::Export;
-use super::geometry::{Geometry, positions};
+use super::geometry::{Export, Geometry, positions};
 use crate::surfaces::Liquid;
 
 /// OBJ files that are being written.

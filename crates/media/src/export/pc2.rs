@@ -17,9 +17,7 @@ use a3_files::output::{self, Draft};
 use a3_files::terminal;
 use a3_scenes::Surface;
 
-use super::format::Export;
-use super::format::rows;
-use super::geometry::{Geometry, positions, vertices};
+use super::geometry::{Export, Geometry, positions, rows, vertices};
 use super::obj;
 
 /// A `PointCache2` file that is being written, with its mesh.

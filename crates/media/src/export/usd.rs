@@ -21,8 +21,7 @@ use a3_files::rounding::{DIGITS, short};
 use a3_files::visible::in_a_line;
 use a3_scenes::Surface;
 
-use super::format::Export;
-use super::geometry::{Geometry, positions, vertices};
+use super::geometry::{Export, Geometry, positions, vertices};
 use crate::surfaces::Liquid;
 
 /// Width of curves and points, over the diagonal of the bounding box of the first frame.
