@@ -200,10 +200,8 @@ pub fn problem(
         let records = drawn(all, method, metric);
         // A run that blew up is drawn at the work that it would have taken until the end. It was
         // not timed: its computing time is estimated from the other runs of the method.
-        let price = records
-            .iter()
-            .filter_map(|r| Some(r.seconds? / r.work))
-            .fold(f64::INFINITY, f64::min);
+        let prices = records.iter().filter_map(|r| Some(r.seconds? / r.work));
+        let price = prices.fold(f64::INFINITY, f64::min);
         let run = |r: &&Record| {
             let whole = |work: f64| r.lost_at.map_or(work, |at| work * r.until / at);
             let work = if timed {
@@ -227,10 +225,8 @@ pub fn problem(
         }
     });
     let resolved = all.iter().map(|r| r.resolved(metric)).reduce(f64::max);
-    let still = all
-        .iter()
-        .map(|r| r.still(metric))
-        .fold(f64::INFINITY, f64::min);
+    let still = all.iter().map(|r| r.still(metric));
+    let still = still.fold(f64::INFINITY, f64::min);
     Problem {
         curves: curves.collect(),
         resolved,
@@ -284,11 +280,8 @@ pub fn together(methods: &[&Method]) -> Vec<CurveStyle> {
         };
         let own = styles[k].colour;
         if nearest(own) < MIN_DIFFERENCE {
-            let spare = || {
-                SPARE
-                    .into_iter()
-                    .filter(|spare| !own_colours.contains(spare))
-            };
+            let is_free = |spare: &&str| !own_colours.contains(spare);
+            let spare = || SPARE.into_iter().filter(is_free);
             let farthest = || spare().max_by(|a, b| nearest(a).total_cmp(&nearest(b)));
             let apart = spare().find(|spare| nearest(spare) >= MIN_DIFFERENCE);
             styles[k].colour = apart.or_else(farthest).unwrap_or(own);
@@ -310,10 +303,8 @@ pub fn each(methods: &[&Method]) -> Vec<CurveStyle> {
         Some(letter) => of(letter),
         None => own
             .next()
-            .map_or_else(CurveStyle::default, |(colour, marker)| CurveStyle {
-                colour,
-                dash: OWN,
-                marker,
+            .map_or_else(CurveStyle::default, |(colour, marker)| {
+                CurveStyle::new(colour, OWN, marker)
             }),
     });
     styles.collect()
@@ -350,11 +341,7 @@ fn of(letter: char) -> CurveStyle {
         'y' => ("#8a8d91", ITERATED, Star(3, 0.4)),
         _ => return CurveStyle::default(),
     };
-    CurveStyle {
-        colour,
-        dash,
-        marker,
-    }
+    CurveStyle::new(colour, dash, marker)
 }
 
 /// Matrix from red, green and blue in linear light to the responses of the three kinds of cones

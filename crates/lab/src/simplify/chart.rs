@@ -98,11 +98,7 @@ pub fn chart(
         // cancel by chance.
         runs.retain(|run| run.error > LEAST_SHARE * least && run.error < motion);
         let mut curve = Curve {
-            style: CurveStyle {
-                colour,
-                dash: &[],
-                marker: *marker,
-            },
+            style: CurveStyle::new(colour, &[], *marker),
             name: grid.name.clone(),
             runs,
         };
