@@ -80,12 +80,9 @@ pub fn add_method(
             stepped(&function, f, (t, h), y, y.len())
         })
     };
-    let method = method.map_err(|error| wrong(py, error.to_string()))?;
-    let method = method
-        .with_evaluations(evaluations)
-        .with_default_step(default_step);
-    register(method, raised);
-    Ok(())
+    let with = |method: Method| method.with_evaluations(evaluations);
+    let method = method.map(|method| with(method).with_default_step(default_step));
+    register(py, method, raised).map(drop)
 }
 
 /// Registers a method that estimates its errors: `step` returns the state at t + h and the
@@ -105,9 +102,8 @@ pub fn add_adaptive(
         let estimate = next.split_off(y.len());
         Ok([next, estimate])
     });
-    let method = method.map_err(|error| wrong(py, error.to_string()))?;
-    register(method.with_evaluations(evaluations), raised);
-    Ok(())
+    let method = method.map(|method| method.with_evaluations(evaluations));
+    register(py, method, raised).map(drop)
 }
 
 /// Returns the `count` numbers that a function returns for f, t and h (s), and the state y.
@@ -171,8 +167,7 @@ pub fn add_tableau(
     b_hat: Option<Vec<f64>>,
 ) -> PyResult<u32> {
     let method = Method::from_tableau(name, &a, &b, b_hat.as_deref());
-    let method = method.map_err(|error| wrong(py, error.to_string()))?;
-    Ok(method.register().order)
+    Ok(register(py, method, Raised::default())?.order)
 }
 
 /// Registers a solver of another library. `solve` is called with f, the times (s), the state at
@@ -194,11 +189,7 @@ pub fn add_foreign(py: Python<'_>, name: &str, solve: &Bound<PyAny>) -> PyResult
         }
         solved.map(|()| states)
     });
-    register(
-        method.map_err(|error| wrong(py, error.to_string()))?,
-        raised,
-    );
-    Ok(())
+    register(py, method, raised).map(drop)
 }
 
 /// Makes a call of a function of Python that may evaluate f.
@@ -211,11 +202,17 @@ fn with(
         .map_err(Error::Callback)
 }
 
-/// Registers a method, with the place of its exceptions.
-fn register(method: Method, raised: Raised) {
-    let name = method.register().name;
+/// Registers a method that could be made, with the place of its exceptions.
+fn register(
+    py: Python<'_>,
+    method: Result<Method, Error>,
+    raised: Raised,
+) -> PyResult<&'static Method> {
+    let method = method.map_err(|error| wrong(py, error.to_string()))?;
+    let method = method.register();
     let mut all = RAISED.lock().unwrap_or_else(PoisonError::into_inner);
-    all.insert(name.into(), raised);
+    all.insert(method.name.into(), raised);
+    Ok(method)
 }
 
 /// Exceptions of own methods, by their names.

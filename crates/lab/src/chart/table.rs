@@ -24,7 +24,7 @@ const MIN_DURATION_RATIO: f64 = 0.02;
 const MAX_NUMERATOR: f64 = 9.0;
 
 /// Writes a cost to three digits.
-fn short(cost: f64) -> String {
+pub fn short(cost: f64) -> String {
     if cost < 9.995 {
         format!("{cost:.2}")
     } else if cost < 99.95 {

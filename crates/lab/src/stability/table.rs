@@ -8,6 +8,7 @@ use a3_files::report::{Report, headings, table};
 use serde::Serialize;
 
 use super::measure::{MethodLimits, Stability};
+use crate::chart::table::short;
 
 /// Writes a step (s) in ms, to three digits.
 pub fn step(seconds: f64) -> String {
@@ -17,9 +18,7 @@ pub fn step(seconds: f64) -> String {
         0.0 => "0".into(),
         _ if ms < 0.009_95 => format!("{ms:.1e}"),
         _ if ms < 0.999_5 => format!("{ms:.3}"),
-        _ if ms < 9.995 => format!("{ms:.2}"),
-        _ if ms < 99.95 => format!("{ms:.1}"),
-        _ => format!("{ms:.0}"),
+        _ => short(ms),
     }
 }
 
@@ -99,13 +98,13 @@ pub fn report(found: &Stability) -> Report {
     if any_observed(rows, Observation::is_open) {
         meanings.push((">", "no longer step was tried"));
     }
-    let short: Vec<_> = rows.iter().filter(|row| row.is_short).collect();
-    let names: Vec<_> = short.iter().map(|row| row.method.name).collect();
+    let short = rows.iter().filter(|row| row.is_short);
+    let names: Vec<_> = short.map(|row| row.method.name).collect();
     let why = format!(
         "the runs were shorter than 10 s, or too few to tell more, because they take long: {}",
         names.join(", ")
     );
-    if !short.is_empty() {
+    if !names.is_empty() {
         meanings.push(("short", &why));
     }
     let meanings = meanings

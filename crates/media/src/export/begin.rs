@@ -7,7 +7,7 @@ use a3_files::frames::{FrameTimes, Sequence};
 use a3_files::output;
 use a3_files::setup::Run;
 
-use super::geometry::Export;
+use super::geometry::{Export, Job};
 use super::{csv, glb, json, npz, obj, pc2, usd};
 
 /// Default frames per second.
@@ -35,7 +35,6 @@ pub fn begin(
     run: &Run,
 ) -> Result<(FrameTimes, Box<dyn Export>), Failure> {
     let (simulation, presentation) = (&run.simulation, &run.presentation);
-    let surface = &presentation.surface;
     let obj = |files| obj::Obj {
         presentation: presentation.clone(),
         files,
@@ -68,30 +67,36 @@ pub fn begin(
     let all = FrameTimes::new(0.0, until, rate.unwrap_or(DEFAULT_RATE))?;
     let several = all.since(simulation.time());
     let (particles, count) = (simulation.particles() as f64, several.count as f64);
-    let ending = ending.to_str();
+    let (ending, first) = (ending.to_str(), several.first);
+    let job = Job {
+        path,
+        surface: &presentation.surface,
+        simulation,
+        frames: several,
+    };
     let (size, largest) = match ending {
         Some("csv") => (csv::ROW_SIZE * particles * count, MAX_SIZES.0),
         Some("npz") => (npz::size(particles, several), MAX_SIZES.1),
         Some("pc2") => (pc2::size(simulation, several), MAX_SIZES.0),
         Some("glb") => {
             glb::check(several)?;
-            (glb::size(surface, simulation, several), MAX_SIZES.1)
+            (glb::size(job), MAX_SIZES.1)
         }
         Some("usda") => (usd::size(simulation, several), MAX_SIZES.0),
         Some("obj") => {
             sequence.iter().try_for_each(|it| it.check(all.count))?;
-            (obj::size(surface, simulation) * count, MAX_SIZES.0)
+            (obj::size(job) * count, MAX_SIZES.0)
         }
         _ => (json::ROW_SIZE * particles * count, MAX_SIZES.0),
     };
     check_size(size, largest)?;
     let export: Box<dyn Export> = match (ending, sequence) {
-        (Some("csv"), _) => Box::new(csv::Csv::new(path, several.first)?),
+        (Some("csv"), _) => Box::new(csv::Csv::new(path, first)?),
         (Some("npz"), _) => Box::new(npz::Npz::new(path, simulation, several)?),
-        (Some("pc2"), _) => Box::new(pc2::Pc2::new(path, surface, simulation, several)?),
-        (Some("glb"), _) => Box::new(glb::Glb::new(path, surface, simulation, several)?),
-        (Some("usda"), _) => Box::new(usd::Usd::new(path, surface, simulation, several)?),
-        (Some("obj"), Some(sequence)) => Box::new(obj(obj::Files::Many(sequence, several.first))),
+        (Some("pc2"), _) => Box::new(pc2::Pc2::new(job)?),
+        (Some("glb"), _) => Box::new(glb::Glb::new(job)?),
+        (Some("usda"), _) => Box::new(usd::Usd::new(job)?),
+        (Some("obj"), Some(sequence)) => Box::new(obj(obj::Files::Many(sequence, first))),
         _ => Box::new(json::Json::new(path, true)?),
     };
     Ok((several, export))

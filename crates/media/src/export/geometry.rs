@@ -4,13 +4,24 @@
 
 use std::collections::BTreeSet;
 use std::io::{self, Write};
+use std::path::Path;
 
 use a3_core::{Network, Simulation};
 use a3_files::failure::Failure;
+use a3_files::frames::FrameTimes;
 use a3_files::rounding::{DIGITS, short};
 use a3_scenes::Surface;
 
 use crate::surfaces::{tessellation, whole_triangles};
+
+/// What an export is made of.
+#[derive(Clone, Copy)]
+pub struct Job<'a> {
+    pub path: &'a Path,
+    pub surface: &'a Surface,
+    pub simulation: &'a Simulation,
+    pub frames: FrameTimes,
+}
 
 /// An export that is being written.
 pub trait Export {

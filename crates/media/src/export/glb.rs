@@ -5,16 +5,14 @@
 //! size.
 
 use std::io::{self, Write};
-use std::path::Path;
 
 use a3_core::Simulation;
 use a3_files::failure::Failure;
 use a3_files::frames::FrameTimes;
 use a3_files::output::{Draft, Scratch};
-use a3_scenes::Surface;
 use serde_json::{Value, json};
 
-use super::geometry::{Export, Geometry, positions, rows};
+use super::geometry::{Export, Geometry, Job, positions, rows};
 use crate::surfaces::Liquid;
 
 /// Largest number of frames. The animation has a weight for each morph target in each frame, so
@@ -56,10 +54,10 @@ struct Binary {
 }
 
 /// Returns the size of the binary chunk (bytes).
-pub fn size(surface: &Surface, simulation: &Simulation, frames: FrameTimes) -> f64 {
-    let geometry = Geometry::of(surface, simulation);
-    let (n, count) = (geometry.vertices as f64, frames.count as f64);
-    let Liquid { corners, triangles } = Liquid::of(simulation, |_| None);
+pub fn size(job: Job) -> f64 {
+    let geometry = Geometry::of(job.surface, job.simulation);
+    let (n, count) = (geometry.vertices as f64, job.frames.count as f64);
+    let Liquid { corners, triangles } = Liquid::of(job.simulation, |_| None);
     let liquid = 24.0 * corners.len() as f64 + 12.0 * triangles.len() as f64;
     (24.0 * n + liquid) * count + 12.0 * geometry.triangles.len() as f64 + 4.0 * count * count
 }
@@ -76,20 +74,15 @@ pub fn check(frames: FrameTimes) -> Result<(), Failure> {
 }
 
 impl Glb {
-    /// Creates a file for these frames of the simulation.
-    pub fn new(
-        path: &Path,
-        surface: &Surface,
-        simulation: &Simulation,
-        frames: FrameTimes,
-    ) -> Result<Self, Failure> {
-        let draft = Draft::new(path)?;
-        let file = Scratch::new(path)?;
+    /// Creates a file.
+    pub fn new(job: Job) -> Result<Self, Failure> {
+        let draft = Draft::new(job.path)?;
+        let file = Scratch::new(job.path)?;
         Ok(Self {
             draft,
-            geometry: Geometry::of(surface, simulation),
-            frames,
-            scene: simulation.scene().name.clone(),
+            geometry: Geometry::of(job.surface, job.simulation),
+            frames: job.frames,
+            scene: job.simulation.scene().name.clone(),
             binary: Binary {
                 file: io::BufWriter::new(file),
                 length: 0,

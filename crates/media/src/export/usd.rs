@@ -11,7 +11,6 @@ use std::collections::BTreeMap;
 use std::fmt::{Display, Write as _};
 use std::io;
 use std::io::{BufWriter, Write};
-use std::path::Path;
 
 use a3_core::Simulation;
 use a3_files::failure::Failure;
@@ -19,9 +18,8 @@ use a3_files::frames::FrameTimes;
 use a3_files::output::{Draft, Scratch};
 use a3_files::rounding::{DIGITS, short};
 use a3_files::visible::in_a_line;
-use a3_scenes::Surface;
 
-use super::geometry::{Export, Geometry, positions, vertices};
+use super::geometry::{Export, Geometry, Job, positions, vertices};
 use crate::surfaces::Liquid;
 
 /// Width of curves and points, over the diagonal of the bounding box of the first frame.
@@ -89,15 +87,16 @@ pub fn size(simulation: &Simulation, frames: FrameTimes) -> f64 {
 }
 
 impl Usd {
-    /// Creates a file for these frames of the simulation.
-    pub fn new(
-        path: &Path,
-        surface: &Surface,
-        simulation: &Simulation,
-        frames: FrameTimes,
-    ) -> Result<Self, Failure> {
+    /// Creates a file.
+    pub fn new(job: Job) -> Result<Self, Failure> {
+        let Job {
+            path,
+            simulation,
+            frames,
+            ..
+        } = job;
         let draft = Draft::new(path)?;
-        let geometry = Geometry::of(surface, simulation);
+        let geometry = Geometry::of(job.surface, job.simulation);
         let samples = |names: &[&'static str]| -> Result<Vec<_>, Failure> {
             let samples = names.iter().map(|name| {
                 let file = BufWriter::new(Scratch::new(path)?);
