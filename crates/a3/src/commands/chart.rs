@@ -6,7 +6,7 @@ use a3_files::bar::Bar;
 use a3_files::failure::Failure;
 use a3_files::{interrupt, terminal};
 use a3_lab::chart::asked::{check_metric, methods};
-use a3_lab::chart::data::{Data, Each};
+use a3_lab::chart::record::{Data, Each};
 use a3_lab::chart::{Chart, ChartOptions, Label};
 
 use super::picture;

@@ -8,10 +8,9 @@ use a3_files::output;
 use a3_files::setup::Request;
 use a3_files::{interrupt, terminal};
 use a3_lab::chart::describe;
-use a3_lab::figure_file::PICTURES;
 use a3_lab::simplify::{Simplified, SimplifyOptions, measure};
 
-use super::picture;
+use super::picture::{self, PICTURES};
 use crate::cli::Simplify;
 
 /// Measures models of a scene, prints them, and writes the leanest.

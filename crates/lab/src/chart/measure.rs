@@ -13,10 +13,8 @@ use a3_core::{Control, Method, Model, Scene, Simulation, accuracy};
 use a3_files::failure::Failure;
 use a3_files::monitor::Monitor;
 
-use super::asked::check_contact;
-use super::data::{Data, VERSION};
-use super::record::Record;
-use super::words::Label;
+use super::asked::{Label, check_contact};
+use super::record::{Data, Record, VERSION};
 use crate::motion::words;
 
 /// Largest work of a run, in evaluations. A run that blows up may take more.

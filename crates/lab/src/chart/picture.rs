@@ -10,10 +10,10 @@ use a3_core::accuracy::{Metric, Scope};
 use a3_core::{Method, Scene};
 use a3_plot::{Curve, CurveStyle, Marker, Measurement, Problem, WorkPrecision};
 
+use super::asked::{lasting, unit};
 use super::measure::{Chart, Study};
 use super::record::Record;
 use super::table;
-use super::words::{lasting, unit};
 
 /// Largest error of a run that is drawn, over the error of a run in which nothing moves.
 const MAX_ERROR_RATIO: f64 = 10.0;

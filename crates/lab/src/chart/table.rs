@@ -7,9 +7,9 @@ use a3_core::{Control, Method};
 use a3_files::bounds::{LARGEST_STEP, SMALLEST_STEP};
 use a3_files::report::Report;
 
+use super::asked::{lasting, unit};
 use super::measure::{Chart, Study};
 use super::record::Record;
-use super::words::{lasting, unit};
 
 /// Decimal digits of the errors in the table, which are 1e-2 to 1e-8.
 const DIGITS: std::ops::RangeInclusive<i32> = 2..=8;

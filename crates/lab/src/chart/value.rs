@@ -10,11 +10,9 @@ use a3_files::report::Report;
 use a3_files::rows;
 use a3_plot::{Figure, WorkPrecision};
 
-use super::asked::{check_methods, check_metric, check_scene, check_until};
-use super::data::{Data, Each};
+use super::asked::{Label, check_methods, check_metric, check_scene, check_until};
 use super::measure::{Chart, Measured, Study, stiffened, stopped, unless_stopped};
-use super::record::Record;
-use super::words::Label;
+use super::record::{Data, Each, Record};
 use super::{picture, table};
 
 /// Options of a [chart](chart()).

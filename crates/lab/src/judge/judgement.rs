@@ -49,7 +49,7 @@ pub struct Course<'a> {
 }
 
 /// Errors of a file, and the method that it agrees with.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Judgement {
     /// Number of states of the file.
     pub states: usize,
@@ -94,7 +94,7 @@ pub struct Judgement {
 }
 
 /// Largest error.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct Worst {
     /// Error (m).
     pub error: f64,
@@ -214,16 +214,15 @@ impl<'a> Course<'a> {
         let rate = (FRAMES_PER_RADIAN * fastest).max(MIN_RATE);
         let count = (rate * until).ceil().max(4.0);
         if count > most {
-            return Err(if rows.grid.is_some() {
-                format!(
-                    "{until} s of it are too many states of {} particles: write fewer, or judge less with --until",
-                    self.scene.model.particles()
-                )
-            } else {
-                format!(
+            let particles = self.scene.model.particles();
+            return Err(match rows.grid {
+                Some(_) => format!(
+                    "{until} s of it are too many states of {particles} particles: write fewer, or judge less with --until"
+                ),
+                None => format!(
                     "its times are not equally spaced, and {until} s are too long to interpolate between them: write \
                      states at equal distances, or judge less with --until"
-                )
+                ),
             });
         }
         Ok(Frames {
@@ -258,9 +257,7 @@ fn measured(scene: &Scene, states: &States, rows: &Rows, reference: &Reference) 
     let mut errors = vec![];
     let mut worst = Worst {
         error: -1.0,
-        time: 0.0,
-        particle: 0,
-        distance: 0.0,
+        ..Worst::default()
     };
     let (mut motion, n) = (0.0, 3 * model.particles());
     let mut turned = [0.0f64; 2];
@@ -311,20 +308,16 @@ fn measured(scene: &Scene, states: &States, rows: &Rows, reference: &Reference) 
         energy: network.map(|_| energy),
         kinetic,
         momentum: network.map(|_| momentum),
-        step: None,
-        was_searched: false,
-        has_known_step: false,
-        found: Match::default(),
         seconds: states.seconds,
         not_finite_at: states.not_finite_at,
+        ..Judgement::default()
     }
 }
 
 /// Returns the network of a model, if positions and velocities alone tell its energy.
 fn conserving(model: &Model) -> Option<&Network> {
-    model
-        .network()
-        .filter(|network| network.bodies().is_empty())
+    let network = model.network();
+    network.filter(|network| network.bodies().is_empty())
 }
 
 /// Returns the length of the difference of the momenta of particles that are not pinned (kg m/s).

@@ -8,8 +8,8 @@ use a3_files::failure::Failure;
 use a3_plot::{Mark, WorkPrecision};
 
 use super::judgement::{Course, Judgement};
-use crate::chart::data::Data;
 use crate::chart::measure::{Measured, Study};
+use crate::chart::record::Data;
 use crate::chart::{Chart, Label, methods};
 
 /// Measures all solvers as long as files were judged, and returns their chart with the files, and

@@ -50,17 +50,6 @@ pub struct Models<'a> {
     pub uncertainty: f64,
 }
 
-/// Effect of a model, compared with the whole scene.
-#[derive(Clone, Copy, Debug)]
-pub struct Effect {
-    /// Change of the quantity that is compared, in its unit.
-    pub change: f64,
-    /// Computing time of the model over that of the whole scene.
-    pub time: f64,
-    /// Work of the model over that of the whole scene, in evaluations of each.
-    pub work: f64,
-}
-
 /// Model of a scene: without a part, or on another grid.
 pub struct Model {
     /// Name in the table.
@@ -73,7 +62,7 @@ pub struct Model {
     /// Factor by which the cells of its grids are shorter; 1 for the grids of the scene.
     pub factor: f64,
     /// Effect of the model, or the reason why it was not measured.
-    pub effect: Result<Effect, String>,
+    pub effect: Result<Known, String>,
 }
 
 impl<'a> Models<'a> {
@@ -189,13 +178,8 @@ impl<'a> Models<'a> {
             model: model.name.clone(),
             ..Known::new(self.request, &self.scene, self.compared, self.accurate)
         };
-        let effect = |it: &Known| Effect {
-            change: it.change,
-            time: it.time,
-            work: it.work,
-        };
         if let Some(known) = known.find(&like) {
-            model.effect = Ok(effect(known));
+            model.effect = Ok(known.clone());
             return Ok(());
         }
         let found = self.follow(&model.description, model.places.as_deref())?;
@@ -217,7 +201,7 @@ impl<'a> Models<'a> {
             work: track.work / self.whole.work,
             ..like
         };
-        model.effect = Ok(effect(&row));
+        model.effect = Ok(row.clone());
         known.add(row);
         known.save()
     }

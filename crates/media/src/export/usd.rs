@@ -104,53 +104,51 @@ impl Usd {
             });
             samples.collect()
         };
+        let prim = |[kind, name]: [&'static str; 2], vertices, fixed, names: &[&'static str]| {
+            Ok::<_, Failure>(Prim {
+                kind,
+                name,
+                vertices,
+                fixed,
+                samples: samples(names)?,
+            })
+        };
         let mut prims = vec![];
         if !geometry.triangles.is_empty() {
             let (vertices, corners) = renumbered(geometry.triangles.as_flattened());
             let (counts, corners) = (list(geometry.triangles.iter().map(|_| 3)), list(&corners));
-            prims.push(Prim {
-                kind: "Mesh",
-                name: "surface",
-                vertices,
-                fixed: format!(
-                    "{MESH}        {COUNTS} = {counts}\n        {INDICES} = {corners}\n"
-                ),
-                samples: samples(&[POINTS, EXTENT, NORMALS])?,
-            });
+            let fixed =
+                format!("{MESH}        {COUNTS} = {counts}\n        {INDICES} = {corners}\n");
+            let names = [POINTS, EXTENT, NORMALS];
+            prims.push(prim(["Mesh", "surface"], vertices, fixed, &names)?);
         }
         if !geometry.lines.is_empty() {
+            let vertices = geometry.lines.as_flattened().to_vec();
             let counts = list(geometry.lines.iter().map(|_| 2));
-            prims.push(Prim {
-                kind: "BasisCurves",
-                name: "springs",
-                vertices: geometry.lines.as_flattened().to_vec(),
-                fixed: format!(
-                    "        uniform token type = \"linear\"\n        int[] curveVertexCounts = {counts}\n"
-                ),
-                samples: samples(&[POINTS, EXTENT])?,
-            });
+            let fixed = format!(
+                "        uniform token type = \"linear\"\n        int[] curveVertexCounts = {counts}\n"
+            );
+            prims.push(prim(
+                ["BasisCurves", "springs"],
+                vertices,
+                fixed,
+                &[POINTS, EXTENT],
+            )?);
         }
         if !geometry.points.is_empty() {
-            prims.push(Prim {
-                kind: "Points",
-                name: "particles",
-                vertices: geometry.points.clone(),
-                fixed: String::new(),
-                samples: samples(&[POINTS, EXTENT])?,
-            });
+            let (vertices, fixed) = (geometry.points.clone(), String::new());
+            prims.push(prim(
+                ["Points", "particles"],
+                vertices,
+                fixed,
+                &[POINTS, EXTENT],
+            )?);
         }
         let network = simulation.model().network();
-        let liquid = if network.is_some_and(|network| network.fluid().is_some()) {
-            Some(Prim {
-                kind: "Mesh",
-                name: "liquid",
-                vertices: vec![],
-                fixed: MESH.into(),
-                samples: samples(&[POINTS, EXTENT, NORMALS, COUNTS, INDICES])?,
-            })
-        } else {
-            None
-        };
+        let names = [POINTS, EXTENT, NORMALS, COUNTS, INDICES];
+        let has_liquid = network.is_some_and(|network| network.fluid().is_some());
+        let liquid = has_liquid.then(|| prim(["Mesh", "liquid"], vec![], MESH.into(), &names));
+        let liquid = liquid.transpose()?;
         Ok(Self {
             draft,
             next: frames.first,

@@ -8,8 +8,7 @@ use a3_files::failure::Failure;
 use a3_files::output;
 use a3_files::rows;
 use a3_files::terminal;
-use a3_lab::chart::data::VERSION;
-use a3_lab::chart::record::Record;
+use a3_lab::chart::record::{Record, VERSION};
 
 use super::plan::{Plan, Run};
 use crate::cli::sweep::Id;

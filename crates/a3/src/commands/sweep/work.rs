@@ -6,9 +6,8 @@ use a3_core::accuracy::{Frames, horizon};
 use a3_files::bar::Bar;
 use a3_files::failure::Failure;
 use a3_files::interrupt;
-use a3_lab::chart::data::VERSION;
 use a3_lab::chart::measure::{compared, precision, reference, unless_stopped};
-use a3_lab::chart::record::Record;
+use a3_lab::chart::record::{Record, VERSION};
 use a3_lab::motion::words;
 use rayon::prelude::*;
 
