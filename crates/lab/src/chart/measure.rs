@@ -311,7 +311,7 @@ impl Study {
             monitor.start();
             monitor.stage(method.name);
         }
-        let reference = self.reference.as_mut().ok_or_else(stopped)?;
+        let reference = self.reference.as_mut().ok_or_else(Failure::stopped)?;
         let most = reference.max_work;
         if !(method.is_implicit() || method.is_own()) && reference.is_stiff {
             // Runs of explicit methods take alike to any tolerance.
@@ -344,19 +344,6 @@ impl Study {
         };
         let seconds = seconds.map(|seconds| seconds.as_secs_f64());
         Ok(Record { seconds, ..record })
-    }
-}
-
-/// Creates the failure of work that was stopped before it had any result.
-pub fn stopped() -> Failure {
-    Failure::Interrupted("interrupted before anything was measured".into())
-}
-
-/// Returns `None` in place of the failure of work that was stopped.
-pub fn unless_stopped<T>(done: Result<T, Failure>) -> Result<Option<T>, Failure> {
-    match done {
-        Err(Failure::Interrupted(_)) => Ok(None),
-        done => done.map(Some),
     }
 }
 
@@ -431,7 +418,9 @@ pub fn compared(
         coordinates,
         go_on,
     );
-    let outcome = outcome.map_err(Failure::run)?.ok_or_else(stopped)?;
+    let outcome = outcome
+        .map_err(Failure::run)?
+        .ok_or_else(Failure::stopped)?;
     let Outcome {
         errors,
         work,
@@ -515,7 +504,7 @@ pub fn reference(
 ) -> Result<Reference, Failure> {
     let made = Reference::new(scene, frames, scope, precision, go_on);
     let failed = |e| Failure::run(format!("the reference could not be computed: {e}"));
-    let mut reference = made.map_err(failed)?.ok_or_else(stopped)?;
+    let mut reference = made.map_err(failed)?.ok_or_else(Failure::stopped)?;
     if scene.model.network().is_none() {
         reference.max_work = MAX_OWN_EVALUATIONS.max(reference.work.total());
     }
@@ -544,7 +533,7 @@ pub fn time(
         let begun = Instant::now();
         let end = accuracy::run(&mut run, frames, go_on, None);
         let elapsed = begun.elapsed();
-        end.map_err(Failure::run)?.ok_or_else(stopped)?;
+        end.map_err(Failure::run)?.ok_or_else(Failure::stopped)?;
         best = best.min(elapsed);
         sum += elapsed;
     }

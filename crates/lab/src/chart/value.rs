@@ -11,7 +11,7 @@ use a3_files::rows;
 use a3_plot::{Figure, WorkPrecision};
 
 use super::asked::{Label, check_methods, check_metric, check_scene, check_until};
-use super::measure::{Chart, Measured, Study, stiffened, stopped, unless_stopped};
+use super::measure::{Chart, Measured, Study, stiffened};
 use super::record::{Data, Each, Record};
 use super::{picture, table};
 
@@ -108,7 +108,9 @@ impl Chart {
             until = Some(until.map_or(found.until, |until: f64| until.min(found.until)));
             scenes.push((factor, scene, found.motion));
         }
-        let until = until.filter(|_| !scenes.is_empty()).ok_or_else(stopped)?;
+        let until = until
+            .filter(|_| !scenes.is_empty())
+            .ok_or_else(Failure::stopped)?;
         let measured = Measured {
             timed: options.timed,
             spread: options.spread,
@@ -137,7 +139,7 @@ impl Chart {
         monitor.expect(expected);
         self.complete = true;
         for study in &mut self.studies {
-            if unless_stopped(study.run(&mut self.data, monitor))?.is_none() {
+            if Failure::unless_stopped(study.run(&mut self.data, monitor))?.is_none() {
                 self.complete = false;
                 break;
             }
@@ -169,7 +171,7 @@ impl Chart {
             .retain(|study| study.records(data).next().is_some());
         match (self.studies.is_empty(), &costly[..]) {
             (false, _) => Ok(()),
-            (true, []) => Err(stopped()),
+            (true, []) => Err(Failure::stopped()),
             (true, costly) => Err(Failure::run(format!(
                 "runs take too many evaluations ({}): name a solver for stiff systems, such as radau or bdf, or \
                  end the runs earlier",

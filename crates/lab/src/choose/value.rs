@@ -10,7 +10,7 @@ use a3_files::bounds::{BUDGETS, ERRORS};
 use a3_files::failure::Failure;
 use a3_files::monitor::Monitor;
 
-use crate::chart::measure::{precision, reference, stopped, time, unless_stopped};
+use crate::chart::measure::{precision, reference, time};
 use crate::chart::{
     check_contact, check_methods, check_metric, check_motion, check_scene, check_until, look_ahead,
     unit,
@@ -135,7 +135,7 @@ pub fn choose(
     }
     let search = Search::new(scene, options, monitor)?;
     let stopped = || Failure::Interrupted("interrupted: nothing was chosen".into());
-    unless_stopped(search.choose(&methods))?.ok_or_else(stopped)
+    Failure::unless_stopped(search.choose(&methods))?.ok_or_else(stopped)
 }
 
 /// Search for a choice: options that are checked against the scene.
@@ -187,7 +187,7 @@ impl<'a> Search<'a> {
             return Err(self.none(&reference));
         };
         let shown = shown(self.scene, best.method, best.control, &reference, go_on);
-        let shown = shown.map_err(Failure::run)?.ok_or_else(stopped)?;
+        let shown = shown.map_err(Failure::run)?.ok_or_else(Failure::stopped)?;
         Ok(Choice {
             found,
             metric,
@@ -201,7 +201,8 @@ impl<'a> Search<'a> {
     fn reference(&self) -> Result<Reference, Failure> {
         let (scene, monitor) = (self.scene, self.monitor);
         monitor.stage("looking ahead");
-        let horizon = look_ahead(scene, self.options.until, 1.0, monitor)?.ok_or_else(stopped)?;
+        let horizon =
+            look_ahead(scene, self.options.until, 1.0, monitor)?.ok_or_else(Failure::stopped)?;
         check_motion(scene, &horizon)?;
         let frames = Frames::of(&scene.model, horizon.until);
         monitor.stage("reference");
@@ -253,7 +254,7 @@ impl<'a> Search<'a> {
         let go_on = &|| monitor.go_on();
         let found = choose_among(methods, scene, reference, metric, error, go_on, begin);
         monitor.clear();
-        let mut found = found.map_err(Failure::run)?.ok_or_else(stopped)?;
+        let mut found = found.map_err(Failure::run)?.ok_or_else(Failure::stopped)?;
         if !self.options.timed {
             found.truncate(SHOWN);
         }
@@ -303,7 +304,9 @@ impl<'a> Search<'a> {
             let most = MAX_STEPS.min(reference.max_work) as u64;
             for control in ladder(&modes, method, &reference.frames, most).map_err(Failure::run)? {
                 let outcome = measure(scene, method, control, reference, &|| monitor.go_on());
-                let outcome = outcome.map_err(Failure::run)?.ok_or_else(stopped)?;
+                let outcome = outcome
+                    .map_err(Failure::run)?
+                    .ok_or_else(Failure::stopped)?;
                 if outcome.is_too_costly() {
                     break;
                 }

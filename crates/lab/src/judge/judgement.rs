@@ -15,7 +15,7 @@ use super::rows::{Difference, Rows, difference, distance, farthest, with_y_up};
 use super::search::{Match, search};
 use super::trial::Judged;
 use crate::chart::check_motion;
-use crate::chart::measure::{precision, reference, unless_stopped};
+use crate::chart::measure::{precision, reference};
 
 /// Largest time that is judged (s).
 const MAX_TIME: f64 = 1000.0;
@@ -192,7 +192,7 @@ impl<'a> Course<'a> {
         let go_on = &|| self.monitor.go_on();
         let made = reference(go_on, self.scene, frames, Scope::default(), precision);
         self.references
-            .push(unless_stopped(made)?.ok_or_else(stopped)?);
+            .push(Failure::unless_stopped(made)?.ok_or_else(stopped)?);
         Ok(&self.references[self.references.len() - 1])
     }
 

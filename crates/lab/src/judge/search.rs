@@ -106,12 +106,11 @@ pub fn search(judged: &Judged, at_start: bool) -> Option<Match> {
         (&correct, &starts, &whole, false),
         (&slips, scene, &between, false),
     ];
-    for (ways, starts, paces, is_single) in plans {
-        search.is_single = is_single;
-        if is_single && !judged.rows.are_single() {
+    for plan in plans {
+        if plan.3 && !judged.rows.are_single() {
             continue;
         }
-        let found = search.agreements(ways, starts, paces)?;
+        let found = search.agreements(plan)?;
         if let Some((first, others)) = found.split_first() {
             (search.result.found, search.result.also) = (Some(*first), others.to_vec());
             return Some(search.result);
@@ -176,12 +175,8 @@ impl Search<'_> {
 
     /// Returns the ways that agree with all rows, at the largest step at which one does, or at a
     /// slightly smaller one at which it agrees much better. `None` if the monitor stopped it.
-    fn agreements(
-        &mut self,
-        ways: &[Way],
-        starts: &[Start],
-        paces: &[Pace],
-    ) -> Option<Vec<Agreement>> {
+    fn agreements(&mut self, (ways, starts, paces, is_single): Plan) -> Option<Vec<Agreement>> {
+        self.is_single = is_single;
         let (mut best, mut more) = (vec![], MORE_PARTS);
         let work = &self.judged.course.work;
         work.set(0.0);

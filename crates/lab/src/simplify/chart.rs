@@ -12,9 +12,9 @@ use a3_scenes::{Regridded, regridded};
 
 use super::lean::Solved;
 use super::models::{FACTORS, Models};
-use crate::chart::measure::{stopped, time};
+use crate::chart::measure::time;
 use crate::chart::table::words;
-use crate::motion::{GridError, Motion, Places, Track, grid};
+use crate::motion::{GridError, Places, Track, grid};
 
 /// Styles of the grids, from the coarsest to the finest.
 const STYLES: [(&str, Marker); 5] = [
@@ -237,8 +237,7 @@ fn measured(
     let places: Option<&Places> = grid.places.as_deref();
     for control in first.into_iter().chain(rungs).take(MAX_RUNS) {
         let run = compared.follow(scene, (method, control), places, go_on);
-        let run = run.map_err(Failure::run)?.ok_or_else(stopped)?;
-        let Motion::Known(track) = run else {
+        let Some(track) = run? else {
             models.monitor.advance(1.0);
             continue;
         };

@@ -5,13 +5,12 @@ use std::cmp::Reverse;
 
 use a3_core::accuracy::{Candidate, Trial, choose_by};
 use a3_core::integrators::METHODS;
-use a3_core::{Control, Error, Method};
+use a3_core::{Control, Method};
 use a3_files::failure::Failure;
 use a3_scenes::{Description, Part, regridded, without};
 
 use super::models::{Model, Models, in_turns};
-use crate::chart::measure::{stopped, time};
-use crate::motion::Motion;
+use crate::chart::measure::time;
 
 /// Share of the error that the model may cause; the time steps may cause the rest.
 const MODEL_SHARE: f64 = 0.6;
@@ -145,19 +144,14 @@ pub fn solve(
     let frames = models.compared.frames;
     let go_on = &|| models.monitor.go_on();
     let measure = |method, control| {
-        let run = models
-            .compared
-            .follow(&scene, (method, control), places.as_deref(), go_on)?;
-        Ok::<_, Error>(run.map(|motion| {
-            let (error, work) = match motion {
-                Motion::Failed => (f64::INFINITY, 0.0),
-                Motion::Known(track) => (models.change(&track), track.work),
-            };
-            Trial {
-                error,
-                work,
-                outcome: error,
-            }
+        let (by, places) = ((method, control), places.as_deref());
+        let run = models.compared.follow(&scene, by, places, go_on)?;
+        let work = run.as_ref().map_or(0.0, |track| track.work);
+        let error = run.map_or(f64::INFINITY, |track| models.change(&track));
+        Ok::<_, Failure>(Some(Trial {
+            error,
+            work,
+            outcome: error,
         }))
     };
     let most = error - models.uncertainty;
@@ -169,8 +163,7 @@ pub fn solve(
     let mut methods: Vec<_> = METHODS.iter().collect();
     methods.sort_by_key(|method| (method.name != first, Reverse(method.order)));
     let found = choose_by(&methods, &scene, &frames, most, max_cost, measure, |_| {});
-    let found = found.map_err(Failure::run)?.ok_or_else(stopped)?;
-    let Some(best) = found.into_iter().next() else {
+    let Some(best) = found?.into_iter().flatten().next() else {
         return Ok(None);
     };
     let time = time(go_on, &scene, best.method, best.control, &frames, None)?;

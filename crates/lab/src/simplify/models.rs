@@ -13,8 +13,7 @@ use a3_files::rows::Rows;
 use a3_files::setup::Request;
 use a3_scenes::{Description, Part, Regridded, parts, regridded, without};
 
-use crate::chart::measure::stopped;
-use crate::motion::{Compared, Known, Motion, Places, Track, grid};
+use crate::motion::{Compared, Known, Places, Track, grid};
 
 /// Relative tolerances at which the whole scene is tried, the largest first. The first that is
 /// accurate enough is that of all models.
@@ -86,11 +85,9 @@ impl<'a> Models<'a> {
             let mut runs = vec![];
             for (method, tolerance) in [(method, tolerance), (other, CHECK_RATIO * tolerance)] {
                 let by = (method, Control::Tolerance(tolerance));
-                let run = compared.follow(&scene, by, None, go_on);
-                runs.push(run.map_err(Failure::run)?.ok_or_else(stopped)?);
+                runs.push(compared.follow(&scene, by, None, go_on)?);
             }
-            let Ok([Motion::Known(track), Motion::Known(check)]) = <[Motion; 2]>::try_from(runs)
-            else {
+            let Ok([Some(track), Some(check)]) = <[_; 2]>::try_from(runs) else {
                 continue;
             };
             let uncertainty = compared.distance(&track, &check);
@@ -221,12 +218,8 @@ impl<'a> Models<'a> {
             return Ok(Err("a scene without it cannot be built".into()));
         };
         let go_on = &|| self.monitor.go_on();
-        let found = self.compared.follow(&scene, self.accurate, places, go_on);
-        let found = found.map_err(Failure::run)?.ok_or_else(stopped)?;
-        Ok(match found {
-            Motion::Failed => Err("it blows up".into()),
-            Motion::Known(track) => Ok(track),
-        })
+        let found = self.compared.follow(&scene, self.accurate, places, go_on)?;
+        Ok(found.ok_or_else(|| "it blows up".into()))
     }
 
     /// Builds the scene of another description.
@@ -277,7 +270,7 @@ pub fn in_turns(
             let begun = processor::time();
             let end = accuracy::run(&mut run, frames, go_on, None);
             let elapsed = processor::time().saturating_sub(begun);
-            end.map_err(Failure::run)?.ok_or_else(stopped)?;
+            end.map_err(Failure::run)?.ok_or_else(Failure::stopped)?;
             *best = elapsed.min(*best);
             sum += elapsed;
         }

@@ -17,7 +17,6 @@ use super::chart::chart;
 use super::lean::{Answer, LeanModel, MAX_TIME_RATIO, Solved, assemble, solve, time_in_turns};
 use super::models::{Model, Models, measure_all};
 use super::table;
-use crate::chart::measure::{stopped, unless_stopped};
 use crate::chart::{check_motion, describe, look_ahead};
 use crate::motion::{Compared, open};
 
@@ -205,10 +204,12 @@ pub fn measure(
     let models = whole(options, request, monitor)?;
     let (mut all, why) = models.all();
     let answer = measure_all(&models, &mut all, &mut known);
-    let answer = unless_stopped(answer.and_then(|()| leanest(&models, &all, options.error)))?;
+    let answer =
+        Failure::unless_stopped(answer.and_then(|()| leanest(&models, &all, options.error)))?;
     let of_models = match &answer {
         Some(answer) if options.chart => {
-            unless_stopped(chart(&models, &answer.whole, format!("Models: {title}")))?.flatten()
+            Failure::unless_stopped(chart(&models, &answer.whole, format!("Models: {title}")))?
+                .flatten()
         }
         _ => None,
     };
@@ -274,7 +275,7 @@ fn whole<'a>(
         ));
     }
     monitor.stage("looking ahead");
-    let horizon = look_ahead(&scene, options.until, 1.0, monitor)?.ok_or_else(stopped)?;
+    let horizon = look_ahead(&scene, options.until, 1.0, monitor)?.ok_or_else(Failure::stopped)?;
     check_motion(&scene, &horizon)?;
     monitor.stage("whole scene");
     let compared = Compared {
@@ -317,7 +318,7 @@ fn leanest(models: &Models, all: &[Model], error: f64) -> Result<Answer, Failure
         time_in_turns(models, &model, solved, &mut whole)?;
     }
     if !monitor.go_on() {
-        return Err(stopped());
+        return Err(Failure::stopped());
     }
     // The leanest scene has to save time, or to take no more work.
     let pays = |solved: &Solved| {

@@ -9,7 +9,6 @@ use a3_files::monitor::Monitor;
 use rayon::prelude::*;
 
 use crate::chart::Label;
-use crate::chart::measure::stopped;
 
 /// Largest work of the search for a method's limits in motion, in the unit of a [`Budget`]. It does
 /// not depend on the other methods, and so the limits do not.
@@ -75,7 +74,7 @@ pub fn measure(
     let (moving, resting) = rayon::join(in_motion, at_rest);
     let (motion, moving) = moving.map_err(Failure::run)?;
     let (hanging, resting) = resting.map_err(Failure::run)?;
-    let motion = motion.ok_or_else(stopped)?;
+    let motion = motion.ok_or_else(Failure::stopped)?;
     let rows: Vec<_> = (measured.iter().zip(resting).zip(moving))
         .filter_map(|((method, rest), moving)| Some(limits(method, rest?, moving?)))
         .collect();
@@ -86,7 +85,7 @@ pub fn measure(
     let rows: Vec<_> = methods.iter().filter_map(|method| row(method)).collect();
     monitor.clear();
     if rows.is_empty() {
-        return Err(stopped());
+        return Err(Failure::stopped());
     }
     Ok(Stability {
         limits: rows,

@@ -6,7 +6,7 @@ use a3_core::accuracy::{Frames, horizon};
 use a3_files::bar::Bar;
 use a3_files::failure::Failure;
 use a3_files::interrupt;
-use a3_lab::chart::measure::{compared, precision, reference, unless_stopped};
+use a3_lab::chart::measure::{compared, precision, reference};
 use a3_lab::chart::record::{Record, VERSION};
 use a3_lab::motion::words;
 use rayon::prelude::*;
@@ -35,7 +35,7 @@ pub fn run(sweep: &Sweep, plan: &Plan, share: &[usize], folder: &Folder) -> Resu
             left.fetch_sub(1, Ordering::Relaxed);
             bar.advance(1.0);
         });
-        unless_stopped(done).map(drop)
+        Failure::unless_stopped(done).map(drop)
     });
     bar.clear();
     done.map(|()| left.into_inner())
