@@ -32,8 +32,7 @@ fn named<T: Copy>(
     let mut known = all.clone().into_iter();
     let found = known.find(|it| name_of(*it) == name);
     found.ok_or_else(|| {
-        let names: Vec<_> = all.into_iter().map(name_of).collect();
-        let names = names.join(", ");
+        let names = all.into_iter().map(name_of).collect::<Vec<_>>().join(", ");
         let why = format!("there is no {kind} `{name}`: the {kinds} are {names}");
         wrong(py, why)
     })
@@ -46,13 +45,15 @@ fn metric(py: Python<'_>, name: Option<&str>) -> PyResult<Option<Metric>> {
     name.map(find).transpose()
 }
 
-/// Runs work without the global lock. If it failed because a function raised an exception, that is
-/// raised.
-pub fn work<T: Send>(
+/// Runs work without the global lock, watched by a monitor. If it failed because a function raised
+/// an exception, that is raised.
+fn work<T: Send>(
     py: Python<'_>,
+    monitor: &Monitor,
     raised: &[Raised],
     work: impl Send + FnOnce() -> Result<T, Failure>,
 ) -> PyResult<T> {
+    monitor.watch(raised);
     py.detach(work).map_err(|failure| {
         let raised = raised.iter().find_map(Raised::take);
         raised.unwrap_or_else(|| of_failure(py, &failure))
@@ -61,16 +62,13 @@ pub fn work<T: Send>(
 
 /// A picture that can be drawn.
 type Draw<'a> = dyn Fn(u32, u32) -> Result<a3_plot::Figure, Failure> + Sync + 'a;
+/// A picture's file.
+type Drawn<'py> = PyResult<Bound<'py, PyBytes>>;
 
 /// Draws a picture of this kind: "svg", "pdf" or "png".
-pub fn drawn<'py>(
-    py: Python<'py>,
-    kind: &str,
-    (width, height): (u32, u32),
-    draw: &Draw,
-) -> PyResult<Bound<'py, PyBytes>> {
+fn drawn<'py>(py: Python<'py>, kind: &str, size: (u32, u32), draw: &Draw) -> Drawn<'py> {
     let bytes = py.detach(|| {
-        let figure = draw(width, height)?;
+        let figure = draw(size.0, size.1)?;
         match kind {
             "svg" => Ok(figure.svg().into_bytes()),
             "pdf" => Ok(figure.pdf()),
@@ -100,10 +98,8 @@ impl Chart {
     /// keeps each.
     fn winners(&self) -> Vec<(f64, usize)> {
         let place = |best| self.0.runs().position(|run| std::ptr::eq(run, best));
-        let winners = self.0.winners();
-        winners
-            .filter_map(|(error, best)| Some((error, place(best)?)))
-            .collect()
+        let known = |(error, best)| Some((error, place(best)?));
+        self.0.winners().filter_map(known).collect()
     }
 
     /// Returns the names of the methods whose runs take too many evaluations.
@@ -119,12 +115,7 @@ impl Chart {
     }
 
     /// Draws a picture of a kind and a size (px).
-    fn drawn<'py>(
-        &self,
-        py: Python<'py>,
-        kind: &str,
-        size: (u32, u32),
-    ) -> PyResult<Bound<'py, PyBytes>> {
+    fn drawn<'py>(&self, py: Python<'py>, kind: &str, size: (u32, u32)) -> Drawn<'py> {
         drawn(py, kind, size, &|width, height| {
             self.0.figure(width, height)
         })
@@ -159,8 +150,7 @@ pub fn chart(
         stiffness,
     };
     let raised = opened.raised(methods.iter().copied());
-    monitor.watch(&raised);
-    work(py, &raised, || {
+    work(py, monitor, &raised, || {
         a3_lab::chart::chart(&scene, &methods, &options, monitor)
     })
     .map(Chart)
@@ -199,10 +189,8 @@ pub fn choose(
         (Some(error), None) => Goal::Error(error),
         (None, Some(budget)) => Goal::Budget(budget),
         _ => {
-            return Err(wrong(
-                py,
-                "choose takes either error (in m) or budget (in ms per frame)",
-            ));
+            let why = "choose takes either error (in m) or budget (in ms per frame)";
+            return Err(wrong(py, why));
         }
     };
     let opened = Opened::new(py, &given)?;
@@ -216,8 +204,7 @@ pub fn choose(
         ..ChooseOptions::new(goal)
     };
     let raised = opened.raised(methods.iter().copied());
-    monitor.watch(&raised);
-    let choice = work(py, &raised, || {
+    let choice = work(py, monitor, &raised, || {
         a3_lab::choose::choose(&scene, &methods, &options, monitor)
     })?;
     let chosen = |chosen: &a3_lab::choose::Chosen| {
@@ -282,7 +269,7 @@ impl Stability {
         kind: &str,
         size: (u32, u32),
         step: Option<f64>,
-    ) -> PyResult<Bound<'py, PyBytes>> {
+    ) -> Drawn<'py> {
         drawn(py, kind, size, &|width, height| {
             self.0.figure(step, width, height)
         })
@@ -300,8 +287,7 @@ pub fn stability(
     let opened = Opened::new(py, &given)?;
     let (scene, methods) = (opened.scene(py)?, methods_named(py, &methods)?);
     let raised = opened.raised(methods.iter().copied());
-    monitor.watch(&raised);
-    work(py, &raised, || {
+    work(py, monitor, &raised, || {
         a3_lab::stability::stability(&scene, &methods, monitor)
     })
     .map(Stability)
@@ -340,8 +326,7 @@ pub fn compare<'py>(
     });
     let asked = asked.collect::<PyResult<Vec<(&'static Method, Control)>>>()?;
     let raised = opened.raised(asked.iter().map(|(method, _)| *method));
-    monitor.watch(&raised);
-    let compared = work(py, &raised, || {
+    let compared = work(py, monitor, &raised, || {
         a3_lab::compare::compare(&scene, &asked, until, frames, monitor)
     })?;
     let runs = compared.runs.iter().map(|run| {
@@ -356,12 +341,8 @@ pub fn compare<'py>(
         )
     });
     let times = PyArray1::from_slice(py, &compared.times);
-    Ok((
-        times,
-        runs.collect(),
-        scene.model.particles(),
-        scene.state.len(),
-    ))
+    let (particles, length) = (scene.model.particles(), scene.state.len());
+    Ok((times, runs.collect(), particles, length))
 }
 
 /// Judges states: a file, or an archive of arrays with its name. Returns the judgement in words and
@@ -391,8 +372,7 @@ pub fn judge(
         within,
     };
     let raised = opened.raised([]);
-    monitor.watch(&raised);
-    let verdict = work(py, &raised, || {
+    let verdict = work(py, monitor, &raised, || {
         a3_lab::judge::judge_states(&scene, states, &options, monitor)
     })?;
     Ok((verdict.text, verdict.json))
@@ -420,12 +400,7 @@ impl Simplified {
     }
 
     /// Draws a picture of the chart of models, of a kind and a size (px).
-    fn drawn<'py>(
-        &self,
-        py: Python<'py>,
-        kind: &str,
-        size: (u32, u32),
-    ) -> PyResult<Bound<'py, PyBytes>> {
+    fn drawn<'py>(&self, py: Python<'py>, kind: &str, size: (u32, u32)) -> Drawn<'py> {
         drawn(py, kind, size, &|width, height| {
             self.0.figure(width, height)?.ok_or_else(|| {
                 Failure::usage(
@@ -453,15 +428,12 @@ pub fn simplify(
 ) -> PyResult<Simplified> {
     let opened = Opened::new(py, &given)?;
     if opened.calls {
-        return Err(wrong(
-            py,
-            "what a scene can do without is found for scenes without functions of Python",
-        ));
+        let why = "what a scene can do without is found for scenes without functions of Python";
+        return Err(wrong(py, why));
     }
     let kind = ("quantity", "quantities");
-    let quantity = named(py, of, kind, Quantity::ALL, Quantity::name)?;
     let options = SimplifyOptions {
-        of: quantity,
+        of: named(py, of, kind, Quantity::ALL, Quantity::name)?,
         until,
         particle,
         at_end,
@@ -470,7 +442,7 @@ pub fn simplify(
         ..SimplifyOptions::new(error)
     };
     let scene = &opened.scene;
-    work(py, &[], || {
+    work(py, monitor, &[], || {
         a3_lab::simplify::simplify(&scene.described()?, &options, monitor)
     })
     .map(Simplified)

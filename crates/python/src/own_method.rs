@@ -12,7 +12,7 @@ use pyo3::types::PyType;
 use scoped_tls_hkt::scoped_thread_local;
 
 use super::arrays::numbers;
-use super::errors::wrong;
+use super::errors::{of_error, wrong};
 use super::function::{Function, Raised, Shape, array};
 
 /// f(t, y) of the system that is being stepped.
@@ -43,18 +43,15 @@ impl Derivative {
         y: &Bound<'py, PyAny>,
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
         if !STEPPED.is_set() {
-            return Err(wrong(
-                py,
-                "f can be called only while its step is being taken, in the same thread",
-            ));
+            let why = "f can be called only while its step is being taken, in the same thread";
+            return Err(wrong(py, why));
         }
         let array =
             array(y).ok_or_else(|| wrong(py, "f(t, y) takes a time and an array of numbers"))?;
         // A column of a matrix is not contiguous.
         let y: Vec<f64> = array.readonly().as_array().iter().copied().collect();
         let evaluated = py.detach(|| STEPPED.with(|f| f.evaluate(t, &y)));
-        let dydt =
-            evaluated.map_err(|error| super::errors::of_error(py, &error, error.to_string()))?;
+        let dydt = evaluated.map_err(|error| of_error(py, &error, error.to_string()))?;
         Ok(numbers(py, &dydt))
     }
 }
@@ -197,9 +194,8 @@ fn with(
     f: &mut CoreDerivative,
     call: impl FnOnce(Python<'_>) -> Result<(), String>,
 ) -> Result<(), Error> {
-    STEPPED
-        .set(f, || Python::attach(call))
-        .map_err(Error::Callback)
+    let called = STEPPED.set(f, || Python::attach(call));
+    called.map_err(Error::Callback)
 }
 
 /// Registers a method that could be made, with the place of its exceptions.
@@ -208,8 +204,9 @@ fn register(
     method: Result<Method, Error>,
     raised: Raised,
 ) -> PyResult<&'static Method> {
-    let method = method.map_err(|error| wrong(py, error.to_string()))?;
-    let method = method.register();
+    let method = method
+        .map_err(|error| wrong(py, error.to_string()))?
+        .register();
     let mut all = RAISED.lock().unwrap_or_else(PoisonError::into_inner);
     all.insert(method.name.into(), raised);
     Ok(method)

@@ -74,13 +74,19 @@ impl Run {
     }
 
     /// Changes the simulation by `change`, which may refuse.
-    fn change(
+    fn change<T>(
         &self,
         py: Python<'_>,
-        change: impl FnOnce(&mut Simulation) -> Result<(), Error>,
-    ) -> PyResult<()> {
+        change: impl FnOnce(&mut Simulation) -> Result<T, Error>,
+    ) -> PyResult<T> {
         let mut simulation = self.simulation(py)?;
         change(&mut simulation).map_err(|error| of_error(py, &error, error.to_string()))
+    }
+
+    /// Checks that the run can advance to a time (s).
+    fn check_time(&self, py: Python<'_>, time: f64) -> PyResult<()> {
+        let checked = check_time(&*self.simulation(py)?, time);
+        checked.map_err(|why| wrong(py, why))
     }
 }
 
@@ -134,8 +140,7 @@ impl Run {
     #[pyo3(signature = (time, progress=None))]
     fn advance(&self, py: Python<'_>, time: f64, progress: Option<&Bound<PyAny>>) -> PyResult<()> {
         let calls = self.calls;
-        let checked = check_time(&*self.simulation(py)?, time);
-        checked.map_err(|why| wrong(py, why))?;
+        self.check_time(py, time)?;
         self.work(py, progress, move |run, go_on| {
             advance(run, time, calls, go_on)
         })
@@ -151,8 +156,7 @@ impl Run {
         time: f64,
         direction: i64,
     ) -> PyResult<bool> {
-        let checked = check_time(&*self.simulation(py)?, time);
-        checked.map_err(|why| wrong(py, why))?;
+        self.check_time(py, time)?;
         let function = Function::new(function, Shape::Number, &self.raised)?;
         let passage = match direction.signum() {
             0 => Passage::Either,
@@ -203,12 +207,7 @@ impl Run {
 
     /// Pins a particle where it is, or releases it, and returns whether it is pinned then.
     fn toggle_pin(&self, py: Python<'_>, particle: usize) -> PyResult<bool> {
-        let mut is_pinned = false;
-        self.change(py, |run| {
-            is_pinned = run.toggle_pin(particle)?;
-            Ok(())
-        })?;
-        Ok(is_pinned)
+        self.change(py, |run| run.toggle_pin(particle))
     }
 
     /// Grabs a particle with the hand.
@@ -219,23 +218,17 @@ impl Run {
     /// Pulls the grabbed particle towards a point (m).
     fn pull(&self, py: Python<'_>, point: [f64; 3]) -> PyResult<()> {
         if point.iter().any(|x| !x.is_finite()) {
-            return Err(wrong(
-                py,
-                format!("a point is three finite numbers in metres, not {point:?}"),
-            ));
+            let why = format!("a point is three finite numbers in metres, not {point:?}");
+            return Err(wrong(py, why));
         }
-        self.change(py, |run| {
-            run.pull(Vector3::from(point));
-            Ok(())
-        })
+        self.simulation(py)?.pull(Vector3::from(point));
+        Ok(())
     }
 
     /// Lets go of the grabbed particle.
     fn release(&self, py: Python<'_>) -> PyResult<()> {
-        self.change(py, |run| {
-            run.release();
-            Ok(())
-        })
+        self.simulation(py)?.release();
+        Ok(())
     }
 
     /// Returns the name of the scene.
@@ -428,15 +421,11 @@ fn named<T: Copy>(
     all: &[T],
     name_of: impl Fn(T) -> &'static str,
 ) -> Result<Option<T>, Failure> {
-    let Some(name) = name else {
-        return Ok(None);
-    };
+    let Some(name) = name else { return Ok(None) };
     let found = all.iter().copied().find(|choice| name_of(*choice) == name);
     found.map(Some).ok_or_else(|| {
         let names: Vec<_> = all.iter().map(|choice| name_of(*choice)).collect();
-        Failure::usage(format!(
-            "{option} `{name}`: the choices are {}",
-            names.join(", ")
-        ))
+        let names = names.join(", ");
+        Failure::usage(format!("{option} `{name}`: the choices are {names}"))
     })
 }

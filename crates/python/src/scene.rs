@@ -21,16 +21,14 @@ use super::own_system::{self, add_forces};
 /// # Errors
 /// There is no such scene, or it has a fault.
 pub fn source(kind: &str, text: &str) -> Result<Source, Failure> {
-    Ok(match kind {
-        "named" => setup::find(text, "scene")?,
-        "toml" => Source::written(text)?,
-        "table" => Source::tabulated(text)?,
-        _ => {
-            return Err(Failure::usage(format!(
-                "there is no kind of scene `{kind}`"
-            )));
-        }
-    })
+    match kind {
+        "named" => Ok(setup::find(text, "scene")?),
+        "toml" => Ok(Source::written(text)?),
+        "table" => Ok(Source::tabulated(text)?),
+        _ => Err(Failure::usage(format!(
+            "there is no kind of scene `{kind}`"
+        ))),
+    }
 }
 
 /// Scene that was read, or that a program has built.
@@ -81,8 +79,7 @@ impl OpenScene {
     pub fn command(&self, method: &Method, control: Control) -> Option<String> {
         match &self.made {
             Made::Read(source) if source.is_named() && !method.is_own() => {
-                let request = self.request(source);
-                Some(command(&request, method, control))
+                Some(command(&self.request(source), method, control))
             }
             _ => None,
         }
@@ -204,8 +201,10 @@ impl Opened {
     /// They are empty then.
     pub fn raised<'m>(&self, methods: impl IntoIterator<Item = &'m Method>) -> Vec<Raised> {
         let of_methods = methods.into_iter().filter_map(raised_by);
-        let all = [self.raised.clone()].into_iter().chain(of_methods);
-        let all: Vec<_> = all.collect();
+        let all: Vec<_> = [self.raised.clone()]
+            .into_iter()
+            .chain(of_methods)
+            .collect();
         for raised in &all {
             raised.take();
         }

@@ -143,10 +143,9 @@ impl Sweep {
                 } else {
                     ("step", "steps")
                 };
-                return Err(format!(
-                    "the solver {} takes {other}: the key `{what}` is missing",
-                    method.name
-                ));
+                let name = method.name;
+                let why = format!("the solver {name} takes {other}: the key `{what}` is missing");
+                return Err(why);
             }
         }
         if sweep.steps.is_empty() && sweep.tolerances.is_empty() {
@@ -167,9 +166,8 @@ impl Sweep {
     /// Returns the names of the swept keys, including the stiffness.
     pub fn names(&self) -> Vec<&str> {
         let names = self.keys.iter().map(|(path, _)| path.as_str());
-        names
-            .chain(self.stiffness.as_ref().map(|_| STIFFNESS))
-            .collect()
+        let factor = self.stiffness.as_ref().map(|_| STIFFNESS);
+        names.chain(factor).collect()
     }
 }
 

@@ -28,9 +28,8 @@ pub fn all(value: &Value) -> Result<Vec<Value>, String> {
         Value::Array(list) => Ok(list.clone()),
         Value::Object(table) => {
             if let Some(key) = table.keys().find(|key| !RANGE.contains(&key.as_str())) {
-                return Err(format!(
-                    "there is no key `{key}`: it must be {VALID_VALUES}"
-                ));
+                let why = format!("there is no key `{key}`: it must be {VALID_VALUES}");
+                return Err(why);
             }
             let number = |key: &str| {
                 let number = table.get(key).and_then(Value::as_f64);
@@ -106,33 +105,28 @@ pub fn set(at: &mut Value, path: &str, value: &Value) -> Result<(), String> {
         Some((first, rest)) => (first, Some(rest)),
         None => (path, None),
     };
-    match (at, first.parse::<usize>()) {
+    let item = match (at, first.parse::<usize>()) {
         (Value::Array(list), Ok(k)) => {
-            let count = list.len();
-            let item = list.get_mut(k).ok_or_else(|| {
-                format!(
-                    "there is no number {k}: the list has 0 to {}",
-                    count.max(1) - 1
-                )
-            })?;
-            set_in(item, rest, value)
+            let last = list.len().max(1) - 1;
+            let why = || format!("there is no number {k}: the list has 0 to {last}");
+            list.get_mut(k).ok_or_else(why)?
         }
-        (Value::Array(list), Err(_)) => list.iter_mut().try_for_each(|item| set(item, path, value)),
+        (Value::Array(list), Err(_)) => {
+            return list.iter_mut().try_for_each(|item| set(item, path, value));
+        }
         (Value::Object(table), _) => {
             let empty = || Value::Object(Map::new());
-            set_in(table.entry(first).or_insert_with(empty), rest, value)
+            table.entry(first).or_insert_with(empty)
         }
-        _ => Err(format!(
-            "there is no key `{first}` in a value that is not a table"
-        )),
+        _ => {
+            let why = format!("there is no key `{first}` in a value that is not a table");
+            return Err(why);
+        }
+    };
+    match rest {
+        Some(rest) => return set(item, rest, value),
+        None => item.clone_from(value),
     }
-}
-
-fn set_in(at: &mut Value, rest: Option<&str>, value: &Value) -> Result<(), String> {
-    if let Some(rest) = rest {
-        return set(at, rest, value);
-    }
-    at.clone_from(value);
     Ok(())
 }
 
