@@ -9,8 +9,9 @@ use a3_files::output;
 use a3_files::states::{States, read};
 use a3_files::{interrupt, terminal};
 use a3_lab::chart::{Label, describe};
-use a3_lab::judge::judgement::{Course, Judgement};
+use a3_lab::judge::judgement::Judgement;
 use a3_lab::judge::picture::chart;
+use a3_lab::judge::trial::Course;
 use a3_lab::judge::value::Record;
 use a3_lab::judge::words::{is_resolved, is_within, orders, text, too_large};
 

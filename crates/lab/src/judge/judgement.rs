@@ -1,24 +1,17 @@
 //! The judgement of a file.
 
-use std::cell::Cell;
-
-use a3_core::accuracy::{Frames, Horizon, Reference, Scope, horizon};
+use a3_core::accuracy::{Frames, Reference, Scope};
 use a3_core::stability::{Mode, spectrum};
 use a3_core::{Model, Network, Scene};
 use a3_files::failure::Failure;
-use a3_files::monitor::Monitor;
 use a3_files::states::States;
 
 use super::grid::gcd;
-use super::plain::Plain;
 use super::rows::{Difference, Rows, difference, distance, farthest, with_y_up};
 use super::search::{Match, search};
-use super::trial::Judged;
-use crate::chart::check_motion;
+use super::trial::{Course, Judged, stopped};
 use crate::chart::measure::{precision, reference};
 
-/// Largest time that is judged (s).
-const MAX_TIME: f64 = 1000.0;
 /// Ratio of the error with the axes y and z exchanged to that without, below which they are.
 const MUCH_LESS: f64 = 0.1;
 /// Largest number of coordinates in all frames of a reference.
@@ -30,23 +23,6 @@ const FRAMES_PER_RADIAN: f64 = 10.0;
 const MIN_RATE: f64 = 60.0;
 /// Largest error of a time at which it is that of a frame, relative to it.
 const TOLERANCE: f64 = 1e-9;
-
-/// Scene with all that judgements of its files share.
-pub struct Course<'a> {
-    /// Companion of the work, which may stop it.
-    pub monitor: &'a dyn Monitor,
-    pub scene: &'a Scene,
-    /// The scene as masses and springs, if it is that.
-    pub plain: Option<Plain>,
-    /// How far errors mean something; states are judged up to its end.
-    pub horizon: Horizon,
-    /// Step of the programs (s), if it is known.
-    pub step: Option<f64>,
-    /// Work of the present search, in springs and particles that are visited.
-    pub work: Cell<f64>,
-    /// References that were computed, each with states at the times of some file.
-    references: Vec<Reference>,
-}
 
 /// Errors of a file, and the method that it agrees with.
 #[derive(Clone, Debug, Default)]
@@ -126,37 +102,7 @@ impl Drift {
     }
 }
 
-impl<'a> Course<'a> {
-    /// Finds how long errors mean something on the scene, up to the last of all states (s) or to
-    /// `until` (s).
-    ///
-    /// # Errors
-    /// Nothing moves, a run fails, or the monitor stopped it.
-    pub fn new(
-        scene: &'a Scene,
-        last: f64,
-        until: Option<f64>,
-        step: Option<f64>,
-        monitor: &'a dyn Monitor,
-    ) -> Result<Self, Failure> {
-        let last = last.min(MAX_TIME).min(until.unwrap_or(f64::INFINITY));
-        let found = horizon(scene, last, &|| monitor.go_on()).map_err(Failure::run)?;
-        let mut horizon = found.ok_or_else(stopped)?;
-        check_motion(scene, &horizon)?;
-        if !horizon.lyapunov.is_finite() || until.is_some() {
-            horizon.until = last;
-        }
-        Ok(Self {
-            monitor,
-            scene,
-            plain: Plain::of(scene).ok(),
-            horizon,
-            step,
-            work: Cell::default(),
-            references: vec![],
-        })
-    }
-
+impl Course<'_> {
     /// Judges the states of a file.
     ///
     /// # Errors
@@ -230,11 +176,6 @@ impl<'a> Course<'a> {
             count: count as u64,
         })
     }
-}
-
-/// Creates the failure of a command that was interrupted before all files were judged.
-fn stopped() -> Failure {
-    Failure::Interrupted("interrupted before all files were judged".into())
 }
 
 /// Returns whether a reference has states at the times of rows.

@@ -7,7 +7,8 @@ use a3_files::bar::Bar;
 use a3_files::failure::Failure;
 use a3_plot::{Mark, WorkPrecision};
 
-use super::judgement::{Course, Judgement};
+use super::judgement::Judgement;
+use super::trial::Course;
 use crate::chart::measure::{Measured, Study};
 use crate::chart::record::Data;
 use crate::chart::{Chart, Label, methods};

@@ -1,16 +1,23 @@
-//! Trials: a method, or a scheme with a mistake, against the rows of a file; and fits of a constant
-//! of the scene to these rows, by least squares.
+//! Trials on the course of a scene: a method, or a scheme with a mistake, against the rows of a
+//! file; and fits of a constant of the scene to these rows, by least squares.
 
+use std::cell::Cell;
+
+use a3_core::accuracy::{Horizon, Reference, horizon};
 use a3_core::integrators::METHODS;
 use a3_core::{Control, Method, Scene, Simulation};
+use a3_files::failure::Failure;
+use a3_files::monitor::Monitor;
 
 use super::constant::{Change, Mistake};
 use super::grid::Pace;
-use super::judgement::Course;
 use super::plain::{Forces, Plain};
 use super::rows::{Rows, columns, distance};
 use super::scheme::{PlainRun, Scheme};
+use crate::chart::check_motion;
 
+/// Largest time that is judged (s).
+const MAX_TIME: f64 = 1000.0;
 /// Largest distance of rows that agree, over the distance moved until then.
 const AGREEMENT: f64 = 1e-9;
 /// Largest distance of rows that agree, over the size of the scene: its rounding errors.
@@ -131,6 +138,23 @@ pub struct Compared {
     pub velocities: Option<[f64; 2]>,
 }
 
+/// Scene with all that judgements of its files share.
+pub struct Course<'a> {
+    /// Companion of the work, which may stop it.
+    pub monitor: &'a dyn Monitor,
+    pub scene: &'a Scene,
+    /// The scene as masses and springs, if it is that.
+    pub plain: Option<Plain>,
+    /// How far errors mean something; states are judged up to its end.
+    pub horizon: Horizon,
+    /// Step of the programs (s), if it is known.
+    pub step: Option<f64>,
+    /// Work of the present search, in springs and particles that are visited.
+    pub work: Cell<f64>,
+    /// References that were computed, each with states at the times of some file.
+    pub references: Vec<Reference>,
+}
+
 /// Scene and rows against which trials run.
 #[derive(Clone)]
 pub struct Judged<'a> {
@@ -189,6 +213,43 @@ impl Run<'_> {
             Self::Plain(run) => [&run.x, &run.v].map(|vectors| columns(vectors)),
         }
     }
+}
+
+impl<'a> Course<'a> {
+    /// Finds how long errors mean something on the scene, up to the last of all states (s) or to
+    /// `until` (s).
+    ///
+    /// # Errors
+    /// Nothing moves, a run fails, or the monitor stopped it.
+    pub fn new(
+        scene: &'a Scene,
+        last: f64,
+        until: Option<f64>,
+        step: Option<f64>,
+        monitor: &'a dyn Monitor,
+    ) -> Result<Self, Failure> {
+        let last = last.min(MAX_TIME).min(until.unwrap_or(f64::INFINITY));
+        let found = horizon(scene, last, &|| monitor.go_on()).map_err(Failure::run)?;
+        let mut horizon = found.ok_or_else(stopped)?;
+        check_motion(scene, &horizon)?;
+        if !horizon.lyapunov.is_finite() || until.is_some() {
+            horizon.until = last;
+        }
+        Ok(Self {
+            monitor,
+            scene,
+            plain: Plain::of(scene).ok(),
+            horizon,
+            step,
+            work: Cell::default(),
+            references: vec![],
+        })
+    }
+}
+
+/// Creates the failure of a command that was interrupted before all files were judged.
+pub fn stopped() -> Failure {
+    Failure::Interrupted("interrupted before all files were judged".into())
 }
 
 impl<'a> Judged<'a> {

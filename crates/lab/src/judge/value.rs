@@ -9,8 +9,9 @@ use a3_files::states::{parse, read};
 use serde::Serialize;
 
 use super::constant::Mistake;
-use super::judgement::{Course, Drift, Judgement};
+use super::judgement::{Drift, Judgement};
 use super::search::Agreement;
+use super::trial::Course;
 use super::words::{difference, is_within, mistake, question, text};
 use crate::chart::check_scene;
 

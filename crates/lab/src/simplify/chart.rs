@@ -48,8 +48,8 @@ struct Grid {
 /// not limited by the grid.
 const LONG_STEPS: [&str; 2] = ["implicit", "tr-bdf2"];
 
-/// Measures the runs of the chart. `None` if the scene has one grid only, or if grids differ by more
-/// than the motion.
+/// Measures the runs of the chart. `None` if the scene has one grid only, or if grids differ by
+/// more than the motion.
 pub fn chart(
     models: &Models,
     whole: &Solved,

@@ -1,6 +1,6 @@
 //! The interface of all exports, with checks and encodings of numbers for several of them; and the
-//! geometry of a scene for other programs: a surface with normals, and lines and points of particles
-//! without one.
+//! geometry of a scene for other programs: a surface with normals, and lines and points of
+//! particles without one.
 
 use std::collections::BTreeSet;
 use std::io::{self, Write};
