@@ -54,7 +54,7 @@ impl<'a> Rows<'a> {
         let grid = known.or_else(|| Grid::of(times, rounding).filter(meets));
         let numbers = count * states.positions[0].len();
         let every = round(numbers.div_ceil(MAX_NUMBERS).max(count.div_ceil(MAX_ROWS)));
-        let grid_ends = |grid: &Grid, k: usize| grid.numbers[k] % every as u64 == 0;
+        let grid_ends = |grid: &Grid, k: usize| grid.numbers[k].is_multiple_of(every as u64);
         let is_kept = |k: &usize| grid.as_ref().is_none_or(|grid| grid_ends(grid, *k));
         let first = (0..every.min(count)).find(is_kept).unwrap_or(0);
         let kept: Vec<_> = (first..count).step_by(every).collect();
