@@ -80,11 +80,8 @@ fn exchanged(energies: &[Energy]) -> f64 {
     };
     let kinetic = energies.iter().map(|e| e.kinetic).fold(0.0, f64::max);
     let elastic = width(|e| e.elastic + e.contact);
-    let all = width(Energy::total);
-    kinetic
-        .max(elastic)
-        .max(width(|e| e.gravitational))
-        .max(all)
+    let others = [width(|e| e.gravitational), width(Energy::total)];
+    others.into_iter().fold(kinetic.max(elastic), f64::max)
 }
 
 /// Returns a sentence about the alarm of scene k if it is false, or missing.
