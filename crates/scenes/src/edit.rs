@@ -1,15 +1,14 @@
-//! Edits of a scene: bodies, particles, springs, rods and ropes that come or go.
+//! Edits of a scene: bodies, particles, springs, rods and ropes that come or go, and the numbers of
+//! the others since then.
 
 use a3_core::Network;
 use a3_core::elements::Fluid as Liquid;
 use a3_core::rigid::Body;
 
 use crate::description::{
-    ConstraintSpec, Description, Fluid, Particles, RigidBody, SpringSpec, Triple,
+    ConstraintSpec, Description, Fluid, Particles, Pin, RigidBody, SpringSpec, Triple,
 };
-use crate::renumber;
 use crate::snapshot::rows;
-use crate::splice::{Splice, keep};
 
 /// Edit of a scene. Particles have the numbers that they have before the edit.
 #[derive(Clone, Debug, PartialEq)]
@@ -275,7 +274,7 @@ impl Edited {
     /// Adds rows of particles to the state, and numbers all others anew.
     fn insert(&mut self, at: usize, (positions, velocities): (Vec<Triple>, Vec<Triple>)) {
         self.particles = Splice::new(at, 0, positions.len());
-        renumber::particles(&mut self.description, self.particles);
+        renumber_particles(&mut self.description, self.particles);
         if let Some(state) = &mut self.description.state {
             let moves = velocities.iter().any(|v| *v != [0.0; 3]);
             if state.velocities.is_empty() && moves {
@@ -290,7 +289,7 @@ impl Edited {
     /// anew.
     fn remove(&mut self, at: usize, removed: usize) {
         self.particles = Splice::new(at, removed, 0);
-        renumber::particles(&mut self.description, self.particles);
+        renumber_particles(&mut self.description, self.particles);
         if let Some(state) = &mut self.description.state {
             for rows in [&mut state.positions, &mut state.velocities] {
                 self.particles.of(rows, []);
@@ -301,7 +300,7 @@ impl Edited {
     /// Removes body k from joints, pins and the state, and numbers the others anew.
     fn forget_body(&mut self, k: usize) {
         self.bodies = Splice::new(k, 1, 0);
-        renumber::bodies(&mut self.description, self.bodies);
+        renumber_bodies(&mut self.description, self.bodies);
         if let Some(state) = &mut self.description.state {
             self.bodies.of(&mut state.orientations, []);
             self.bodies.of(&mut state.angular_momenta, []);
@@ -324,4 +323,126 @@ impl Particles {
         }
         self.pin.retain(|pin| !pin.particles.is_empty());
     }
+}
+
+/// Numbers all particles anew that the scene names, and forgets what names a removed one.
+fn renumber_particles(description: &mut Description, particles: Splice) {
+    let number = |i: usize| particles.number(i);
+    let pair = |[i, j]: [usize; 2]| Some([number(i)?, number(j)?]);
+    let Description {
+        springs,
+        constraint,
+        pin,
+        torn,
+        trail,
+        ..
+    } = description;
+    keep(springs, |it| {
+        let [i, j] = pair([it.0, it.1])?;
+        Some((i, j, it.2, it.3, it.4))
+    });
+    keep(torn, |it| pair(*it));
+    keep(constraint, |it| {
+        let mut it = it.clone();
+        for ends in [&mut it.rod, &mut it.rope].into_iter().flatten() {
+            *ends = pair(*ends)?;
+        }
+        if let Some(i) = &mut it.particle {
+            *i = number(*i)?;
+        }
+        Some(it)
+    });
+    for Pin { particles, .. } in pin.iter_mut() {
+        keep(particles, |i| number(*i));
+    }
+    pin.retain(|pin| !pin.particles.is_empty());
+    *trail = trail.and_then(number);
+}
+
+/// Numbers all rigid bodies anew that joints and pins name, and forgets the joints and the pins of
+/// a removed one.
+fn renumber_bodies(description: &mut Description, bodies: Splice) {
+    let number = |k: usize| bodies.number(k);
+    keep(&mut description.joint, |it| {
+        let mut it = it.clone();
+        if let Some(k) = &mut it.body {
+            *k = number(*k)?;
+        }
+        if let Some([k, l]) = &mut it.bodies {
+            (*k, *l) = (number(*k)?, number(*l)?);
+        }
+        Some(it)
+    });
+    let fit = |pins: &mut Vec<Pin>| {
+        keep(pins, |pin| {
+            let body = match pin.body {
+                Some(k) => Some(number(k)?),
+                None => None,
+            };
+            Some(Pin {
+                body,
+                ..pin.clone()
+            })
+        });
+    };
+    fit(&mut description.pin);
+    let pinned = description.bodies_mut().filter_map(|body| body.pin);
+    pinned.for_each(fit);
+}
+
+/// Places of a list from which an edit removed items, and to which it added others.
+///
+/// ```
+/// let gap = a3_scenes::Splice { at: 3, removed: 1, added: 0 };
+/// assert_eq!([2, 3, 4].map(|i| gap.number(i)), [Some(2), None, Some(3)]);
+/// assert_eq!(gap.back().number(3), Some(4));
+/// ```
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Splice {
+    /// Number of the first of these items.
+    pub at: usize,
+    /// Number of items that were removed.
+    pub removed: usize,
+    /// Number of items that were added.
+    pub added: usize,
+}
+
+impl Splice {
+    /// Returns the number of item i since the edit; `None` if it was removed.
+    #[must_use]
+    pub fn number(&self, i: usize) -> Option<usize> {
+        match i.checked_sub(self.at) {
+            None => Some(i),
+            Some(after) if after < self.removed => None,
+            Some(after) => Some(self.at + after - self.removed + self.added),
+        }
+    }
+
+    /// Returns the splice that undoes this one.
+    #[must_use]
+    pub fn back(self) -> Self {
+        Self {
+            removed: self.added,
+            added: self.removed,
+            ..self
+        }
+    }
+
+    /// Creates the places from which items were removed, and to which others were added.
+    pub(crate) fn new(at: usize, removed: usize, added: usize) -> Self {
+        Self { at, removed, added }
+    }
+
+    /// Edits a list, with `new` items at their places. One that is empty, as if it were not given,
+    /// stays so.
+    pub(crate) fn of<T>(self, list: &mut Vec<T>, new: impl IntoIterator<Item = T>) {
+        if !list.is_empty() {
+            list.splice(self.at..self.at + self.removed, new);
+        }
+    }
+}
+
+/// Replaces each item of a list by another one, or removes it.
+fn keep<T>(list: &mut Vec<T>, change: impl FnMut(&T) -> Option<T>) {
+    *list = list.iter().filter_map(change).collect();
 }

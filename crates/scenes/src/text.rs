@@ -2,6 +2,7 @@
 
 use std::borrow::Cow;
 use std::ops::Range;
+use std::str::FromStr;
 
 /// Byte order mark of UTF-8.
 const MARK: &[u8] = b"\xef\xbb\xbf";
@@ -117,6 +118,11 @@ impl<'a> Iterator for Lines<'a> {
 /// Shortens a word for a message.
 pub(crate) fn brief(word: &[u8]) -> Cow<'_, str> {
     String::from_utf8_lossy(&word[..word.len().min(40)])
+}
+
+/// Reads a word as a number.
+pub(crate) fn number<T: FromStr>(word: &[u8]) -> Option<T> {
+    str::from_utf8(word).ok()?.parse().ok()
 }
 
 /// Splits a statement into words, at spaces, ends of lines and backslashes.

@@ -1,19 +1,20 @@
 //! Assembly of the bodies of a scene: their particles, numbered through, and the springs, rods and
-//! skins that join and cover them.
+//! skins that join and cover them; what they are made from; and their state.
 
 use std::ops::Range;
+use std::sync::Arc;
 
-use a3_core::contact::Skin;
+use a3_core::contact::{ClosedMesh, Shape, Skin};
 use a3_core::elements::{Buckling, FluidLaw, Gas, Outflow, Sheet, Solid};
-use a3_core::rigid::{self, Rotation};
-use a3_core::{Constraint, Spring, Vector3};
+use a3_core::rigid::{ROTATION, Rotation};
+use a3_core::{Constraint, Spring, Vector3, rigid, rotation};
 use nalgebra::Rotation3;
 
-use super::files::Files;
-use super::pins::Pinned;
-use crate::check::{COORDINATES, is_coordinate};
-use crate::description::{Fluid, Keys, Spot, Triple};
-use crate::fault::Fault;
+use super::motion::Pinned;
+use crate::budget::{BODIES, Budget, FACES, PARTICLES, Part, TOUCHING, TRIANGLES};
+use crate::description::{Fluid, Keys, Spot, State, Triple};
+use crate::fault::{COORDINATES, Fault, at, is_coordinate, positive};
+use crate::mesh::Mesh;
 use crate::setup::Presentation;
 
 /// Body of a scene. The keys of its faults are relative to the body.
@@ -162,4 +163,118 @@ impl Assembly<'_> {
             Err(Fault::new("", why))
         })
     }
+}
+
+/// Reader of the files of a scene, and the budget from which their parts are taken.
+pub(super) struct Files<'a> {
+    pub budget: Budget,
+    pub mesh: &'a mut dyn FnMut(&str) -> Result<Mesh, String>,
+    /// Whether surfaces touch.
+    pub touching: bool,
+}
+
+impl Files<'_> {
+    /// Takes a body, its particles and other parts from the budget, before any memory is reserved.
+    pub fn spend(&mut self, particles: usize, others: &[(usize, Part)]) -> Result<(), Fault> {
+        let touching = if self.touching { particles } else { 0 };
+        let own = [(1, BODIES), (particles, PARTICLES), (touching, TOUCHING)];
+        for (count, part) in own.iter().chain(others) {
+            self.budget.spend("", *count, *part)?;
+        }
+        Ok(())
+    }
+
+    /// Reads the mesh of a file.
+    pub fn read(&mut self, file: &str) -> Result<Mesh, Fault> {
+        at("file", (self.mesh)(file))
+    }
+
+    /// Reads the solid within the triangles of a file, scaled and turned about the file's origin,
+    /// and its smallest extent (m). Points at the same place are merged.
+    pub fn solid(
+        &mut self,
+        file: &str,
+        scale: Option<f64>,
+        turn: Option<Triple>,
+    ) -> Result<(Shape, f64), Fault> {
+        let scale = scale.unwrap_or(1.0);
+        at("scale", positive("it", scale))?;
+        let turn = rotation(Vector3::from(turn.unwrap_or_default()));
+        let mesh = self.read(file)?;
+        self.budget.spend("file", mesh.triangles.len(), TRIANGLES)?;
+        let mesh = mesh.welded();
+        self.budget.spend("file", mesh.triangles.len(), FACES)?;
+        let points = mesh.positions.iter();
+        let points: Vec<_> = points.map(|p| turn * (Vector3::from(*p) * scale)).collect();
+        let far = Vector3::repeat(f64::INFINITY);
+        let around = |(low, high): (Vector3<f64>, Vector3<f64>), p| (low.inf(p), high.sup(p));
+        let (low, high) = points.iter().fold((far, -far), around);
+        let solid = at("file", ClosedMesh::new(points, mesh.triangles))?;
+        Ok((Shape::Mesh(Arc::new(solid)), (high - low).min()))
+    }
+}
+
+/// Creates the state of particles from their positions (m) and velocities (m/s).
+pub(super) fn state_of(positions: &[Vector3<f64>], velocities: &[Vector3<f64>]) -> Vec<f64> {
+    [positions, velocities]
+        .into_iter()
+        .flat_map(|rows| (0..3).flat_map(move |axis| rows.iter().map(move |row| row[axis])))
+        .collect()
+}
+
+/// Sets a state to the given one: without positions, those of the bodies stay. A first-order system
+/// has positions only.
+pub(super) fn write_state(given: &State, particles: usize, state: &mut [f64]) -> Result<(), Fault> {
+    let parts = [
+        ("state.positions", &given.positions),
+        ("state.velocities", &given.velocities),
+    ];
+    let positions = 3 * particles;
+    let (halves, rotations) = state.split_at_mut(state.len().min(2 * positions));
+    write_rotations(given, rotations)?;
+    halves[positions..].fill(0.0);
+    for ((key, rows), out) in parts.into_iter().zip(halves.chunks_exact_mut(positions)) {
+        if rows.is_empty() {
+            continue;
+        }
+        if rows.len() != particles {
+            let why = format!("there are {}, but {particles} particles", rows.len());
+            return Err(Fault::new(key, why));
+        }
+        for (i, row) in rows.iter().enumerate() {
+            for axis in 0..3 {
+                out[axis * particles + i] = row[axis];
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Sets the rotations of rigid bodies to the given ones, if there are any.
+fn write_rotations(given: &State, state: &mut [f64]) -> Result<(), Fault> {
+    let bodies = state.len() / ROTATION;
+    let (turned, momenta) = (&given.orientations, &given.angular_momenta);
+    for (key, count) in [
+        ("state.orientations", turned.len()),
+        ("state.angular_momenta", momenta.len()),
+    ] {
+        if count != 0 && count != bodies {
+            let why = format!("there are {count}, but {bodies} rigid bodies");
+            return Err(Fault::new(key, why));
+        }
+    }
+    for (k, numbers) in state.chunks_exact_mut(ROTATION).enumerate() {
+        if let Some(q) = turned.get(k) {
+            let squared: f64 = q.iter().map(|q| q * q).sum();
+            if squared == 0.0 {
+                let why = format!("that of body {k}, counted from 0, has no length");
+                return Err(Fault::new("state.orientations", why));
+            }
+            numbers[..4].copy_from_slice(q);
+        }
+        if let Some(momentum) = momenta.get(k) {
+            numbers[4..].copy_from_slice(momentum);
+        }
+    }
+    Ok(())
 }

@@ -1,10 +1,13 @@
-//! Rods, ropes and wires.
+//! Rods, ropes and wires, joints of rigid bodies, and particles that are attached to these.
 
-use a3_core::{Constraint, Network, Scene, Vector3};
+use a3_core::constraints::{Joint, JointKind, Stop};
+use a3_core::rigid::{Drive, Motor};
+use a3_core::{Constraint, Network, Path, Pose, Scene, Vector3};
 
-use crate::check::{at, key_of, share};
-use crate::description::{ConstraintSpec, Description};
-use crate::fault::Fault;
+use super::motion::Pinned;
+use crate::budget::{Budget, RODS};
+use crate::description::{ConstraintSpec, Description, JointSpec};
+use crate::fault::{Fault, at, key_of, share};
 
 /// Largest error of a constraint at the start, relative to its length.
 const MAX_INITIAL_ERROR: f64 = 1e-3;
@@ -142,4 +145,213 @@ fn wire(particle: usize, spec: &ConstraintSpec) -> Result<Constraint, Fault> {
             return Err(Fault::new("", why));
         }
     })
+}
+
+/// Largest numbers of joints and of attached particles: the time of a step may grow with the square
+/// of these.
+const MAX_JOINTS: usize = 1000;
+const MAX_ATTACHED: usize = 10_000;
+
+/// Number of rods that take as much memory as a joint with its limits.
+const RODS_PER_JOINT: usize = 6;
+
+/// Adds the joints of the description, and the attached particles, where they are in a state.
+pub(super) fn add_joints(
+    description: &Description,
+    budget: &mut Budget,
+    pins: &Pinned,
+    network: &mut Network,
+    state: &[f64],
+) -> Result<(), Fault> {
+    let all = &description.joint;
+    for (key, count, most, what) in [
+        ("joint", all.len(), MAX_JOINTS, "joints"),
+        (
+            "pin.body",
+            pins.attached.len(),
+            MAX_ATTACHED,
+            "particles that are attached to bodies",
+        ),
+    ] {
+        if count > most {
+            let why = format!("the scene has {count} {what}; at most {most} are allowed");
+            return Err(Fault::new(key, why));
+        }
+    }
+    budget.spend("joint", RODS_PER_JOINT * all.len(), RODS)?;
+    for (k, spec) in all.iter().enumerate() {
+        let added = join(spec, network, state);
+        added.map_err(|fault| fault.within(&key_of("joint", k, all.len())))?;
+    }
+    let n = network.particles();
+    for &(i, k) in &pins.attached {
+        at("pin.body", check_body(network, k))?;
+        let there = Vector3::new(state[i], state[n + i], state[2 * n + i]);
+        let own = Pose {
+            place: Path::Still(there).at(0.0),
+            orientation: None,
+        };
+        let (center, pose) = (network.bodies()[k].center(), network.pose(k, state));
+        let sides = ((i, &own), Some((center, &pose)));
+        let length = network.bodies()[k].radius();
+        let joint = Joint::new(JointKind::Ball, sides, (there, Vector3::x()), length);
+        let joint = at("pin.body", joint)?;
+        at("pin.body", network.add_constraint(Constraint::Joint(joint)))?;
+    }
+    Ok(())
+}
+
+/// Adds a joint, with its limits and its motor.
+fn join(spec: &JointSpec, network: &mut Network, state: &[f64]) -> Result<(), Fault> {
+    let (moved, other) = match (spec.body, spec.bodies) {
+        (Some(k), None) => (k, None),
+        (None, Some([other, k])) => (k, Some(other)),
+        _ => {
+            let why =
+                "give either `body`, for a joint with the world, or `bodies` with two numbers";
+            return Err(Fault::new("", why));
+        }
+    };
+    let key = if other.is_some() { "bodies" } else { "body" };
+    for k in other.into_iter().chain([moved]) {
+        at(key, check_body(network, k))?;
+    }
+    let pose = |k: usize| (network.bodies()[k].center(), network.pose(k, state));
+    let (own, against) = (pose(moved), other.map(pose));
+    let center = own.1.place.position;
+    let vector = |of: &[f64; 3]| Vector3::from(*of);
+    let along_x = |there| (there, Vector3::x());
+    let kinds = [
+        spec.ball
+            .map(|there| ("ball", JointKind::Ball, along_x(there.into()))),
+        spec.hinge.as_ref().map(|hinge| {
+            let place = (vector(&hinge.at), vector(&hinge.axis));
+            ("hinge.axis", JointKind::Hinge, place)
+        }),
+        spec.slider.as_ref().map(|slider| {
+            let place = (center, vector(&slider.axis));
+            ("slider.axis", JointKind::Slider, place)
+        }),
+        spec.fixed
+            .then(|| ("fixed", JointKind::Fixed, along_x(center))),
+    ];
+    let mut kinds = kinds.into_iter().flatten();
+    let (Some((key, kind, place)), None) = (kinds.next(), kinds.next()) else {
+        let why = "give one of `ball`, `hinge`, `slider` and `fixed = true`";
+        return Err(Fault::new("", why));
+    };
+    let sides = (
+        (own.0, &own.1),
+        against.as_ref().map(|(i, pose)| (*i, pose)),
+    );
+    let length = network.bodies()[moved].radius();
+    let joint = at(key, Joint::new(kind, sides, place, length))?;
+    at("", network.add_constraint(Constraint::Joint(joint)))?;
+    let free = match (&spec.hinge, &spec.slider) {
+        (Some(hinge), _) => Free {
+            name: "hinge",
+            limits: hinge.limits,
+            restitution: hinge.restitution,
+            drive: Drive::Rotary,
+            effort: ("torque", hinge.torque),
+            speed: hinge.speed,
+        },
+        (_, Some(slider)) => Free {
+            name: "slider",
+            limits: slider.limits,
+            restitution: slider.restitution,
+            drive: Drive::Linear,
+            effort: ("force", slider.force),
+            speed: slider.speed,
+        },
+        _ => return Ok(()),
+    };
+    let added = free.limit(network, joint);
+    added
+        .and_then(|()| free.drive(network, (moved, other), &joint))
+        .map_err(|fault| fault.within(free.name))
+}
+
+/// Motion that a hinge or a slider lets free: its limits and its motor.
+struct Free {
+    /// Key of the joint.
+    name: &'static str,
+    limits: Option<[f64; 2]>,
+    restitution: Option<f64>,
+    drive: Drive,
+    /// Key and value of the torque (N m) or the force (N) of the motor.
+    effort: (&'static str, Option<f64>),
+    speed: Option<f64>,
+}
+
+impl Free {
+    /// Adds the limits, if there are any.
+    fn limit(&self, network: &mut Network, joint: Joint) -> Result<(), Fault> {
+        let Some(limits) = self.limits else {
+            return match self.restitution {
+                None => Ok(()),
+                Some(_) => Err(Fault::new("restitution", "a rebound needs `limits`")),
+            };
+        };
+        if !(limits[0] <= 0.0 && limits[1] >= 0.0) {
+            let [least, most] = limits;
+            let why = format!(
+                "the first must be at most 0 and the second at least 0, because the joint is at 0 \
+                 where the bodies are as described, not {least} and {most}"
+            );
+            return Err(Fault::new("limits", why));
+        }
+        let restitution = self.restitution.unwrap_or(0.0);
+        if !(0.0..=1.0).contains(&restitution) {
+            let why = format!("must be from 0 to 1, not {restitution}");
+            return Err(Fault::new("restitution", why));
+        }
+        for is_upper in [false, true] {
+            let stop = Stop {
+                joint,
+                limits,
+                is_upper,
+                restitution,
+            };
+            at("limits", network.add_constraint(Constraint::Stop(stop)))?;
+        }
+        Ok(())
+    }
+
+    /// Adds the motor, if there is one.
+    fn drive(
+        &self,
+        network: &mut Network,
+        (first, second): (usize, Option<usize>),
+        joint: &Joint,
+    ) -> Result<(), Fault> {
+        let (key, effort) = self.effort;
+        let Some(effort) = effort else {
+            if self.speed.is_some() {
+                let why = format!("a motor also needs its `{key}`");
+                return Err(Fault::new("speed", why));
+            }
+            return Ok(());
+        };
+        let motor = Motor {
+            drive: self.drive,
+            first,
+            second,
+            axis: joint.axes[0].column(0).into_owned(),
+            effort,
+            speed: self.speed,
+        };
+        at(key, network.add_motor(motor))
+    }
+}
+
+fn check_body(network: &Network, k: usize) -> Result<(), String> {
+    match network.bodies().len() {
+        count if k < count => Ok(()),
+        0 => Err("there is no rigid body".into()),
+        count => Err(format!(
+            "there is no rigid body {k}: they are numbered 0 to {}",
+            count - 1
+        )),
+    }
 }

@@ -7,18 +7,14 @@
 use std::ops::Range;
 
 use a3_core::contact::Skin;
-use a3_core::elements::{Fluid as Liquid, FluidLaw, Outflow};
+use a3_core::elements::{Fluid as Liquid, FluidLaw, Outflow as Space};
 use a3_core::{Network, Path, Pin as Held, Rounded, Vector3};
 
-use super::assembly::{Assembly, Body};
-use super::files::Files;
-use super::outflow::{MAX_OUTFLOWS, SLACK, spaces};
-use super::places::{LAYERS, Places};
+use super::assembly::{Assembly, Body, Files};
 use super::skins::point_skin;
 use crate::budget::{PINS, SMOOTHED};
-use crate::check::{at, at_least, key_of, positive};
-use crate::description::{Fluid, FluidShape, Inflow, SkinKeys};
-use crate::fault::Fault;
+use crate::description::{Fluid, FluidShape, Inflow, Outflow, SkinKeys};
+use crate::fault::{Fault, at, at_least, key_of, positive};
 
 /// Thickness of the skin of a particle, relative to the spacing.
 const THICKNESS: f64 = 1.0;
@@ -47,7 +43,7 @@ struct Lattices {
     /// Liquid that flows in.
     column: Option<Column>,
     /// Space in which it flows out.
-    outflows: Vec<Outflow>,
+    outflows: Vec<Space>,
 }
 
 impl Fluid {
@@ -234,7 +230,7 @@ impl Body for Fluid {
 /// `soaked` points of rigid bodies.
 pub(super) fn add(
     fluid: Option<(FluidLaw, Vec<Range<usize>>)>,
-    outflows: Vec<Outflow>,
+    outflows: Vec<Space>,
     soaked: Vec<Range<usize>>,
     network: &mut Network,
     x: &[f64],
@@ -397,5 +393,132 @@ impl Column {
     /// Returns the distance (m) of a place behind the opening.
     fn depth(&self, place: Vector3<f64>) -> f64 {
         (self.opening - place).dot(&self.velocity) / self.speed
+    }
+}
+
+/// Distance outside an outflow at which a particle is inside, relative to the spacing.
+const SLACK: f64 = 1e-6;
+
+/// Largest number of outflows of all fluids of a scene.
+const MAX_OUTFLOWS: usize = 100;
+
+/// Returns the outflows of a fluid. In two dimensions they are two spacings thick.
+fn spaces(fluid: &Fluid) -> Result<Vec<Space>, Fault> {
+    let spaces = fluid.outflow.iter().enumerate().map(|(k, outflow)| {
+        let space = space(outflow, fluid);
+        space.map_err(|fault| fault.within(&format!("outflow[{k}]")))
+    });
+    spaces.collect()
+}
+
+fn space(outflow: &Outflow, fluid: &Fluid) -> Result<Space, Fault> {
+    let mut half = 0.5 * Vector3::from(outflow.size);
+    if fluid.dimensions == 2 {
+        if half.z != 0.0 {
+            let why = format!(
+                "in two dimensions, its last number is 0, not {}",
+                outflow.size[2]
+            );
+            return Err(Fault::new("size", why));
+        }
+        half.z = fluid.spacing;
+    }
+    for half in half.iter() {
+        at("size", positive("each edge", *half))?;
+    }
+    Ok(Space {
+        at: outflow.at.into(),
+        half,
+    })
+}
+
+/// Lets the liquid leave the scene that begins in an outflow.
+pub(super) fn drain(network: &mut Network, state: &mut [f64]) {
+    let spacing = network.fluid().map(|fluid| fluid.law().spacing);
+    if let Some(spacing) = spacing {
+        network.drain(state, SLACK * spacing);
+    }
+}
+
+/// Number of layers of particles in a wall: with three, the fluid particles next to a wall have all
+/// their neighbours.
+pub const LAYERS: u32 = 3;
+
+/// Lattice of the particles of a fluid, a tank or a column that flows in.
+struct Places {
+    /// Number of lattice points along each axis.
+    counts: [i64; 3],
+    /// Corner of the lattice (m).
+    corner: Vector3<f64>,
+    spacing: f64,
+    flat: bool,
+}
+
+impl Places {
+    /// Creates the lattice that fills a box.
+    pub fn new(fluid: &Fluid, size: [f64; 3], center: [f64; 3]) -> Result<Self, Fault> {
+        let flat = fluid.dimensions == 2;
+        let mut counts = [1; 3];
+        for (axis, (count, size)) in counts.iter_mut().zip(size).enumerate() {
+            if flat && axis == 2 {
+                if size != 0.0 {
+                    let why = format!("in two dimensions, its last number is 0, not {size}");
+                    return Err(Fault::new("size", why));
+                }
+                continue;
+            }
+            at("size", positive("each edge", size))?;
+            let whole = (size / fluid.spacing).round();
+            if whole < 1.0 || (whole * fluid.spacing - size).abs() > 1e-6 * size {
+                let why = format!(
+                    "each edge must be a whole multiple of the spacing {}, not {size}",
+                    fluid.spacing
+                );
+                return Err(Fault::new("size", why));
+            }
+            *count = whole as i64;
+        }
+        Ok(Self {
+            counts,
+            corner: Vector3::from(center) - 0.5 * Vector3::from(size),
+            spacing: fluid.spacing,
+            flat,
+        })
+    }
+
+    /// Counts the points of the lattice with `layers` more around its sides and its bottom.
+    pub fn count(&self, layers: i64) -> usize {
+        let ends = (0..3).map(|axis| self.range(axis, layers));
+        ends.fold(1, |all, range| {
+            all.saturating_mul((range.end - range.start) as usize)
+        })
+    }
+
+    /// Returns the indices along an axis, with `layers` more outside.
+    fn range(&self, axis: usize, layers: i64) -> Range<i64> {
+        let n = self.counts[axis];
+        match axis {
+            2 if self.flat => 0..1,
+            1 => -layers..n,
+            _ => -layers..n.saturating_add(layers),
+        }
+    }
+
+    /// Lists the points of the lattice with `layers` more around its sides and its bottom, x
+    /// fastest, and tells whether each is inside.
+    pub fn all(&self, layers: i64) -> impl Iterator<Item = (Vector3<f64>, bool)> {
+        let [x, y, z] = [0, 1, 2].map(|axis| self.range(axis, layers));
+        let places = z.flat_map(move |k| {
+            let x = x.clone();
+            y.clone()
+                .flat_map(move |j| x.clone().map(move |i| [i, j, k]))
+        });
+        places.map(move |place| {
+            let inside = (0..3).all(|axis| (0..self.counts[axis]).contains(&place[axis]));
+            let depth = if self.flat { -0.5 } else { 0.0 };
+            let [i, j, k] = place.map(|k| k as f64 + 0.5);
+            let offset = Vector3::new(i, j, k + depth);
+            (self.corner + self.spacing * offset, inside)
+        })
     }
 }

@@ -1,47 +1,33 @@
 //! Scenes from descriptions.
 
 mod assembly;
-mod chain;
-mod circle;
 mod cloth;
 mod constraints;
-mod files;
 mod fluid;
 mod forces;
-mod jelly;
-mod joints;
-mod lattice;
-mod laws;
-mod mesh_cloth;
 mod motion;
 mod network;
-mod obstacles;
-mod outflow;
-mod pins;
-mod places;
 mod rigid;
 mod skins;
 mod solid;
-mod state;
+mod springs;
 
+use std::ops::Range;
 use std::sync::Arc;
 
-use a3_core::{Control, Grid, Model, Scene, Swing, Vector3, integrators};
+use a3_core::{Control, Grid, Measure, Model, ParticleSystem, Scene, Swing, Vector3, integrators};
 
 use crate::budget::Budget;
-use crate::check::{at, at_least, key_of, positive};
 use crate::description::{BucklingSpec, Cloth, Description};
-use crate::fault::Fault;
+use crate::fault::{Fault, at, at_least, key_of, positive};
 use crate::material::strip_of;
 use crate::mesh::Mesh;
 use crate::setup::{Defaults, Presentation, Setup, Viewpoint};
 use crate::wording::unknown_choice;
-use circle::Circling;
-use files::Files;
-pub use fluid::fluid_points;
-pub use laws::damping_time;
-pub use places::LAYERS;
+use assembly::Files;
+pub use fluid::{LAYERS, fluid_points};
 pub use skins::max_thickness;
+pub use springs::damping_time;
 
 impl Description {
     /// Builds the scene. A `grid` replaces that of the first cloth. `mesh` reads a file of
@@ -118,13 +104,13 @@ impl Description {
         }
         let n = model.particles();
         if let Some(given) = &self.state {
-            state::write(given, n, &mut state)?;
+            assembly::write_state(given, n, &mut state)?;
         }
         if let (true, Model::Network(network)) = (self.untangle, &model) {
             at("untangle", a3_core::untangle(network, &mut state))?;
         }
         if let Model::Network(network) = &mut model {
-            outflow::drain(network, &mut state);
+            fluid::drain(network, &mut state);
         }
         if let Some(trail) = self.trail.filter(|i| *i >= n) {
             return Err(Fault::no_particle("trail", trail, n));
@@ -233,4 +219,21 @@ pub(crate) fn restrip(own: &Cloth, other: &mut Cloth) -> Result<(), Fault> {
         other.buckling = strip(is);
     }
     Ok(())
+}
+
+/// One particle whose velocity is its position turned by a right angle: f = (-y, x, 0).
+struct Circling;
+
+impl ParticleSystem for Circling {
+    fn dim(&self) -> usize {
+        3
+    }
+
+    fn eval_f(&self, _t: f64, y: &[f64], dydt: &mut [f64]) {
+        dydt.copy_from_slice(&[-y[1], y[0], 0.0]);
+    }
+
+    fn measures(&self, visit: &mut dyn FnMut(Range<usize>, Measure)) {
+        visit(0..3, Measure::Alike);
+    }
 }

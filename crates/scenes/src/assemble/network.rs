@@ -6,13 +6,11 @@ use a3_core::elements::Cords;
 use a3_core::rigid::ROTATION;
 use a3_core::{Network, ParticleSystem, Touch, Vector3};
 
-use super::assembly::{Assembly, Body};
-use super::files::Files;
-use super::{constraints, fluid, forces, joints, laws, obstacles, state};
+use super::assembly::{Assembly, Body, Files};
+use super::{assembly, constraints, fluid, forces, springs};
 use crate::budget::SPRINGS;
-use crate::check::{at, key_of, positive};
 use crate::description::Description;
-use crate::fault::Fault;
+use crate::fault::{Fault, at, key_of, positive};
 use crate::setup::Presentation;
 
 /// Largest number of bodies: some work grows with the square of that number.
@@ -52,7 +50,7 @@ pub(super) fn build(description: &Description, files: &mut Files) -> Result<Netw
     let budget = &mut files.budget;
     let n = assembly.masses.len();
     budget.spend("springs", description.springs.len(), SPRINGS)?;
-    let between = laws::springs(&description.springs, n)?;
+    let between = springs::springs(&description.springs, n)?;
     assembly.add_springs(0, between, description.tension_only);
     let given = description.state.as_ref().map(|state| &state.positions);
     let given = given.filter(|positions| positions.len() == n);
@@ -60,7 +58,7 @@ pub(super) fn build(description: &Description, files: &mut Files) -> Result<Netw
     let positions = given.as_ref().unwrap_or(&assembly.positions);
     let pins = &mut assembly.pins;
     pins.add(0, &description.pin, positions, budget, |_| None)?;
-    let mut state = state::of(&assembly.positions, &assembly.velocities);
+    let mut state = assembly::state_of(&assembly.positions, &assembly.velocities);
     let mut network = at("", Network::new(assembly.masses))?;
     for sheet in assembly.sheets {
         at("", network.add(sheet))?;
@@ -99,7 +97,7 @@ pub(super) fn build(description: &Description, files: &mut Files) -> Result<Netw
         &state[..3 * n],
     )?;
     constraints::add(description, &mut network, &state)?;
-    joints::add(description, budget, &assembly.pins, &mut network, &state)?;
+    constraints::add_joints(description, budget, &assembly.pins, &mut network, &state)?;
     let triangles = assembly.presentation.surface.triangles.iter();
     let triangles = triangles.map(|t| t.map(|i| i as usize));
     at("", network.set_triangles(triangles))?;
@@ -109,7 +107,7 @@ pub(super) fn build(description: &Description, files: &mut Files) -> Result<Netw
         let limited = network.set_strain_limit(particles, Some(limit));
         at("strain_limit", limited).map_err(|fault| fault.within(&key))?;
     }
-    obstacles::add(description, &mut network, files)?;
+    forces::add_obstacles(description, &mut network, files)?;
     let touch = Touch {
         skins: assembly.skins,
         edges: assembly.edges,
@@ -136,7 +134,7 @@ pub(super) fn build(description: &Description, files: &mut Files) -> Result<Netw
 /// Returns whether surfaces touch: those of rigid bodies and of bodies with a restitution always
 /// do.
 pub(super) fn touches(description: &Description) -> bool {
-    let asked = description.self_collision || obstacles::is_one_thick(description);
+    let asked = description.self_collision || forces::is_one_thick(description);
     let is_elastic = |(_, body): (_, &dyn Body)| body.skin().restitution != 0.0;
     asked || !description.body.is_empty() || bodies(description).any(is_elastic)
 }

@@ -6,14 +6,12 @@ use a3_core::rigid::{Body as Rigid, MassProperties, Part, Rotation};
 use a3_core::{Vector3, rotation};
 use nalgebra::{Matrix3, Rotation3, UnitQuaternion};
 
-use super::assembly::{Assembly, Body};
-use super::files::Files;
-use super::places::LAYERS;
+use super::assembly::{Assembly, Body, Files};
+use super::fluid::LAYERS;
 use super::skins::point_skin;
 use crate::budget::{PARTS, SMOOTHED};
-use crate::check::{at, at_least, key_of, positive, positive_one};
 use crate::description::{Fluid, Keys, PartSpec, RigidBody};
-use crate::fault::Fault;
+use crate::fault::{Fault, at, at_least, key_of, positive, positive_one};
 
 /// Default thickness of a body, relative to its smallest part.
 const THICKNESS: f64 = 0.02;

@@ -2,9 +2,8 @@
 
 use a3_core::contact::Skin;
 
-use crate::check::{at, at_least, positive, share};
 use crate::description::{EARTH, Keys, SkinKeys};
-use crate::fault::Fault;
+use crate::fault::{Fault, at, at_least, positive, share};
 
 /// Default and largest thickness of a surface, relative to the distance of its particles:
 /// neighbours in a surface do not repel each other.

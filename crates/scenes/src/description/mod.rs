@@ -5,7 +5,6 @@ mod constraints;
 mod fluid;
 mod motion;
 mod obstacles;
-mod rigid;
 
 use a3_core::Vector3;
 use schemars::JsonSchema;
@@ -19,7 +18,9 @@ use crate::reader::{self, Places};
 
 use bodies::SharedKeys;
 pub use bodies::{BucklingSpec, RegionSpec, SpringSpec, SwingSpec, WindSpec};
-pub use bodies::{Chain, Circle, Cloth, Jelly, MeshCloth, Particles, Solid, SolidModel};
+pub use bodies::{
+    Chain, Circle, Cloth, Jelly, MeshCloth, PartSpec, Particles, RigidBody, Solid, SolidModel,
+};
 pub(crate) use bodies::{Keys, SkinKeys};
 pub use constraints::{
     BallSpec, CircleSpec, ConstraintSpec, HingeSpec, JointSpec, LineSpec, SliderSpec,
@@ -29,7 +30,6 @@ pub use motion::{Pin, Shift, Sine, Spot, Triple, Turn};
 pub use obstacles::{BoxSpec, CapsuleSpec, ObstacleSpec, SphereSpec};
 pub use obstacles::{Floor, FloorSpec};
 pub(crate) use obstacles::{Movable, ObstacleKeys};
-pub use rigid::{PartSpec, RigidBody};
 
 /// Description of a scene: its bodies, the forces and obstacles that act on them, how it is run,
 /// and where it is seen from. Units are m, kg, s, N and rad.

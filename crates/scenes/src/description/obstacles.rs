@@ -8,7 +8,7 @@ use serde::de::{MapAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize, de};
 
 use super::motion::{Shift, Sine, Triple, Turn, is_default};
-use crate::check::{beyond, within};
+use crate::fault::{beyond, within};
 
 /// Keys that obstacles of all kinds share.
 #[derive(Default)]

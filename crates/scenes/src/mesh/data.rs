@@ -16,6 +16,14 @@ pub(super) const MAX_TRIANGLES: usize = 2 * MAX_POINTS;
 /// Largest number of tetrahedra in a file.
 pub(super) const MAX_TETRAHEDRA: usize = MAX_POINTS;
 
+/// Checks that there are not too many triangles.
+pub(super) fn check_triangles(count: usize) -> Result<(), String> {
+    if count > MAX_TRIANGLES {
+        return Err(format!("there are more than {MAX_TRIANGLES} triangles"));
+    }
+    Ok(())
+}
+
 /// Height of a triangle relative to its longest side, below which it is a sliver.
 const SLIVER: f64 = 1e-3;
 
@@ -39,6 +47,15 @@ impl Mesh {
     /// Returns the number of a point in its file.
     pub(crate) fn number(&self, i: usize) -> u64 {
         self.numbers.get(i).copied().unwrap_or(i as u64)
+    }
+
+    /// Adds a point, unless there are too many.
+    pub(super) fn add_point(&mut self, at: Triple) -> Result<(), String> {
+        if self.positions.len() == MAX_POINTS {
+            return Err(format!("there are more than {MAX_POINTS} points"));
+        }
+        self.positions.push(at);
+        Ok(())
     }
 
     /// Returns the mesh with points at the same place merged, without triangles that have two equal
