@@ -77,11 +77,8 @@ impl Edit {
             }
             Self::AddSpring(spring) => {
                 check_ends(network, [spring.0, spring.1])?;
-                if network.is_torn(spring.0, spring.1) {
-                    let why =
-                        "Springs between these particles are torn, and a new one would be too.";
-                    return Err(why.into());
-                }
+                refuse!(if network.is_torn(spring.0, spring.1) =>
+                    "Springs between these particles are torn, and a new one would be too.");
                 edited.description.springs.push(*spring);
             }
             Self::AddConstraint(link) => {
@@ -107,9 +104,7 @@ impl Edit {
 
 /// Checks that two particles can be joined.
 fn check_ends(network: &Network, [i, j]: [usize; 2]) -> Result<(), String> {
-    if i == j {
-        return Err("Two particles are needed to join.".into());
-    }
+    refuse!(if i == j => "Two particles are needed to join.");
     let fluid = network.fluid();
     if fluid.is_some_and(|fluid| fluid.members().contains(i) || fluid.members().contains(j)) {
         return Err("Particles of a fluid cannot be joined.".into());
@@ -208,11 +203,7 @@ impl Edited {
         }
         let springs = network.all_springs();
         let there = springs.filter(|it| joins(it.i, it.j)).count();
-        if there == 0 {
-            return Err(format!(
-                "Nothing that could be removed joins the particles {i} and {j}."
-            ));
-        }
+        refuse!(if there == 0 => "Nothing that could be removed joins the particles {i} and {j}.");
         let listed = self.remove_listed(network, joins);
         if listed < there {
             self.description.torn.push([i.min(j), i.max(j)]);
@@ -250,13 +241,8 @@ impl Edited {
         }
         let springs = network.springs_of(i);
         let mut pairs: Vec<_> = springs.map(|it| [it.i.min(it.j), it.i.max(it.j)]).collect();
-        if pairs.is_empty() {
-            return Err(format!("Particle {i} cannot be removed from its body."));
-        }
-        if network.is_held(i) {
-            let why = format!("Rods or ropes hold particle {i}: remove these first.");
-            return Err(why);
-        }
+        refuse!(if pairs.is_empty() => "Particle {i} cannot be removed from its body.");
+        refuse!(if network.is_held(i) => "Rods or ropes hold particle {i}: remove these first.");
         // Springs that were added by hand go; those of a body are torn.
         for it in &self.description.springs {
             let ends = [it.0.min(it.1), it.0.max(it.1)];

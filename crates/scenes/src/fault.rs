@@ -7,6 +7,24 @@ use std::fmt::Display;
 use crate::text::line;
 use crate::wording::{brief, of_json, of_toml};
 
+/// Returns an error, if a condition holds or always: the fault of a key, or only a text. It has a
+/// reason like that of `format!`.
+macro_rules! refuse {
+    (if $is_wrong:expr => $key:tt: $($why:tt)+) => {
+        if $is_wrong {
+            refuse!($key: $($why)+);
+        }
+    };
+    (if $is_wrong:expr => $($why:tt)+) => {
+        if $is_wrong {
+            return Err(format_args!($($why)+).to_string());
+        }
+    };
+    ($key:tt: $($why:tt)+) => {
+        return Err($crate::fault::Fault::new($key, format_args!($($why)+)))
+    };
+}
+
 /// Largest number of characters of a key or a reason.
 const MAX_CHARACTERS: usize = 1000;
 

@@ -1,12 +1,14 @@
 #![doc = include_str!("../README.md")]
 #![forbid(unsafe_code)]
 
+#[macro_use]
+mod fault;
+
 mod assemble;
 mod budget;
 mod builtin;
 mod description;
 mod edit;
-mod fault;
 mod list;
 mod material;
 mod mesh;

@@ -45,9 +45,7 @@ pub fn regridded(scene: &Description, factor: f64, particles: usize) -> Result<R
         let Some(grid) = own.grid else {
             return Err("a solid from a file has no grid".into());
         };
-        if mesh_is_before {
-            return Err("a solid keeps its grid if the scene has meshes".into());
-        }
+        refuse!(if mesh_is_before => "a solid keeps its grid if the scene has meshes");
         let finer = finer(grid, factor);
         other.grid = Some(finer);
         places.add_lattice(grid, finer);
@@ -60,9 +58,7 @@ pub fn regridded(scene: &Description, factor: f64, particles: usize) -> Result<R
     }
     keep_forces_per_mass(&mut other, scene, &places)?;
     other.trail = None;
-    if places.count == particles {
-        return Err("its cells cannot be larger and keep their shape".into());
-    }
+    refuse!(if places.count == particles => "its cells cannot be larger and keep their shape");
     Ok(Regridded {
         description: other,
         places: places.of,
@@ -76,22 +72,15 @@ fn gridded(scene: &Description) -> usize {
 
 /// Checks that a body has a grid, and that nothing in the scene refers to single particles.
 fn check_grids(scene: &Description) -> Result<(), String> {
-    if gridded(scene) == 0 {
-        return Err("no body has a grid that could be finer".into());
-    }
-    if !scene.fluid.is_empty() && !scene.body.is_empty() {
-        return Err("rigid bodies carry particles of the fluid's lattice".into());
-    }
+    refuse!(if gridded(scene) == 0 => "no body has a grid that could be finer");
+    refuse!(if !scene.fluid.is_empty() && !scene.body.is_empty() =>
+        "rigid bodies carry particles of the fluid's lattice");
     for cloth in &scene.cloth {
-        if cloth.spacing.is_some() || cloth.mass.is_some() {
-            return Err("a cloth gives the mass and the distance of its particles, \
-                 not its width and density"
-                .into());
-        }
+        refuse!(if cloth.spacing.is_some() || cloth.mass.is_some() =>
+            "a cloth gives the mass and the distance of its particles, not its width and density");
     }
-    if scene.jelly.iter().any(|jelly| jelly.mass.is_some()) {
-        return Err("a jelly gives the mass of its particles, not its density".into());
-    }
+    refuse!(if scene.jelly.iter().any(|jelly| jelly.mass.is_some()) =>
+        "a jelly gives the mass of its particles, not its density");
     let pins = scene.cloth.iter().map(|it| &it.pin);
     let pins = pins.chain(scene.jelly.iter().map(|it| &it.pin));
     let mut pins = pins.chain(scene.solid.iter().map(|it| &it.pin)).flatten();
@@ -122,9 +111,8 @@ fn keep_forces_per_mass(
     let wind = scene.wind.as_mut();
     let pushed = wind.filter(|wind| wind.force.is_some() || wind.force_per_mass.is_some());
     let uneven = places.kept > 0 || gridded(own) > 1;
-    if uneven && (by_particle || pushed.is_some()) {
-        return Err("drag or wind is the same for each particle of several bodies".into());
-    }
+    refuse!(if uneven && (by_particle || pushed.is_some()) =>
+        "drag or wind is the same for each particle of several bodies");
     // The mean mass falls as the number of particles rises.
     if let Some(drag) = &mut scene.drag {
         *drag *= was / is;
@@ -187,9 +175,8 @@ pub fn regrid_fluids(
     other: &mut [Fluid],
     factor: f64,
 ) -> Result<Vec<(Points, Lattice)>, String> {
-    if own.iter().any(|fluid| fluid.inflow.is_some()) {
-        return Err("a fluid that flows in has no other lattice".into());
-    }
+    refuse!(if own.iter().any(|fluid| fluid.inflow.is_some()) =>
+        "a fluid that flows in has no other lattice");
     // All fluids of a scene have the same spacing, so that all edges are multiples of the other.
     let edges = own.iter().flat_map(|fluid| {
         let tank = fluid.tank.iter().flat_map(|tank| tank.size);
@@ -205,9 +192,8 @@ pub fn regrid_fluids(
         let own = points(own)?;
         let dimensions = other.dimensions;
         let count = own.iter().map(Vec::len).sum::<usize>() as f64;
-        if count * ratio.powi(-i32::from(dimensions)) > MAX_PARTICLES {
-            return Err("a finer fluid has too many particles".into());
-        }
+        refuse!(if count * ratio.powi(-i32::from(dimensions)) > MAX_PARTICLES =>
+            "a finer fluid has too many particles");
         for (own, points) in own.into_iter().zip(points(other)?) {
             let lattice = Lattice::new(&points, other.spacing, dimensions.into());
             lattices.push((own, lattice));

@@ -39,12 +39,9 @@ pub fn unmarked(text: &[u8]) -> Result<&[u8], String> {
         !begin.is_empty() && begin.chunks_exact(size).all(is_letter)
     };
     let is_marked_32 = matches!(text, [0xff, 0xfe, 0, 0, ..] | [0, 0, 0xfe, 0xff, ..]);
-    if is_marked_32 || is_wide_by(4) {
-        return Err("it is UTF-32 text: save it as UTF-8".into());
-    }
-    if matches!(text, [0xff, 0xfe, ..] | [0xfe, 0xff, ..]) || is_wide_by(2) {
-        return Err("it is UTF-16 text: save it as UTF-8".into());
-    }
+    refuse!(if is_marked_32 || is_wide_by(4) => "it is UTF-32 text: save it as UTF-8");
+    refuse!(if matches!(text, [0xff, 0xfe, ..] | [0xfe, 0xff, ..]) || is_wide_by(2) =>
+        "it is UTF-16 text: save it as UTF-8");
     Ok(text.strip_prefix(MARK).unwrap_or(text))
 }
 

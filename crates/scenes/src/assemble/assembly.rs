@@ -151,9 +151,7 @@ impl Assembly<'_> {
         for (i, p) in self.positions[first..].iter().enumerate() {
             if !p.iter().all(|x| is_coordinate(*x)) {
                 let [x, y, z]: [f64; 3] = (*p).into();
-                let why =
-                    format!("its particle {i} would be at ({x:e}, {y:e}, {z:e}): {COORDINATES}");
-                return Err(Fault::new("", why));
+                refuse!("": "its particle {i} would be at ({x:e}, {y:e}, {z:e}): {COORDINATES}");
             }
         }
         let masses = &self.masses[first..];
@@ -237,10 +235,8 @@ pub(super) fn write_state(given: &State, particles: usize, state: &mut [f64]) ->
         if rows.is_empty() {
             continue;
         }
-        if rows.len() != particles {
-            let why = format!("there are {}, but {particles} particles", rows.len());
-            return Err(Fault::new(key, why));
-        }
+        refuse!(if rows.len() != particles => key:
+            "there are {}, but {particles} particles", rows.len());
         for (i, row) in rows.iter().enumerate() {
             for axis in 0..3 {
                 out[axis * particles + i] = row[axis];
@@ -258,18 +254,14 @@ fn write_rotations(given: &State, state: &mut [f64]) -> Result<(), Fault> {
         ("state.orientations", turned.len()),
         ("state.angular_momenta", momenta.len()),
     ] {
-        if count != 0 && count != bodies {
-            let why = format!("there are {count}, but {bodies} rigid bodies");
-            return Err(Fault::new(key, why));
-        }
+        refuse!(if count != 0 && count != bodies => key:
+            "there are {count}, but {bodies} rigid bodies");
     }
     for (k, numbers) in state.chunks_exact_mut(ROTATION).enumerate() {
         if let Some(q) = turned.get(k) {
             let squared: f64 = q.iter().map(|q| q * q).sum();
-            if squared == 0.0 {
-                let why = format!("that of body {k}, counted from 0, has no length");
-                return Err(Fault::new("state.orientations", why));
-            }
+            refuse!(if squared == 0.0 => "state.orientations":
+                "that of body {k}, counted from 0, has no length");
             numbers[..4].copy_from_slice(q);
         }
         if let Some(momentum) = momenta.get(k) {

@@ -157,9 +157,7 @@ impl Body for MeshCloth {
         let mesh = files.read(&self.file)?;
         files.budget.spend("", mesh.triangles.len(), TRIANGLES)?;
         let mesh = mesh.welded();
-        if mesh.triangles.is_empty() {
-            return Err(Fault::new("file", "the mesh has no triangles"));
-        }
+        refuse!(if mesh.triangles.is_empty() => "file": "the mesh has no triangles");
         files.spend(mesh.positions.len(), &[(3 * mesh.triangles.len(), SPRINGS)])?;
         let scale = self.scale.unwrap_or(1.0);
         at("scale", positive("it", scale))?;
@@ -170,8 +168,7 @@ impl Body for MeshCloth {
         if let Some(bad) = masses.iter().position(|m| !m.is_finite() || *m <= 0.0) {
             let (number, [x, y, z]) = (mesh.number(bad), mesh.positions[bad]);
             let point = format!("point {number} at ({x}, {y}, {z})");
-            let why = format!("the triangles around {point} have no area");
-            return Err(Fault::new("file", why));
+            refuse!("file": "the triangles around {point} have no area");
         }
         let mean = masses.iter().sum::<f64>() / masses.len() as f64;
         let structural = self.stiffness[0];

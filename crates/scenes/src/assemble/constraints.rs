@@ -94,9 +94,7 @@ fn constraint(
                     restitution,
                 });
             }
-            if restitution != 0.0 {
-                return Err(Fault::new("restitution", "only a rope has this key"));
-            }
+            refuse!(if restitution != 0.0 => "restitution": "only a rope has this key");
             Ok(Constraint::Rod { i, j, length })
         }
         ConstraintSpec {
@@ -141,8 +139,7 @@ fn wire(particle: usize, spec: &ConstraintSpec) -> Result<Constraint, Fault> {
             radius: sphere.radius,
         },
         _ => {
-            let why = "give one of `point`, `line`, `circle` and `sphere`";
-            return Err(Fault::new("", why));
+            refuse!("": "give one of `point`, `line`, `circle` and `sphere`");
         }
     })
 }
@@ -173,10 +170,7 @@ pub(super) fn add_joints(
             "particles that are attached to bodies",
         ),
     ] {
-        if count > most {
-            let why = format!("the scene has {count} {what}; at most {most} are allowed");
-            return Err(Fault::new(key, why));
-        }
+        refuse!(if count > most => key: "the scene has {count} {what}; at most {most} are allowed");
     }
     budget.spend("joint", RODS_PER_JOINT * all.len(), RODS)?;
     for (k, spec) in all.iter().enumerate() {
@@ -207,9 +201,8 @@ fn join(spec: &JointSpec, network: &mut Network, state: &[f64]) -> Result<(), Fa
         (Some(k), None) => (k, None),
         (None, Some([other, k])) => (k, Some(other)),
         _ => {
-            let why =
-                "give either `body`, for a joint with the world, or `bodies` with two numbers";
-            return Err(Fault::new("", why));
+            refuse!("":
+                "give either `body`, for a joint with the world, or `bodies` with two numbers");
         }
     };
     let key = if other.is_some() { "bodies" } else { "body" };
@@ -237,8 +230,7 @@ fn join(spec: &JointSpec, network: &mut Network, state: &[f64]) -> Result<(), Fa
     ];
     let mut kinds = kinds.into_iter().flatten();
     let (Some((key, kind, place)), None) = (kinds.next(), kinds.next()) else {
-        let why = "give one of `ball`, `hinge`, `slider` and `fixed = true`";
-        return Err(Fault::new("", why));
+        refuse!("": "give one of `ball`, `hinge`, `slider` and `fixed = true`");
     };
     let sides = (
         (own.0, &own.1),
@@ -302,10 +294,8 @@ impl Free {
             return Err(Fault::new("limits", why));
         }
         let restitution = self.restitution.unwrap_or(0.0);
-        if !(0.0..=1.0).contains(&restitution) {
-            let why = format!("must be from 0 to 1, not {restitution}");
-            return Err(Fault::new("restitution", why));
-        }
+        refuse!(if !(0.0..=1.0).contains(&restitution) => "restitution":
+            "must be from 0 to 1, not {restitution}");
         for is_upper in [false, true] {
             let stop = Stop {
                 joint,
@@ -327,10 +317,7 @@ impl Free {
     ) -> Result<(), Fault> {
         let (key, effort) = self.effort;
         let Some(effort) = effort else {
-            if self.speed.is_some() {
-                let why = format!("a motor also needs its `{key}`");
-                return Err(Fault::new("speed", why));
-            }
+            refuse!(if self.speed.is_some() => "speed": "a motor also needs its `{key}`");
             return Ok(());
         };
         let motor = Motor {

@@ -67,10 +67,8 @@ impl Fluid {
             at(key, positive("it", number))?;
         }
         at("viscosity", at_least(0.0, "it", self.viscosity))?;
-        if !matches!(self.dimensions, 2 | 3) {
-            let why = format!("it must be 2 or 3, not {}", self.dimensions);
-            return Err(Fault::new("dimensions", why));
-        }
+        refuse!(if !matches!(self.dimensions, 2 | 3) => "dimensions":
+            "it must be 2 or 3, not {}", self.dimensions);
         let is_none = self.inflow.is_some() && self.size == [0.0; 3];
         let liquid = (!is_none).then(|| Places::new(self, self.size, self.at));
         let tank = self.tank.as_ref().map(|tank| {
@@ -241,13 +239,8 @@ pub(super) fn add(
     let particles = particles.into_iter().chain(soaked).flatten();
     let particles = particles.map(|i| i as u32);
     let fluid = at("fluid", Liquid::new(law, particles.collect()))?;
-    if outflows.len() > MAX_OUTFLOWS {
-        let why = format!(
-            "there are {} outflows, more than {MAX_OUTFLOWS}",
-            outflows.len()
-        );
-        return Err(Fault::new("fluid", why));
-    }
+    refuse!(if outflows.len() > MAX_OUTFLOWS => "fluid":
+        "there are {} outflows, more than {MAX_OUTFLOWS}", outflows.len());
     let fluid = at("fluid", fluid.with_outflows(outflows))?;
     if let Some(([i, j], distance)) = fluid.nearest_pair(x)
         && distance < MIN_DISTANCE * law.spacing
@@ -304,13 +297,8 @@ impl Column {
             );
             return Err(Fault::new("velocity", why));
         };
-        if inflow.size[axis] != 0.0 {
-            let why = format!(
-                "along the velocity, the opening has the length 0, not {}",
-                inflow.size[axis]
-            );
-            return Err(Fault::new("size", why));
-        }
+        refuse!(if inflow.size[axis] != 0.0 => "size":
+            "along the velocity, the opening has the length 0, not {}", inflow.size[axis]);
         at("duration", positive("it", inflow.duration))?;
         at("ahead", at_least(0.0, "it", inflow.ahead))?;
         let layers = (inflow.duration * speed / fluid.spacing).round().max(1.0);
@@ -414,13 +402,8 @@ fn spaces(fluid: &Fluid) -> Result<Vec<Space>, Fault> {
 fn space(outflow: &Outflow, fluid: &Fluid) -> Result<Space, Fault> {
     let mut half = 0.5 * Vector3::from(outflow.size);
     if fluid.dimensions == 2 {
-        if half.z != 0.0 {
-            let why = format!(
-                "in two dimensions, its last number is 0, not {}",
-                outflow.size[2]
-            );
-            return Err(Fault::new("size", why));
-        }
+        refuse!(if half.z != 0.0 => "size":
+            "in two dimensions, its last number is 0, not {}", outflow.size[2]);
         half.z = fluid.spacing;
     }
     for half in half.iter() {
@@ -461,21 +444,14 @@ impl Places {
         let mut counts = [1; 3];
         for (axis, (count, size)) in counts.iter_mut().zip(size).enumerate() {
             if flat && axis == 2 {
-                if size != 0.0 {
-                    let why = format!("in two dimensions, its last number is 0, not {size}");
-                    return Err(Fault::new("size", why));
-                }
+                refuse!(if size != 0.0 => "size":
+                    "in two dimensions, its last number is 0, not {size}");
                 continue;
             }
             at("size", positive("each edge", size))?;
             let whole = (size / fluid.spacing).round();
-            if whole < 1.0 || (whole * fluid.spacing - size).abs() > 1e-6 * size {
-                let why = format!(
-                    "each edge must be a whole multiple of the spacing {}, not {size}",
-                    fluid.spacing
-                );
-                return Err(Fault::new("size", why));
-            }
+            refuse!(if whole < 1.0 || (whole * fluid.spacing - size).abs() > 1e-6 * size => "size":
+                "each edge must be a whole multiple of the spacing {}, not {size}", fluid.spacing);
             *count = whole as i64;
         }
         Ok(Self {

@@ -45,10 +45,7 @@ pub(super) fn wind(spec: &WindSpec, network: &Network) -> Result<Wind, Fault> {
         .filter_map(|(key, x)| Some((key, x?)))
         .collect();
     let [(key, mean_wind)] = given[..] else {
-        return Err(Fault::new(
-            "",
-            "give one of the keys `force`, `force_per_mass` and `velocity`",
-        ));
+        refuse!("": "give one of the keys `force`, `force_per_mass` and `velocity`");
     };
     let mean_wind = Vector3::from(mean_wind);
     let coefficients = [spec.density, spec.drag, spec.lift];
@@ -159,10 +156,7 @@ fn each<T>(
     mut make: impl FnMut(&T) -> Result<Obstacle, Fault>,
 ) -> Result<(), Fault> {
     let count = specs.len();
-    if count > MAX_OBSTACLES {
-        let why = format!("at most {MAX_OBSTACLES} are allowed, not {count}");
-        return Err(Fault::new(kind, why));
-    }
+    refuse!(if count > MAX_OBSTACLES => kind: "at most {MAX_OBSTACLES} are allowed, not {count}");
     for (k, spec) in specs.iter().enumerate() {
         let added = make(spec).and_then(|made| at(key, network.add_obstacle(made)));
         added.map_err(|fault| fault.within(&key_of(kind, k, count)))?;

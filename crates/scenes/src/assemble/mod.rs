@@ -96,12 +96,8 @@ impl Description {
             let model = Model::Network(Box::new(parts.network));
             (model, parts.state, parts.presentation, parts.touch)
         };
-        if self.circle.is_some() && network::bodies(self).next().is_some() {
-            return Err(Fault::new(
-                "circle",
-                "a circle is a first-order system and must be the only body",
-            ));
-        }
+        refuse!(if self.circle.is_some() && network::bodies(self).next().is_some() => "circle":
+            "a circle is a first-order system and must be the only body");
         let n = model.particles();
         if let Some(given) = &self.state {
             assembly::write_state(given, n, &mut state)?;
@@ -158,9 +154,7 @@ impl Description {
         };
         let eye = Vector3::from(camera.eye);
         let target = Vector3::from(camera.target);
-        if eye == target {
-            return Err(Fault::new("camera.eye", "it must not be at the target"));
-        }
+        refuse!(if eye == target => "camera.eye": "it must not be at the target");
         Ok(Viewpoint { eye, target })
     }
 
@@ -182,9 +176,8 @@ impl Description {
                 at(key, positive("it", number))?;
             }
         }
-        if self.step.is_some() && self.solver.is_none() {
-            return Err(Fault::new("step", "a step also needs the key `solver`"));
-        }
+        refuse!(if self.step.is_some() && self.solver.is_none() => "step":
+            "a step also needs the key `solver`");
         let own = solver.zip(self.step);
         let control = own.map(|(solver, step)| solver.control(step));
         // A step that is given suits the fluid as it is.

@@ -75,8 +75,7 @@ fn later(key: &str, start: f64, end: f64) -> Result<(), Fault> {
 fn turn(turn: &description::Turn) -> Result<Turn, Fault> {
     let axis = Vector3::from(turn.axis);
     let Some(axis) = axis.try_normalize(0.0) else {
-        let why = "it must be a direction, not [0, 0, 0]";
-        return Err(Fault::new("axis", why));
+        refuse!("axis": "it must be a direction, not [0, 0, 0]");
     };
     let start = turn.start;
     if let Some(end) = turn.end {
@@ -89,8 +88,7 @@ fn turn(turn: &description::Turn) -> Result<Turn, Fault> {
         ((true, rate), _) => rate,
         ((false, angle), Some(end)) => angle / (end - start),
         ((false, _), None) => {
-            let why = "with an `angle`, it is needed: the time at which the turn ends (s)";
-            return Err(Fault::new("end", why));
+            refuse!("end": "with an `angle`, it is needed: the time at which the turn ends (s)");
         }
     };
     Ok(Turn {
@@ -152,24 +150,15 @@ impl Pinned {
             budget.spend("at", there.len(), PINS)?;
             particles.extend(there);
         }
-        if particles.is_empty() {
-            let why = "the pin holds nothing: it needs the key `at` or `particles`";
-            return Err(Fault::new("", why));
-        }
-        if pin.turn.as_ref().is_some_and(|turn| turn.about.is_none()) {
-            let why = "the turn of a pin needs it: a point of the axis (m)";
-            return Err(Fault::new("turn.about", why));
-        }
+        refuse!(if particles.is_empty() => "":
+            "the pin holds nothing: it needs the key `at` or `particles`");
+        refuse!(if pin.turn.as_ref().is_some_and(|turn| turn.about.is_none()) => "turn.about":
+            "the turn of a pin needs it: a point of the axis (m)");
         if let Some(body) = pin.body {
-            if pin.sine.is_some() || pin.shift.is_some() || pin.turn.is_some() {
-                let why = "what is attached to a body has no motion of its own";
-                return Err(Fault::new("body", why));
-            }
-            if pin.until.is_some() {
-                let why =
-                    "what is attached to a body stays so; `until` is for what is held in place";
-                return Err(Fault::new("until", why));
-            }
+            refuse!(if pin.sine.is_some() || pin.shift.is_some() || pin.turn.is_some() => "body":
+                "what is attached to a body has no motion of its own");
+            refuse!(if pin.until.is_some() => "until":
+                "what is attached to a body stays so; `until` is for what is held in place");
             budget.spend("body", particles.len(), RODS)?;
             let attached = particles.into_iter().map(|i| (first + i, body));
             self.attached.extend(attached);

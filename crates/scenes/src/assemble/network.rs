@@ -142,10 +142,8 @@ pub(super) fn touches(description: &Description) -> bool {
 /// Adds all bodies.
 fn assembled<'a>(description: &'a Description, files: &mut Files) -> Result<Assembly<'a>, Fault> {
     let count = bodies(description).count();
-    if count > MAX_BODIES {
-        let why = format!("the scene has {count} bodies; at most {MAX_BODIES} are allowed");
-        return Err(Fault::new("", why));
-    }
+    refuse!(if count > MAX_BODIES => "":
+        "the scene has {count} bodies; at most {MAX_BODIES} are allowed");
     if count == 0 {
         let why = "the scene is empty: it needs at least one of cloth, jelly, mesh, solid, chain, particles, body, fluid, circle";
         return Err(Fault::new("", why));

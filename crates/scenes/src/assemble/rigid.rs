@@ -30,10 +30,8 @@ fn of_parts(parts: &[Part]) -> Result<MassProperties, Fault> {
 impl RigidBody {
     /// Returns the parts, relative to the origin, and the smallest extent of one (m).
     fn loaded(&self, files: &mut Files) -> Result<(Vec<Part>, f64), Fault> {
-        if self.parts.is_empty() {
-            let why = "a body needs at least one, such as [{ box = [1, 1, 1] }]";
-            return Err(Fault::new("parts", why));
-        }
+        refuse!(if self.parts.is_empty() => "parts":
+            "a body needs at least one, such as [{{ box = [1, 1, 1] }}]");
         let (mut parts, mut smallest) = (vec![], f64::INFINITY);
         for (k, spec) in self.parts.iter().enumerate() {
             let within = |fault: Fault| fault.within(&key_of("parts", k, self.parts.len()));
@@ -117,10 +115,8 @@ impl Body for RigidBody {
 /// Returns the shape of a part, and its smallest extent (m).
 fn shape(spec: &PartSpec, files: &mut Files) -> Result<(Shape, f64), Fault> {
     let turn = Vector3::from(spec.rotation.unwrap_or_default());
-    if spec.scale.is_some() && spec.file.is_none() {
-        let why = "it is that of a `file`, which is missing";
-        return Err(Fault::new("scale", why));
-    }
+    refuse!(if spec.scale.is_some() && spec.file.is_none() => "scale":
+        "it is that of a `file`, which is missing");
     match (spec.cuboid, spec.ball, spec.capsule, &spec.file) {
         (Some(size), None, None, None) => {
             for edge in size {

@@ -170,8 +170,7 @@ impl Body for Solid {
                 (mesh.positions.len(), mesh.tetrahedra.len())
             }
             _ => {
-                let why = "the file has no tetrahedra: a solid needs a .msh or an .ele file";
-                return Err(Fault::new("file", why));
+                refuse!("file": "the file has no tetrahedra: a solid needs a.msh or an.ele file");
             }
         };
         files.spend(particles, &[(tetrahedra, TETRAHEDRA)])?;

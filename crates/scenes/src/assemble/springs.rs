@@ -16,10 +16,7 @@ const POINT_SPACING: f64 = 0.04;
 impl Body for Chain {
     fn add_to(&self, assembly: &mut Assembly, files: &mut Files) -> Result<(), Fault> {
         let n = self.particles;
-        if n < 2 {
-            let why = format!("a chain has at least 2 particles, not {n}");
-            return Err(Fault::new("particles", why));
-        }
+        refuse!(if n < 2 => "particles": "a chain has at least 2 particles, not {n}");
         let count = |is_there: bool| n * usize::from(is_there);
         let (springs, strips) = (count(!self.rigid), count(self.buckling.is_some()));
         let rods = count(self.rigid);
@@ -50,10 +47,8 @@ impl Body for Chain {
         let edges = (first..first + n - 1).map(|i| [i as u32, i as u32 + 1]);
         assembly.edges.extend(edges);
         let links = (0..n - 1).map(|i| [i, i + 1]);
-        if self.rigid && self.tension_only {
-            let why = "a rigid chain has rods, which also push; leave out one of `rigid` and `tension_only`";
-            return Err(Fault::new("tension_only", why));
-        }
+        refuse!(if self.rigid && self.tension_only => "tension_only":
+            "a rigid chain has rods, which also push; leave out one of `rigid` and `tension_only`");
         if self.rigid {
             at("rest_length", positive("the length of a rod", rest_length))?;
             assembly.rods.extend(links.map(|[i, j]| Constraint::Rod {
@@ -90,15 +85,9 @@ impl Body for Particles {
             ("velocities", self.velocities.len()),
             ("masses", self.masses.len()),
         ] {
-            if count != 0 && count != n {
-                let why = format!("there are {count}, but {n} positions");
-                return Err(Fault::new(key, why));
-            }
+            refuse!(if count != 0 && count != n => key: "there are {count}, but {n} positions");
         }
-        if n == 0 {
-            let why = "there must be at least one position";
-            return Err(Fault::new("positions", why));
-        }
+        refuse!(if n == 0 => "positions": "there must be at least one position");
         files.spend(n, &[(self.springs.len(), SPRINGS)])?;
         let same = self.mass.map(|mass| vec![mass; n]);
         let listed = Some(self.masses.clone()).filter(|all| !all.is_empty());

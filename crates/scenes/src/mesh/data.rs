@@ -18,9 +18,7 @@ pub(super) const MAX_TETRAHEDRA: usize = MAX_POINTS;
 
 /// Checks that there are not too many triangles.
 pub(super) fn check_triangles(count: usize) -> Result<(), String> {
-    if count > MAX_TRIANGLES {
-        return Err(format!("there are more than {MAX_TRIANGLES} triangles"));
-    }
+    refuse!(if count > MAX_TRIANGLES => "there are more than {MAX_TRIANGLES} triangles");
     Ok(())
 }
 
@@ -51,9 +49,7 @@ impl Mesh {
 
     /// Adds a point, unless there are too many.
     pub(super) fn add_point(&mut self, at: Triple) -> Result<(), String> {
-        if self.positions.len() == MAX_POINTS {
-            return Err(format!("there are more than {MAX_POINTS} points"));
-        }
+        refuse!(if self.positions.len() == MAX_POINTS => "there are more than {MAX_POINTS} points");
         self.positions.push(at);
         Ok(())
     }

@@ -94,9 +94,7 @@ struct Corners {
 impl Corners {
     /// Returns the point at a place, and adds it if it is new.
     fn point(&mut self, at: Triple) -> Result<u32, String> {
-        if !at.iter().all(|x| x.is_finite()) {
-            return Err("a corner has three finite coordinates".into());
-        }
+        refuse!(if !at.iter().all(|x| x.is_finite()) => "a corner has three finite coordinates");
         let next = self.mesh.positions.len() as u32;
         let point = *self.known.entry(at.map(f64::to_bits)).or_insert(next);
         if point == next {
@@ -181,9 +179,7 @@ fn stl_lines(text: &[u8]) -> Result<Mesh, String> {
             return Err(of_three());
         }
     }
-    if is_in_facet {
-        return Err("the file ends within a facet: it is cut short".into());
-    }
+    refuse!(if is_in_facet => "the file ends within a facet: it is cut short");
     Ok(corners.mesh)
 }
 
@@ -230,9 +226,8 @@ struct Element {
 /// Reads the mesh of a PLY file.
 pub(super) fn ply(bytes: &[u8]) -> Result<Mesh, String> {
     let (form, elements, rest) = ply_head(bytes)?;
-    if elements.iter().any(|element| element.name == "tristrips") {
-        return Err("it has triangle strips: save it with faces".into());
-    }
+    refuse!(if elements.iter().any(|element| element.name == "tristrips") =>
+        "it has triangle strips: save it with faces");
     let (mut numbers, mut mesh, mut faces) =
         (Numbers { form, rest }, Mesh::default(), Faces::default());
     for element in elements.iter().filter(|it| !it.properties.is_empty()) {
@@ -387,15 +382,13 @@ impl Numbers<'_> {
                 continue;
             };
             let length = self.next(*length)?;
-            if !(length >= 0.0 && length.fract() == 0.0) {
-                return Err(format!("a list of {length} numbers is none"));
-            }
+            refuse!(if !(length >= 0.0 && length.fract() == 0.0) =>
+                "a list of {length} numbers is none");
             let is_kept = is_face && (name == "vertex_indices" || name == "vertex_index");
             for _ in 0..length as u64 {
                 let number = self.next(*kind)?;
-                if is_kept && !(0.0..MAX_POINTS as f64).contains(&number) {
-                    return Err(format!("there is no point {number}"));
-                }
+                refuse!(if is_kept && !(0.0..MAX_POINTS as f64).contains(&number) =>
+                    "there is no point {number}");
                 if is_kept {
                     faces.add_corner(number as u32)?;
                 }

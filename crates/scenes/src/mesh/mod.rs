@@ -70,9 +70,7 @@ impl Mesh {
     /// Checks that the mesh has triangles and that its points are within the bounds, and leaves out
     /// unused points. A file that does not give the numbers of points counts them from `first`.
     fn checked(self, first: u64) -> Result<Self, String> {
-        if self.triangles.is_empty() {
-            return Err("the file has no triangles".into());
-        }
+        refuse!(if self.triangles.is_empty() => "the file has no triangles");
         let mesh = self.with_areas()?.in_use(first);
         let far = |p: &Triple| p.iter().any(|x| !is_coordinate(*x));
         if let Some(i) = mesh.positions.iter().position(far) {
@@ -92,9 +90,7 @@ impl Mesh {
             let areas = self.areas();
             let has_area = |t: &[u32; 3]| t.iter().all(|i| areas[*i as usize] != 0.0);
             self.triangles.retain(has_area);
-            if self.triangles.is_empty() {
-                return Err("the triangles of the file have no area".into());
-            }
+            refuse!(if self.triangles.is_empty() => "the triangles of the file have no area");
         }
         Ok(self)
     }

@@ -54,9 +54,7 @@ struct Numbered {
 impl Numbered {
     /// Adds the point of a line.
     fn add_point(&mut self, number: u64, position: Triple) -> Result<(), String> {
-        if self.points.len() == MAX_POINTS {
-            return Err(format!("there are more than {MAX_POINTS} points"));
-        }
+        refuse!(if self.points.len() == MAX_POINTS => "there are more than {MAX_POINTS} points");
         self.points.push((number, position));
         Ok(())
     }
@@ -66,9 +64,8 @@ impl Numbered {
         let &[a, b, c, d, ..] = corners else {
             return Err("a tetrahedron has four corners".into());
         };
-        if self.tetrahedra.len() == MAX_TETRAHEDRA {
-            return Err(format!("there are more than {MAX_TETRAHEDRA} tetrahedra"));
-        }
+        refuse!(if self.tetrahedra.len() == MAX_TETRAHEDRA =>
+            "there are more than {MAX_TETRAHEDRA} tetrahedra");
         let corners = [a, b, c, d];
         self.tetrahedra.push(Tetrahedron {
             number,
@@ -108,9 +105,7 @@ impl Numbered {
                 tetrahedron_numbers.push(*number);
             }
         }
-        if tetrahedra.is_empty() {
-            return Err("the file has no tetrahedra".into());
-        }
+        refuse!(if tetrahedra.is_empty() => "the file has no tetrahedra");
         let positions: Vec<_> = self.points.iter().map(|(_, position)| *position).collect();
         let is_turned = |t: &[u32; 4]| {
             let [a, b, c, d] = t.map(|i| Vector3::from(positions[i as usize]));
@@ -316,9 +311,7 @@ impl<'a> Reader<'a> {
     /// Reads the whole numbers of the next line, at least `least` of them.
     fn numbers(&mut self, within: &str, least: usize) -> Result<Vec<u64>, String> {
         let numbers = whole(&self.next(within)?)?;
-        if numbers.len() < least {
-            return Err(format!("{least} whole numbers are needed here"));
-        }
+        refuse!(if numbers.len() < least => "{least} whole numbers are needed here");
         Ok(numbers)
     }
 

@@ -88,9 +88,7 @@ impl Buffers<'_> {
             4 => "VEC4",
             _ => "MAT4",
         };
-        if accessor.kind != kind {
-            return Err(format!("its type is {}, not {kind}", accessor.kind));
-        }
+        refuse!(if accessor.kind != kind => "its type is {}, not {kind}", accessor.kind);
         let Number {
             size,
             largest,
@@ -111,9 +109,7 @@ impl Buffers<'_> {
 
     /// Reads numbers of points.
     pub fn indices(&self, accessor: &Accessor) -> Result<Vec<u32>, String> {
-        if accessor.kind != "SCALAR" {
-            return Err("indices are single numbers".into());
-        }
+        refuse!(if accessor.kind != "SCALAR" => "indices are single numbers");
         let size = size(accessor.component_type)?;
         Ok(whole(&self.bytes(accessor, size)?, size))
     }
@@ -131,9 +127,7 @@ impl Buffers<'_> {
             values,
         }) = &accessor.sparse
         {
-            if *some > count {
-                return Err(format!("it replaces {some} elements of {count}"));
-            }
+            refuse!(if *some > count => "it replaces {some} elements of {count}");
             let wide = self::size(indices.component_type.unwrap_or(0))?;
             let places = self.packed(indices.buffer_view, indices.byte_offset, *some, wide)?;
             let values = self.packed(values.buffer_view, values.byte_offset, *some, size)?;
@@ -172,15 +166,10 @@ impl Buffers<'_> {
             .and_then(|bytes| bytes.get(*byte_offset..)?.get(..*byte_length)?.get(from..))
             .ok_or_else(|| format!("view {view} is not within its buffer"))?;
         let stride = byte_stride.unwrap_or(size);
-        if !(size..=252).contains(&stride) {
-            return Err(format!(
-                "the stride of view {view} is {stride}: it is from {size} to 252"
-            ));
-        }
+        refuse!(if !(size..=252).contains(&stride) =>
+            "the stride of view {view} is {stride}: it is from {size} to 252");
         let there = (bytes.len() + stride - size) / stride;
-        if count > there {
-            return Err(format!("view {view} has {there} elements, not {count}"));
-        }
+        refuse!(if count > there => "view {view} has {there} elements, not {count}");
         let rows = bytes.chunks(stride).take(count);
         Ok(rows.flat_map(|row| &row[..size]).copied().collect())
     }

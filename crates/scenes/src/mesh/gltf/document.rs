@@ -141,9 +141,8 @@ impl Document<'_> {
         let (mut left, mut placed) = (next(roots, Matrix4::identity()), vec![]);
         while let Some((k, above)) = left.pop() {
             let node = item(&self.nodes, k, "node")?;
-            if std::mem::replace(&mut seen[k], true) {
-                return Err(format!("node {k} has two parents: nodes form trees"));
-            }
+            refuse!(if std::mem::replace(&mut seen[k], true) =>
+                "node {k} has two parents: nodes form trees");
             let matrix = above * node.matrix();
             placed.push((k, matrix));
             left.extend(next(&node.children, matrix));

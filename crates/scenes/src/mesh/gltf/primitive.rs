@@ -81,11 +81,8 @@ impl Reader<'_> {
         }
         // Many primitives may share the points of one accessor.
         self.shifts += count;
-        if self.shifts > MAX_SHIFTS {
-            return Err(format!(
-                "its primitives read points more than {MAX_SHIFTS} times"
-            ));
-        }
+        refuse!(if self.shifts > MAX_SHIFTS =>
+            "its primitives read points more than {MAX_SHIFTS} times");
         let named = |k: usize| move |why: String| format!("accessor {k}: {why}");
         let points = self.points(position, &primitive.targets, weights)?;
         let count = points.len() as u32;
@@ -176,15 +173,11 @@ impl Reader<'_> {
                 continue;
             };
             let count = item(&self.document.accessors, k, "accessor")?.count;
-            if count != points.len() {
-                return Err(format!(
-                    "accessor {k}: it has not one vector for each point"
-                ));
-            }
+            refuse!(if count != points.len() =>
+                "accessor {k}: it has not one vector for each point");
             self.shifts += count;
-            if self.shifts > MAX_SHIFTS {
-                return Err(format!("targets move points more than {MAX_SHIFTS} times"));
-            }
+            refuse!(if self.shifts > MAX_SHIFTS =>
+                "targets move points more than {MAX_SHIFTS} times");
             for (point, shift) in points.iter_mut().zip(read(k)?) {
                 for axis in 0..3 {
                     point[axis] += f64::from(*weight) * f64::from(shift[axis]);
@@ -244,11 +237,8 @@ impl<'a> Skins<'a> {
             };
             let read = |k: &usize| {
                 let accessor = item(&self.document.accessors, *k, "accessor")?;
-                if accessor.count != count {
-                    return Err(format!(
-                        "accessor {k}: it has not one vector for each point"
-                    ));
-                }
+                refuse!(if accessor.count != count =>
+                    "accessor {k}: it has not one vector for each point");
                 let read = buffers.vectors::<4>(accessor);
                 read.map_err(|why| format!("accessor {k}: {why}"))
             };
@@ -286,11 +276,8 @@ impl<'a> Skins<'a> {
         }
         if let Some(k) = of.inverse_bind_matrices {
             let accessor = item(&document.accessors, k, "accessor")?;
-            if accessor.count < matrices.len() {
-                return Err(format!(
-                    "accessor {k}: it has not one matrix for each joint"
-                ));
-            }
+            refuse!(if accessor.count < matrices.len() =>
+                "accessor {k}: it has not one matrix for each joint");
             let inverse = buffers.vectors::<16>(&accessor.first(matrices.len()));
             let inverse = inverse.map_err(|why| format!("accessor {k}: {why}"))?;
             for (matrix, inverse) in matrices.iter_mut().zip(inverse) {
