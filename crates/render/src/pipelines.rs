@@ -22,24 +22,14 @@ pub(crate) struct Pipelines {
     pub(crate) floor: wgpu::RenderPipeline,
     /// The floor, seen from below.
     pub(crate) floor_below: wgpu::RenderPipeline,
-    pub(crate) wire_shadow: wgpu::RenderPipeline,
-    pub(crate) spring_shadow: wgpu::RenderPipeline,
-    pub(crate) line_shadow: wgpu::RenderPipeline,
-    pub(crate) mesh_shadow: wgpu::RenderPipeline,
-    pub(crate) ball_shadow: wgpu::RenderPipeline,
-    pub(crate) solid_shadow: wgpu::RenderPipeline,
-    pub(crate) liquid_shadow: wgpu::RenderPipeline,
-    pub(crate) mesh_contact: wgpu::RenderPipeline,
-    pub(crate) ball_contact: wgpu::RenderPipeline,
-    pub(crate) solid_contact: wgpu::RenderPipeline,
-    pub(crate) liquid_contact: wgpu::RenderPipeline,
-    pub(crate) mesh: wgpu::RenderPipeline,
-    pub(crate) ball: wgpu::RenderPipeline,
-    pub(crate) solid: wgpu::RenderPipeline,
-    pub(crate) liquid: wgpu::RenderPipeline,
-    pub(crate) wire: wgpu::RenderPipeline,
-    pub(crate) spring: wgpu::RenderPipeline,
-    pub(crate) line: wgpu::RenderPipeline,
+    /// Meshes, liquids, balls and solids.
+    pub(crate) surfaces: [wgpu::RenderPipeline; 4],
+    /// Their shadows, and those where they touch the floor.
+    pub(crate) shadows: [wgpu::RenderPipeline; 4],
+    pub(crate) contacts: [wgpu::RenderPipeline; 4],
+    /// Wires, springs and lines, and their shadows.
+    pub(crate) lines: [wgpu::RenderPipeline; 3],
+    pub(crate) line_shadows: [wgpu::RenderPipeline; 3],
 }
 
 /// Creates the layout of the bind group of all pipelines: the globals, and the particles with their
@@ -193,49 +183,48 @@ impl Pipelines {
             stream(VertexStepMode::Instance, &solid, size_of::<Solid>()),
         ];
         let liquid = [stream(VertexStepMode::Vertex, &drop, size_of::<Corner>())];
-        let wires = [stream(
-            VertexStepMode::Instance,
-            &ends,
-            size_of::<[u32; 2]>(),
-        )];
-        let springs = [stream(
-            VertexStepMode::Instance,
-            &spring,
-            size_of::<Spring>(),
-        )];
-        let lines = [stream(VertexStepMode::Instance, &line, size_of::<Line>())];
-        let (list, strip) = (
-            PrimitiveTopology::TriangleList,
-            PrimitiveTopology::TriangleStrip,
-        );
+        let instances = |attributes, size| [stream(VertexStepMode::Instance, attributes, size)];
+        let wires = instances(&ends[..], size_of::<[u32; 2]>());
+        let springs = instances(&spring[..], size_of::<Spring>());
+        let lines = instances(&line[..], size_of::<Line>());
+        let surfaces = [
+            ("mesh", "mesh", &[][..]),
+            ("liquid", "liquid", &liquid[..]),
+            ("ball", "ball", &balls[..]),
+            ("solid", "ball", &solids[..]),
+        ];
+        let lines = [
+            ("wire", &wires[..]),
+            ("spring", &springs[..]),
+            ("line", &lines[..]),
+        ];
+        let list = PrimitiveTopology::TriangleList;
+        let strip = PrimitiveTopology::TriangleStrip;
+        let cast = |what: &str| {
+            surfaces.map(|(kind, _, buffers)| {
+                pipeline(
+                    &format!("{kind}_{what}"),
+                    "shadow",
+                    list,
+                    Layer::Shadow,
+                    buffers,
+                )
+            })
+        };
         Self {
             background: pipeline("background", "background", list, Layer::Back, &[]),
             floor: pipeline("floor", "floor", strip, Layer::Floor, &[]),
             floor_below: pipeline("floor", "floor_below", strip, Layer::Over, &[]),
-            mesh_shadow: pipeline("mesh_shadow", "shadow", list, Layer::Shadow, &[]),
-            ball_shadow: pipeline("ball_shadow", "shadow", list, Layer::Shadow, &balls),
-            solid_shadow: pipeline("solid_shadow", "shadow", list, Layer::Shadow, &solids),
-            liquid_shadow: pipeline("liquid_shadow", "shadow", list, Layer::Shadow, &liquid),
-            mesh_contact: pipeline("mesh_contact", "shadow", list, Layer::Shadow, &[]),
-            ball_contact: pipeline("ball_contact", "shadow", list, Layer::Shadow, &balls),
-            solid_contact: pipeline("solid_contact", "shadow", list, Layer::Shadow, &solids),
-            liquid_contact: pipeline("liquid_contact", "shadow", list, Layer::Shadow, &liquid),
-            wire_shadow: pipeline("wire_shadow", "line_shadow", strip, Layer::Shadow, &wires),
-            spring_shadow: pipeline(
-                "spring_shadow",
-                "line_shadow",
-                strip,
-                Layer::Shadow,
-                &springs,
-            ),
-            line_shadow: pipeline("line_shadow", "line_shadow", strip, Layer::Shadow, &lines),
-            mesh: pipeline("mesh", "mesh", list, Layer::Solid, &[]),
-            ball: pipeline("ball", "ball", list, Layer::Solid, &balls),
-            solid: pipeline("solid", "ball", list, Layer::Solid, &solids),
-            liquid: pipeline("liquid", "liquid", list, Layer::Solid, &liquid),
-            wire: pipeline("wire", "line", strip, Layer::Over, &wires),
-            spring: pipeline("spring", "line", strip, Layer::Over, &springs),
-            line: pipeline("line", "line", strip, Layer::Over, &lines),
+            surfaces: surfaces.map(|(kind, fragment, buffers)| {
+                pipeline(kind, fragment, list, Layer::Solid, buffers)
+            }),
+            shadows: cast("shadow"),
+            contacts: cast("contact"),
+            lines: lines.map(|(kind, ends)| pipeline(kind, "line", strip, Layer::Over, ends)),
+            line_shadows: lines.map(|(kind, ends)| {
+                let shadow = format!("{kind}_shadow");
+                pipeline(&shadow, "line_shadow", strip, Layer::Shadow, ends)
+            }),
         }
     }
 }

@@ -3,9 +3,8 @@
 
 use std::ops::Range;
 
-use crate::buffers::{Instances, Shape};
+use crate::buffers::{Instances, Mesh, Shape};
 use crate::gpu::Gpu;
-use crate::mesh::Mesh;
 use crate::picture::{Picture, Style, Tile, Topology};
 use crate::pipelines::{Pipelines, SOURCE, layout};
 use crate::view::{Side, View};
@@ -109,7 +108,7 @@ impl Renderer {
         let (p, frame) = (&self.pipelines, view.frame);
         pass.set_bind_group(0, &view.bind, &[]);
         // Opaque objects come first, so that no pixel is shaded twice, and blended ones last.
-        self.draw_surfaces(pass, view, [&p.mesh, &p.liquid, &p.ball, &p.solid], true);
+        self.draw_surfaces(pass, view, &p.surfaces, true);
         if frame.floor == Some(Side::Above) {
             pass.set_stencil_reference(ON_FLOOR);
             pass.set_pipeline(&p.floor);
@@ -120,25 +119,13 @@ impl Renderer {
             pass.draw(0..3, 0..1);
         }
         if frame.floor == Some(Side::Above) {
-            let cast = [
-                &p.mesh_shadow,
-                &p.liquid_shadow,
-                &p.ball_shadow,
-                &p.solid_shadow,
-            ];
-            self.draw_surfaces(pass, view, cast, false);
-            draw_lines(pass, view, &p.wire_shadow, &p.spring_shadow, &p.line_shadow);
+            self.draw_surfaces(pass, view, &p.shadows, false);
+            draw_lines(pass, view, &p.line_shadows);
             if frame.touches_floor {
-                let below = [
-                    &p.mesh_contact,
-                    &p.liquid_contact,
-                    &p.ball_contact,
-                    &p.solid_contact,
-                ];
-                self.draw_surfaces(pass, view, below, false);
+                self.draw_surfaces(pass, view, &p.contacts, false);
             }
         }
-        draw_lines(pass, view, &p.wire, &p.spring, &p.line);
+        draw_lines(pass, view, &p.lines);
         if frame.floor == Some(Side::Below) {
             pass.set_pipeline(&p.floor_below);
             pass.draw(0..2 * FLOOR_STRIPS + 2, 0..FLOOR_STRIPS);
@@ -150,7 +137,7 @@ impl Renderer {
         &self,
         pass: &mut wgpu::RenderPass,
         view: &View,
-        [mesh, liquid, ball, solid]: [&wgpu::RenderPipeline; 4],
+        [mesh, liquid, ball, solid]: &[wgpu::RenderPipeline; 4],
         sharp: bool,
     ) {
         if view.frame.style == Style::Shaded {
@@ -162,22 +149,14 @@ impl Renderer {
             view.draw_liquid(pass);
         }
         pass.set_pipeline(ball);
-        self.draw_balls(pass, view);
-        pass.set_pipeline(solid);
-        self.draw_solids(pass, view);
-    }
-
-    fn draw_balls(&self, pass: &mut wgpu::RenderPass, view: &View) {
         let mut start = 0;
         for (shape, end) in self.spheres.iter().zip(view.frame.balls) {
             shape.draw(pass, &view.balls, start..end);
             start = end;
         }
-    }
-
-    fn draw_solids(&self, pass: &mut wgpu::RenderPass, view: &View) {
-        self.rounded_box
-            .draw(pass, &view.solids, 0..view.frame.solids);
+        pass.set_pipeline(solid);
+        let shape = &self.rounded_box;
+        shape.draw(pass, &view.solids, 0..view.frame.solids);
     }
 }
 
@@ -185,9 +164,7 @@ impl Renderer {
 fn draw_lines(
     pass: &mut wgpu::RenderPass,
     view: &View,
-    wire: &wgpu::RenderPipeline,
-    spring: &wgpu::RenderPipeline,
-    line: &wgpu::RenderPipeline,
+    [wire, spring, line]: &[wgpu::RenderPipeline; 3],
 ) {
     let (mesh, frame) = (&view.mesh, view.frame);
     let of_style = match frame.style {
@@ -221,18 +198,15 @@ mod tests {
     use std::io::Write;
 
     use super::*;
-    use crate::{Camera, Liquid, OFFSCREEN_FORMAT, Offscreen};
+    use crate::{Camera, OFFSCREEN_FORMAT, Offscreen};
 
     /// Returns the pixels, by rows, of a ridge of two slopes of different sizes, drawn with these
     /// shaders.
     fn ridge(gpu: &Gpu, source: &str) -> Vec<u8> {
-        let points = [
-            [-1.0, 0.6, 0.0, 0.0],
-            [-1.0, -0.6, 0.0, 0.0],
-            [-0.6, 0.6, 0.5, 0.0],
-            [-0.6, -0.6, 0.5, 0.0],
-        ];
-        let points = [&points[..], &[[1.0, 0.6, 0.0, 0.0], [1.0, -0.6, 0.0, 0.0]]].concat();
+        let ridge = [[-1.0, 0.0], [-0.6, 0.5], [1.0, 0.0]];
+        let points = ridge
+            .map(|[x, z]| [[x, 0.6, z, 0.0], [x, -0.6, z, 0.0]])
+            .concat();
         let triangles = vec![[0, 1, 2], [2, 1, 3], [2, 3, 4], [4, 3, 5]];
         let topology = Topology {
             points: points.len(),
@@ -242,17 +216,8 @@ mod tests {
         let samples = gpu.samples(OFFSCREEN_FORMAT);
         let mut renderer = Renderer::with_source(gpu, source, OFFSCREEN_FORMAT, samples, &topology);
         let picture = Picture {
-            camera: Camera::look_at([0.0, 0.0, 3.0], [0.0; 3]),
-            style: Style::Shaded,
-            scale: 1.0,
             points: &points,
-            balls: &[],
-            solids: &[],
-            lines: &[],
-            liquid: Liquid::default(),
-            floor: None,
-            transparent: false,
-            dark: false,
+            ..Picture::new(Camera::look_at([0.0, 0.0, 3.0], [0.0; 3]))
         };
         Offscreen::new(gpu, (96, 64))
             .unwrap()
@@ -266,10 +231,8 @@ mod tests {
         let gpu = match pollster::block_on(Gpu::headless()) {
             Ok(gpu) => gpu,
             Err(why) => {
-                assert!(
-                    std::env::var_os("A3_REQUIRE_GPU").is_none(),
-                    "A3_REQUIRE_GPU is set: {why}"
-                );
+                let is_needed = std::env::var_os("A3_REQUIRE_GPU").is_some();
+                assert!(!is_needed, "A3_REQUIRE_GPU is set: {why}");
                 // Written directly, because the test runner hides the output of a passing test.
                 let _ = writeln!(std::io::stderr(), "SKIPPED, NOT TESTED: {why}");
                 return;
@@ -278,31 +241,26 @@ mod tests {
         let right = ridge(&gpu, SOURCE);
         assert_eq!(ridge(&gpu, SOURCE), right);
         let sum = "n += cross(point(others.x).xyz - p, point(others.y).xyz - p);";
+        let front = "select(-1.0, 1.0, front)";
         for (good, bad) in [
             ("out.normal = n;", "out.normal = -n;"),
             ("out.normal = n;", "out.normal = vec3(0.0, 0.0, 1.0);"),
             // Only one of the triangles; then all of them with equal weights.
+            (sum, &sum.replace("n +=", "n =")),
             (
                 sum,
-                "n = cross(point(others.x).xyz - p, point(others.y).xyz - p);",
+                &sum.replace("cross(", "normalize(cross(")
+                    .replace(");", "));"),
             ),
-            (
-                sum,
-                "n += normalize(cross(point(others.x).xyz - p, point(others.y).xyz - p));",
-            ),
-            (
-                "select(-1.0, 1.0, front)",
-                "1.0 + 0.0 * select(-1.0, 1.0, front) - 2.0",
-            ),
+            (front, &format!("1.0 + 0.0 * {front} - 2.0")),
         ] {
             assert!(SOURCE.contains(good));
             let wrong = ridge(&gpu, &SOURCE.replace(good, bad));
-            let error: u64 = right
+            let errors = right
                 .iter()
                 .zip(&wrong)
-                .map(|(a, b)| u64::from(a.abs_diff(*b)))
-                .sum();
-            let mean = error as f64 / right.len() as f64;
+                .map(|(a, b)| u64::from(a.abs_diff(*b)));
+            let mean = errors.sum::<u64>() as f64 / right.len() as f64;
             assert!(mean > 0.4, "{bad}: mean error {mean}");
         }
     }

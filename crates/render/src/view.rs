@@ -3,10 +3,8 @@
 use bytemuck::{Pod, Zeroable};
 use wgpu::{BufferUsages, TextureFormat};
 
-use crate::buffers::{Instances, buffer};
+use crate::buffers::{Instances, List, Mesh, buffer};
 use crate::gpu::Gpu;
-use crate::list::List;
-use crate::mesh::Mesh;
 use crate::picture::{Picture, Style, Tile};
 
 /// The direction towards the light: from above, over the left shoulder.
@@ -78,20 +76,15 @@ pub(crate) struct Frame {
 impl View {
     pub(crate) fn new(gpu: &Gpu, layout: &wgpu::BindGroupLayout, mesh: &Mesh) -> Self {
         let device = &gpu.device;
-        let globals = buffer(
-            device,
-            "globals",
-            BufferUsages::UNIFORM,
-            size_of::<Globals>(),
-        );
+        let size = size_of::<Globals>();
+        let globals = buffer(device, "globals", BufferUsages::UNIFORM, size);
         let places = mesh.points + mesh.splits.len();
         let points = List::new(device, "points", TextureFormat::Rgba32Float, places);
         let lists = [&points, &mesh.first, &mesh.around];
         let lists = lists.map(|list| wgpu::BindingResource::TextureView(&list.view));
-        let entries: Vec<_> = (0..)
-            .zip([globals.as_entire_binding()].into_iter().chain(lists))
-            .map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource })
-            .collect();
+        let all = [globals.as_entire_binding()].into_iter().chain(lists);
+        let entry = |(binding, resource)| wgpu::BindGroupEntry { binding, resource };
+        let entries: Vec<_> = (0..).zip(all).map(entry).collect();
         Self {
             bind: device.create_bind_group(&wgpu::BindGroupDescriptor {
                 label: Some("particles"),
@@ -133,6 +126,7 @@ impl View {
         let globals = globals(picture, tile);
         let unit = picture.camera.unit();
         let below = |radius: f32| balls.partition_point(|ball| ball.radius < radius * unit) as u32;
+        let [small, medium] = DETAIL_RADII.map(below);
         queue.write_buffer(&self.globals, 0, bytemuck::bytes_of(&globals));
         self.frame = Frame {
             tile,
@@ -151,11 +145,7 @@ impl View {
                 Style::Shaded if self.mesh.indices == 0 => Style::Wireframe,
                 style => style,
             },
-            balls: [
-                below(DETAIL_RADII[0]),
-                below(DETAIL_RADII[1]),
-                balls.len() as u32,
-            ],
+            balls: [small, medium, balls.len() as u32],
             solids: picture.solids.len() as u32,
             lines: picture.lines.len() as u32,
             liquid: 3 * picture.liquid.triangles.len() as u32,
@@ -176,22 +166,13 @@ impl View {
 /// Returns the height of the lowest particle, ball or solid (m).
 fn lowest(picture: &Picture) -> f32 {
     let points = picture.points.iter().map(|p| p[1]);
-    let balls = picture
-        .balls
-        .iter()
-        .map(|ball| ball.center[1] - ball.radius);
+    let balls = picture.balls.iter().map(|it| it.center[1] - it.radius);
     let solids = picture.solids.iter().map(|solid| {
-        let below: f32 = solid
-            .axes
-            .iter()
-            .map(|axis| (axis[1] * axis[3]).abs())
-            .sum();
-        solid.center[1] - solid.radius - below
+        let below = solid.axes.iter().map(|axis| (axis[1] * axis[3]).abs());
+        solid.center[1] - solid.radius - below.sum::<f32>()
     });
-    points
-        .chain(balls)
-        .chain(solids)
-        .fold(f32::INFINITY, f32::min)
+    let all = points.chain(balls).chain(solids);
+    all.fold(f32::INFINITY, f32::min)
 }
 
 /// Returns the uniforms for a picture in this part of the target.
@@ -200,14 +181,13 @@ fn globals(picture: &Picture, tile: Tile) -> Globals {
     let target = picture.camera.target();
     let marks = f32::from(u8::from(picture.floor.is_some_and(|floor| !floor.solid)));
     let length = LIGHT.iter().map(|l| l * l).sum::<f32>().sqrt();
-    let (near, far) = picture
-        .points
-        .iter()
-        .fold((f32::INFINITY, 0.0f32), |(near, far), p| {
-            let d =
-                ((p[0] - eye.x).powi(2) + (p[1] - eye.y).powi(2) + (p[2] - eye.z).powi(2)).sqrt();
-            (near.min(d), far.max(d))
-        });
+    let distances = picture.points.iter().map(|p| {
+        let squares = [0, 1, 2].map(|axis| (p[axis] - eye[axis]).powi(2));
+        (squares[0] + squares[1] + squares[2]).sqrt()
+    });
+    let (near, far) = distances.fold((f32::INFINITY, 0.0f32), |(near, far), d| {
+        (near.min(d), far.max(d))
+    });
     Globals {
         view_projection: picture.camera.view_projection(tile.aspect()).into(),
         eye: [eye.x, eye.y, eye.z, picture.camera.unit()],

@@ -47,25 +47,16 @@ pub(crate) fn missing(key: &str) -> String {
 
 /// Returns the message for an unknown key.
 pub(crate) fn unknown_key(key: &str, known: &[&str]) -> String {
-    unknown(
-        &format!("there is no key `{}`", brief(key, 60)),
-        key,
-        "valid keys",
-        known,
-    )
+    unknown("key ", key, "valid keys", known)
 }
 
 /// Returns the message for a name that is not among the choices.
 pub(crate) fn unknown_choice(name: &str, known: &[&str]) -> String {
-    unknown(
-        &format!("there is no `{}`", brief(name, 60)),
-        name,
-        "choices",
-        known,
-    )
+    unknown("", name, "choices", known)
 }
 
-fn unknown(what: &str, word: &str, all: &str, known: &[&str]) -> String {
+fn unknown(kind: &str, word: &str, all: &str, known: &[&str]) -> String {
+    let what = format!("there is no {kind}`{}`", brief(word, 60));
     let list = known.join(", ");
     match nearest(word, known.iter().copied()) {
         Some(name) => format!("{what}; did you mean `{name}`? The {all} are {list}"),
@@ -104,11 +95,8 @@ pub(crate) fn of_json(message: &str) -> &str {
 pub(crate) fn of_toml(message: &str, rest: &str) -> Cow<'static, str> {
     const VALUE: &str = "the value must be a number such as 0.5, a text in quotes, true, false, a list \
                          such as [1, 2] or a table such as { a = 1 }";
-    let mut words = message
-        .lines()
-        .next()
-        .unwrap_or_default()
-        .split(", expected");
+    let line = message.lines().next().unwrap_or_default();
+    let mut words = line.split(", expected");
     let what = words.next().unwrap_or_default();
     let wanted = words.next().unwrap_or_default().trim();
     match what {

@@ -65,14 +65,18 @@ pub(super) fn wind(spec: &WindSpec, network: &Network) -> Result<Wind, Fault> {
         };
         return blown(spec, Wind::new(spec.seed, mean_wind * factor));
     }
-    let mut air = AIR.map(|(_, usual)| usual);
-    for (((key, _), given), number) in AIR.iter().zip(coefficients).zip(&mut air) {
-        *number = given.unwrap_or(*number);
-        at(key, at_least(0.0, "it", *number))?;
+    let [density, drag, lift] = air(spec);
+    for ((key, _), number) in AIR.iter().zip([density, drag, lift]) {
+        at(key, at_least(0.0, "it", number))?;
     }
-    let [density, drag, lift] = air;
     let air = at("", Air::new(density, drag, lift))?;
     blown(spec, Wind::on_triangles(spec.seed, mean_wind, air))
+}
+
+/// Returns the density of the air of a wind (kg/m3), its drag coefficient and its lift coefficient.
+pub fn air(spec: &WindSpec) -> [f64; 3] {
+    let given = [spec.density, spec.drag, spec.lift];
+    [0, 1, 2].map(|k| given[k].unwrap_or(AIR[k].1))
 }
 
 /// Sets the region of a wind, shifts it in time, and leaves out its gusts if it is steady.

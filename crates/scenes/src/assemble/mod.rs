@@ -26,6 +26,7 @@ use crate::setup::{Defaults, Presentation, Setup, Viewpoint};
 use crate::wording::unknown_choice;
 use assembly::Files;
 pub use fluid::{LAYERS, fluid_points};
+pub use forces::air;
 pub use skins::max_thickness;
 pub use springs::damping_time;
 
