@@ -107,16 +107,13 @@ impl Assembly<'_> {
         springs: impl IntoIterator<Item = Spring>,
         only_pull: bool,
     ) {
-        let all = if only_pull {
-            &mut self.cords
-        } else {
-            &mut self.springs
-        };
-        all.extend(springs.into_iter().map(|s| Spring {
+        let kinds = [&mut self.springs, &mut self.cords];
+        let moved = |s: Spring| Spring {
             i: s.i + first,
             j: s.j + first,
             ..s
-        }));
+        };
+        kinds[usize::from(only_pull)].extend(springs.into_iter().map(moved));
     }
 
     /// Adds the surface of the body that was added last. Its particles are counted from `first`.
@@ -156,10 +153,10 @@ impl Assembly<'_> {
         }
         let masses = &self.masses[first..];
         let is_wrong = |m: &f64| !m.is_finite() || !m.recip().is_finite();
-        masses.iter().position(is_wrong).map_or(Ok(()), |i| {
-            let why = format!("its particle {i} would have a mass of {:e} kg", masses[i]);
-            Err(Fault::new("", why))
-        })
+        if let Some(i) = masses.iter().position(is_wrong) {
+            refuse!("": "its particle {i} would have a mass of {:e} kg", masses[i]);
+        }
+        Ok(())
     }
 }
 
@@ -214,10 +211,10 @@ impl Files<'_> {
 
 /// Creates the state of particles from their positions (m) and velocities (m/s).
 pub(super) fn state_of(positions: &[Vector3<f64>], velocities: &[Vector3<f64>]) -> Vec<f64> {
-    [positions, velocities]
-        .into_iter()
-        .flat_map(|rows| (0..3).flat_map(move |axis| rows.iter().map(move |row| row[axis])))
-        .collect()
+    let column = |rows: &[Vector3<f64>], axis| rows.iter().map(move |row| row[axis]).collect();
+    let columns =
+        [positions, velocities].map(|rows| [0, 1, 2].map(|k| -> Vec<_> { column(rows, k) }));
+    columns.as_flattened().concat()
 }
 
 /// Sets a state to the given one: without positions, those of the bodies stay. A first-order system

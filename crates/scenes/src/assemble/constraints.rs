@@ -62,30 +62,23 @@ fn constraint(
     network: &Network,
     state: &[f64],
 ) -> Result<Constraint, Fault> {
-    match spec {
-        ConstraintSpec {
-            rod,
-            rope,
-            length,
-            restitution,
-            particle: None,
-            point: None,
-            line: None,
-            circle: None,
-            sphere: None,
-        } if rod.is_some() != rope.is_some() => {
-            let (key, [i, j]) = match (rod, rope) {
-                (Some(ends), _) => ("rod", *ends),
-                (None, ends) => ("rope", ends.unwrap_or_default()),
-            };
-            for end in [i, j] {
-                at(key, network.check_particle(end))?;
+    let is_wire = spec.point.is_some()
+        || spec.line.is_some()
+        || spec.circle.is_some()
+        || spec.sphere.is_some();
+    let restitution = spec.restitution;
+    match (spec.rod, spec.rope, spec.particle) {
+        (Some(ends @ [i, j]), None, None) | (None, Some(ends @ [i, j]), None) if !is_wire => {
+            let is_rope = spec.rope.is_some();
+            for end in ends {
+                at(
+                    if is_rope { "rope" } else { "rod" },
+                    network.check_particle(end),
+                )?;
             }
-            let n = network.particles();
-            let point = |i: usize| Vector3::new(state[i], state[n + i], state[2 * n + i]);
-            let length = length.unwrap_or((point(i) - point(j)).norm());
-            let restitution = *restitution;
-            if rope.is_some() {
+            let apart = place(network, state, i) - place(network, state, j);
+            let length = spec.length.unwrap_or(apart.norm());
+            if is_rope {
                 at("restitution", share("it", restitution))?;
                 return Ok(Constraint::Rope {
                     i,
@@ -97,22 +90,18 @@ fn constraint(
             refuse!(if restitution != 0.0 => "restitution": "only a rope has this key");
             Ok(Constraint::Rod { i, j, length })
         }
-        ConstraintSpec {
-            rod: None,
-            rope: None,
-            restitution: 0.0,
-            length: None,
-            particle: Some(particle),
-            ..
-        } => {
-            at("particle", network.check_particle(*particle))?;
-            wire(*particle, spec)
+        (None, None, Some(particle)) if restitution == 0.0 && spec.length.is_none() => {
+            at("particle", network.check_particle(particle))?;
+            wire(particle, spec)
         }
-        _ => Err(Fault::new(
-            "",
-            "give either `rod` or `rope` with two particles, or `particle` with one of `point`, `line`, `circle` and `sphere`",
-        )),
+        _ => refuse!("":
+            "give either `rod` or `rope` with two particles, or `particle` with one of `point`, `line`, `circle` and `sphere`"),
     }
+}
+
+/// Returns the position of a particle in a state (m).
+fn place(network: &Network, state: &[f64], i: usize) -> Vector3<f64> {
+    Vector3::from_fn(|axis, _| state[axis * network.particles() + i])
 }
 
 /// Creates the constraint of a particle to a point, a line, a circle or a sphere.
@@ -138,9 +127,7 @@ fn wire(particle: usize, spec: &ConstraintSpec) -> Result<Constraint, Fault> {
             center: Vector3::from(sphere.center),
             radius: sphere.radius,
         },
-        _ => {
-            refuse!("": "give one of `point`, `line`, `circle` and `sphere`");
-        }
+        _ => refuse!("": "give one of `point`, `line`, `circle` and `sphere`"),
     })
 }
 
@@ -161,14 +148,10 @@ pub(super) fn add_joints(
     state: &[f64],
 ) -> Result<(), Fault> {
     let all = &description.joint;
+    let (attached, of_bodies) = (pins.attached.len(), "particles that are attached to bodies");
     for (key, count, most, what) in [
         ("joint", all.len(), MAX_JOINTS, "joints"),
-        (
-            "pin.body",
-            pins.attached.len(),
-            MAX_ATTACHED,
-            "particles that are attached to bodies",
-        ),
+        ("pin.body", attached, MAX_ATTACHED, of_bodies),
     ] {
         refuse!(if count > most => key: "the scene has {count} {what}; at most {most} are allowed");
     }
@@ -177,10 +160,9 @@ pub(super) fn add_joints(
         let added = join(spec, network, state);
         added.map_err(|fault| fault.within(&key_of("joint", k, all.len())))?;
     }
-    let n = network.particles();
     for &(i, k) in &pins.attached {
         at("pin.body", check_body(network, k))?;
-        let there = Vector3::new(state[i], state[n + i], state[2 * n + i]);
+        let there = place(network, state, i);
         let own = Pose {
             place: Path::Still(there).at(0.0),
             orientation: None,
@@ -200,10 +182,8 @@ fn join(spec: &JointSpec, network: &mut Network, state: &[f64]) -> Result<(), Fa
     let (moved, other) = match (spec.body, spec.bodies) {
         (Some(k), None) => (k, None),
         (None, Some([other, k])) => (k, Some(other)),
-        _ => {
-            refuse!("":
-                "give either `body`, for a joint with the world, or `bodies` with two numbers");
-        }
+        _ => refuse!("":
+            "give either `body`, for a joint with the world, or `bodies` with two numbers"),
     };
     let key = if other.is_some() { "bodies" } else { "body" };
     for k in other.into_iter().chain([moved]) {
@@ -212,32 +192,23 @@ fn join(spec: &JointSpec, network: &mut Network, state: &[f64]) -> Result<(), Fa
     let pose = |k: usize| (network.bodies()[k].center(), network.pose(k, state));
     let (own, against) = (pose(moved), other.map(pose));
     let center = own.1.place.position;
-    let vector = |of: &[f64; 3]| Vector3::from(*of);
-    let along_x = |there| (there, Vector3::x());
+    let x = Vector3::x();
+    let (hinge, slider) = (spec.hinge.as_ref(), spec.slider.as_ref());
     let kinds = [
         spec.ball
-            .map(|there| ("ball", JointKind::Ball, along_x(there.into()))),
-        spec.hinge.as_ref().map(|hinge| {
-            let place = (vector(&hinge.at), vector(&hinge.axis));
-            ("hinge.axis", JointKind::Hinge, place)
-        }),
-        spec.slider.as_ref().map(|slider| {
-            let place = (center, vector(&slider.axis));
-            ("slider.axis", JointKind::Slider, place)
-        }),
-        spec.fixed
-            .then(|| ("fixed", JointKind::Fixed, along_x(center))),
+            .map(|there| ("ball", JointKind::Ball, there.into(), x)),
+        hinge.map(|it| ("hinge.axis", JointKind::Hinge, it.at.into(), it.axis.into())),
+        slider.map(|it| ("slider.axis", JointKind::Slider, center, it.axis.into())),
+        spec.fixed.then_some(("fixed", JointKind::Fixed, center, x)),
     ];
     let mut kinds = kinds.into_iter().flatten();
-    let (Some((key, kind, place)), None) = (kinds.next(), kinds.next()) else {
+    let (Some((key, kind, there, axis)), None) = (kinds.next(), kinds.next()) else {
         refuse!("": "give one of `ball`, `hinge`, `slider` and `fixed = true`");
     };
-    let sides = (
-        (own.0, &own.1),
-        against.as_ref().map(|(i, pose)| (*i, pose)),
-    );
+    let other_side = against.as_ref().map(|(i, pose)| (*i, pose));
+    let sides = ((own.0, &own.1), other_side);
     let length = network.bodies()[moved].radius();
-    let joint = at(key, Joint::new(kind, sides, place, length))?;
+    let joint = at(key, Joint::new(kind, sides, (there, axis), length))?;
     at("", network.add_constraint(Constraint::Joint(joint)))?;
     let free = match (&spec.hinge, &spec.slider) {
         (Some(hinge), _) => Free {
@@ -259,9 +230,8 @@ fn join(spec: &JointSpec, network: &mut Network, state: &[f64]) -> Result<(), Fa
         _ => return Ok(()),
     };
     let added = free.limit(network, joint);
-    added
-        .and_then(|()| free.drive(network, (moved, other), &joint))
-        .map_err(|fault| fault.within(free.name))
+    let added = added.and_then(|()| free.drive(network, (moved, other), &joint));
+    added.map_err(|fault| fault.within(free.name))
 }
 
 /// Motion that a hinge or a slider lets free: its limits and its motor.
@@ -280,10 +250,8 @@ impl Free {
     /// Adds the limits, if there are any.
     fn limit(&self, network: &mut Network, joint: Joint) -> Result<(), Fault> {
         let Some(limits) = self.limits else {
-            return match self.restitution {
-                None => Ok(()),
-                Some(_) => Err(Fault::new("restitution", "a rebound needs `limits`")),
-            };
+            refuse!(if self.restitution.is_some() => "restitution": "a rebound needs `limits`");
+            return Ok(());
         };
         if !(limits[0] <= 0.0 && limits[1] >= 0.0) {
             let [least, most] = limits;

@@ -118,12 +118,7 @@ impl Fluid {
 /// # Errors
 /// A number makes no sense.
 pub fn fluid_points(fluid: &Fluid) -> Result<[Vec<Vector3<f64>>; 2], Fault> {
-    let Lattices {
-        liquid,
-        tank,
-        column,
-        outflows,
-    } = fluid.lattices()?;
+    let lattices = fluid.lattices()?;
     let half = 0.5 * Vector3::from(fluid.size);
     let is_in_shape = |place: &Vector3<f64>| {
         let from_center = place - Vector3::from(fluid.at);
@@ -133,14 +128,17 @@ pub fn fluid_points(fluid: &Fluid) -> Result<[Vec<Vector3<f64>>; 2], Fault> {
         };
         fluid.shape == FluidShape::Box || (0..3).map(share).sum::<f64>() <= 1.0
     };
-    let all = liquid.iter().flat_map(|places| places.all(0));
+    let all = lattices.liquid.iter().flat_map(|places| places.all(0));
     let all = all.map(|(place, _)| place);
     let slack = SLACK * fluid.spacing;
     let is_open = |place: &Vector3<f64>| {
-        column.as_ref().is_some_and(|it| it.passes(place))
-            || outflows.iter().any(|it| it.contains(place, slack))
+        let flows_in = lattices.column.as_ref().is_some_and(|it| it.passes(place));
+        flows_in || lattices.outflows.iter().any(|it| it.contains(place, slack))
     };
-    let walls = tank.iter().flat_map(|tank| tank.all(LAYERS.into()));
+    let walls = lattices
+        .tank
+        .iter()
+        .flat_map(|tank| tank.all(LAYERS.into()));
     let walls = walls.filter(|(_, inside)| !inside).map(|(place, _)| place);
     let walls = walls.filter(|place| !is_open(place));
     Ok([all.filter(is_in_shape).collect(), walls.collect()])
@@ -148,18 +146,12 @@ pub fn fluid_points(fluid: &Fluid) -> Result<[Vec<Vector3<f64>>; 2], Fault> {
 
 impl Body for Fluid {
     fn add_to(&self, assembly: &mut Assembly, files: &mut Files) -> Result<(), Fault> {
-        let Lattices {
-            liquid,
-            tank,
-            column,
-            outflows,
-        } = self.lattices()?;
-        let flows_in = column.as_ref().map_or(0, Column::count);
-        let flowing = liquid.map_or(0, |liquid| liquid.count(0));
-        let flowing = flowing.saturating_add(flows_in);
-        let walls = tank.map_or(0, |tank| {
-            tank.count(LAYERS.into()).saturating_sub(tank.count(0))
-        });
+        let lattices = self.lattices()?;
+        let count = |places: Option<&Places>, layers| places.map_or(0, |it| it.count(layers));
+        let flows_in = count(lattices.column.as_ref().map(|it| &it.places), 0);
+        let flowing = count(lattices.liquid.as_ref(), 0).saturating_add(flows_in);
+        let tank = lattices.tank.as_ref();
+        let walls = count(tank, LAYERS.into()).saturating_sub(count(tank, 0));
         let all = flowing.saturating_add(walls);
         let pinned = walls.saturating_add(flows_in);
         files.spend(all, &[(all, SMOOTHED), (pinned, PINS)])?;
@@ -173,10 +165,9 @@ impl Body for Fluid {
             assembly.positions.push(place);
             assembly.velocities.push(velocity + strained);
         }
-        assembly
-            .drops
-            .extend(first as u32..assembly.positions.len() as u32);
-        let (column, next) = (column.iter(), assembly.positions.len());
+        let end = assembly.positions.len();
+        assembly.drops.extend(first as u32..end as u32);
+        let (column, next) = (lattices.column.iter(), assembly.positions.len());
         for (place, velocity, pin) in column.flat_map(|column| column.particles(next)) {
             assembly.positions.push(place);
             assembly.velocities.push(velocity);
@@ -210,14 +201,13 @@ impl Body for Fluid {
             assembly.presentation.tanks.push(free..all);
         }
         let (law, particles) = (self.law(), first..all);
-        assembly.outflows.extend(outflows);
+        assembly.outflows.extend(lattices.outflows);
         match &mut assembly.fluid {
             None => assembly.fluid = Some((law, vec![particles])),
             Some((other, all)) if *other == law => all.push(particles),
             Some(_) => {
-                let why = "all fluids of a scene are one liquid: spacing, density, sound, \
-                           viscosity and dimensions must be those of the first";
-                return Err(Fault::new("", why));
+                refuse!("": "all fluids of a scene are one liquid: spacing, density, sound, \
+                viscosity and dimensions must be those of the first")
             }
         }
         Ok(())
@@ -251,15 +241,12 @@ pub(super) fn add(
             Rounded(MIN_DISTANCE * law.spacing)
         );
         let body = |i: u32| network.body_of(i as usize);
-        return Err(if let Some(k) = body(i).or(body(j)) {
+        if let Some(k) = body(i).or(body(j)) {
             let key = key_of("body", k, network.bodies().len());
-            let why = "a point of it and a particle of the liquid would begin";
             let room = "move the body, or the liquid that begins in its place";
-            Fault::new(key, format!("{why} {apart}: {room}"))
-        } else {
-            let why = format!("particles {i} and {j} would begin {apart}");
-            Fault::new("fluid", why)
-        });
+            refuse!(key: "a point of it and a particle of the liquid would begin {apart}: {room}");
+        }
+        refuse!("fluid": "particles {i} and {j} would begin {apart}");
     }
     at("fluid", network.add(fluid))
 }
@@ -318,11 +305,6 @@ impl Column {
             layers,
             ahead: inflow.ahead,
         })
-    }
-
-    /// Counts the particles.
-    pub fn count(&self) -> usize {
-        self.places.count(0)
     }
 
     /// Lists the particles, numbered from `first`: their places (m) and velocities (m/s) at the
@@ -417,8 +399,7 @@ fn space(outflow: &Outflow, fluid: &Fluid) -> Result<Space, Fault> {
 
 /// Lets the liquid leave the scene that begins in an outflow.
 pub(super) fn drain(network: &mut Network, state: &mut [f64]) {
-    let spacing = network.fluid().map(|fluid| fluid.law().spacing);
-    if let Some(spacing) = spacing {
+    if let Some(spacing) = network.fluid().map(|fluid| fluid.law().spacing) {
         network.drain(state, SLACK * spacing);
     }
 }
@@ -465,9 +446,8 @@ impl Places {
     /// Counts the points of the lattice with `layers` more around its sides and its bottom.
     pub fn count(&self, layers: i64) -> usize {
         let ends = (0..3).map(|axis| self.range(axis, layers));
-        ends.fold(1, |all, range| {
-            all.saturating_mul((range.end - range.start) as usize)
-        })
+        let counts = ends.map(|range| (range.end - range.start) as usize);
+        counts.fold(1, usize::saturating_mul)
     }
 
     /// Returns the indices along an axis, with `layers` more outside.
@@ -485,9 +465,8 @@ impl Places {
     pub fn all(&self, layers: i64) -> impl Iterator<Item = (Vector3<f64>, bool)> {
         let [x, y, z] = [0, 1, 2].map(|axis| self.range(axis, layers));
         let places = z.flat_map(move |k| {
-            let x = x.clone();
-            y.clone()
-                .flat_map(move |j| x.clone().map(move |i| [i, j, k]))
+            let (x, y) = (x.clone(), y.clone());
+            y.flat_map(move |j| x.clone().map(move |i| [i, j, k]))
         });
         places.map(move |place| {
             let inside = (0..3).all(|axis| (0..self.counts[axis]).contains(&place[axis]));

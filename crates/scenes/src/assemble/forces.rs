@@ -40,29 +40,18 @@ pub(super) fn wind(spec: &WindSpec, network: &Network) -> Result<Wind, Fault> {
         ("force_per_mass", spec.force_per_mass),
         ("velocity", spec.velocity),
     ];
-    let given: Vec<_> = given
-        .into_iter()
-        .filter_map(|(key, x)| Some((key, x?)))
-        .collect();
+    let given = given.into_iter().filter_map(|(key, x)| Some((key, x?)));
+    let given: Vec<_> = given.collect();
     let [(key, mean_wind)] = given[..] else {
         refuse!("": "give one of the keys `force`, `force_per_mass` and `velocity`");
     };
     let mean_wind = Vector3::from(mean_wind);
-    let coefficients = [spec.density, spec.drag, spec.lift];
     if key != "velocity" {
-        for ((key, _), given) in AIR.iter().zip(coefficients) {
-            if given.is_some() {
-                return Err(Fault::new(
-                    *key,
-                    "only a wind with a `velocity` has this key",
-                ));
-            }
+        for (&(key, _), given) in AIR.iter().zip([spec.density, spec.drag, spec.lift]) {
+            refuse!(if given.is_some() => key: "only a wind with a `velocity` has this key");
         }
-        let factor = if key == "force" {
-            1.0
-        } else {
-            mean_mass(network)
-        };
+        let by_mass = key == "force_per_mass";
+        let factor = if by_mass { mean_mass(network) } else { 1.0 };
         return blown(spec, Wind::new(spec.seed, mean_wind * factor));
     }
     let [density, drag, lift] = air(spec);
@@ -95,12 +84,8 @@ fn region(spec: &RegionSpec) -> Result<Region, Fault> {
     let length = spec.length.unwrap_or(spec.radius);
     at("radius", positive("it", spec.radius))?;
     at("length", positive("it", length))?;
-    let (path, turn) = motion(
-        spec.sine.as_ref(),
-        spec.shift.as_ref(),
-        spec.turn.as_ref(),
-        Vector3::from(spec.at),
-    )?;
+    let (sine, shift, turn) = (spec.sine.as_ref(), spec.shift.as_ref(), spec.turn.as_ref());
+    let (path, turn) = motion(sine, shift, turn, Vector3::from(spec.at))?;
     Ok(Region {
         path,
         turn,
@@ -126,12 +111,10 @@ const MAX_OBSTACLES: usize = 1000;
 
 /// Returns whether an obstacle has a thickness, so that surfaces touch it.
 pub(super) fn is_one_thick(all: &Description) -> bool {
-    let spheres = all.sphere.iter().map(|spec| spec.thickness);
-    let boxes = all.boxes.iter().map(|spec| spec.thickness);
-    let capsules = all.capsule.iter().map(|spec| spec.thickness);
-    let solids = all.obstacle.iter().map(|spec| spec.thickness);
-    let mut thicknesses = spheres.chain(boxes).chain(capsules).chain(solids);
-    thicknesses.any(|thickness| thickness.is_some())
+    all.sphere.iter().any(|it| it.thickness.is_some())
+        || all.boxes.iter().any(|it| it.thickness.is_some())
+        || all.capsule.iter().any(|it| it.thickness.is_some())
+        || all.obstacle.iter().any(|it| it.thickness.is_some())
         || matches!(all.floor, Some(Floor::Table(floor)) if floor.thickness.is_some())
 }
 

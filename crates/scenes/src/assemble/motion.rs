@@ -21,10 +21,8 @@ pub(super) fn motion(
         (_, Some(_), Some(_)) => return Err(Fault::not_both("sine", "shift")),
         (Some(_), Some(_), None) => return Err(Fault::not_both("sine", "turn.about")),
         (Some((turn, about)), None, shift) => {
-            let (by, [start, end]) = match shift {
-                None => (Vector3::zeros(), [0.0; 2]),
-                Some(shift) => way(shift)?,
-            };
+            let way = shift.map(way).transpose()?;
+            let (by, [start, end]) = way.unwrap_or_default();
             Path::Turn {
                 turn,
                 arm: from - about,
@@ -36,10 +34,7 @@ pub(super) fn motion(
         }
         (None, None, None) => Path::Still(from),
         (None, Some(sine), None) => Path::Sine {
-            center: match sine.center {
-                None => from,
-                Some(center) => Vector3::from(center),
-            },
+            center: sine.center.map_or(from, Vector3::from),
             amplitude: Vector3::from(sine.amplitude),
             rate: sine.rate,
             phase: sine.phase,
@@ -81,15 +76,12 @@ fn turn(turn: &description::Turn) -> Result<Turn, Fault> {
     if let Some(end) = turn.end {
         later("end", start, end)?;
     }
-    let rate = match (
-        one_of(("rate", turn.rate), ("angle", turn.angle))?,
-        turn.end,
-    ) {
-        ((true, rate), _) => rate,
-        ((false, angle), Some(end)) => angle / (end - start),
-        ((false, _), None) => {
-            refuse!("end": "with an `angle`, it is needed: the time at which the turn ends (s)");
-        }
+    let (by_rate, number) = one_of(("rate", turn.rate), ("angle", turn.angle))?;
+    let rate = match turn.end {
+        _ if by_rate => number,
+        Some(end) => number / (end - start),
+        None => refuse!("end":
+            "with an `angle`, it is needed: the time at which the turn ends (s)"),
     };
     Ok(Turn {
         axis,
@@ -168,12 +160,8 @@ impl Pinned {
             at("until", positive("it", until))?;
         }
         for i in particles {
-            let (path, _) = motion(
-                pin.sine.as_ref(),
-                pin.shift.as_ref(),
-                pin.turn.as_ref(),
-                positions[i],
-            )?;
+            let (sine, shift, turn) = (pin.sine.as_ref(), pin.shift.as_ref(), pin.turn.as_ref());
+            let (path, _) = motion(sine, shift, turn, positions[i])?;
             self.paths.push(Held {
                 until: pin.until,
                 ..Held::new(first + i, path)
@@ -199,10 +187,8 @@ pub(super) fn side(spot: Spot) -> Option<(usize, bool)> {
 pub(super) fn extreme(spot: Spot, positions: &[Vector3<f64>]) -> Option<Vec<usize>> {
     let (axis, far) = side(spot)?;
     let places = || positions.iter().map(|p| p[axis]);
-    let (low, high) = (
-        places().fold(f64::INFINITY, f64::min),
-        places().fold(f64::NEG_INFINITY, f64::max),
-    );
+    let low = places().fold(f64::INFINITY, f64::min);
+    let high = places().fold(f64::NEG_INFINITY, f64::max);
     let (at, near) = (if far { high } else { low }, 0.01 * (high - low));
     let there = places().enumerate().filter(|(_, y)| (y - at).abs() <= near);
     Some(there.map(|(i, _)| i).collect())

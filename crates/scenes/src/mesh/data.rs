@@ -71,9 +71,8 @@ impl Mesh {
             *place
         };
         let corners = self.triangles.iter().map(|t| t.map(&mut corner));
-        mesh.triangles = corners
-            .filter(|[a, b, c]| a != b && b != c && c != a)
-            .collect();
+        let has_three = |[a, b, c]: &[u32; 3]| a != b && b != c && c != a;
+        mesh.triangles = corners.filter(has_three).collect();
         mesh
     }
 
@@ -129,10 +128,8 @@ impl Mesh {
         let mut edges: BTreeMap<[u32; 2], Vec<u32>> = BTreeMap::new();
         for &[a, b, c] in &self.triangles {
             for (from, to, opposite) in [(a, b, c), (b, c, a), (c, a, b)] {
-                edges
-                    .entry([from.min(to), from.max(to)])
-                    .or_default()
-                    .push(opposite);
+                let edge = [from.min(to), from.max(to)];
+                edges.entry(edge).or_default().push(opposite);
             }
         }
         let across = edges.values().filter_map(|opposite| match opposite[..] {
@@ -141,10 +138,8 @@ impl Mesh {
         });
         // The corners across an edge may be neighbours themselves, as in a tetrahedron.
         let across = across.filter(|pair| !edges.contains_key(pair));
-        let all = edges
-            .keys()
-            .map(|pair| (SpringKind::Structural, *pair))
-            .chain(across.map(|pair| (SpringKind::Bend, pair)));
+        let along = edges.keys().map(|pair| (SpringKind::Structural, *pair));
+        let all = along.chain(across.map(|pair| (SpringKind::Bend, pair)));
         all.map(|(kind, ends)| {
             let [i, j] = ends.map(|i| i as usize);
             let [a, b] = [i, j].map(|i| Vector3::from(self.positions[i]));
@@ -173,10 +168,8 @@ pub(super) fn places(positions: &[Triple]) -> Vec<u32> {
         }
     }
     let size = [0, 1, 2].map(|axis| high[axis] - low[axis]);
-    let near = WELD_DISTANCE
-        * size
-            .into_iter()
-            .fold(f64::MIN_POSITIVE / WELD_DISTANCE, f64::max);
+    let least = f64::MIN_POSITIVE / WELD_DISTANCE;
+    let near = WELD_DISTANCE * size.into_iter().fold(least, f64::max);
     // Coordinates in which the cells have sides of 1 and begin at 0.
     let scaled = |i: usize| [0, 1, 2].map(|axis| (positions[i][axis] - low[axis]) / (CELL * near));
     let cell = |i: usize| scaled(i).map(|x| x.floor() as u32);

@@ -89,19 +89,10 @@ impl Buffers<'_> {
             _ => "MAT4",
         };
         refuse!(if accessor.kind != kind => "its type is {}, not {kind}", accessor.kind);
-        let Number {
-            size,
-            largest,
-            read,
-        } = number(accessor.component_type)?;
+        let (size, largest, read) = number(accessor.component_type)?;
         let bytes = self.bytes(accessor, N * size)?;
-        let share = |number: f32| {
-            if accessor.normalized && largest > 0.0 {
-                (number / largest).max(-1.0)
-            } else {
-                number
-            }
-        };
+        let is_share = accessor.normalized && largest > 0.0;
+        let share = |x: f32| if is_share { (x / largest).max(-1.0) } else { x };
         let rows = bytes.chunks_exact(N * size);
         let row = |row: &[u8]| std::array::from_fn(|k| share(read(&row[k * size..][..size])));
         Ok(rows.map(row).collect())
@@ -121,24 +112,19 @@ impl Buffers<'_> {
             None => vec![0; count.checked_mul(size).ok_or("its count is too large")?],
             Some(view) => self.packed(view, accessor.byte_offset, count, size)?,
         };
-        if let Some(Sparse {
-            count: some,
-            indices,
-            values,
-        }) = &accessor.sparse
-        {
-            refuse!(if *some > count => "it replaces {some} elements of {count}");
+        if let Some(sparse) = &accessor.sparse {
+            let (some, indices, values) = (sparse.count, &sparse.indices, &sparse.values);
+            refuse!(if some > count => "it replaces {some} elements of {count}");
             let wide = self::size(indices.component_type.unwrap_or(0))?;
-            let places = self.packed(indices.buffer_view, indices.byte_offset, *some, wide)?;
-            let values = self.packed(values.buffer_view, values.byte_offset, *some, size)?;
+            let places = self.packed(indices.buffer_view, indices.byte_offset, some, wide)?;
+            let values = self.packed(values.buffer_view, values.byte_offset, some, size)?;
             for (k, value) in whole(&places, wide)
                 .into_iter()
                 .zip(values.chunks_exact(size))
             {
                 let place = bytes.chunks_exact_mut(size).nth(k as usize);
-                place
-                    .ok_or_else(|| format!("it replaces element {k} of {count}"))?
-                    .copy_from_slice(value);
+                let place = place.ok_or_else(|| format!("it replaces element {k} of {count}"))?;
+                place.copy_from_slice(value);
             }
         }
         Ok(bytes)
@@ -152,20 +138,13 @@ impl Buffers<'_> {
         count: usize,
         size: usize,
     ) -> Result<Vec<u8>, String> {
-        let View {
-            buffer,
-            byte_offset,
-            byte_length,
-            byte_stride,
-        } = self
-            .views
-            .get(view)
-            .ok_or_else(|| format!("there is no view {view}"))?;
-        let bytes = self.buffers.get(*buffer);
-        let bytes = bytes
-            .and_then(|bytes| bytes.get(*byte_offset..)?.get(..*byte_length)?.get(from..))
-            .ok_or_else(|| format!("view {view} is not within its buffer"))?;
-        let stride = byte_stride.unwrap_or(size);
+        let it = self.views.get(view);
+        let it = it.ok_or_else(|| format!("there is no view {view}"))?;
+        let bytes = self.buffers.get(it.buffer);
+        let bytes = bytes.and_then(|bytes| bytes.get(it.byte_offset..)?.get(..it.byte_length));
+        let bytes = bytes.and_then(|bytes| bytes.get(from..));
+        let bytes = bytes.ok_or_else(|| format!("view {view} is not within its buffer"))?;
+        let stride = it.byte_stride.unwrap_or(size);
         refuse!(if !(size..=252).contains(&stride) =>
             "the stride of view {view} is {stride}: it is from {size} to 252");
         let there = (bytes.len() + stride - size) / stride;
@@ -175,38 +154,27 @@ impl Buffers<'_> {
     }
 }
 
-/// Encoding of the numbers of a type.
-struct Number {
-    /// Size (bytes).
-    size: usize,
-    /// Largest number, which stands for 1 in normalized numbers; 0 if the type is never normalized.
-    largest: f32,
-    read: fn(&[u8]) -> f32,
-}
+/// Encoding of the numbers of a type: their size (bytes), the largest one, which stands for 1 in
+/// normalized numbers, or 0 if the type is never normalized, and how they are read.
+type Number = (usize, f32, fn(&[u8]) -> f32);
 
 fn number(component_type: u32) -> Result<Number, String> {
-    let (size, largest, read): (_, _, fn(&[u8]) -> f32) = match component_type {
-        I8 => (1, 127.0, |bytes| f32::from(bytes[0].cast_signed())),
-        U8 => (1, 255.0, |bytes| f32::from(bytes[0])),
-        I16 => (2, 32767.0, |bytes| {
-            f32::from(i16::from_le_bytes([bytes[0], bytes[1]]))
+    Ok(match component_type {
+        I8 => (1, 127.0, |it| f32::from(it[0].cast_signed())),
+        U8 => (1, 255.0, |it| f32::from(it[0])),
+        I16 => (2, 32767.0, |it| {
+            f32::from(i16::from_le_bytes([it[0], it[1]]))
         }),
-        U16 => (2, 65535.0, |bytes| {
-            f32::from(u16::from_le_bytes([bytes[0], bytes[1]]))
+        U16 => (2, 65535.0, |it| {
+            f32::from(u16::from_le_bytes([it[0], it[1]]))
         }),
-        F32 => (4, 0.0, |bytes| {
-            f32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]])
+        F32 => (4, 0.0, |it| {
+            f32::from_le_bytes([it[0], it[1], it[2], it[3]])
         }),
         other => {
-            return Err(format!(
-                "its numbers have the type {other}, which those of points have not"
-            ));
+            let why = "which those of points have not";
+            return Err(format!("its numbers have the type {other}, {why}"));
         }
-    };
-    Ok(Number {
-        size,
-        largest,
-        read,
     })
 }
 

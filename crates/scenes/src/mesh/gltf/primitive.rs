@@ -54,9 +54,7 @@ impl Reader<'_> {
         let too_many =
             || format!("there are more than {MAX_POINTS} points or {MAX_TRIANGLES} triangles");
         self.primitives += 1;
-        if self.primitives > MAX_POINTS {
-            return Err(too_many());
-        }
+        refuse!(if self.primitives > MAX_POINTS => "{}", too_many());
         let mode = primitive.mode.unwrap_or(4);
         if mode < 4 {
             return Ok(());
@@ -69,16 +67,11 @@ impl Reader<'_> {
         };
         let positions = accessor(position)?;
         let count = positions.count;
-        if let Some(extension) = self
-            .document
-            .compression()
-            .filter(|_| !positions.is_stored())
-        {
+        let compression = self.document.compression();
+        if let Some(extension) = compression.filter(|_| !positions.is_stored()) {
             return Err(compressed(extension));
         }
-        if count > MAX_POINTS {
-            return Err(too_many());
-        }
+        refuse!(if count > MAX_POINTS => "{}", too_many());
         // Many primitives may share the points of one accessor.
         self.shifts += count;
         refuse!(if self.shifts > MAX_SHIFTS =>
@@ -90,9 +83,7 @@ impl Reader<'_> {
             None => (0..count).collect(),
             Some(k) => {
                 let indices = accessor(k)?;
-                if indices.count > 3 * MAX_TRIANGLES {
-                    return Err(too_many());
-                }
+                refuse!(if indices.count > 3 * MAX_TRIANGLES => "{}", too_many());
                 self.buffers.indices(indices).map_err(named(k))?
             }
         };
@@ -103,15 +94,10 @@ impl Reader<'_> {
             ));
         }
         let triangles: Vec<[u32; 3]> = match mode {
-            4 => corners
-                .chunks_exact(3)
-                .map(|t| [t[0], t[1], t[2]])
-                .collect(),
+            4 => corners.as_chunks::<3>().0.to_vec(),
             5 => {
-                let strip = corners.windows(3).enumerate();
-                strip
-                    .map(|(k, t)| [t[0], t[1 + k % 2], t[2 - k % 2]])
-                    .collect()
+                let turned = |(k, t): (usize, &[u32])| [t[0], t[1 + k % 2], t[2 - k % 2]];
+                corners.windows(3).enumerate().map(turned).collect()
             }
             6 => {
                 let fan = corners.windows(2).skip(1);
@@ -119,9 +105,7 @@ impl Reader<'_> {
             }
             _ => return Err(format!("there is no mode {mode} of primitives")),
         };
-        if triangles.len() > MAX_TRIANGLES - self.mesh.triangles.len() {
-            return Err(too_many());
-        }
+        refuse!(if triangles.len() > MAX_TRIANGLES - self.mesh.triangles.len() => "{}", too_many());
         let carrier = match skin {
             Some(skin) => {
                 let attributes = &primitive.attributes;
@@ -137,9 +121,7 @@ impl Reader<'_> {
                 if places[i] != u32::MAX {
                     continue;
                 }
-                if self.mesh.positions.len() == MAX_POINTS {
-                    return Err(too_many());
-                }
+                refuse!(if self.mesh.positions.len() == MAX_POINTS => "{}", too_many());
                 places[i] = self.mesh.positions.len() as u32;
                 let p = carrier.matrix(i).transform_point(&Point3::from(points[i]));
                 self.mesh.positions.push([p.x, p.y, p.z]);
