@@ -106,9 +106,8 @@ impl Edit {
 fn check_ends(network: &Network, [i, j]: [usize; 2]) -> Result<(), String> {
     refuse!(if i == j => "Two particles are needed to join.");
     let fluid = network.fluid();
-    if fluid.is_some_and(|fluid| fluid.members().contains(i) || fluid.members().contains(j)) {
-        return Err("Particles of a fluid cannot be joined.".into());
-    }
+    let has = |i| fluid.is_some_and(|fluid| fluid.members().contains(i));
+    refuse!(if has(i) || has(j) => "Particles of a fluid cannot be joined.");
     Ok(())
 }
 
@@ -133,10 +132,8 @@ fn end_of_single(network: &Network) -> usize {
 /// Returns the number after that of the last particle of the rigid bodies: fluids follow.
 fn end_of_bodies(network: &Network) -> usize {
     let end = |body: &Body| body.center() + 1 + body.points().len();
-    network
-        .bodies()
-        .last()
-        .map_or_else(|| first_of_fluid(network), end)
+    let last = network.bodies().last();
+    last.map_or_else(|| first_of_fluid(network), end)
 }
 
 impl Edited {
@@ -304,31 +301,28 @@ impl Particles {
         keep(&mut self.springs, |it| {
             Some((one.number(it.0)?, one.number(it.1)?, it.2, it.3, it.4))
         });
-        for pin in &mut self.pin {
-            keep(&mut pin.particles, |k| one.number(*k));
-        }
-        self.pin.retain(|pin| !pin.particles.is_empty());
+        keep_pins(&mut self.pin, one);
     }
+}
+
+/// Numbers the particles of pins anew, and forgets the pins of removed ones.
+fn keep_pins(pins: &mut Vec<Pin>, particles: Splice) {
+    for pin in pins.iter_mut() {
+        keep(&mut pin.particles, |i| particles.number(*i));
+    }
+    pins.retain(|pin| !pin.particles.is_empty());
 }
 
 /// Numbers all particles anew that the scene names, and forgets what names a removed one.
 fn renumber_particles(description: &mut Description, particles: Splice) {
     let number = |i: usize| particles.number(i);
     let pair = |[i, j]: [usize; 2]| Some([number(i)?, number(j)?]);
-    let Description {
-        springs,
-        constraint,
-        pin,
-        torn,
-        trail,
-        ..
-    } = description;
-    keep(springs, |it| {
+    keep(&mut description.springs, |it| {
         let [i, j] = pair([it.0, it.1])?;
         Some((i, j, it.2, it.3, it.4))
     });
-    keep(torn, |it| pair(*it));
-    keep(constraint, |it| {
+    keep(&mut description.torn, |it| pair(*it));
+    keep(&mut description.constraint, |it| {
         let mut it = it.clone();
         for ends in [&mut it.rod, &mut it.rope].into_iter().flatten() {
             *ends = pair(*ends)?;
@@ -338,11 +332,8 @@ fn renumber_particles(description: &mut Description, particles: Splice) {
         }
         Some(it)
     });
-    for Pin { particles, .. } in pin.iter_mut() {
-        keep(particles, |i| number(*i));
-    }
-    pin.retain(|pin| !pin.particles.is_empty());
-    *trail = trail.and_then(number);
+    keep_pins(&mut description.pin, particles);
+    description.trail = description.trail.and_then(number);
 }
 
 /// Numbers all rigid bodies anew that joints and pins name, and forgets the joints and the pins of
@@ -360,16 +351,9 @@ fn renumber_bodies(description: &mut Description, bodies: Splice) {
         Some(it)
     });
     let fit = |pins: &mut Vec<Pin>| {
-        keep(pins, |pin| {
-            let body = match pin.body {
-                Some(k) => Some(number(k)?),
-                None => None,
-            };
-            Some(Pin {
-                body,
-                ..pin.clone()
-            })
-        });
+        pins.retain(|pin| pin.body.is_none_or(|k| number(k).is_some()));
+        pins.iter_mut()
+            .for_each(|pin| pin.body = pin.body.and_then(number));
     };
     fit(&mut description.pin);
     let pinned = description.bodies_mut().filter_map(|body| body.pin);

@@ -92,12 +92,10 @@ fn check_grids(scene: &Description) -> Result<(), String> {
         (!scene.torn.is_empty(), "torn springs"),
         (scene.state.is_some(), "a state"),
     ];
-    match numbers.iter().find(|(is_there, _)| *is_there) {
-        Some((_, what)) => Err(format!(
-            "the scene has {what} that name particles by their numbers"
-        )),
-        None => Ok(()),
+    for (is_there, what) in numbers {
+        refuse!(if is_there => "the scene has {what} that name particles by their numbers");
     }
+    Ok(())
 }
 
 /// Keeps the force per mass of drag and wind that are given for each particle.
@@ -170,7 +168,7 @@ type Points = Vec<Vector3<f64>>;
 ///
 /// # Errors
 /// A fluid makes no sense, or would have too many particles.
-pub fn regrid_fluids(
+fn regrid_fluids(
     own: &[Fluid],
     other: &mut [Fluid],
     factor: f64,
@@ -204,25 +202,25 @@ pub fn regrid_fluids(
 
 /// Returns a grid with cells of the same shape, about `factor` times shorter. A grid is given by
 /// its numbers of particles.
-pub fn finer<const N: usize>(grid: [usize; N], factor: f64) -> [usize; N] {
+fn finer<const N: usize>(grid: [usize; N], factor: f64) -> [usize; N] {
     let cells = grid.map(|n| n.max(2) - 1);
     let parts = cells.into_iter().fold(0, gcd);
     cells.map(|n| n / parts * divided(parts, factor) + 1)
 }
 
 /// Returns the number of cells about `factor` times shorter in the place of `cells`, at least 1.
-pub fn divided(cells: usize, factor: f64) -> usize {
+fn divided(cells: usize, factor: f64) -> usize {
     ((cells as f64 * factor).round() as usize).max(1)
 }
 
 /// Returns the greatest common divisor.
-pub fn gcd(a: usize, b: usize) -> usize {
+fn gcd(a: usize, b: usize) -> usize {
     if b == 0 { a } else { gcd(b, a % b) }
 }
 
 /// Places of the particles of one grid on another, body by body.
 #[derive(Default)]
-pub struct Places {
+struct Places {
     /// Place of each particle, as a weighted mean of particles of the other grid: their numbers and
     /// weights.
     pub of: Vec<Vec<(usize, f64)>>,
@@ -306,7 +304,7 @@ impl Places {
 }
 
 /// Particles on points of a cubic lattice, or of a square one across z.
-pub struct Lattice {
+struct Lattice {
     origin: Vector3<f64>,
     spacing: f64,
     /// Number of axes.
@@ -383,15 +381,27 @@ impl Lattice {
 
 #[cfg(test)]
 mod tests {
-    use a3_core::Mechanics;
+    use a3_core::{Mechanics, Scene};
 
     use super::*;
 
     const CLOTH: &str = "[[cloth]]\ngrid = [11, 16]\nwidth = 1.5\ndensity = 0.2\nstiffness = [100, 50, 10]\ndamping_ratio = 0.05\n";
 
-    fn build(description: &Description) -> a3_core::Scene {
+    fn build(description: &Description) -> Scene {
         let setup = description.build(None, &mut |_| Err(String::new()));
         setup.unwrap().scene
+    }
+
+    /// Asserts that the particles are where they were at the start.
+    fn assert_same_places(own: &Scene, other: &Scene, places: &[Vec<(usize, f64)>]) {
+        let [n, m] = [own, other].map(|scene| scene.model.particles());
+        for (i, axis) in (0..n).flat_map(|i| [0, 1, 2].map(|axis| (i, axis))) {
+            let there = places[i]
+                .iter()
+                .map(|(k, weight)| weight * other.state[axis * m + k]);
+            let (here, there) = (own.state[axis * n + i], there.sum::<f64>());
+            assert!((here - there).abs() < 1e-12, "{i} {axis}");
+        }
     }
 
     #[test]
@@ -402,27 +412,14 @@ mod tests {
             let (a, b) = (build(&own), build(&other.description));
             let cloth = &other.description.cloth[0];
             assert_eq!(cloth.grid, grid);
-            let mass = |scene: &a3_core::Scene| {
-                scene.model.network().unwrap().masses().iter().sum::<f64>()
-            };
+            let mass = |scene: &Scene| scene.model.network().unwrap().masses().iter().sum::<f64>();
             assert!((mass(&a) - mass(&b)).abs() < 1e-12);
             // Drag on the whole cloth.
-            let drag = |scene: &a3_core::Scene, description: &Description| {
+            let drag = |scene: &Scene, description: &Description| {
                 description.drag.unwrap() * scene.model.particles() as f64
             };
             assert!((drag(&a, &own) / drag(&b, &other.description) - 1.0).abs() < 1e-12);
-            // The places of the particles are where they were at the start.
-            let n = b.model.particles();
-            for (i, corners) in other.places.iter().enumerate() {
-                for axis in 0..3 {
-                    let there: f64 = corners
-                        .iter()
-                        .map(|(k, weight)| weight * b.state[axis * n + k])
-                        .sum();
-                    let here = a.state[axis * 176 + i];
-                    assert!((here - there).abs() < 1e-12, "{i} {axis}");
-                }
-            }
+            assert_same_places(&a, &b, &other.places);
         }
     }
 
@@ -443,7 +440,7 @@ mod tests {
                 let b = build(&other.description);
                 let m = b.model.particles();
                 assert!((factor > 1.0) == (m > n), "{n} {m}");
-                let free = |scene: &a3_core::Scene| -> f64 {
+                let free = |scene: &Scene| -> f64 {
                     let network = scene.model.network().unwrap();
                     let masses = network.masses().iter().zip(network.inverse_masses());
                     masses.filter(|(_, w)| **w > 0.0).map(|(m, _)| m).sum()
@@ -451,14 +448,7 @@ mod tests {
                 if own.fluid[0].shape == crate::description::FluidShape::Box {
                     assert!((free(&a) / free(&b) - 1.0).abs() < 1e-12);
                 }
-                for (i, corners) in other.places.iter().enumerate() {
-                    for axis in 0..3 {
-                        let there = corners.iter().map(|(k, w)| w * b.state[axis * m + k]);
-                        let there: f64 = there.sum();
-                        let here = a.state[axis * n + i];
-                        assert!((here - there).abs() < 1e-12, "{text} {factor} {i} {axis}");
-                    }
-                }
+                assert_same_places(&a, &b, &other.places);
             }
         }
     }
@@ -466,11 +456,12 @@ mod tests {
     #[test]
     fn numbers_of_particles_keep_the_grid() {
         for more in ["torn = [[0, 1]]\n", "[[pin]]\nparticles = [0]\n"] {
-            let text = if more.starts_with('[') {
-                format!("{CLOTH}{more}")
+            let [first, last] = if more.starts_with('[') {
+                [CLOTH, more]
             } else {
-                format!("{more}{CLOTH}")
+                [more, CLOTH]
             };
+            let text = format!("{first}{last}");
             let scene = Description::parse(&text).unwrap();
             assert!(regridded(&scene, 2.0, 176).is_err(), "{more}");
         }

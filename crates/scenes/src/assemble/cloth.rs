@@ -40,9 +40,10 @@ impl Cloth {
             _ => (self.down, -Vector3::y()),
         };
         let axis = given.map_or(usual, Vector3::from);
-        axis.try_normalize(1e-9)
-            .filter(|axis| axis.iter().all(|x| x.is_finite()))
-            .ok_or_else(|| Fault::new(key, "it must be a direction, such as [1, 0, 0]"))
+        let axis = axis
+            .try_normalize(1e-9)
+            .filter(|axis| axis.iter().all(|x| x.is_finite()));
+        axis.ok_or_else(|| Fault::new(key, "it must be a direction, such as [1, 0, 0]"))
     }
 }
 
@@ -89,9 +90,10 @@ impl Body for Cloth {
         for i in 0..rows {
             let share = i as f64 / (rows - 1) as f64;
             for [along, outwards] in &row {
-                assembly.positions.push(
-                    top + right * (along - middle) + out * *outwards + down * (i as f64 * spacing),
-                );
+                let in_row = top + right * (along - middle) + out * *outwards;
+                assembly
+                    .positions
+                    .push(in_row + down * (i as f64 * spacing));
                 assembly.velocities.push(velocity + sway * share);
             }
         }
@@ -134,12 +136,11 @@ fn gathered(cols: usize, spacing: f64, folds: f64, turn: f64) -> Vec<[f64; 2]> {
         [libm::cos(angle) * spacing, libm::sin(angle) * spacing]
     });
     let mut here = [0.0, 0.0];
-    steps
-        .map(|[along, out]| {
-            let next = [here[0] + along, here[1] + out];
-            std::mem::replace(&mut here, next)
-        })
-        .collect()
+    let places = steps.map(|[along, out]| {
+        let next = [here[0] + along, here[1] + out];
+        std::mem::replace(&mut here, next)
+    });
+    places.collect()
 }
 
 /// Returns the volume (m3) that triangles between these positions (m) enclose; it is negative if
@@ -195,9 +196,7 @@ impl Body for MeshCloth {
         if let Some((key, law)) = law {
             let mut triangles = mesh.triangles.clone();
             if volume(&scaled.positions, &triangles) < 0.0 {
-                for triangle in &mut triangles {
-                    triangle.swap(1, 2);
-                }
+                triangles.iter_mut().for_each(|t| t.swap(1, 2));
             }
             for i in triangles.iter_mut().flatten() {
                 *i += first as u32;

@@ -91,15 +91,9 @@ impl SkinSpec {
     /// distances (m) from their neighbours allow.
     pub fn fitted(&self, masses: &[f64], spacings: &[f64]) -> Result<Vec<Skin>, Fault> {
         self.check()?;
-        let thickness = |spacing: f64| {
-            let most = MAX_THICKNESS * spacing;
-            let given = self.keys.thickness;
-            given.map_or(most, |thickness| thickness.min(most))
-        };
-        let all = masses.iter().zip(spacings);
-        Ok(all
-            .map(|(m, spacing)| self.skin(*m, thickness(*spacing)))
-            .collect())
+        let given = self.keys.thickness.unwrap_or(f64::INFINITY);
+        let skin = |(m, spacing): (&f64, &f64)| self.skin(*m, given.min(MAX_THICKNESS * spacing));
+        Ok(masses.iter().zip(spacings).map(skin).collect())
     }
 
     fn check(&self) -> Result<(), Fault> {
@@ -121,11 +115,13 @@ pub(super) fn point_skin(
     gravity: f64,
     [mass, thickness]: [f64; 2],
 ) -> Result<Skin, Fault> {
+    let thick = Some(thickness);
+    let keys = SkinKeys {
+        thickness: thick,
+        ..keys
+    };
     let spec = SkinSpec {
-        keys: SkinKeys {
-            thickness: Some(thickness),
-            ..keys
-        },
+        keys,
         stiffness: 0.0,
         time: 0.0,
         gravity,

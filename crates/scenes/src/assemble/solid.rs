@@ -25,8 +25,9 @@ impl Body for Jelly {
         }
         let spacing: [f64; 3] = std::array::from_fn(|a| self.size[a] / (self.grid[a] - 1) as f64);
         let (by_volume, mass) = positive_one(("density", self.density), ("mass", self.mass))?;
+        let share = self.size.iter().product::<f64>();
         let mass = if by_volume {
-            mass * self.size.iter().product::<f64>() / particles as f64
+            mass * share / particles as f64
         } else {
             mass
         };
@@ -37,10 +38,11 @@ impl Body for Jelly {
         let time = damping_time(self.damping, self.damping_ratio, mass, structural)?;
         let law = |kind: SpringKind, rest_length| {
             let stiffness = self.stiffness[kind as usize];
+            let damping = stiffness * time;
             SpringLaw {
                 stiffness,
                 rest_length,
-                damping: stiffness * time,
+                damping,
             }
         };
         let from_center = |cell: [usize; 3]| {
@@ -115,19 +117,15 @@ impl Solid {
     }
 
     fn material(&self) -> Result<Material, Fault> {
-        let Solid {
-            young,
-            poisson,
-            damping,
-            ..
-        } = *self;
+        let (young, poisson, damping) = (self.young, self.poisson, self.damping);
         at("young", positive("it", young))?;
         at("damping", at_least(0.0, "it", damping))?;
+        let model = match self.model {
+            SolidModel::NeoHookean => Hyperelastic::NeoHookean,
+            SolidModel::StVenantKirchhoff => Hyperelastic::StVenantKirchhoff,
+        };
         let material = Material {
-            model: match self.model {
-                SolidModel::NeoHookean => Hyperelastic::NeoHookean,
-                SolidModel::StVenantKirchhoff => Hyperelastic::StVenantKirchhoff,
-            },
+            model,
             young,
             poisson,
             damping,
@@ -217,17 +215,14 @@ impl Body for Solid {
 
 /// Returns the smallest height of a tetrahedron over one of its faces (m).
 fn height([a, b, c, d]: [Vector3<f64>; 4], volume: f64) -> f64 {
-    let faces = [
-        (b - a, c - a),
-        (b - a, d - a),
-        (c - a, d - a),
-        (c - b, d - b),
+    let sides = [
+        [b - a, c - a],
+        [b - a, d - a],
+        [c - a, d - a],
+        [c - b, d - b],
     ];
-    let largest = faces
-        .iter()
-        .map(|(u, v)| u.cross(v).norm())
-        .fold(0.0, f64::max);
-    6.0 * volume / largest
+    let doubled = sides.map(|[u, v]| u.cross(&v).norm());
+    6.0 * volume / doubled.into_iter().fold(0.0, f64::max)
 }
 
 /// Lattice of nx x ny x nz particles, in which x is counted fastest, then y, then z.
@@ -256,14 +251,9 @@ const OFFSETS: [(SpringKind, [isize; 3]); 16] = [
 
 /// Kuhn's tetrahedra of a cell: the order of the axes along which each goes from one corner to the
 /// opposite one. Neighbouring cells agree on the diagonals of their faces.
-const KUHN_PATHS: [[usize; 3]; 6] = [
-    [0, 1, 2],
-    [1, 2, 0],
-    [2, 0, 1],
-    [0, 2, 1],
-    [2, 1, 0],
-    [1, 0, 2],
-];
+#[rustfmt::skip]
+const KUHN_PATHS: [[usize; 3]; 6] =
+    [[0, 1, 2], [1, 2, 0], [2, 0, 1], [0, 2, 1], [2, 1, 0], [1, 0, 2]];
 
 impl Lattice {
     /// Counts the particles of a body of this name, which needs two along each edge as in the
@@ -271,14 +261,12 @@ impl Lattice {
     pub fn particles(self, body: &str, example: [usize; 3]) -> Result<usize, Fault> {
         let [nx, ny, nz] = self.0;
         let particles = nx.checked_mul(ny).and_then(|layer| layer.checked_mul(nz));
-        let particles = particles.filter(|_| self.0.iter().all(|n| *n >= 2));
-        particles.ok_or_else(|| {
-            let why = format!(
+        let Some(particles) = particles.filter(|_| self.0.iter().all(|n| *n >= 2)) else {
+            refuse!("grid":
                 "a {body} has at least 2 particles along each edge, such as {example:?}, not {:?}",
-                self.0
-            );
-            Fault::new("grid", why)
-        })
+                self.0);
+        };
+        Ok(particles)
     }
 
     /// Returns the number of the particle at a lattice point.
@@ -333,23 +321,16 @@ impl Lattice {
             law(kind, squares.sum::<f64>().sqrt())
         });
         self.cells().flat_map(move |here| {
-            OFFSETS
-                .into_iter()
-                .zip(laws)
-                .filter_map(move |((kind, offset), law)| {
-                    let mut there = here;
-                    for axis in 0..3 {
-                        there[axis] = here[axis]
-                            .checked_add_signed(offset[axis])
-                            .filter(|k| *k < self.0[axis])?;
-                    }
-                    Some(Spring {
-                        kind,
-                        i: self.index_of(here),
-                        j: self.index_of(there),
-                        law,
-                    })
-                })
+            let all = OFFSETS.into_iter().zip(laws);
+            all.filter_map(move |((kind, offset), law)| {
+                let mut there = here;
+                for axis in 0..3 {
+                    let k = here[axis].checked_add_signed(offset[axis])?;
+                    there[axis] = Some(k).filter(|k| *k < self.0[axis])?;
+                }
+                let (i, j) = (self.index_of(here), self.index_of(there));
+                Some(Spring { kind, i, j, law })
+            })
         })
     }
 
@@ -369,12 +350,8 @@ impl Lattice {
                             self.index_of(at) as u32
                         };
                         let [p, q, r, s] = [corner(0, 0), corner(1, 0), corner(1, 1), corner(0, 1)];
-                        let halves = if far {
-                            [[p, q, r], [p, r, s]]
-                        } else {
-                            [[p, r, q], [p, s, r]]
-                        };
-                        triangles.extend(halves);
+                        let halves = [[[p, r, q], [p, s, r]], [[p, q, r], [p, r, s]]];
+                        triangles.extend(halves[usize::from(far)]);
                     }
                 }
             }

@@ -28,17 +28,18 @@ impl Body for Chain {
         let length = (to - from).norm() / (n - 1) as f64;
         let rest_length = self.rest_length.unwrap_or(length);
         at("rest_length", at_least(0.0, "it", rest_length))?;
+        let (stiffness, damping) = (self.stiffness, self.damping);
         let law = SpringLaw {
-            stiffness: self.stiffness,
+            stiffness,
             rest_length,
-            damping: self.damping,
+            damping,
         };
-        let time = if self.stiffness > 0.0 {
-            self.damping / self.stiffness
+        let time = if stiffness > 0.0 {
+            damping / stiffness
         } else {
             0.0
         };
-        let skin = SkinSpec::of(self, assembly.gravity, [self.stiffness, time]);
+        let skin = SkinSpec::of(self, assembly.gravity, [stiffness, time]);
         let masses = vec![self.mass; n];
         let places = (0..n).map(|i| from + (to - from) * (i as f64 / (n - 1) as f64));
         let first = assembly.add_particles(&masses, places, self.velocity);
@@ -119,16 +120,16 @@ impl Body for Particles {
 /// Creates springs between the particles of a body that has `particles` of them.
 pub(super) fn springs(specs: &[SpringSpec], particles: usize) -> Result<Vec<Spring>, Fault> {
     let spring = |(k, &(i, j, stiffness, rest_length, damping)): (usize, &SpringSpec)| {
-        let wrong =
-            |why: String| Fault::new("springs", format!("spring {k}, counted from 0: {why}"));
-        if i.max(j) >= particles || i == j {
-            return Err(wrong(format!(
-                "{i} and {j} must be two different particles from 0 to {}",
-                particles - 1
-            )));
-        }
-        let law =
-            SpringLaw::new(stiffness, rest_length, damping).map_err(|e| wrong(e.to_string()))?;
+        let law = if i.max(j) >= particles || i == j {
+            let last = particles - 1;
+            Err(format!(
+                "{i} and {j} must be two different particles from 0 to {last}"
+            ))
+        } else {
+            SpringLaw::new(stiffness, rest_length, damping).map_err(|e| e.to_string())
+        };
+        let law = law.map_err(|why| format!("spring {k}, counted from 0: {why}"));
+        let law = at("springs", law)?;
         let kind = SpringKind::Structural;
         Ok(Spring { kind, i, j, law })
     };
@@ -149,10 +150,8 @@ pub fn damping_time(
         (Some(time), None) => at("damping", at_least(0.0, "it", time)).map(|()| time),
         (None, Some(ratio)) => {
             at("damping_ratio", at_least(0.0, "it", ratio))?;
-            at(
-                "damping_ratio",
-                positive("the structural stiffness that it refers to", stiffness),
-            )?;
+            let stiff = positive("the structural stiffness that it refers to", stiffness);
+            at("damping_ratio", stiff)?;
             Ok(2.0 * ratio * (mass / stiffness).sqrt())
         }
     }
