@@ -26,23 +26,16 @@ pub(crate) struct Instances {
 }
 
 impl Shape {
-    /// Creates a unit sphere with `rings` bands of latitude.
-    pub(crate) fn sphere(gpu: &Gpu, rings: u16) -> Self {
-        let (corners, triangles) = sphere(rings);
-        Self::new(gpu, "sphere", &corners, &triangles)
-    }
-
-    /// Creates a rounded box whose pieces have `bands` bands of latitude and of longitude.
-    pub(crate) fn rounded_box(gpu: &Gpu, bands: u16) -> Self {
-        let (corners, triangles) = rounded_box(bands);
-        Self::new(gpu, "rounded box", &corners, &triangles)
-    }
-
-    fn new<T: Pod>(gpu: &Gpu, label: &str, corners: &[T], triangles: &[u16]) -> Self {
+    /// Creates a shape from its corners and its triangles.
+    pub(crate) fn new<T: Pod>(
+        gpu: &Gpu,
+        label: &str,
+        (corners, triangles): (Vec<T>, Vec<u16>),
+    ) -> Self {
         let filled = |usage, bytes| filled(gpu, label, usage, bytes);
         Self {
-            corners: filled(BufferUsages::VERTEX, bytemuck::cast_slice(corners)),
-            triangles: filled(BufferUsages::INDEX, bytemuck::cast_slice(triangles)),
+            corners: filled(BufferUsages::VERTEX, bytemuck::cast_slice(&corners)),
+            triangles: filled(BufferUsages::INDEX, bytemuck::cast_slice(&triangles)),
             indices: triangles.len() as u32,
         }
     }

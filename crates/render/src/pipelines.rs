@@ -79,61 +79,6 @@ enum Layer {
     Over,
 }
 
-/// Data that all pipelines share.
-struct Maker<'a> {
-    device: &'a wgpu::Device,
-    shader: wgpu::ShaderModule,
-    layout: wgpu::PipelineLayout,
-    color: wgpu::TextureFormat,
-    samples: u32,
-}
-
-impl Maker<'_> {
-    /// Creates a pipeline of a vertex and a fragment shader, given by the first parts of their
-    /// names.
-    fn pipeline(
-        &self,
-        [vertex, fragment]: [&str; 2],
-        topology: PrimitiveTopology,
-        layer: Layer,
-        buffers: &[wgpu::VertexBufferLayout],
-    ) -> wgpu::RenderPipeline {
-        let buffers: Vec<_> = buffers.iter().cloned().map(Some).collect();
-        self.device
-            .create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-                label: Some(vertex),
-                layout: Some(&self.layout),
-                vertex: wgpu::VertexState {
-                    module: &self.shader,
-                    entry_point: Some(&format!("{vertex}_vertex")),
-                    compilation_options: wgpu::PipelineCompilationOptions::default(),
-                    buffers: &buffers,
-                },
-                primitive: wgpu::PrimitiveState {
-                    topology,
-                    ..Default::default()
-                },
-                depth_stencil: Some(depth_stencil(layer)),
-                multisample: wgpu::MultisampleState {
-                    count: self.samples,
-                    ..Default::default()
-                },
-                fragment: Some(wgpu::FragmentState {
-                    module: &self.shader,
-                    entry_point: Some(&format!("{fragment}_fragment")),
-                    compilation_options: wgpu::PipelineCompilationOptions::default(),
-                    targets: &[Some(wgpu::ColorTargetState {
-                        format: self.color,
-                        blend: blend(layer),
-                        write_mask: wgpu::ColorWrites::ALL,
-                    })],
-                }),
-                multiview_mask: None,
-                cache: None,
-            })
-    }
-}
-
 impl Pipelines {
     pub(crate) fn new(
         device: &wgpu::Device,
@@ -151,17 +96,42 @@ impl Pipelines {
             bind_group_layouts: &[Some(layout)],
             immediate_size: 0,
         });
-        let maker = Maker {
-            device,
-            shader,
-            layout,
-            color,
-            samples,
+        // Shaders are given by the first parts of their names.
+        let pipeline = |vertex: &str, fragment: &str, topology, layer, buffers: &[_]| {
+            let buffers: Vec<Option<wgpu::VertexBufferLayout>> =
+                buffers.iter().cloned().map(Some).collect();
+            device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+                label: Some(vertex),
+                layout: Some(&layout),
+                vertex: wgpu::VertexState {
+                    module: &shader,
+                    entry_point: Some(&format!("{vertex}_vertex")),
+                    compilation_options: wgpu::PipelineCompilationOptions::default(),
+                    buffers: &buffers,
+                },
+                primitive: wgpu::PrimitiveState {
+                    topology,
+                    ..Default::default()
+                },
+                depth_stencil: Some(depth_stencil(layer)),
+                multisample: wgpu::MultisampleState {
+                    count: samples,
+                    ..Default::default()
+                },
+                fragment: Some(wgpu::FragmentState {
+                    module: &shader,
+                    entry_point: Some(&format!("{fragment}_fragment")),
+                    compilation_options: wgpu::PipelineCompilationOptions::default(),
+                    targets: &[Some(wgpu::ColorTargetState {
+                        format: color,
+                        blend: blend(layer),
+                        write_mask: wgpu::ColorWrites::ALL,
+                    })],
+                }),
+                multiview_mask: None,
+                cache: None,
+            })
         };
-        let pipeline =
-            |name: &str, fragment: &str, topology, layer, buffers: &[wgpu::VertexBufferLayout]| {
-                maker.pipeline([name, fragment], topology, layer, buffers)
-            };
         let unit = wgpu::vertex_attr_array![0 => Float32x3];
         let ball = wgpu::vertex_attr_array![1 => Float32x4, 2 => Float32x4];
         let corner = wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32x3];

@@ -3,7 +3,7 @@
 
 use std::ops::Range;
 
-use crate::buffers::{Instances, Mesh, Shape};
+use crate::buffers::{Instances, Mesh, Shape, rounded_box, sphere};
 use crate::gpu::Gpu;
 use crate::picture::{Picture, Style, Tile, Topology};
 use crate::pipelines::{Pipelines, SOURCE, layout};
@@ -45,8 +45,8 @@ impl Renderer {
         let layout = layout(&gpu.device);
         Self {
             pipelines: Pipelines::new(&gpu.device, source, &layout, color, samples),
-            spheres: [4, 8, 40].map(|rings| Shape::sphere(gpu, rings)),
-            rounded_box: Shape::rounded_box(gpu, 10),
+            spheres: [4, 8, 40].map(|rings| Shape::new(gpu, "sphere", sphere(rings))),
+            rounded_box: Shape::new(gpu, "rounded box", rounded_box(10)),
             mesh: Mesh::new(gpu, topology),
             views: vec![],
             prepared: 0,

@@ -166,33 +166,22 @@ pub(crate) fn at<T>(key: &str, result: Result<T, impl Display>) -> Result<T, Fau
 
 /// Checks that `value` is finite and at least `low`. The error calls it `what`.
 pub(crate) fn at_least(low: f64, what: &str, value: f64) -> Result<(), String> {
-    if value.is_finite() && value >= low {
-        Ok(())
-    } else {
-        Err(format!(
-            "{what} must be a finite number of at least {low}, not {value}"
-        ))
-    }
+    refuse!(if !(value.is_finite() && value >= low) =>
+        "{what} must be a finite number of at least {low}, not {value}");
+    Ok(())
 }
 
 /// Checks that `value` is from 0 to 1. The error calls it `what`.
 pub(crate) fn share(what: &str, value: f64) -> Result<(), String> {
-    if (0.0..=1.0).contains(&value) {
-        Ok(())
-    } else {
-        Err(format!("{what} must be a number from 0 to 1, not {value}"))
-    }
+    refuse!(if !(0.0..=1.0).contains(&value) => "{what} must be a number from 0 to 1, not {value}");
+    Ok(())
 }
 
 /// Checks that `value` is finite and above 0. The error calls it `what`.
 pub(crate) fn positive(what: &str, value: f64) -> Result<(), String> {
-    if value.is_finite() && value > 0.0 {
-        Ok(())
-    } else {
-        Err(format!(
-            "{what} must be a finite number above 0, not {value}"
-        ))
-    }
+    refuse!(if !(value.is_finite() && value > 0.0) =>
+        "{what} must be a finite number above 0, not {value}");
+    Ok(())
 }
 
 /// Returns the value of the one key of two that is given, and whether that is the first.

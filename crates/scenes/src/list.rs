@@ -51,7 +51,10 @@ impl List {
     /// # Errors
     /// The scene has other parts, which are named.
     pub fn of(scene: &Scene) -> Result<Self, String> {
-        let network = network(scene)?;
+        let Some(network) = scene.model.network() else {
+            let why = "is a single equation, without masses and springs";
+            return Err(format!("the scene {} {why}", scene.name));
+        };
         let others = others(network);
         if !others.is_empty() {
             return Err(format!(
@@ -61,7 +64,21 @@ impl List {
                 others.join(", ")
             ));
         }
-        Ok(Self::new(scene, network))
+        let (x, v) = network.halves(&scene.state);
+        let springs = network.springs().map(|s| {
+            let law = s.law;
+            (s.i, s.j, law.stiffness, law.rest_length, law.damping)
+        });
+        Ok(Self {
+            name: scene.name.clone(),
+            gravity: network.gravity().map_or([0.0; 3], Into::into),
+            drag: network.drag().unwrap_or(0.0),
+            mass: network.masses().to_vec(),
+            pinned: network.pins().map(|(i, _)| i).collect(),
+            positions: rows(x),
+            velocities: rows(v),
+            springs: springs.collect(),
+        })
     }
 
     /// Lists the masses and springs of a scene without its obstacles: its motion is that of the
@@ -77,24 +94,6 @@ impl List {
             }
         }
         Self::of(&scene)
-    }
-
-    fn new(scene: &Scene, network: &Network) -> Self {
-        let (x, v) = network.halves(&scene.state);
-        let springs = network.springs().map(|s| {
-            let law = s.law;
-            (s.i, s.j, law.stiffness, law.rest_length, law.damping)
-        });
-        Self {
-            name: scene.name.clone(),
-            gravity: network.gravity().map_or([0.0; 3], Into::into),
-            drag: network.drag().unwrap_or(0.0),
-            mass: network.masses().to_vec(),
-            pinned: network.pins().map(|(i, _)| i).collect(),
-            positions: rows(x),
-            velocities: rows(v),
-            springs: springs.collect(),
-        }
     }
 
     /// Writes the list as JSON, with a line for each particle and each spring.
@@ -129,16 +128,6 @@ fn lines(items: &[impl Serialize]) -> Result<String, String> {
     Ok(match &items[..] {
         [] => "[]".into(),
         items => format!("[\n{}\n]", items.join(",\n")),
-    })
-}
-
-/// Returns the network of a scene.
-fn network(scene: &Scene) -> Result<&Network, String> {
-    scene.model.network().ok_or_else(|| {
-        format!(
-            "the scene {} is a single equation, without masses and springs",
-            scene.name
-        )
     })
 }
 

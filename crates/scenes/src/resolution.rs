@@ -240,29 +240,22 @@ impl Places {
             // The place along each axis: the index of the particle before it, and the distance from
             // there in cells.
             let mut rest = number;
-            let mut along: Vec<(usize, f64)> = own
-                .iter()
-                .zip(other)
-                .rev()
-                .map(|(&n, &m)| {
-                    let i = rest % n;
-                    rest /= n;
-                    let at = i as f64 * (m - 1) as f64 / (n.max(2) - 1) as f64;
-                    let before = (at.floor() as usize).min(m - 2);
-                    (before, at - before as f64)
-                })
-                .collect();
+            let along = own.iter().zip(other).rev().map(|(&n, &m)| {
+                let i = rest % n;
+                rest /= n;
+                let at = i as f64 * (m - 1) as f64 / (n.max(2) - 1) as f64;
+                let before = (at.floor() as usize).min(m - 2);
+                (before, at - before as f64, m)
+            });
+            let mut along: Vec<(usize, f64, usize)> = along.collect();
             along.reverse();
             let mut corners = vec![(0, 1.0)];
-            for ((before, share), &m) in along.iter().zip(other) {
-                corners = corners
-                    .iter()
-                    .flat_map(|&(at, weight)| {
-                        let at = at * m + before;
-                        [(at, weight * (1.0 - share)), (at + 1, weight * share)]
-                    })
-                    .filter(|(_, weight)| *weight > 1e-12)
-                    .collect();
+            for (before, share, m) in along {
+                let both = corners.iter().flat_map(|&(at, weight)| {
+                    let at = at * m + before;
+                    [(at, weight * (1.0 - share)), (at + 1, weight * share)]
+                });
+                corners = both.filter(|(_, weight)| *weight > 1e-12).collect();
             }
             let corners = corners.into_iter().map(|(at, w)| (first + at, w));
             self.of.push(corners.collect());
@@ -292,9 +285,8 @@ impl Places {
     /// The other lattice has no such cell near a particle.
     pub fn add_points(&mut self, own: &[Vector3<f64>], other: &Lattice) -> Result<(), String> {
         for place in own {
-            let corners = other
-                .corners(place)
-                .ok_or("a fluid has too few particles on another lattice")?;
+            let corners = other.corners(place);
+            let corners = corners.ok_or("a fluid has too few particles on another lattice")?;
             let corners = corners.into_iter().map(|(at, w)| (self.count + at, w));
             self.of.push(corners.collect());
         }

@@ -91,57 +91,56 @@ pub(crate) fn of_json(message: &str) -> &str {
     }
 }
 
+/// Messages of the TOML parser, and what they mean.
+#[rustfmt::skip]
+const TOML: [(&[&str], &str); 20] = [
+    (&["unexpected key or value"], "after a value there must be a new line"),
+    (&["string values must be quoted"], "the value must be a number such as 0.5, a text in quotes, \
+        true, false, a list such as [1, 2] or a table such as { a = 1 }"),
+    (&["key with no value"],
+        "a key must be followed by `=` and its value; a comment begins with `#`"),
+    (&["duplicate key"], "the key is there twice"),
+    (&["extra `=`"], "there must be one `=` alone"),
+    (&["unquoted keys cannot be empty", "invalid key-value pair"],
+        "a key is expected, such as `grid = [3, 4]`, or a header, such as `[[cloth]]`"),
+    (&["invalid mantissa", "invalid fraction", "invalid exponent"],
+        "a number has digits before and after its decimal point and its e, as in 0.5 or 1e-3"),
+    (&["unexpected leading zero"], "a number must not begin with 0, unless a point follows"),
+    (&["redundant numeric sign"], "a number has one sign at most"),
+    (&["floating-point number overflowed"], "the number is too large"),
+    (&["invalid boolean"], "the words true and false are written in small letters"),
+    (&["invalid float"], "the words inf and nan are written in small letters"),
+    (&["missing comma between array elements"],
+        "the values of a list must have `,` between them and `]` at the end"),
+    (&["unclosed array"], "the list is not closed: `]` is missing"),
+    (&["unclosed array table"], "the header is not closed: `]]` is missing"),
+    (&["unclosed table"], "the header is not closed: `]` is missing"),
+    (&["unclosed inline table"], "the table is not closed: `}` is missing"),
+    (&["invalid basic string", "invalid literal string"],
+        "the text in quotes is not closed, or has a character that it must not have"),
+    (&["invalid multi-line basic string", "invalid multi-line literal string"],
+        "the text in three quotes is not closed"),
+    (&["missing escaped value"], "after `\\` must be one of `\"`, `\\`, b, e, f, n, r, t, u, U, x; \
+        paths are best written with `/`"),
+];
+
 /// Translates a message of the TOML parser. `rest` is the text from the place of the error on.
 pub(crate) fn of_toml(message: &str, rest: &str) -> Cow<'static, str> {
-    const VALUE: &str = "the value must be a number such as 0.5, a text in quotes, true, false, a list \
-                         such as [1, 2] or a table such as { a = 1 }";
     let line = message.lines().next().unwrap_or_default();
     let mut words = line.split(", expected");
     let what = words.next().unwrap_or_default();
     let wanted = words.next().unwrap_or_default().trim();
-    match what {
-        "unexpected key or value" if rest.starts_with(',') => {
+    let known = TOML.iter().find(|(names, _)| names.contains(&what));
+    match known {
+        _ if what == "unexpected key or value" && rest.starts_with(',') => {
             "a number has a decimal point, not a comma, as in 0.5".into()
         }
-        "unexpected key or value" => "after a value there must be a new line".into(),
-        "string values must be quoted" => VALUE.into(),
-        "key with no value" => "a key must be followed by `=` and its value; a comment begins with `#`".into(),
-        "duplicate key" => "the key is there twice".into(),
-        "extra `=`" => "there must be one `=` alone".into(),
-        "unquoted keys cannot be empty" | "invalid key-value pair" => {
-            "a key is expected, such as `grid = [3, 4]`, or a header, such as `[[cloth]]`".into()
-        }
-        "invalid mantissa" | "invalid fraction" | "invalid exponent" => {
-            "a number has digits before and after its decimal point and its e, as in 0.5 or 1e-3"
-                .into()
-        }
-        "unexpected leading zero" => "a number must not begin with 0, unless a point follows".into(),
-        "redundant numeric sign" => "a number has one sign at most".into(),
-        "floating-point number overflowed" => "the number is too large".into(),
-        "invalid boolean" => "the words true and false are written in small letters".into(),
-        "invalid float" => "the words inf and nan are written in small letters".into(),
-        "missing comma between array elements" => {
-            "the values of a list must have `,` between them and `]` at the end".into()
-        }
-        "unclosed array" => "the list is not closed: `]` is missing".into(),
-        "unclosed array table" => "the header is not closed: `]]` is missing".into(),
-        "unclosed table" => "the header is not closed: `]` is missing".into(),
-        "unclosed inline table" => "the table is not closed: `}` is missing".into(),
-        "invalid basic string" | "invalid literal string" => {
-            "the text in quotes is not closed, or has a character that it must not have".into()
-        }
-        "invalid multi-line basic string" | "invalid multi-line literal string" => {
-            "the text in three quotes is not closed".into()
-        }
-        "missing escaped value" => {
-            "after `\\` must be one of `\"`, `\\`, b, e, f, n, r, t, u, U, x; paths are best written with `/`"
-                .into()
-        }
-        _ if what.starts_with("cannot extend value") => {
+        Some((_, meaning)) => (*meaning).into(),
+        None if what.starts_with("cannot extend value") => {
             "the key has a value already, and is no table".into()
         }
-        _ if wanted.is_empty() || wanted == "nothing" => what.to_owned().into(),
-        _ => format!("{what}: {wanted} is expected").into(),
+        None if wanted.is_empty() || wanted == "nothing" => what.to_owned().into(),
+        None => format!("{what}: {wanted} is expected").into(),
     }
 }
 

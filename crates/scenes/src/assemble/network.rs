@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use a3_core::elements::Cords;
 use a3_core::rigid::ROTATION;
-use a3_core::{Network, ParticleSystem, Touch, Vector3};
+use a3_core::{Element, Network, ParticleSystem, Touch, Vector3};
 
 use super::assembly::{Assembly, Body, Files};
 use super::{assembly, constraints, fluid, forces, springs};
@@ -60,14 +60,11 @@ pub(super) fn build(description: &Description, files: &mut Files) -> Result<Netw
     pins.add(0, &description.pin, positions, budget, |_| None)?;
     let mut state = assembly::state_of(&assembly.positions, &assembly.velocities);
     let mut network = at("", Network::new(assembly.masses))?;
-    for sheet in assembly.sheets {
-        at("", network.add(sheet))?;
-    }
-    for solid in assembly.solids {
-        at("", network.add(solid))?;
-    }
-    for gas in assembly.gases {
-        at("", network.add(gas))?;
+    let sheets = assembly.sheets.into_iter().map(Element::from);
+    let solids = assembly.solids.into_iter().map(Element::from);
+    let gases = assembly.gases.into_iter().map(Element::from);
+    for element in sheets.chain(solids).chain(gases) {
+        at("", network.add(element))?;
     }
     at("", network.add_springs(assembly.springs))?;
     if !assembly.cords.is_empty() {
