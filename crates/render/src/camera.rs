@@ -53,20 +53,16 @@ impl Camera {
         let target = Point3::from(target);
         let d = Point3::from(eye) - target;
         let distance = d.norm().max(1e-9);
+        let sine = (d.y / distance).clamp(-1.0, 1.0);
+        let power = 10.0f32.powf(distance.log10().floor());
+        let in_metres = METRE_DISTANCES.contains(&distance);
         Self {
             target,
             yaw: d.x.atan2(d.z),
-            pitch: (d.y / distance)
-                .clamp(-1.0, 1.0)
-                .asin()
-                .clamp(-MAX_PITCH, MAX_PITCH),
+            pitch: sine.asin().clamp(-MAX_PITCH, MAX_PITCH),
             distance,
             parallel: false,
-            unit: if METRE_DISTANCES.contains(&distance) {
-                1.0
-            } else {
-                10.0f32.powf(distance.log10().floor())
-            },
+            unit: if in_metres { 1.0 } else { power },
             focus: [0.0, 0.0, 1.0, 1.0],
         }
     }

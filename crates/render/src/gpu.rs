@@ -118,9 +118,8 @@ impl Gpu {
             Err(_) => instance
                 .request_adapter(&wgpu::RequestAdapterOptions {
                     power_preference: wgpu::PowerPreference::HighPerformance,
-                    force_fallback_adapter: false,
                     compatible_surface: surface,
-                    apply_limit_buckets: false,
+                    ..Default::default()
                 })
                 .await
                 .map_err(|_| GpuError::no_adapter())?,
@@ -135,11 +134,9 @@ impl Gpu {
         let (device, queue) = adapter
             .request_device(&wgpu::DeviceDescriptor {
                 label: Some("a3"),
-                required_features: wgpu::Features::empty(),
                 required_limits: limits,
-                experimental_features: wgpu::ExperimentalFeatures::disabled(),
                 memory_hints: wgpu::MemoryHints::MemoryUsage,
-                trace: wgpu::Trace::Off,
+                ..Default::default()
             })
             .await
             .map_err(|e| GpuError::Device(one_line(&e.to_string())))?;

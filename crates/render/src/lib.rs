@@ -10,10 +10,8 @@ mod camera;
 mod gpu;
 mod picture;
 mod pipelines;
-mod ramp;
 mod renderer;
 mod targets;
-mod view;
 
 pub use camera::Camera;
 pub use gpu::{Gpu, GpuError};
@@ -21,7 +19,7 @@ pub use picture::{
     Ball, Corner, Floor, LOOKS, Line, Liquid, Picture, STEEL_LOOK, Solid, Spring, Style, Tile,
     Topology,
 };
-pub use ramp::{ramp, shaded_by};
+pub use pipelines::{ramp, shaded_by};
 pub use renderer::Renderer;
 pub use targets::{OFFSCREEN_FORMAT, Offscreen, Part, TEXT_FORMAT, Targets, Transfer};
 

@@ -46,13 +46,8 @@ impl Description {
             return self.assemble(None, mesh);
         };
         let Some(own) = self.cloth.first() else {
-            return Err(Fault::new(
-                "",
-                format!(
-                    "the scene {} has no grid: only a cloth has one",
-                    self.name.as_deref().unwrap_or_default()
-                ),
-            ));
+            let name = self.name.as_deref().unwrap_or_default();
+            refuse!("": "the scene {name} has no grid: only a cloth has one");
         };
         let in_cloth = |fault: Fault| fault.within(&key_of("cloth", 0, self.cloth.len()));
         let own_mass = own.checked_mass().map_err(in_cloth)?;
