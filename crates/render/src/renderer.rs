@@ -319,11 +319,8 @@ impl View {
         self.frame = Frame {
             tile,
             floor: picture.floor.filter(|_| !picture.transparent).map(|floor| {
-                if picture.camera.eye().y > floor.height {
-                    Side::Above
-                } else {
-                    Side::Below
-                }
+                let above = picture.camera.eye().y > floor.height;
+                if above { Side::Above } else { Side::Below }
             }),
             touches_floor: picture
                 .floor

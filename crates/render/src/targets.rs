@@ -322,11 +322,8 @@ impl Offscreen {
             .device
             .create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         let transparent = pictures.iter().any(|(picture, _)| picture.transparent);
-        let clear = if transparent {
-            wgpu::Color::TRANSPARENT
-        } else {
-            GAP
-        };
+        let nothing = wgpu::Color::TRANSPARENT;
+        let clear = if transparent { nothing } else { GAP };
         let targets = &self.targets;
         let view = |format| {
             self.texture.create_view(&wgpu::TextureViewDescriptor {

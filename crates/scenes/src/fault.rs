@@ -211,9 +211,8 @@ pub(crate) fn positive_one(
 
 /// Returns the key of part k of a kind. The only part of a kind has no number.
 pub(crate) fn key_of(kind: &str, k: usize, count: usize) -> String {
-    if count == 1 {
-        kind.into()
-    } else {
-        format!("{kind}.{k}")
+    match count {
+        1 => kind.into(),
+        _ => format!("{kind}.{k}"),
     }
 }

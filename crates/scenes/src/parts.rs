@@ -1,7 +1,7 @@
 //! Parts of a scene that can be left out or replaced by simpler ones.
 
 use crate::assemble::{air, damping_time};
-use crate::description::{Description, Floor, Jelly, WindSpec};
+use crate::description::{Description, Floor, Jelly};
 use crate::material::lattice;
 
 /// Part of a scene that can be left out or replaced by a simpler one.
@@ -232,15 +232,9 @@ fn simplify_wind(scene: &mut Description) {
     let speed = velocity.iter().map(|v| v * v).sum::<f64>().sqrt();
     let [density, drag, _] = air(wind);
     let each = 0.5 * density * drag * speed * area / mass;
-    *wind = WindSpec {
-        on: wind.on,
-        seed: wind.seed,
-        steady: wind.steady,
-        force_per_mass: Some(velocity.map(|v| each * v)),
-        ahead: wind.ahead,
-        region: wind.region.take(),
-        ..WindSpec::default()
-    };
+    wind.force_per_mass = Some(velocity.map(|v| each * v));
+    (wind.velocity, wind.force) = (None, None);
+    (wind.density, wind.drag, wind.lift) = (None, None, None);
 }
 
 /// Replaces boxes of elastic solids by jellies that are equally stiff under small strains. It

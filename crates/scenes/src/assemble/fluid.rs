@@ -135,10 +135,8 @@ pub fn fluid_points(fluid: &Fluid) -> Result<[Vec<Vector3<f64>>; 2], Fault> {
         let flows_in = lattices.column.as_ref().is_some_and(|it| it.passes(place));
         flows_in || lattices.outflows.iter().any(|it| it.contains(place, slack))
     };
-    let walls = lattices
-        .tank
-        .iter()
-        .flat_map(|tank| tank.all(LAYERS.into()));
+    let tank = lattices.tank.iter();
+    let walls = tank.flat_map(|tank| tank.all(LAYERS.into()));
     let walls = walls.filter(|(_, inside)| !inside).map(|(place, _)| place);
     let walls = walls.filter(|place| !is_open(place));
     Ok([all.filter(is_in_shape).collect(), walls.collect()])
@@ -321,19 +319,13 @@ impl Column {
             let last = layer >= self.layers;
             // The last layers stop where they close the opening.
             let end = if last { flows_until } else { until };
-            let gone = if last {
-                self.ahead.min(self.ahead + end)
-            } else {
-                self.ahead
-            };
+            let stopped = self.ahead.min(self.ahead + end);
+            let gone = if last { stopped } else { self.ahead };
             let here = place + self.velocity * gone;
             if end <= 0.0 {
                 let closes = last.then(|| Held::new(i, Path::Still(here)));
-                let velocity = if last {
-                    Vector3::zeros()
-                } else {
-                    self.velocity
-                };
+                let still = Vector3::zeros();
+                let velocity = if last { still } else { self.velocity };
                 return (here, velocity, closes);
             }
             let path = Path::Line {

@@ -156,13 +156,12 @@ impl Description {
 
     /// Returns the solver, its step or tolerance, and the duration.
     fn defaults(&self) -> Result<Defaults, Fault> {
-        let solver = match self.solver.as_deref() {
-            None => None,
-            Some(name) => Some(integrators::find(name).ok_or_else(|| {
-                let names: Vec<_> = integrators::METHODS.iter().map(|m| m.name).collect();
-                Fault::new("solver", unknown_choice(name, &names))
-            })?),
+        let find = |name: &str| {
+            let names: Vec<_> = integrators::METHODS.iter().map(|m| m.name).collect();
+            let unknown = || Fault::new("solver", unknown_choice(name, &names));
+            integrators::find(name).ok_or_else(unknown)
         };
+        let solver = self.solver.as_deref().map(find).transpose()?;
         for (key, number) in [
             ("step", self.step),
             ("max_step", self.max_step),

@@ -25,12 +25,8 @@ impl Body for Jelly {
         }
         let spacing: [f64; 3] = std::array::from_fn(|a| self.size[a] / (self.grid[a] - 1) as f64);
         let (by_volume, mass) = positive_one(("density", self.density), ("mass", self.mass))?;
-        let share = self.size.iter().product::<f64>();
-        let mass = if by_volume {
-            mass * share / particles as f64
-        } else {
-            mass
-        };
+        let share = mass * self.size.iter().product::<f64>() / particles as f64;
+        let mass = if by_volume { share } else { mass };
         let structural = self.stiffness[0];
         for k in self.stiffness {
             at("stiffness", at_least(0.0, "each", k))?;

@@ -34,11 +34,8 @@ impl Body for Chain {
             rest_length,
             damping,
         };
-        let time = if stiffness > 0.0 {
-            damping / stiffness
-        } else {
-            0.0
-        };
+        let ratio = damping / stiffness;
+        let time = if stiffness > 0.0 { ratio } else { 0.0 };
         let skin = SkinSpec::of(self, assembly.gravity, [stiffness, time]);
         let masses = vec![self.mass; n];
         let places = (0..n).map(|i| from + (to - from) * (i as f64 / (n - 1) as f64));

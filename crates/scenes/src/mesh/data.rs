@@ -78,14 +78,12 @@ impl Mesh {
 
     /// Returns the mesh magnified by a factor.
     pub(crate) fn scaled(&self, factor: f64) -> Self {
-        let positions = self.positions.iter().map(|p| p.map(|x| x * factor));
-        Self {
-            positions: positions.collect(),
-            triangles: self.triangles.clone(),
-            tetrahedra: self.tetrahedra.clone(),
-            numbers: self.numbers.clone(),
-            tetrahedron_numbers: self.tetrahedron_numbers.clone(),
-        }
+        let mut mesh = self.clone();
+        mesh.positions
+            .iter_mut()
+            .flatten()
+            .for_each(|x| *x *= factor);
+        mesh
     }
 
     /// Finds the smallest height of the triangles around each point (m). A sliver counts as higher

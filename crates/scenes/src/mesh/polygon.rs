@@ -240,11 +240,8 @@ impl Cutter {
                 }
             }
             // Two neighbouring ears make thin triangles.
-            k = if is_nothing {
-                after
-            } else {
-                self.ear(after)[2]
-            };
+            let [_, _, next] = self.ear(after);
+            k = if is_nothing { after } else { next };
             (left, looked, is_stale) = (left - 1, 0, true);
             if asked != Asked::Clear {
                 asked = Asked::Clear;

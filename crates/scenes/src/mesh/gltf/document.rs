@@ -37,12 +37,7 @@ pub(super) struct Document<'a> {
 /// Version of a glTF file, in a form that all versions of the format have.
 #[derive(Deserialize)]
 pub(super) struct Head {
-    pub asset: HeadAsset,
-}
-
-#[derive(Deserialize)]
-pub(super) struct HeadAsset {
-    pub version: serde_json::Value,
+    pub asset: serde_json::Value,
 }
 
 #[derive(Deserialize)]

@@ -107,7 +107,7 @@ fn document(json: &[u8]) -> Result<Document<'_>, String> {
         Err(error) => {
             // Version 1.0 has other lists, and its version number is not always a text.
             let head = serde_json::from_slice::<Head>(json).ok();
-            let version = head.map_or(String::new(), |head| head.asset.version.to_string());
+            let version = head.map_or(String::new(), |head| head.asset["version"].to_string());
             let version = version.trim_matches('"');
             let is_old = version.starts_with('1');
             let why = format!("it is no glTF 2.0 file: {error}");
