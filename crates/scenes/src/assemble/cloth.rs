@@ -3,9 +3,8 @@
 use a3_core::elements::{Gas, GasLaw, Sheet};
 use a3_core::{Grid, SpringKind, SpringLaw, Vector3};
 
-use super::assembly::{Assembly, Body, Files, placed};
+use super::assembly::{Assembly, Body, Files, SkinSpec, placed};
 use super::motion::extreme;
-use super::skins::SkinSpec;
 use super::springs::{damping_time, strip};
 use crate::budget::{SPRINGS, STRIPS, TRIANGLES};
 use crate::description::{Cloth, MeshCloth, Spot};

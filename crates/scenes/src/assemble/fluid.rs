@@ -10,8 +10,7 @@ use a3_core::contact::Skin;
 use a3_core::elements::{Fluid as Liquid, FluidLaw, Outflow as Space};
 use a3_core::{Network, Path, Pin as Held, Rounded, Vector3};
 
-use super::assembly::{Assembly, Body, Files};
-use super::skins::point_skin;
+use super::assembly::{Assembly, Body, Files, point_skin};
 use crate::budget::{PINS, SMOOTHED};
 use crate::description::{Fluid, FluidShape, Inflow, Outflow, SkinKeys};
 use crate::fault::{Fault, at, at_least, key_of, positive};
@@ -35,13 +34,13 @@ pub(super) fn step_scale(fluids: &[Fluid]) -> f64 {
 }
 
 /// Lattices of a fluid.
-struct Lattices {
+struct Lattices<'a> {
     /// Liquid at the start.
     liquid: Option<Places>,
     /// Space in the tank.
     tank: Option<Places>,
     /// Liquid that flows in.
-    column: Option<Column>,
+    column: Option<Column<'a>>,
     /// Space in which it flows out.
     outflows: Vec<Space>,
 }
@@ -58,7 +57,7 @@ impl Fluid {
     }
 
     /// Returns the lattices of the fluid.
-    fn lattices(&self) -> Result<Lattices, Fault> {
+    fn lattices(&self) -> Result<Lattices<'_>, Fault> {
         for (key, number) in [
             ("spacing", self.spacing),
             ("density", self.density),
@@ -249,27 +248,21 @@ pub(super) fn add(
     at("fluid", network.add(fluid))
 }
 
-/// Column of particles behind an opening.
-struct Column {
+/// Column of particles behind the opening of an inflow of a fluid.
+struct Column<'a> {
     places: Places,
-    /// Middle of the opening (m).
-    opening: Vector3<f64>,
-    velocity: Vector3<f64>,
+    fluid: &'a Fluid,
+    inflow: &'a Inflow,
     /// Axis and speed (m/s) of the flow.
     axis: usize,
     speed: f64,
-    /// Half of the edges of the opening (m).
-    half: Vector3<f64>,
-    spacing: f64,
     /// Number of layers that flow in.
     layers: f64,
-    /// Time for which the liquid has flowed at the start (s).
-    ahead: f64,
 }
 
-impl Column {
+impl<'a> Column<'a> {
     /// Creates the column of an inflow of a fluid.
-    pub fn new(fluid: &Fluid, inflow: &Inflow) -> Result<Self, Fault> {
+    pub fn new(fluid: &'a Fluid, inflow: &'a Inflow) -> Result<Self, Fault> {
         let velocity = Vector3::from(inflow.velocity);
         let speed = velocity.norm();
         let axis = (0..3).find(|axis| velocity[*axis].abs() == speed);
@@ -290,18 +283,15 @@ impl Column {
         let mut size = inflow.size;
         // Three more layers close the opening behind the last ones.
         size[axis] = (layers + f64::from(LAYERS)) * fluid.spacing;
-        let opening = Vector3::from(inflow.at);
-        let middle = opening - velocity * (0.5 * size[axis] / speed);
+        let middle = Vector3::from(inflow.at) - velocity * (0.5 * size[axis] / speed);
+        let places = Places::new(fluid, size, middle.into())?;
         Ok(Self {
-            places: Places::new(fluid, size, middle.into())?,
-            opening,
-            velocity,
+            places,
+            fluid,
+            inflow,
             axis,
             speed,
-            half: 0.5 * Vector3::from(inflow.size),
-            spacing: fluid.spacing,
             layers,
-            ahead: inflow.ahead,
         })
     }
 
@@ -311,26 +301,28 @@ impl Column {
         &self,
         first: usize,
     ) -> impl Iterator<Item = (Vector3<f64>, Vector3<f64>, Option<Held>)> {
-        let flows_until = self.layers * self.spacing / self.speed - self.ahead;
+        let (spacing, ahead) = (self.fluid.spacing, self.inflow.ahead);
+        let flow = Vector3::from(self.inflow.velocity);
+        let flows_until = self.layers * spacing / self.speed - ahead;
         let all = self.places.all(0).map(|(place, _)| place);
         all.zip(first..).map(move |(place, i)| {
-            let layer = (self.depth(place) / self.spacing - 0.5).round();
-            let until = (layer + 0.5) * self.spacing / self.speed - self.ahead;
+            let layer = (self.depth(place) / spacing - 0.5).round();
+            let until = (layer + 0.5) * spacing / self.speed - ahead;
             let last = layer >= self.layers;
             // The last layers stop where they close the opening.
             let end = if last { flows_until } else { until };
-            let stopped = self.ahead.min(self.ahead + end);
-            let gone = if last { stopped } else { self.ahead };
-            let here = place + self.velocity * gone;
+            let stopped = ahead.min(ahead + end);
+            let gone = if last { stopped } else { ahead };
+            let here = place + flow * gone;
             if end <= 0.0 {
                 let closes = last.then(|| Held::new(i, Path::Still(here)));
                 let still = Vector3::zeros();
-                let velocity = if last { still } else { self.velocity };
+                let velocity = if last { still } else { flow };
                 return (here, velocity, closes);
             }
             let path = Path::Line {
                 from: here,
-                to: here + self.velocity * end,
+                to: here + flow * end,
                 start: 0.0,
                 end,
             };
@@ -338,23 +330,26 @@ impl Column {
                 until: (!last).then_some(until),
                 ..Held::new(i, path)
             };
-            (here, self.velocity, Some(held))
+            (here, flow, Some(held))
         })
     }
 
     /// Returns whether the column passes through a place, so that no wall can be there.
     pub fn passes(&self, place: &Vector3<f64>) -> bool {
-        let from = place - self.opening;
-        let slack = 1e-6 * self.spacing;
+        let from = place - Vector3::from(self.inflow.at);
+        let spacing = self.fluid.spacing;
+        let slack = 1e-6 * spacing;
         let across = (0..3).filter(|axis| *axis != self.axis);
-        let mut is_within = across.map(|axis| from[axis].abs() <= self.half[axis] + slack);
-        let length = (self.layers + f64::from(LAYERS)) * self.spacing;
+        let mut is_within =
+            across.map(|axis| from[axis].abs() <= 0.5 * self.inflow.size[axis] + slack);
+        let length = (self.layers + f64::from(LAYERS)) * spacing;
         is_within.all(|is| is) && (-slack..=length + slack).contains(&self.depth(*place))
     }
 
     /// Returns the distance (m) of a place behind the opening.
     fn depth(&self, place: Vector3<f64>) -> f64 {
-        (self.opening - place).dot(&self.velocity) / self.speed
+        let behind = Vector3::from(self.inflow.at) - place;
+        behind.dot(&Vector3::from(self.inflow.velocity)) / self.speed
     }
 }
 

@@ -6,9 +6,8 @@ use a3_core::rigid::{Body as Rigid, MassProperties, Part, Rotation};
 use a3_core::{Vector3, rotation};
 use nalgebra::{Matrix3, Rotation3, UnitQuaternion};
 
-use super::assembly::{Assembly, Body, Files};
+use super::assembly::{Assembly, Body, Files, point_skin};
 use super::fluid::LAYERS;
-use super::skins::point_skin;
 use crate::budget::{PARTS, SMOOTHED};
 use crate::description::{Fluid, Keys, PartSpec, RigidBody};
 use crate::fault::{Fault, at, at_least, key_of, positive, positive_one};

@@ -6,9 +6,8 @@
 use a3_core::elements::{Hyperelastic, Material, Solid as Elastic};
 use a3_core::{Error, Spring, SpringKind, SpringLaw, Vector3};
 
-use super::assembly::{Assembly, Body, Files, placed};
+use super::assembly::{Assembly, Body, Files, SkinSpec, placed};
 use super::motion::{extreme, side};
-use super::skins::SkinSpec;
 use super::springs::damping_time;
 use crate::budget::{CELLS, SPRINGS, TETRAHEDRA};
 use crate::description::{Jelly, Solid, SolidModel, Spot};

@@ -3,8 +3,7 @@
 use a3_core::elements::Buckling;
 use a3_core::{Constraint, Spring, SpringKind, SpringLaw, Vector3};
 
-use super::assembly::{Assembly, Body, Files};
-use super::skins::SkinSpec;
+use super::assembly::{Assembly, Body, Files, SkinSpec};
 use crate::budget::{RODS, SPRINGS, STRIPS};
 use crate::description::{BucklingSpec, Chain, Particles, Spot, SpringSpec};
 use crate::fault::{Fault, at, at_least, one_of, positive};

@@ -2,20 +2,18 @@
 //! of the nodes of a scene. Every count is compared with the number of bytes before memory is
 //! reserved.
 
-mod accessor;
 mod document;
 mod primitive;
 
 use std::borrow::Cow;
 
 use base64::Engine;
+use document::{Buffers, Document, Head, Text, compressed, item};
+use primitive::{Reader, Skins};
 
 use super::data::Mesh;
 use crate::budget;
 use crate::text::unmarked;
-use accessor::Buffers;
-use document::{Document, Head, Text, compressed, item};
-use primitive::{Reader, Skins};
 
 /// Beginnings of the names of extensions that leave geometry alone, and of one that is supported.
 #[rustfmt::skip]

@@ -6,8 +6,7 @@ use std::rc::Rc;
 
 use nalgebra::{Matrix4, Point3};
 
-use super::accessor::Buffers;
-use super::document::{Document, Primitive, Target, compressed, item};
+use super::document::{Buffers, Document, Primitive, Target, compressed, item};
 use crate::mesh::data::{MAX_POINTS, MAX_TRIANGLES, Mesh};
 
 /// Largest number of points that are read, and moved by targets, counted again for each target.
