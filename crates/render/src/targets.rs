@@ -8,12 +8,8 @@ use crate::picture::{Picture, Tile};
 use crate::renderer::Renderer;
 
 /// The linear colour between pictures, which is that of wires.
-const GAP: wgpu::Color = wgpu::Color {
-    r: 0.035,
-    g: 0.05,
-    b: 0.09,
-    a: 1.0,
-};
+#[rustfmt::skip]
+const GAP: wgpu::Color = wgpu::Color { r: 0.035, g: 0.05, b: 0.09, a: 1.0 };
 
 /// The depth buffer and, for several samples per pixel, the colour buffer that pictures are drawn
 /// into.

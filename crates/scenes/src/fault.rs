@@ -17,11 +17,14 @@ macro_rules! refuse {
     };
     (if $is_wrong:expr => $($why:tt)+) => {
         if $is_wrong {
-            return Err(format_args!($($why)+).to_string());
+            refuse!($($why)+);
         }
     };
     ($key:tt: $($why:tt)+) => {
         return Err($crate::fault::Fault::new($key, format_args!($($why)+)))
+    };
+    ($($why:tt)+) => {
+        return Err(format_args!($($why)+).to_string())
     };
 }
 
@@ -83,10 +86,8 @@ impl Fault {
     /// Creates the fault of a number i that none of the `particles` has.
     pub(crate) fn no_particle(key: &str, i: usize, particles: usize) -> Self {
         let last = particles - 1;
-        Self::new(
-            key,
-            format!("there is no particle {i}: they are numbered 0 to {last}"),
-        )
+        let why = format!("there is no particle {i}: they are numbered 0 to {last}");
+        Self::new(key, why)
     }
 
     /// Prefixes the key with that of the part of the description that it is in.
@@ -193,10 +194,7 @@ pub(crate) fn one_of<T>(
         (Some(x), None) => Ok((true, x)),
         (None, Some(x)) => Ok((false, x)),
         (Some(_), Some(_)) => Err(Fault::not_both(a, b)),
-        (None, None) => Err(Fault::new(
-            "",
-            format!("one of the keys `{a}` and `{b}` is needed"),
-        )),
+        (None, None) => refuse!("": "one of the keys `{a}` and `{b}` is needed"),
     }
 }
 

@@ -176,11 +176,10 @@ struct Listed {
 }
 
 /// Prefixes of keys: that of a description, and that of the list which stands for it.
+#[rustfmt::skip]
 const NAMES: &[(&str, &str)] = &[
-    ("particles.masses", "mass"),
-    ("particles.pin.particles", "pinned"),
-    ("particles.pin", "pinned"),
-    ("particles.", ""),
+    ("particles.masses", "mass"), ("particles.pin.particles", "pinned"),
+    ("particles.pin", "pinned"), ("particles.", ""),
 ];
 
 /// Reads a description from a list of particles and springs in JSON. The places of its keys tell

@@ -151,9 +151,7 @@ pub(crate) fn keys(
         let words = [("a fabric", "a solid body"), ("a solid", "a cloth")];
         let (is, bodies) = words[usize::from(of_fabrics)];
         let known = known.join(", ");
-        return Err(format!(
-            "`{name}` is {is}: the materials of {bodies} are {known}"
-        ));
+        refuse!("`{name}` is {is}: the materials of {bodies} are {known}");
     }
     let all = match material.stuff {
         Stuff::Fabric {

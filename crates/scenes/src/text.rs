@@ -8,13 +8,12 @@ use std::str::FromStr;
 const MARK: &[u8] = b"\xef\xbb\xbf";
 
 /// Beginnings of files that are no texts, and advice for each.
+#[rustfmt::skip]
 const OTHERS: [(&[u8], &str); 5] = [
     (b"\x1f\x8b", "it is compressed by gzip: unpack it"),
     (b"PK\x03\x04", "it is a zip archive: unpack it"),
-    (
-        b"version https://git-lfs",
-        "it is a pointer of Git LFS and not the file itself: fetch it by `git lfs pull`",
-    ),
+    (b"version https://git-lfs",
+        "it is a pointer of Git LFS and not the file itself: fetch it by `git lfs pull`"),
     (b"<!DOCTYPE", "it is a web page: download the file itself"),
     (b"<html", "it is a web page: download the file itself"),
 ];

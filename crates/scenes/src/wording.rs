@@ -65,6 +65,7 @@ fn unknown(kind: &str, word: &str, all: &str, known: &[&str]) -> String {
 }
 
 /// Translates a message of the JSON parser.
+#[rustfmt::skip]
 pub(crate) fn of_json(message: &str) -> &str {
     match message {
         "EOF while parsing a list" => "the text ends within a list: `]` is missing",
@@ -72,21 +73,18 @@ pub(crate) fn of_json(message: &str) -> &str {
         "EOF while parsing a string" => "the text ends within quotes: `\"` is missing",
         "EOF while parsing a value" => "the text ends where a value should be",
         "expected `:`" => "a key must be followed by `:` and its value",
-        "expected `,` or `]`" => {
-            "the values of a list must have `,` between them and `]` at the end"
-        }
+        "expected `,` or `]`" =>
+            "the values of a list must have `,` between them and `]` at the end",
         "expected `,` or `}`" => "keys must have `,` between them and `}` at the end",
-        "expected value" | "expected ident" => {
-            "a value is expected: a number such as 0.5, a text in double quotes, a list or braces"
-        }
+        "expected value" | "expected ident" =>
+            "a value is expected: a number such as 0.5, a text in double quotes, a list or braces",
         "invalid number" => "a number must be written like 5, 0.5 or 1e-3",
         "key must be a string" | "expected `\"`" => "a key must be in double quotes",
         "trailing comma" => "there must be no `,` after the last value",
         "trailing characters" => "something follows after the end",
         "invalid escape" => "after `\\` must be one of `\"`, `\\`, `/`, b, f, n, r, t, u",
-        _ if message.starts_with("control character") => {
-            "a text in quotes must have no line break and no control character in it"
-        }
+        _ if message.starts_with("control character") =>
+            "a text in quotes must have no line break and no control character in it",
         _ => message,
     }
 }

@@ -304,9 +304,11 @@ fn check_body(network: &Network, k: usize) -> Result<(), String> {
     match network.bodies().len() {
         count if k < count => Ok(()),
         0 => Err("there is no rigid body".into()),
-        count => Err(format!(
-            "there is no rigid body {k}: they are numbered 0 to {}",
-            count - 1
-        )),
+        count => {
+            let last = count - 1;
+            Err(format!(
+                "there is no rigid body {k}: they are numbered 0 to {last}"
+            ))
+        }
     }
 }

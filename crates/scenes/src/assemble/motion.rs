@@ -133,11 +133,8 @@ impl Pinned {
         for place in &pin.at {
             budget.spend("at", positions.len(), SEARCHED)?;
             let Some(there) = spot(*place) else {
-                return Err(Fault::new(
-                    "at",
-                    "a cloth has top, bottom, left, right, top-left, top-right, bottom-left, bottom-right; a jelly and \
-                     a solid top, bottom, left, right; a mesh top, bottom; a chain first, last; others are pinned by `particles`",
-                ));
+                refuse!("at": "a cloth has top, bottom, left, right, top-left, top-right, bottom-left, bottom-right; a jelly and \
+                     a solid top, bottom, left, right; a mesh top, bottom; a chain first, last; others are pinned by `particles`");
             };
             budget.spend("at", there.len(), PINS)?;
             particles.extend(there);

@@ -3,6 +3,7 @@
 //! The lattice of a jelly has structural springs along the axes, shear springs across faces and
 //! cells, and bend springs to the next particle but one; that of a solid has six tetrahedra a cell.
 
+use a3_core::SpringKind::{Bend, Shear, Structural};
 use a3_core::elements::{Hyperelastic, Material, Solid as Elastic};
 use a3_core::{Error, Spring, SpringKind, SpringLaw, Vector3};
 
@@ -76,10 +77,8 @@ impl Solid {
                 Ok(Some((Lattice(grid), Vector3::from(size))))
             }
             (true, None, None) => Ok(None),
-            _ => Err(Fault::new(
-                "",
-                "a solid is a box with the keys `grid` and `size`, or from a `file` with a `scale`",
-            )),
+            _ => refuse!("":
+                "a solid is a box with the keys `grid` and `size`, or from a `file` with a `scale`"),
         }
     }
 
@@ -225,23 +224,13 @@ fn height([a, b, c, d]: [Vector3<f64>; 4], volume: f64) -> f64 {
 pub(super) struct Lattice(pub [usize; 3]);
 
 /// Kinds of springs, and the offset from one end to the other in particles.
+#[rustfmt::skip]
 const OFFSETS: [(SpringKind, [isize; 3]); 16] = [
-    (SpringKind::Structural, [1, 0, 0]),
-    (SpringKind::Structural, [0, 1, 0]),
-    (SpringKind::Structural, [0, 0, 1]),
-    (SpringKind::Shear, [1, 1, 0]),
-    (SpringKind::Shear, [1, -1, 0]),
-    (SpringKind::Shear, [1, 0, 1]),
-    (SpringKind::Shear, [1, 0, -1]),
-    (SpringKind::Shear, [0, 1, 1]),
-    (SpringKind::Shear, [0, 1, -1]),
-    (SpringKind::Shear, [1, 1, 1]),
-    (SpringKind::Shear, [1, 1, -1]),
-    (SpringKind::Shear, [1, -1, 1]),
-    (SpringKind::Shear, [1, -1, -1]),
-    (SpringKind::Bend, [2, 0, 0]),
-    (SpringKind::Bend, [0, 2, 0]),
-    (SpringKind::Bend, [0, 0, 2]),
+    (Structural, [1, 0, 0]), (Structural, [0, 1, 0]), (Structural, [0, 0, 1]),
+    (Shear, [1, 1, 0]), (Shear, [1, -1, 0]), (Shear, [1, 0, 1]), (Shear, [1, 0, -1]),
+    (Shear, [0, 1, 1]), (Shear, [0, 1, -1]), (Shear, [1, 1, 1]), (Shear, [1, 1, -1]),
+    (Shear, [1, -1, 1]), (Shear, [1, -1, -1]),
+    (Bend, [2, 0, 0]), (Bend, [0, 2, 0]), (Bend, [0, 0, 2]),
 ];
 
 /// Kuhn's tetrahedra of a cell: the order of the axes along which each goes from one corner to the

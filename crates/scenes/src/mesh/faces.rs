@@ -40,9 +40,7 @@ pub(super) fn obj(text: &[u8]) -> Result<Mesh, String> {
     let ((corner, line), count) = (last, mesh.positions.len());
     if line > 0 && corner as usize >= count {
         let corner = u64::from(corner) + 1;
-        return Err(format!(
-            "line {line}: a face has corner {corner}, but there are {count} points"
-        ));
+        refuse!("line {line}: a face has corner {corner}, but there are {count} points");
     }
     faces.cut(&mut mesh, |k, count| {
         let line = lines_of_faces[k];
@@ -239,9 +237,7 @@ pub(super) fn ply(bytes: &[u8]) -> Result<Mesh, String> {
     }
     let count = mesh.positions.len();
     if let Some((face, corner)) = faces.beyond(count) {
-        return Err(format!(
-            "face {face}, counted from 0, has corner {corner}, but there are {count} points"
-        ));
+        refuse!("face {face}, counted from 0, has corner {corner}, but there are {count} points");
     }
     faces.cut(&mut mesh, |k, count| {
         format!(

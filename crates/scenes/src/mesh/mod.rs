@@ -76,9 +76,7 @@ impl Mesh {
         if let Some(i) = mesh.positions.iter().position(far) {
             let [x, y, z] = mesh.positions[i];
             let number = mesh.number(i);
-            return Err(format!(
-                "point {number} is at ({x:e}, {y:e}, {z:e}): {COORDINATES}"
-            ));
+            refuse!("point {number} is at ({x:e}, {y:e}, {z:e}): {COORDINATES}");
         }
         Ok(mesh)
     }

@@ -193,15 +193,11 @@ fn each(
     let is_kind = |found: u64| found == kind || kind == 4 && found == 10;
     let given = |counts: &[u64]| counts.get(1).is_none_or(|found| is_kind(*found));
     let Some(&[count, ..]) = counts.as_deref().filter(|counts| given(counts)) else {
-        return Err(format!(
-            "the first line of the {name} file must give {head}"
-        ));
+        refuse!("the first line of the {name} file must give {head}");
     };
     for _ in 0..count {
         let Some((line, words)) = lines.next() else {
-            return Err(format!(
-                "the {name} file ends before all {count} of its lines"
-            ));
+            refuse!("the {name} file ends before all {count} of its lines");
         };
         let number = whole(&words[..1]).map_err(|why| format!("line {line}: {why}"))?[0];
         visit(line, number, &words[1..])?;

@@ -350,7 +350,7 @@ fn number(component_type: u32) -> Result<Number, String> {
         }),
         other => {
             let why = "which those of points have not";
-            return Err(format!("its numbers have the type {other}, {why}"));
+            refuse!("its numbers have the type {other}, {why}");
         }
     })
 }

@@ -38,9 +38,7 @@ pub(super) fn read(
         if extension.contains("compression") {
             return Err(compressed(extension));
         }
-        return Err(format!(
-            "it needs the extension {extension}, which is not read"
-        ));
+        refuse!("it needs the extension {extension}, which is not read");
     }
     let mut buffers = Buffers {
         buffers: vec![],

@@ -227,9 +227,7 @@ impl<'a> Skins<'a> {
             let there = |j: &f32| *j >= 0.0 && (*j as usize) < matrices.len();
             if !joints.iter().flatten().all(there) {
                 let count = matrices.len();
-                return Err(format!(
-                    "a point has a joint that is not among the {count} of its skin"
-                ));
+                refuse!("a point has a joint that is not among the {count} of its skin");
             }
             sets.push([joints, read(weights)?]);
         }
