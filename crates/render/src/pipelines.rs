@@ -87,15 +87,7 @@ impl Pipelines {
         color: wgpu::TextureFormat,
         samples: u32,
     ) -> Self {
-        let shader = device.create_shader_module(wgpu::ShaderModuleDescriptor {
-            label: Some("scene"),
-            source: wgpu::ShaderSource::Wgsl(source.into()),
-        });
-        let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-            label: Some("scene"),
-            bind_group_layouts: &[Some(layout)],
-            immediate_size: 0,
-        });
+        let (shader, layout) = shaders(device, source, layout);
         // Shaders are given by the first parts of their names.
         let pipeline = |vertex: &str, fragment: &str, topology, layer, buffers: &[_]| {
             let buffers: Vec<Option<wgpu::VertexBufferLayout>> =
@@ -197,6 +189,24 @@ impl Pipelines {
             }),
         }
     }
+}
+
+/// Creates the module of the shaders, and the layout of all pipelines.
+fn shaders(
+    device: &wgpu::Device,
+    source: &str,
+    layout: &wgpu::BindGroupLayout,
+) -> (wgpu::ShaderModule, wgpu::PipelineLayout) {
+    let shader = device.create_shader_module(wgpu::ShaderModuleDescriptor {
+        label: Some("scene"),
+        source: wgpu::ShaderSource::Wgsl(source.into()),
+    });
+    let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+        label: Some("scene"),
+        bind_group_layouts: &[Some(layout)],
+        immediate_size: 0,
+    });
+    (shader, layout)
 }
 
 /// Returns the layout of a buffer of vertices or instances of that length (bytes).

@@ -352,8 +352,9 @@ fn renumber_bodies(description: &mut Description, bodies: Splice) {
     });
     let fit = |pins: &mut Vec<Pin>| {
         pins.retain(|pin| pin.body.is_none_or(|k| number(k).is_some()));
-        pins.iter_mut()
-            .for_each(|pin| pin.body = pin.body.and_then(number));
+        for pin in pins {
+            pin.body = pin.body.and_then(number);
+        }
     };
     fit(&mut description.pin);
     let pinned = description.bodies_mut().filter_map(|body| body.pin);

@@ -195,7 +195,9 @@ impl Body for MeshCloth {
         if let Some((key, law)) = law {
             let mut triangles = mesh.triangles.clone();
             if volume(&scaled.positions, &triangles) < 0.0 {
-                triangles.iter_mut().for_each(|t| t.swap(1, 2));
+                for t in &mut triangles {
+                    t.swap(1, 2);
+                }
             }
             for i in triangles.iter_mut().flatten() {
                 *i += first as u32;

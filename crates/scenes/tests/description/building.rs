@@ -23,43 +23,15 @@ fn what_is_written_is_read_as_the_same() {
 fn bodies_are_numbered_through() {
     let text = format!(
         "{CLOTH}
-[[cloth]]
-grid = [2, 2]
-width = 1
-density = 2
-stiffness = [1, 1, 1]
-
-[[jelly]]
-grid = [2, 2, 2]
-size = [1, 1, 1]
-density = 8
-stiffness = [1, 1, 1]
-at = [5, 0, 0]
-pin = [{{ at = [\"bottom\"] }}]
-
-[[mesh]]
-file = \"square.obj\"
-density = 3
-stiffness = [7, 2]
-pin = [{{ at = [\"top\"] }}]
-
-[[chain]]
-particles = 3
-from = [0, 0, 0]
-to = [0, 2, 0]
-mass = 4
-stiffness = 1
-pin = [{{ at = [\"last\"], sine = {{ amplitude = [1, 0, 0], rate = 2 }} }}]
-
-[particles]
-positions = [[9, 9, 9], [8, 8, 8]]
-velocities = [[1, 2, 3], [0, 0, 0]]
-masses = [5, 6]
-springs = [[0, 1, 3, 1, 0]]
-
-[[pin]]
-particles = [0]
-"
+[[cloth]]\ngrid = [2, 2]\nwidth = 1\ndensity = 2\nstiffness = [1, 1, 1]
+[[jelly]]\ngrid = [2, 2, 2]\nsize = [1, 1, 1]\ndensity = 8\nstiffness = [1, 1, 1]\nat = [5, 0, 0]
+pin = [{{ at = ['bottom'] }}]
+[[mesh]]\nfile = 'square.obj'\ndensity = 3\nstiffness = [7, 2]\npin = [{{ at = ['top'] }}]
+[[chain]]\nparticles = 3\nfrom = [0, 0, 0]\nto = [0, 2, 0]\nmass = 4\nstiffness = 1
+pin = [{{ at = ['last'], sine = {{ amplitude = [1, 0, 0], rate = 2 }} }}]
+[particles]\npositions = [[9, 9, 9], [8, 8, 8]]\nvelocities = [[1, 2, 3], [0, 0, 0]]
+masses = [5, 6]\nsprings = [[0, 1, 3, 1, 0]]
+[[pin]]\nparticles = [0]\n"
     );
     // Springs of the whole scene come before the tables.
     let setup = set_up(&format!("springs = [[11, 27, 2, 1, 0]]\n{text}")).unwrap();
@@ -184,19 +156,8 @@ fn strain_is_limited_body_by_body() {
     let limited = CLOTH.replace("[10, 5, 2]", "[10, 5, 2]\nstrain_limit = 1.25");
     let text = format!(
         "{limited}
-[[jelly]]
-grid = [2, 2, 2]
-size = [1, 1, 1]
-mass = 8
-stiffness = [1, 1, 1]
-at = [5, 0, 0]
-
-[[mesh]]
-file = \"square.obj\"
-density = 3
-stiffness = [7, 2]
-strain_limit = 1.5
-"
+[[jelly]]\ngrid = [2, 2, 2]\nsize = [1, 1, 1]\nmass = 8\nstiffness = [1, 1, 1]\nat = [5, 0, 0]
+[[mesh]]\nfile = 'square.obj'\ndensity = 3\nstiffness = [7, 2]\nstrain_limit = 1.5\n"
     );
     let mut scene = build(&text).unwrap();
     let n = scene.model.particles();

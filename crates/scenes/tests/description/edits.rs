@@ -64,16 +64,12 @@ fn an_edit_leaves_all_else_as_it_was() {
     let n = scene.model.particles();
     let mut given = own.clone();
     let row = |first: usize, i: usize| [0, 1, 2].map(|axis| scene.state[first + axis * n + i]);
-    let turned = |k: usize, first: usize| first + 6 * n + 7 * k;
+    let rotations = [0, 1].map(|k| &scene.state[6 * n + 7 * k..]);
     given.state = Some(a3_scenes::State {
         positions: (0..n).map(|i| row(0, i)).collect(),
         velocities: (0..n).map(|i| row(3 * n, i)).collect(),
-        orientations: (0..2)
-            .map(|k| [0, 1, 2, 3].map(|q| scene.state[turned(k, q)]))
-            .collect(),
-        angular_momenta: (0..2)
-            .map(|k| [4, 5, 6].map(|q| scene.state[turned(k, q)]))
-            .collect(),
+        orientations: rotations.map(|r| [r[0], r[1], r[2], r[3]]).into(),
+        angular_momenta: rotations.map(|r| [r[4], r[5], r[6]]).into(),
     });
     let rope = ConstraintSpec {
         rope: Some([3, 17]),

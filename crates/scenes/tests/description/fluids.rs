@@ -8,18 +8,10 @@ use super::*;
 /// around the sides and the bottom of its tank.
 #[test]
 fn fluids_stand_in_tanks() {
-    let setup = set_up(
-        "[[fluid]]
-        size = [0.4, 0.2, 0.2]
-        spacing = 0.1
-        at = [0.2, 0.1, 0.1]
-        density = 500
-        sound = 10
-        velocity = [1, 0, 0]
-        strain = [0, 2, 0]
-        tank = { size = [0.5, 0.3, 0.2], at = [0.25, 0.15, 0.1] }",
-    )
-    .unwrap();
+    let text = "[[fluid]]\nsize = [0.4, 0.2, 0.2]\nspacing = 0.1\nat = [0.2, 0.1, 0.1]\n\
+        density = 500\nsound = 10\nvelocity = [1, 0, 0]\nstrain = [0, 2, 0]\n\
+        tank = { size = [0.5, 0.3, 0.2], at = [0.25, 0.15, 0.1] }";
+    let setup = set_up(text).unwrap();
     let scene = setup.scene;
     let network = scene.model.network().unwrap();
     let walls = 11 * 6 * 8 - 5 * 3 * 2;
@@ -167,15 +159,8 @@ fn outflows_open_walls() {
     let fluid = |text: &str| set_up(text).unwrap().scene.model;
     let (open, closed) = (fluid(&text), fluid(&text.replacen("outflow", "# ", 1)));
     assert_eq!(open.particles() + 2 * 3, closed.particles());
-    assert!(
-        open.network()
-            .unwrap()
-            .fluid()
-            .unwrap()
-            .members()
-            .drained()
-            .is_empty()
-    );
+    let liquid = open.network().unwrap().fluid().unwrap();
+    assert!(liquid.members().drained().is_empty());
     let within = text.replacen("at = [2, -0.1875, 0]", "at = [0, 0.1, 0]", 1);
     let within = fluid(&within);
     let network = within.network().unwrap();
@@ -231,45 +216,24 @@ fn cups_that_leak_are_named() {
     let notes = |parts: &str, dimensions: u8| {
         let size = [0.36, 0.36, if dimensions == 2 { 0.0 } else { 0.36 }];
         let setup = set_up(&format!(
-            "[[body]]
-            parts = [{parts}]
-            density = 2000
-            at = [0, -1, 0]
-            [[fluid]]
-            dimensions = {dimensions}
-            size = {size:?}
-            spacing = 0.04
-            at = [0, 0.5, 0]
-            density = 1000
-            sound = 30"
+            "[[body]]\nparts = [{parts}]\ndensity = 2000\nat = [0, -1, 0]\n\
+             [[fluid]]\ndimensions = {dimensions}\nsize = {size:?}\nspacing = 0.04\n\
+             at = [0, 0.5, 0]\ndensity = 1000\nsound = 30"
         ));
         setup.unwrap().presentation.notes.clone()
     };
     let cup = |thickness: f64| {
-        let wall = |side: f64| {
-            format!(
-                "{{ box = [{thickness}, 0.6, 1], at = [{}, 0.3, 0] }}",
-                0.4 * side
-            )
-        };
-        format!(
-            "{{ box = [0.9, {thickness}, 1] }}, {}, {}",
-            wall(-1.0),
-            wall(1.0)
-        )
+        let wall = |x: f64| format!("{{ box = [{thickness}, 0.6, 1], at = [{x}, 0.3, 0] }}");
+        let walls = [wall(-0.4), wall(0.4)].join(", ");
+        format!("{{ box = [0.9, {thickness}, 1] }}, {walls}")
     };
     for dimensions in [2, 3] {
         for thickness in [0.01, 0.02, 0.04, 0.06] {
-            let told = notes(&cup(thickness), dimensions);
+            let told = &notes(&cup(thickness), dimensions)[0];
             let whole = "body: the liquid can pass through walls that are only ";
-            assert!(
-                told[0].starts_with(&format!("{whole}{thickness:.2} m thick")),
-                "{told:?}"
-            );
-            assert!(
-                told[0].contains("at least 0.08 m thick, 2 spacings"),
-                "{told:?}"
-            );
+            let whole = format!("{whole}{thickness:.2} m thick");
+            assert!(told.starts_with(&whole), "{told}");
+            assert!(told.contains("at least 0.08 m thick, 2 spacings"), "{told}");
         }
         for holds in [
             cup(0.08),
@@ -282,10 +246,8 @@ fn cups_that_leak_are_named() {
             assert_eq!(notes(&holds, dimensions), Vec::<String>::new(), "{holds}");
         }
         // A film between the layers of the lattice, which no liquid feels.
-        let told = notes("{ box = [0.6, 0.005, 1] }", 2);
-        assert!(
-            told[0].starts_with("body: it is too thin for the liquid to feel it"),
-            "{told:?}"
-        );
+        let told = &notes("{ box = [0.6, 0.005, 1] }", 2)[0];
+        let thin = "body: it is too thin for the liquid to feel it";
+        assert!(told.starts_with(thin), "{told}");
     }
 }

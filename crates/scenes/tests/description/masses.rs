@@ -105,27 +105,18 @@ fn a_mesh_weighs_its_density_times_its_area() {
 fn ball() -> Mesh {
     let [rings, around] = [30_u32, 60];
     let mut mesh = Mesh::default();
-    for i in 0..=rings {
-        for j in 0..around {
-            let polar = PI * f64::from(i) / f64::from(rings);
-            let turn = 2.0 * PI * f64::from(j) / f64::from(around);
-            let radius = if i % rings == 0 { 0.0 } else { polar.sin() };
-            let place = [radius * turn.cos(), polar.cos(), radius * turn.sin()];
-            mesh.positions.push(place);
-        }
-    }
-    for i in 0..rings {
-        for j in 0..around {
-            let at = |i: u32, j: u32| i * around + j % around;
-            let [a, b, c, d] = [at(i, j), at(i, j + 1), at(i + 1, j + 1), at(i + 1, j)];
-            // At a pole, the ring is one point.
-            if i > 0 {
-                mesh.triangles.push([a, b, c]);
-            }
-            if i + 1 < rings {
-                mesh.triangles.push([a, c, d]);
-            }
-        }
+    for (i, j) in (0..=rings).flat_map(|i| (0..around).map(move |j| (i, j))) {
+        let polar = PI * f64::from(i) / f64::from(rings);
+        let turn = 2.0 * PI * f64::from(j) / f64::from(around);
+        let radius = if i % rings == 0 { 0.0 } else { polar.sin() };
+        let place = [radius * turn.cos(), polar.cos(), radius * turn.sin()];
+        mesh.positions.push(place);
+        let at = |i: u32, j: u32| i * around + j % around;
+        let [a, b, c, d] = [at(i, j), at(i, j + 1), at(i + 1, j + 1), at(i + 1, j)];
+        // At a pole, the ring is one point.
+        let upper = (i > 0 && i < rings).then_some([a, b, c]);
+        let lower = (i + 1 < rings).then_some([a, c, d]);
+        mesh.triangles.extend([upper, lower].into_iter().flatten());
     }
     mesh
 }

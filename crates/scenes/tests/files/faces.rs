@@ -68,15 +68,9 @@ fn concave_faces_keep_their_notches() {
 /// there twice are harmless.
 #[test]
 fn corners_on_sides_stay() {
-    let tee = [
-        [0.0, 0.0],
-        [1.0, 0.0],
-        [2.0, 0.0],
-        [2.0, 2.0],
-        [1.0, 2.0],
-        [0.0, 2.0],
-        [0.0, 1.0],
-    ];
+    #[rustfmt::skip]
+    let tee =
+        [[0.0, 0.0], [1.0, 0.0], [2.0, 0.0], [2.0, 2.0], [1.0, 2.0], [0.0, 2.0], [0.0, 1.0]];
     is_covered(&tee);
     let mesh = obj(face(&tee).0);
     let all = mesh
@@ -101,15 +95,10 @@ fn corners_on_sides_stay() {
             &[6, 0]
         ]
     );
-    is_covered(&[
-        [0.0, 0.0],
-        [0.0, 0.0],
-        [3.0, 0.0],
-        [3.0, 3.0],
-        [3.0, 3.0],
-        [1.5, 1.0],
-        [0.0, 3.0],
-    ]);
+    #[rustfmt::skip]
+    let twice =
+        [[0.0, 0.0], [0.0, 0.0], [3.0, 0.0], [3.0, 3.0], [3.0, 3.0], [1.5, 1.0], [0.0, 3.0]];
+    is_covered(&twice);
 }
 
 /// Holes, each joined to the outer sides by a bridge that goes there and back.
