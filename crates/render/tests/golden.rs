@@ -119,10 +119,8 @@ fn pictures_match_the_golden_ones() {
             wrong.push(name);
         }
     }
-    assert!(
-        wrong.is_empty(),
-        "{wrong:?} differ: look at the .actual.png files beside the golden ones"
-    );
+    let look = "look at the .actual.png files beside the golden ones";
+    assert!(wrong.is_empty(), "{wrong:?} differ: {look}");
 }
 
 /// Seen from behind, the sheet is lit as well as from the front, and shows its lining.
@@ -242,10 +240,8 @@ fn transparent_pictures_show_the_same_things() {
     let count = bare.pixels().filter(|p| solid(p)).count();
     let empty = bare.pixels().filter(|p| p.0 == [0; 4]).count();
     let all = (SIZE.0 * SIZE.1) as usize;
-    assert!(
-        count > all / 20 && empty > all / 2,
-        "{count} {empty} of {all}"
-    );
+    let is_sparse = count > all / 20 && empty > all / 2;
+    assert!(is_sparse, "{count} {empty} of {all}");
     assert!(count + empty < all, "edges are smooth");
     // The line alone has one colour, (0.9, 0.4, 0.02) as sRGB, wherever it is visible.
     sheet.balls.clear();

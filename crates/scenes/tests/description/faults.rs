@@ -143,10 +143,8 @@ fn damaged_texts_are_refused_or_read() {
         let text: String = text.into_iter().collect();
         match build(&text) {
             Err(fault) => {
-                assert!(
-                    !fault.why.is_empty() && !fault.to_string().contains('\n'),
-                    "{fault}"
-                );
+                let is_line = !fault.why.is_empty() && !fault.to_string().contains('\n');
+                assert!(is_line, "{fault}");
                 refused += 1;
             }
             Ok(scene) => {

@@ -17,7 +17,7 @@ mod words;
 use a3_core::{Grid, Network, Scene};
 use a3_scenes::{Description, Fault, Mesh, Places, Setup, find, parse_toml};
 
-use common::{random, refused, run, seed};
+use common::{begins, random, refused, run, seed};
 
 /// Builds a built-in scene, with this grid or its own.
 fn scene(name: &str, grid: Option<[usize; 2]>) -> Setup {

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use crate::{area, data, obj, random, vector_area};
+use crate::{area, begins, data, obj, random, vector_area};
 
 /// Returns a face in OBJ, whose corners in a plane are turned and stretched into space by a fixed
 /// matrix, and its area.
@@ -26,10 +26,8 @@ fn is_covered(corners: &[[f64; 2]]) {
     let mesh = obj(&text);
     let (sum, whole) = (area(&mesh), vector_area(&mesh)[2]);
     let off = (sum - expected.abs()).abs().max((whole - expected).abs());
-    assert!(
-        off < 1e-5 * expected.abs(),
-        "{sum} {whole} {expected}\n{text}"
-    );
+    let is_same = off < 1e-5 * expected.abs();
+    assert!(is_same, "{sum} {whole} {expected}\n{text}");
 }
 
 #[test]
@@ -83,18 +81,7 @@ fn corners_on_sides_stay() {
         .filter(|[a, b]| !all.contains(&[*b, *a]))
         .collect();
     sides.sort_unstable();
-    assert_eq!(
-        sides,
-        [
-            &[0, 1],
-            &[1, 2],
-            &[2, 3],
-            &[3, 4],
-            &[4, 5],
-            &[5, 6],
-            &[6, 0]
-        ]
-    );
+    assert!(sides.len() == 7 && (0..7).all(|k| *sides[k as usize] == [k, (k + 1) % 7]));
     #[rustfmt::skip]
     let twice =
         [[0.0, 0.0], [0.0, 0.0], [3.0, 0.0], [3.0, 3.0], [3.0, 3.0], [1.5, 1.0], [0.0, 3.0]];
@@ -163,6 +150,6 @@ fn crossing_faces_come_to_an_end() {
     let begun = std::time::Instant::now();
     let why = a3_scenes::Mesh::from_obj(star(20_000).as_bytes()).unwrap_err();
     let expected = "line 20001: faces that are not convex have too many corners, 20000 in this one";
-    assert!(why.starts_with(expected), "{why}");
+    begins(why, expected);
     assert!(begun.elapsed().as_secs() < 5);
 }

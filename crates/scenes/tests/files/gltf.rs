@@ -4,7 +4,7 @@ use a3_scenes::Mesh;
 use base64::Engine;
 use serde_json::{Value, json};
 
-use crate::{area, counts, data, vector_area};
+use crate::{area, begins, counts, data, vector_area};
 
 fn read(bytes: &[u8]) -> Result<Mesh, String> {
     Mesh::from_gltf(bytes, &mut |name| match name {
@@ -193,10 +193,8 @@ fn positions_may_be_whole_numbers() {
         })
     };
     for (accessor, side) in [(6, 100.0), (7, 1.0)] {
-        assert_eq!(
-            quantized(accessor),
-            [[0.0; 3], [side, 0.0, 0.0], [0.0, side, 0.0]]
-        );
+        let corners = [[0.0; 3], [side, 0.0, 0.0], [0.0, side, 0.0]];
+        assert_eq!(quantized(accessor), corners);
     }
 }
 
@@ -215,10 +213,8 @@ fn extensions_that_touch_no_geometry_are_passed_over() {
     for name in needed.split(' ') {
         let why = with(name).unwrap_err();
         let advice = why.ends_with(": save it without compression");
-        assert!(
-            why.contains(name) && advice == name.contains("compression"),
-            "{why}"
-        );
+        let is_advised = advice == name.contains("compression");
+        assert!(is_advised && why.contains(name), "{why}");
     }
 }
 
@@ -231,10 +227,8 @@ fn files_of_other_programs_are_read_or_named() {
     let old = r#"{"asset": {"version": "1.0"}, "scene": "a", "scenes": {"a": {"nodes": ["b"]}}, "nodes": {"b": {}}}"#;
     let named = "it is glTF 1.0: convert it to glTF 2.0";
     let binary = b"glTF\x01\0\0\0\x14\0\0\0\0\0\0\0\0\0\0\0";
-    assert_eq!(
-        [old.as_bytes(), binary].map(|file| read(file).unwrap_err()),
-        [named; 2]
-    );
+    let said = [old.as_bytes(), binary].map(|file| read(file).unwrap_err());
+    assert_eq!(said, [named; 2]);
     let why = read(triangle().to_string().replace("2.0", "3.0").as_bytes()).unwrap_err();
     assert_eq!(why, "it is glTF 3.0: convert it to glTF 2.0");
     // Padding of zeros.
@@ -263,10 +257,7 @@ fn primitives_share_points() {
     document["meshes"][0]["primitives"] = vec![primitive; 20_000].into();
     let begun = std::time::Instant::now();
     let why = read(document.to_string().as_bytes()).unwrap_err();
-    assert!(
-        why.starts_with("its primitives read points more than"),
-        "{why}"
-    );
+    begins(why, "its primitives read points more than");
     assert!(begun.elapsed().as_secs() < 10);
 }
 

@@ -10,7 +10,7 @@ mod solids;
 mod texts;
 
 use a3_scenes::Mesh;
-use common::{random, refused};
+use common::{begins, random, refused};
 
 /// Reads a file of these tests.
 fn data(name: &str) -> Vec<u8> {

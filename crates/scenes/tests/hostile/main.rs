@@ -148,11 +148,8 @@ fn is_mesh(mesh: Result<Mesh, String>) -> bool {
         .iter()
         .flatten()
         .chain(mesh.tetrahedra.iter().flatten());
-    assert!(
-        corners
-            .into_iter()
-            .all(|i| (*i as usize) < mesh.positions.len())
-    );
+    let count = mesh.positions.len();
+    assert!(corners.into_iter().all(|i| (*i as usize) < count));
     assert!(mesh.positions.iter().flatten().all(|x| x.is_finite()));
     if !mesh.tetrahedra.is_empty() {
         // A solid with this mesh is refused, or has finite masses.
@@ -177,10 +174,8 @@ fn what_is_too_much_is_refused() {
     let refused = |expected: &str, answer: &mut dyn FnMut() -> Result<Mesh, String>| {
         let mut why = String::new();
         let memory = taken(|| why = answer().unwrap_err());
-        assert!(
-            why.contains(expected) && why.len() < 5000,
-            "{expected}: {why}"
-        );
+        let is_brief = why.len() < 5000;
+        assert!(why.contains(expected) && is_brief, "{expected}: {why}");
         assert!(memory[0] < MOST[0], "{expected}: {memory:?}");
     };
     let many = "4000000000";

@@ -185,12 +185,8 @@ fn check(count: usize, scene: impl Fn(usize) -> Option<Named> + Sync) {
     });
     let mut found = found.into_inner().unwrap();
     found.sort();
-    assert!(
-        found.is_empty(),
-        "{} faults:\n{}",
-        found.len(),
-        found.join("\n")
-    );
+    let count = found.len();
+    assert!(count == 0, "{count} faults:\n{}", found.join("\n"));
 }
 
 #[test]
