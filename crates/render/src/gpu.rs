@@ -244,9 +244,8 @@ async fn named_adapter(
     adapters.retain(|adapter| surface.is_none_or(|surface| adapter.is_surface_supported(surface)));
     let names: Vec<_> = adapters.iter().map(|it| it.get_info().name).collect();
     let wanted = name.to_lowercase();
-    let found = names
-        .iter()
-        .position(|name| name.to_lowercase().contains(&wanted));
+    let fits = |name: &String| name.to_lowercase().contains(&wanted);
+    let found = names.iter().position(fits);
     let why = format!("WGPU_ADAPTER_NAME is {name}, but the adapters are {names:?}");
     let found = found.ok_or(GpuError::NoAdapter(why));
     found.map(|k| adapters.swap_remove(k))

@@ -314,9 +314,8 @@ impl Offscreen {
     ) -> Result<Vec<u8>, GpuError> {
         let size = self.size();
         renderer.prepare(gpu, pictures);
-        let mut encoder = gpu
-            .device
-            .create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        let descriptor = wgpu::CommandEncoderDescriptor::default();
+        let mut encoder = gpu.device.create_command_encoder(&descriptor);
         let transparent = pictures.iter().any(|(picture, _)| picture.transparent);
         let nothing = wgpu::Color::TRANSPARENT;
         let clear = if transparent { nothing } else { GAP };
@@ -356,9 +355,8 @@ impl Offscreen {
             .poll(wgpu::PollType::wait_indefinitely())
             .map_err(|_| GpuError::Lost)?;
         gpu.check()?;
-        let mapped = slice
-            .get_mapped_range()
-            .map_err(|e| GpuError::Refused(e.to_string()))?;
+        let mapped = slice.get_mapped_range();
+        let mapped = mapped.map_err(|e| GpuError::Refused(e.to_string()))?;
         let mut pixels = Vec::with_capacity(size.0 as usize * size.1 as usize * 4);
         for row in mapped.chunks_exact(self.stride as usize) {
             pixels.extend_from_slice(&row[..size.0 as usize * 4]);

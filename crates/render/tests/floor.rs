@@ -39,10 +39,8 @@ fn pixel(picture: &RgbaImage, point: [f32; 3]) -> [u8; 4] {
 /// Horizontal squares of these heights and half sides (m).
 fn squares(squares: &[(f32, f32)]) -> (Topology, Vec<[f32; 4]>) {
     let corners = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
-    let points: Vec<_> = squares
-        .iter()
-        .flat_map(|(y, half)| corners.map(|[x, z]| [half * x, *y, half * z, 0.0]))
-        .collect();
+    let square = |(y, half): &(f32, f32)| corners.map(|[x, z]| [half * x, *y, half * z, 0.0]);
+    let points: Vec<_> = squares.iter().flat_map(square).collect();
     let triangles = (0..squares.len() as u32)
         .flat_map(|k| [[0, 2, 1], [0, 3, 2]].map(|t| t.map(|i| 4 * k + i)))
         .collect();

@@ -341,12 +341,8 @@ impl SkinSpec {
         self.check()?;
         let most = MAX_THICKNESS * spacing;
         let thickness = self.keys.thickness.unwrap_or(most);
-        if thickness > most * (1.0 + 1e-9) {
-            let why = format!(
-                "it must be at most {most}, a quarter of the distance of neighbouring particles, not {thickness}"
-            );
-            return Err(Fault::new("thickness", why));
-        }
+        refuse!(if thickness > most * (1.0 + 1e-9) => "thickness":
+            "it must be at most {most}, a quarter of the distance of neighbouring particles, not {thickness}");
         let skin = |m: &f64| self.skin(*m, thickness);
         Ok(masses.iter().map(skin).collect())
     }

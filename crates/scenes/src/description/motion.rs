@@ -404,11 +404,8 @@ impl<'de> Visitor<'de> for HeightOrTable {
     }
 
     fn visit_f64<E: de::Error>(self, height: f64) -> Result<Floor, E> {
-        if within(height) {
-            Ok(Floor::Height(height))
-        } else {
-            Err(E::custom(beyond(height)))
-        }
+        let floor = within(height).then_some(Floor::Height(height));
+        floor.ok_or_else(|| E::custom(beyond(height)))
     }
 
     fn visit_i64<E: de::Error>(self, height: i64) -> Result<Floor, E> {

@@ -18,9 +18,8 @@ const FACES: [[usize; 3]; 4] = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
 pub(crate) fn boundary(tetrahedra: &[[u32; 4]]) -> Vec<[u32; 3]> {
     let faces = |t: &[u32; 4]| FACES.map(|face| face.map(|k| t[k]));
     let all = tetrahedra.iter().flat_map(faces).enumerate();
-    let mut all: Vec<_> = all
-        .map(|(place, face)| (sorted(face), place as u32, face))
-        .collect();
+    let all = all.map(|(place, face)| (sorted(face), place as u32, face));
+    let mut all: Vec<_> = all.collect();
     all.sort_unstable();
     let same = all.chunk_by(|(a, ..), (b, ..)| a == b);
     let alone = same.filter(|same| same.len() == 1);
@@ -83,9 +82,8 @@ impl Numbered {
             return Err(format!("there are two points of number {}", twice[0].0));
         }
         let find = |number: u64, line: usize| {
-            let place = self
-                .points
-                .binary_search_by_key(&number, |(number, _)| *number);
+            let points = &self.points;
+            let place = points.binary_search_by_key(&number, |(number, _)| *number);
             let none = |_| format!("line {line}: there is no point {number}");
             place.map(|place| place as u32).map_err(none)
         };

@@ -98,9 +98,8 @@ impl Places {
         let mut parts = iter::successors(Some(key.as_str()), |part| {
             part.rsplit_once('.').map(|(part, _)| part)
         });
-        let line = fault
-            .line
-            .or_else(|| parts.find_map(|part| self.lines.get(part).copied()));
+        let mut line_of_part = || parts.find_map(|part| self.lines.get(part).copied());
+        let line = fault.line.or_else(&mut line_of_part);
         Fault { line, key, ..fault }
     }
 }

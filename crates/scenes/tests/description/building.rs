@@ -217,13 +217,11 @@ fn constraints_are_met_at_the_start() {
     assert_eq!(refused.key, "constraint.1");
     let why = "constraint 1, the rod between particles 1 and 2, is off by 4.762 %";
     begins(refused.why, why);
+    let circle = "{ center = [0, 0, 0], normal = [0, 0, 1], radius = 1 }";
     for (name, wire) in [
         ("point", "[0, 0.5, 0]"),
         ("line", "{ point = [0, 0.5, 0], direction = [1, 0, 0] }"),
-        (
-            "circle",
-            "{ center = [0, 0, 0], normal = [0, 0, 1], radius = 1 }",
-        ),
+        ("circle", circle),
         ("sphere", "{ center = [0, 0, 0], radius = 1 }"),
     ] {
         let wired = format!("{particles}[[constraint]]\nparticle = 0\n{name} = {wire}\n");

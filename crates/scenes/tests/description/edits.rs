@@ -35,9 +35,8 @@ fn links(scene: &Scene, number: impl Fn(usize) -> Option<usize>) -> Vec<[usize; 
     let constraints = network.constraints().iter();
     let constraints = constraints.filter_map(|it| Some([it.ends().0, it.ends().1?]));
     let all = springs.chain(constraints);
-    let mut all: Vec<_> = all
-        .filter_map(|[i, j]| Some([number(i)?, number(j)?]))
-        .collect();
+    let pairs = all.filter_map(|[i, j]| Some([number(i)?, number(j)?]));
+    let mut all: Vec<_> = pairs.collect();
     all.sort_unstable();
     all
 }

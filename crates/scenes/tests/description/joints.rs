@@ -58,13 +58,11 @@ fn joints_that_make_no_sense_are_refused() {
 fn a_scene_begins_with_velocities_that_fit_its_joints() {
     let scene = build(&boxes(HINGED)).unwrap();
     let network = network(&scene);
-    let kinds = network
-        .constraints()
-        .iter()
-        .map(|constraint| match constraint {
-            Constraint::Joint(joint) => Some(joint.kind),
-            _ => None,
-        });
+    let constraints = network.constraints().iter();
+    let kinds = constraints.map(|constraint| match constraint {
+        Constraint::Joint(joint) => Some(joint.kind),
+        _ => None,
+    });
     let (hinge, ball) = (Some(JointKind::Hinge), Some(JointKind::Ball));
     assert_eq!(kinds.collect::<Vec<_>>(), [hinge, hinge, None, None, ball]);
     let poses = [0, 1].map(|k| network.pose(k, &scene.state));

@@ -17,13 +17,11 @@ pin = [{ at = [\"left\"] }]
 ";
 
 fn solid(network: &Network) -> &a3_core::elements::Solid {
-    let solids = network
-        .elements()
-        .iter()
-        .filter_map(|element| match element {
-            Element::Solid(solid) => Some(solid),
-            _ => None,
-        });
+    let elements = network.elements().iter();
+    let solids = elements.filter_map(|element| match element {
+        Element::Solid(solid) => Some(solid),
+        _ => None,
+    });
     solids.last().unwrap()
 }
 

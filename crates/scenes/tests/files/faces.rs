@@ -71,15 +71,10 @@ fn corners_on_sides_stay() {
         [[0.0, 0.0], [1.0, 0.0], [2.0, 0.0], [2.0, 2.0], [1.0, 2.0], [0.0, 2.0], [0.0, 1.0]];
     is_covered(&tee);
     let mesh = obj(face(&tee).0);
-    let all = mesh
-        .triangles
-        .iter()
-        .flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]);
-    let all: Vec<_> = all.collect();
-    let mut sides: Vec<_> = all
-        .iter()
-        .filter(|[a, b]| !all.contains(&[*b, *a]))
-        .collect();
+    let sides_of = |&[a, b, c]: &[u32; 3]| [[a, b], [b, c], [c, a]];
+    let all: Vec<_> = mesh.triangles.iter().flat_map(sides_of).collect();
+    let is_outer = |[a, b]: &&[u32; 2]| !all.contains(&[*b, *a]);
+    let mut sides: Vec<_> = all.iter().filter(is_outer).collect();
     sides.sort_unstable();
     assert!(sides.len() == 7 && (0..7).all(|k| *sides[k as usize] == [k, (k + 1) % 7]));
     #[rustfmt::skip]

@@ -53,28 +53,15 @@ fn tetrahedra_count_once() {
     assert_eq!(same.positions, mesh.positions);
     let hexahedron =
         |kind: &str| format!("{nodes}{}", twice.replace("2 4 4", &format!("2 {kind} 4")));
-    for (text, why) in [
-        (
-            hexahedron("92"),
-            "line 14: an element of type 92 is a hexahedron",
-        ),
-        (
-            hexahedron("118"),
-            "line 14: an element of type 118 is a hexahedron",
-        ),
-        (
-            "$NOD\n1\n".into(),
-            "it is Gmsh's format 1, and only the text formats 2.2 and 4.1",
-        ),
-        (
-            "$MeshFormat\n4 0 8\n".into(),
-            "it is Gmsh's format 4, and only",
-        ),
-        (
-            "$MeshFormat\n4.1 1 8\n".into(),
-            "it is Gmsh's format 4.1, binary, and only",
-        ),
-    ] {
+    #[rustfmt::skip]
+    let cases = [
+        (hexahedron("92"), "line 14: an element of type 92 is a hexahedron"),
+        (hexahedron("118"), "line 14: an element of type 118 is a hexahedron"),
+        ("$NOD\n1\n".into(), "it is Gmsh's format 1, and only the text formats 2.2 and 4.1"),
+        ("$MeshFormat\n4 0 8\n".into(), "it is Gmsh's format 4, and only"),
+        ("$MeshFormat\n4.1 1 8\n".into(), "it is Gmsh's format 4.1, binary, and only"),
+    ];
+    for (text, why) in cases {
         let refused = Mesh::from_gmsh(text.as_bytes()).unwrap_err();
         begins(refused, why);
     }
@@ -127,13 +114,10 @@ fn lines_of_ply_may_have_more() {
     let mesh = Mesh::from_ply(text.as_bytes()).unwrap();
     assert_eq!(mesh.triangles, [[0, 1, 2]]);
     // A long line costs no memory for its words, and ends the search for the end of the head.
+    let beyond = "face 0, counted from 0, has corner 7, but there are 3 points";
     let long = format!("comment{}\nend_header", " a".repeat(1 << 20));
     for (part, instead, why) in [
-        (
-            "3 0 1 2",
-            "3 0 1 7",
-            "face 0, counted from 0, has corner 7, but there are 3 points",
-        ),
+        ("3 0 1 2", "3 0 1 7", beyond),
         ("end_header", "", "`end_header` is missing"),
         ("end_header", &long, "in the first 1 MiB"),
     ] {
@@ -145,19 +129,15 @@ fn lines_of_ply_may_have_more() {
 /// Files of other kinds are refused with their kind.
 #[test]
 fn other_files_are_named() {
+    let lfs = b"version https://git-lfs.github.com/spec/v1\n";
+    let three = "line 1: `nan` is none: a point has three finite numbers";
     for (bytes, why) in [
         (b"\x1f\x8b\x08\0".as_slice(), "it is compressed by gzip"),
         (b"PK\x03\x04", "it is a zip archive"),
-        (
-            b"version https://git-lfs.github.com/spec/v1\n",
-            "it is a pointer of Git LFS",
-        ),
+        (lfs, "it is a pointer of Git LFS"),
         (b"<!DOCTYPE html>", "it is a web page"),
         (b"v\0\0\0 \0\0\0", "it is UTF-32"),
-        (
-            b"v nan 0 0\n",
-            "line 1: `nan` is none: a point has three finite numbers",
-        ),
+        (b"v nan 0 0\n", three),
         (b"v 0,5 0 0\n", "line 1: `0,5` is none"),
     ] {
         let refused = Mesh::from_obj(bytes).unwrap_err();

@@ -125,13 +125,11 @@ fn mirrors_turn_triangles() {
     let normal =
         |nodes: Value| vector_area(&changed(|document| document["nodes"] = nodes.clone()).unwrap());
     let through = [-1, 0, 0, 0, 0, -1, 0, 0, 0, 0, -1, 0, 0, 0, 0, 1];
+    let nested = json!([{"children": [1], "scale": [1, -1, 1]}, {"mesh": 0, "scale": [-1, 1, 1]}]);
     for (nodes, z) in [
         (json!([{"mesh": 0}]), 0.5),
         (json!([{"mesh": 0, "scale": [-1, 1, 1]}]), 0.5),
-        (
-            json!([{"children": [1], "scale": [1, -1, 1]}, {"mesh": 0, "scale": [-1, 1, 1]}]),
-            0.5,
-        ),
+        (nested, 0.5),
         (json!([{"mesh": 0, "matrix": through}]), -0.5),
     ] {
         assert_eq!(normal(nodes.clone()), [0.0, 0.0, z], "{nodes}");
@@ -275,29 +273,16 @@ fn targets_and_joints_are_counted() {
     let why = why.unwrap_err();
     assert!(why.contains("points more than"), "{why}");
     let node = json!({"mesh": 0, "skin": 0});
-    for (joints, nodes, expected) in [
-        (
-            json!([0]),
-            json!([node]),
-            "a point has a joint that is not among the 1",
-        ),
+    let circle = json!([node, {"children": [2]}, {"children": [1]}]);
+    #[rustfmt::skip]
+    let cases = [
+        (json!([0]), json!([node]), "a point has a joint that is not among the 1"),
         (json!([0, 9]), json!([node]), "there is no joint 9"),
-        (
-            json!([1, 2]),
-            json!([node, {"children": [2]}, {"children": [1]}]),
-            "there is no joint 1 in a tree",
-        ),
-        (
-            json!([1, 2]),
-            json!([node, {"children": [2, 2]}, {}]),
-            "node 2 has two parents",
-        ),
-        (
-            json!([1, 2]),
-            json!([node, {"children": [7]}, {}]),
-            "there is no node 7",
-        ),
-    ] {
+        (json!([1, 2]), circle, "there is no joint 1 in a tree"),
+        (json!([1, 2]), json!([node, {"children": [2, 2]}, {}]), "node 2 has two parents"),
+        (json!([1, 2]), json!([node, {"children": [7]}, {}]), "there is no node 7"),
+    ];
+    for (joints, nodes, expected) in cases {
         let read = changed(|document| {
             document["skins"] = json!([{"joints": joints}]);
             document["nodes"] = nodes.clone();

@@ -143,13 +143,9 @@ fn is_mesh(mesh: Result<Mesh, String>) -> bool {
     let Ok(mesh) = mesh.map_err(|why| said(&why)) else {
         return false;
     };
-    let corners = mesh
-        .triangles
-        .iter()
-        .flatten()
-        .chain(mesh.tetrahedra.iter().flatten());
-    let count = mesh.positions.len();
-    assert!(corners.into_iter().all(|i| (*i as usize) < count));
+    let is_there = |i: &u32| (*i as usize) < mesh.positions.len();
+    assert!(mesh.triangles.iter().flatten().all(is_there));
+    assert!(mesh.tetrahedra.iter().flatten().all(is_there));
     assert!(mesh.positions.iter().flatten().all(|x| x.is_finite()));
     if !mesh.tetrahedra.is_empty() {
         // A solid with this mesh is refused, or has finite masses.
@@ -179,22 +175,18 @@ fn what_is_too_much_is_refused() {
         assert!(memory[0] < MOST[0], "{expected}: {memory:?}");
     };
     let many = "4000000000";
+    let (nodes, blocks) = (
+        "$Nodes\nmany\n1 0 0 0\n",
+        "$Nodes\nmany many 1 1\n0 0 0 many\n",
+    );
+    let elements = "$Elements\nmany 1 1 1\n3 0 4 many\n1 2";
     let gmsh = |version: &str, rest: &str| {
         format!("$MeshFormat\n{version} 8\n{}", rest.replace("many", many))
     };
     for (text, expected) in [
-        (
-            gmsh("2.2 0", "$Nodes\nmany\n1 0 0 0\n"),
-            "ends within $Nodes",
-        ),
-        (
-            gmsh("4.1 0", "$Nodes\nmany many 1 1\n0 0 0 many\n"),
-            "ends within",
-        ),
-        (
-            gmsh("4.1 0", "$Elements\nmany 1 1 1\n3 0 4 many\n1 2"),
-            "four corners",
-        ),
+        (gmsh("2.2 0", nodes), "ends within $Nodes"),
+        (gmsh("4.1 0", blocks), "ends within"),
+        (gmsh("4.1 0", elements), "four corners"),
         (gmsh("4.1 1", ""), "it is Gmsh's format 4.1, binary"),
         (String::new(), "no Gmsh file"),
     ] {
