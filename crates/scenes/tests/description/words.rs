@@ -90,8 +90,8 @@ fn toml_is_refused_in_plain_english() {
 #[test]
 fn numbers_are_read_as_toml_writes_them() {
     let grids = ["[0x3, 0b100]", "[+3, 4]"].map(|grid| CLOTH.replace("[3, 4]", grid));
-    let spacings = ["1_000", "5e-1", "0xff", "1"]
-        .map(|spacing| CLOTH.replace("= 0.5", &format!("= {spacing}")));
+    let spacings = ["1_000", "5e-1", "0xff", "1"];
+    let spacings = spacings.map(|it| CLOTH.replace("= 0.5", &format!("= {it}")));
     for text in grids.iter().chain(&spacings) {
         assert!(*text != CLOTH && build(text).is_ok(), "{text}");
     }

@@ -34,12 +34,8 @@ fn triangle() -> Value {
         bytes.extend(part);
         bytes.resize(bytes.len().next_multiple_of(4), 0);
     };
-    let floats = |numbers: &[f32]| {
-        numbers
-            .iter()
-            .flat_map(|x| x.to_le_bytes())
-            .collect::<Vec<_>>()
-    };
+    let floats =
+        |numbers: &[f32]| -> Vec<u8> { numbers.iter().flat_map(|x| x.to_le_bytes()).collect() };
     add(&floats(&[0., 0., 0., 1., 0., 0., 0., 1., 0.]));
     add(&[0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0]);
     add(&[255, 0, 0, 0, 0, 255, 0, 0, 51, 204, 0, 0]);

@@ -137,9 +137,8 @@ fn fault(k: usize, grammar: &Grammar) -> Option<String> {
 fn alarms_of_energy_are_true() {
     let (scenes, first) = (told("A3_SCENES", SCENES), told("A3_FIRST", 0));
     let grammar = Grammar::new();
-    let faults: Vec<_> = (first..first + scenes)
-        .filter_map(|k| fault(k, &grammar))
-        .collect();
+    let all = first..first + scenes;
+    let faults: Vec<_> = all.filter_map(|k| fault(k, &grammar)).collect();
     for fault in &faults {
         println!("{fault}");
     }

@@ -69,9 +69,8 @@ fn known() -> Vec<Named> {
     let files = std::fs::read_dir(DOCS)
         .unwrap()
         .map(|file| file.unwrap().path());
-    let mut files: Vec<_> = files
-        .filter(|it| it.extension().is_some_and(|e| e == "toml"))
-        .collect();
+    let scenes = files.filter(|it| it.extension().is_some_and(|e| e == "toml"));
+    let mut files: Vec<_> = scenes.collect();
     files.sort();
     let files = files.iter().map(|file| {
         let text = std::fs::read_to_string(file).unwrap();
@@ -123,9 +122,8 @@ fn faults(k: usize, (name, scene): &Named) -> Vec<String> {
     let suits =
         |frame: &Frame| frame.suits(scene) && has_mirror(frame) && !is_left_out(name, frame);
     let frames = Frame::all().into_iter().filter(suits);
-    let frames: Vec<_> = frames
-        .map(|frame| (build(&frame.of(scene)), frame))
-        .collect();
+    let built = frames.map(|frame| (build(&frame.of(scene)), frame));
+    let frames: Vec<_> = built.collect();
     let mut faults = vec![];
     for (built, frame) in &frames {
         if let Err(why) = built

@@ -191,9 +191,8 @@ fn state(value: &mut Value, setup: &Setup, chance: &mut Chance) -> bool {
             }
             _ => json!(chance.triple((-0.1, 0.1, false))),
         };
-        *rows = (0..if of_particles { n } else { bodies })
-            .map(&mut row)
-            .collect();
+        let all = 0..if of_particles { n } else { bodies };
+        *rows = all.map(&mut row).collect();
     }
     true
 }

@@ -87,9 +87,8 @@ pub fn run(
         let own = own_energy(&run, begin) + fallen + released;
         let gained = end.total() - begin.total();
         if gained.is_nan() || gained > EXPLODED * own {
-            let is_broken = run
-                .worst_constraint()
-                .is_some_and(|unmet| unmet.is_visible());
+            let worst = run.worst_constraint();
+            let is_broken = worst.is_some_and(|unmet| unmet.is_visible());
             if is_broken || run.gained().is_some() {
                 return Ok(Ended::Told);
             }
