@@ -1,5 +1,5 @@
-//! Scenes as lists of masses and springs in JSON, for programs that read no scene files, and with the
-//! reference states of other programs.
+//! Scenes as lists of masses and springs in JSON, for programs that read no scene files, and with
+//! the reference states of other programs.
 
 use a3_core::{Model, Network, Path, Pin as Held, Scene};
 use serde::de::IgnoredAny;

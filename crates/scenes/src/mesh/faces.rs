@@ -1,6 +1,6 @@
 //! Meshes from files of faces: Wavefront OBJ, with points (`v`) and faces (`f`); STL, binary or
-//! text, with triangles, each with its corners; and PLY (Turk, *The PLY Polygon File Format*, 1994),
-//! text or binary, with the elements `vertex` and `face`. All else in them is skipped.
+//! text, with triangles, each with its corners; and PLY (Turk, *The PLY Polygon File Format*,
+//! 1994), text or binary, with the elements `vertex` and `face`. All else in them is skipped.
 
 use std::collections::HashMap;
 
