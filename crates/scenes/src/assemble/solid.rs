@@ -162,7 +162,7 @@ impl Body for Solid {
                 (mesh.positions.len(), mesh.tetrahedra.len())
             }
             _ => {
-                refuse!("file": "the file has no tetrahedra: a solid needs a.msh or an.ele file");
+                refuse!("file": "the file has no tetrahedra: a solid needs a .msh or an .ele file");
             }
         };
         files.spend(particles, &[(tetrahedra, TETRAHEDRA)])?;
