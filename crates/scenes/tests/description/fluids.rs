@@ -122,7 +122,7 @@ fn liquid_flows_in_through_a_hole_in_the_wall() {
 }
 
 /// Changes of that inflow, with the messages.
-const WRONG_INFLOW: &str = r#"
+const WRONG_INFLOW: &str = r"
 velocity = [2, 0, 0]
     velocity = [0, 0, 0] =>
         line 9: fluid.inflow.velocity: it must be along one of the axes x, y, not
@@ -139,7 +139,7 @@ duration = 1
     duration = -1 => line 9: fluid.inflow.duration: it must be a finite number above 0
     duration = 1e9 => line 1: fluid: the scene would have 64000000246 particles, which take
     duration = 1, ahead = -1 => line 9: fluid.inflow.ahead: it must be a finite number of at least 0
-"#;
+";
 
 #[test]
 fn what_is_wrong_with_an_inflow_is_said() {

@@ -12,7 +12,7 @@ fn face(corners: &[[f64; 2]]) -> (String, f64) {
         writeln!(text, "v {x} {y} 0").unwrap();
     }
     let numbers: Vec<_> = (1..=count).map(|k| k.to_string()).collect();
-    text += &format!("f {}\n", numbers.join(" "));
+    writeln!(text, "f {}", numbers.join(" ")).unwrap();
     let cross = |k: usize| {
         let ([a, b], [c, d]) = (corners[k], corners[(k + 1) % count]);
         a * d - b * c

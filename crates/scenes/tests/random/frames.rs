@@ -55,7 +55,7 @@ impl Frame {
         vec![
             named("shifted", |it| it.shift = Vector3::new(5.0, 0.0, 3.0)),
             named("shifted far", |it| {
-                it.shift = Vector3::new(64.0, 0.0, -32.0)
+                it.shift = Vector3::new(64.0, 0.0, -32.0);
             }),
             named("turned", |it| it.turn = 0.7),
             named("turned by half", |it| it.turn = PI),
